@@ -133,6 +133,12 @@ def test_importing_symrot_imports_next_to_nothing():
     assert loaded == []
 
 
+def test_a_check_without_integrals_imports_no_numpy():
+    claims = ["sqrt(x**2) == x", "I = 2/5 m r^2"]
+    code = f"import sys, symrot; print([symrot.check(c).verdict for c in {claims}], 'numpy' in sys.modules)"
+    assert run(code).strip() == "['conditional', 'recognised'] False"
+
+
 @pytest.mark.parametrize("name", sorted(set(symrot.__all__) - {"__version__"}))
 def test_every_public_name_is_there_and_documented(name):
     value = getattr(symrot, name)

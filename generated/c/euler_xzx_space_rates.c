@@ -6,7 +6,7 @@
  * out  dangles[3]  dphi, dtheta, dpsi         rad/s  rate of the angle
  *
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
- * Domain: sin(theta) != 0; near it, digits are lost as 1/sin(theta).
+ * Domain: sin(theta) != 0; rounding errors grow as 1/sin(theta).
  * Box: phi, psi in [-22/7, 22/7]; theta in [1/10, 76/25]; omega_x, omega_y, omega_z in [-10, 10].
  * Errors: on the box at most 1.23e-13 [6.59e-05] rad/s in dangles (float functions in brackets).
  * Certificate: euler_xzx_space_rates.cert.json; re-check it by `python recheck.py

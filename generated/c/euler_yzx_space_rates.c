@@ -6,7 +6,7 @@
  * out  dangles[3]  dphi, dtheta, dpsi         rad/s  rate of the angle
  *
  * Convention: body axes; quaternion scalar first, Hamilton, body to space (symrot conventions).
- * Domain: cos(theta) != 0; near it, digits are lost as 1/cos(theta).
+ * Domain: cos(theta) != 0; rounding errors grow as 1/cos(theta).
  * Box: phi, psi in [-22/7, 22/7]; theta in [-7/5, 7/5]; omega_x, omega_y, omega_z in [-10, 10].
  * Errors: on the box at most 7.05e-14 [3.79e-05] rad/s in dangles (float functions in brackets).
  * Certificate: euler_yzx_space_rates.cert.json; re-check it by `python recheck.py

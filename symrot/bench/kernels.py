@@ -245,8 +245,7 @@ def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], f
 
 
 def _runs(name: str, loaded: ctypes.CDLL, shapes: Sequence[str], many: int) -> dict[str, Callable[[int], float]]:
-    """Return a map from each of ``shapes`` to a timing function, which takes a memory block's number and returns s per
-    sample.
+    """Return a timing function for each of ``shapes``; it takes a memory block's number and returns s per sample.
 
     The shapes are ``one`` (a single sample), ``cached`` (a batch that fits in the cache) and ``many`` (a batch of
     ``many`` samples). The functions call the compiled library ``loaded``; ``name`` is the kernel.
@@ -269,8 +268,7 @@ def _call(function: Any, count: int, addresses: Sequence[Any], repeats: int, pla
 def _in_c(
     name: str, text: str, many: int, shapes: Sequence[str] = SHAPES, prepare: Callable[[Any], object] = id
 ) -> tuple[dict[str, Callable[[int], float]], Floats]:
-    """Compile a kernel; return its timing functions for ``shapes`` (see :func:`_runs`), and its outputs for a small
-    batch.
+    """Compile a kernel; return its timing functions for ``shapes``, and its outputs for a small batch.
 
     The small batch, of ``CACHED`` samples, serves to compare the tools' results; a large batch has ``many`` samples.
     ``text`` is the C text with its drivers (see :func:`_drivers`). ``prepare`` is called with the loaded library, for

@@ -195,8 +195,7 @@ def _stepper(
 
 
 def _heyoka(problem: SteppedProblem, tolerance: float, settings: dict[str, bool]) -> TimedRun | None:
-    """Return a function that runs heyoka on the rates of ``problem``, with the problem's parameters compiled as
-    numbers.
+    """Return a function that runs heyoka on the rates of ``problem``, with their parameters compiled as numbers.
 
     ``settings`` are heyoka's own, such as ``fast_math``. Return None if heyoka is not installed.
     """

@@ -197,11 +197,10 @@ def _text(function: Function) -> str:
 
 
 def _ulps(computed: float, exact: Any, real: Real, x: float = 0.0) -> float:
-    """Return the distance between ``computed`` and ``exact`` in units in the last place of ``exact``, for the precision
-    ``real``.
+    """Return the distance between ``computed`` and ``exact`` in units in the last place of ``exact``.
 
-    If x is not 0, the unit is 2^-53/x^2 instead (2^-24/x^2 for float). This suits a function of x that decreases as
-    1/x^2 and has zeros, where its own last place is no measure.
+    ``real`` is the precision. If x is not 0, the unit is 2^-53/x^2 instead (2^-24/x^2 for float). This suits a function
+    of x that decreases as 1/x^2 and has zeros, where its own last place is no measure.
     """
     digits, least = DIGITS[real.precision]
     if x:

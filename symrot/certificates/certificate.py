@@ -79,12 +79,12 @@ class KernelUnderTest:
 
     @property
     def places(self) -> dict[str, tuple[str, str]]:
-        """A map from the index text of each input component, such as ``"q[1]"``, to its symbol and unit."""
+        """A map from each input component, such as ``"q[1]"``, to its symbol and unit."""
         return {place: (name, unit) for a in self.inputs for place, (name, unit, _) in _places(a)}
 
     @property
     def formulas(self) -> dict[str, tuple[str, Expr]]:
-        """A map from the index text of each output component, such as ``"dq[1]"``, to its symbol and formula."""
+        """A map from each output component, such as ``"dq[1]"``, to its symbol and formula."""
         return {
             place: (component[0], formula)
             for target, formulas in self.outputs
@@ -93,9 +93,9 @@ class KernelUnderTest:
 
 
 def _places(argument: Argument) -> list[tuple[str, tuple[str, str, str]]]:
-    """Return a pair for each component of an argument: index text, such as ``"q[1]"``, and (symbol, unit, description).
+    """Return a pair for each component of an argument: its place in C, and (symbol, unit, description).
 
-    The index text of an argument that is one number is its name.
+    The place is ``"q[1]"``, for example; for an argument that is one number, it is the argument's name.
     """
     if argument.is_scalar:
         return [(argument.name, argument.components[0])]

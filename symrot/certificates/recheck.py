@@ -1106,7 +1106,7 @@ class Specification:
         return FormulaReader(text, place, self.functions).whole()
 
     def set_values(self, names):
-        """Store intermediate quantities and outputs in ``names``; return a map from index text (``q[2]``) to input."""
+        """Store intermediate quantities and outputs in ``names``; return a map from place (``q[2]``) to input."""
         inputs = {place: expression.value(names.numbers, names) for place, expression in self.inputs}
         for symbol, expression in self.named:
             names.define(symbol, expression.value(names.numbers, names))
@@ -1229,7 +1229,7 @@ def constants_of(readback, real):
 
 
 def component_of(place):
-    """Return (array, component) of an index text such as ``q[2]``; a single number is component 0 of its name."""
+    """Return ("q", 2) for a place such as ``q[2]``; a single number, such as ``t``, gives ("t", 0)."""
     match = re.fullmatch(r"([A-Za-z]\w*)(?:\[(0|[1-9]\d{0,2})\])?", place, re.ASCII)
     need(match, f"{quoted(place)}: expected an argument of a function, such as W or q[2]")
     return match[1], int(match[2] or 0)

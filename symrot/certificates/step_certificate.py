@@ -284,7 +284,7 @@ def bounds_of_step(
 
 
 def _symbols_by_place(signature: Signature) -> dict[str, str]:
-    """Return a map from the index text of each input, such as ``"x[0]"``, to its symbol."""
+    """Return a map from each input component, such as ``"x[0]"``, to its symbol."""
     return {
         (a.name if a.is_scalar else f"{a.name}[{i}]"): component[0]
         for a in signature.arguments

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import Relation
-from symrot.checker.claim.tree import Node, negated
+from symrot.checker.claim.tree import Node, is_derivative, negated
 from symrot.checker.context.context import Context, Meaning
 from symrot.checker.context.quantities import QUANTITIES
 from symrot.checker.equivalent_claim import brought_back
@@ -91,7 +91,7 @@ def _negative(tree: Node) -> Node:
 
 def _is_product(tree: Node) -> bool:
     """Return whether a tree is a product of inertia by its name: I_xy, I_xy(t), or the time derivative of one."""
-    if tree.kind == "call" and tree.value == "diff":
+    if is_derivative(tree):
         return _is_product(tree.args[0])
     is_function = tree.kind == "call" and [argument.value for argument in tree.args] == ["t"]
     stem = str(tree.value).removesuffix("_prime").removesuffix("_bar")

@@ -18,7 +18,7 @@ from symrot.checker.claim.reader import Declared, Reading, Relation, read_relati
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.source.lines import claims_of_reading
 from symrot.checker.claim.source.text import functions_of_time
-from symrot.checker.claim.tree import Node, number, walk, with_names
+from symrot.checker.claim.tree import TIME, Node, number, walk, with_names
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim, is_unfinished
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
 from symrot.checker.inequality import OPPOSITE, is_inequality, verdict_on_inequality
@@ -28,7 +28,6 @@ from symrot.checker.open_equation import as_equation
 from symrot.checker.recognition.together import fit_together
 from symrot.checker.rounding import with_rounding
 from symrot.checker.special_cases import for_complex_numbers, for_special_directions
-from symrot.checker.typed.cursor import TIME
 from symrot.checker.units.conversion import (
     ONE_PER_SECOND,
     STANDARD_GRAVITY,
@@ -579,7 +578,10 @@ def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation
         _, left, right = claim.relation
         others = _names(right) - _names(left)
         if verdict.verdict in ("false", "conditional", "definition") and others and _names(left) - _names(right):
-            under_name = check_claim(claim.with_relation(("==", named.side, right)), repair=False)
+            renamed = claim.with_relation(("==", named.side, right))
+            under_name = check_claim(renamed)
+            repairs = tuple(_marked(repair, renamed, notation) for repair in under_name.repairs)
+            under_name = replace(under_name, repairs=repairs)
             link = notation.relation(claim.relation)
             note = f"{link} is no identity, since only one side has {', '.join(sorted(others))}"
             verdict = replace(under_name, notes=(*under_name.notes, note))

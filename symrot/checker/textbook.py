@@ -14,7 +14,7 @@ from typing import Any
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import Declared, read_expression, read_relation
 from symrot.checker.claim.source.file import read_claims
-from symrot.checker.claim.tree import Node, product, sum_of, text, walk
+from symrot.checker.claim.tree import Node, is_derivative, product, sum_of, text, walk
 from symrot.checker.claim_verdict import check_readings
 from symrot.checker.decide.decision import decide_equation
 from symrot.checker.rounding import rounded_value
@@ -200,7 +200,7 @@ def _inner(kinds: Collection[str]) -> Callable[[Node], Node]:
 
 
 def _without_dots(node: Node) -> Node:
-    return node.args[0] if node.kind == "call" and node.value == "diff" else node
+    return node.args[0] if is_derivative(node) else node
 
 
 def _without_transpose(node: Node) -> Node:

@@ -22,7 +22,7 @@ def _exercise(options: Namespace) -> int:
         for topic, names in TOPICS.items():
             say([topic, *(f"  {name}" for name in names)])
         return OK
-    text = symrot.exercise(options.topic, seed=options.seed, count=options.count).print(options.format)
+    text = symrot.exercise(options.topic or "", seed=options.seed, count=options.count).print(options.format)
     if options.output is None:
         sys.stdout.write(text)
         return OK
@@ -65,9 +65,8 @@ def _exercise_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "topic",
         metavar="TOPIC",
-        nargs="?",
-        default="",
-        help="a topic, or the template of one exercise (default: all in turn)",
+        nargs="*",
+        help="topics, or templates of exercises, which take turns (default: all topics)",
     )
     parser.add_argument(
         "--seed", type=_whole, default=0, metavar="N", help="seed of the numbers in the exercises (default: 0)"

@@ -249,12 +249,16 @@ def _derive(options: Namespace) -> int:
         raise InputError("derive: expected a NAME with --step N (see `symrot derive --help`)")
     if options.format != "markdown" and options.check:
         raise InputError("derive: --check compares Markdown pages only; leave out --format")
+    directory = options.directory or Path("derivations")
+    if options.step is None and (options.all or options.name) and directory.exists() and not directory.is_dir():
+        raise InputError(f"derive: expected -o with a folder for the pages, got the file {str(directory)!r}")
     if options.format != "markdown" and options.all:
         if options.directory is None:
             raise InputError(f"derive: expected a folder, -o DIR, to write all pages as {options.format} into it")
-        say(str(path) for path in derivation_pages.write_pages(options.directory, options.format))
+        written = derivation_pages.write_pages(options.directory, options.format, say=progress)
+        progress("")
+        say(str(path) for path in written)
         return OK
-    directory = options.directory or Path("derivations")
     if options.check:
         if not directory.is_dir():
             raise InputError(
@@ -269,12 +273,14 @@ def _derive(options: Namespace) -> int:
         progress("")
         say(str(path) for path in written)
     elif options.name and options.directory is not None and options.step is None:
-        written = derivation_pages.write_handout(options.directory, options.format, options.name)
+        written = derivation_pages.write_handout(options.directory, options.format, options.name, progress)
+        progress("")
         say(str(path) for path in written)
+    elif options.name and options.step is not None:
+        whole = catalogue.derivation(derivation_pages.derivation_of(options.name[0]))
+        sys.stdout.write(PAGES[options.format](whole.part(options.step, options.detail)))
     elif options.name:
-        whole = catalogue.derivation(options.name[0])
-        page = derivation_pages.illustrated(whole) if options.step is None else whole.part(options.step, options.detail)
-        sys.stdout.write(PAGES[options.format](page))
+        sys.stdout.write(PAGES[options.format](derivation_pages.printed_page(options.name[0])))
     else:
         say(catalogue.names())
     return OK

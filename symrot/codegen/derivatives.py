@@ -96,8 +96,8 @@ def ways(value: Formulas, chained: Formulas, base: Program, entries: Entries, gr
 
     Notes
     -----
-    Only the chain rule gives formulas for functions such as sinc that stay finite at zero: it cancels the division by
-    the argument.
+    A derivative of sin(x)/x contains divisions by x, which give NaN at x = 0. The chain rule writes it in functions
+    that are finite there; so it is the only way for programs that call sinc and similar functions.
     """
     explicit = _explicit(value.explicit, entries)
     every = [chained]

@@ -120,5 +120,8 @@ class Recorded:
 
 
 def is_exactly(value: Any, number: int) -> bool:
-    """Return whether ``value`` is a plain number, not a recorded one, and equal to ``number``, such as 0 or 1."""
+    """Return whether ``value`` is a number (int, float, Fraction) equal to ``number``, such as 0 or 1.
+
+    The result is False for a :class:`Recorded`, whose value is not known while a program is recorded.
+    """
     return not isinstance(value, Recorded) and bool(value == number)

@@ -100,7 +100,10 @@ def rate_derivatives(equations: Equations, variables: Sequence[str]) -> tuple[Fo
     chosen = {name: _variables(equations, name) for name in variables}
     every = [symbol for symbols_ in chosen.values() for symbol in symbols_]
     if len(set(every)) < len(every) or len(chosen) < len(variables):
-        raise InputError(f"expected each state and constant once in the derivatives by {', '.join(variables)}")
+        raise InputError(
+            f"expected no state or constant twice in the derivatives by {', '.join(variables)}; y includes all states, "
+            "omega and q their components"
+        )
     rates, target = _rates(equations), _rates_argument(equations)
     slopes, outputs, arguments = Derivatives(rates.named), list(rates.outputs), [target]
     for name, by in chosen.items():

@@ -63,10 +63,10 @@ class TaylorSeries:
 
 @dataclass(frozen=True)
 class WithDerivatives:
-    """A method (``plain``) together with the exact derivatives of its step by the inputs that ``by`` names.
+    """A method of time steps (``plain``) whose step also computes the new state's derivatives by inputs.
 
-    A name in ``by`` is ``"x"`` (all states), ``"omega"``, ``"q"``, ``"p"`` (all parameters), ``"dt"``, ``"t"``, one
-    state or one parameter.
+    The derivatives are exact: those of the formula of the step. ``by`` names the inputs: each is ``"x"`` (all states),
+    ``"omega"``, ``"q"``, ``"p"`` (all parameters), ``"dt"``, ``"t"``, one state or one parameter.
     """
 
     plain: RungeKutta | TaylorSeries
@@ -74,17 +74,17 @@ class WithDerivatives:
 
     @property
     def name(self) -> str:
-        """The name of the plain method, without derivatives."""
+        """The name of the method of time steps, such as ``rk4``; it does not mention the derivatives."""
         return self.plain.name
 
     @property
     def order(self) -> int:
-        """The order of the plain method; the derivatives do not change it."""
+        """The order of the method of time steps; the derivatives of the new state do not change it."""
         return self.plain.order
 
     @property
     def formula(self) -> str:
-        """The plain method in words, with its derivatives, for the head comment of an emitted step."""
+        """The method in words, and the inputs of its derivatives, for the head comment of an emitted step."""
         return f"{self.plain.formula}, and its derivatives by {', '.join(self.by)}"
 
 

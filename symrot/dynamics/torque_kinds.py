@@ -14,8 +14,7 @@ EXPRESSION_NAMES = ("t", "omega_1", "omega_2", "omega_3", "q0", "q1", "q2", "q3"
 
 
 class Field(NamedTuple):
-    """One entry of a torque's table in a scene file, such as a stiffness: its shape, unit, meaning, sign and default
-    value.
+    """One entry of a torque's table in a scene file, such as a stiffness: shape, unit, meaning, sign and default.
 
     The reader of scenes checks the values of a torque against the list of its fields.
     """

@@ -156,7 +156,7 @@ class Lanes:
         """Return the Taylor coefficients of the states at time t, shape (order + 1, N), in powers of time/``unit``.
 
         Row k holds the k-th derivatives times ``unit^k/k!``. ``y`` are the N states at this time, ``p`` the parameters.
-        The function serves tests, which compare the rows with derivatives from SymPy.
+        The function serves tests, which compare the rows with coefficients computed in Python.
         """
         state, values = np.array(y, dtype=np.float64), np.array(p, dtype=np.float64)
         coefficients = np.empty((self.order + 1, self.states))

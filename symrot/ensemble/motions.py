@@ -328,7 +328,7 @@ class _Stepped:
 def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
     problem = stepped.problem
     if grows_late(stepped.plan) or formula_deviations(*stepped.moved) is not None:
-        return _enclosed(stepped)
+        return _one_by_one(stepped)
     path = lane_library(*stepped.moved, problem.tolerance)
     return lanes.follow(
         path, stepped.p, stepped.y, stepped.t0, stepped.on_clock(stepped.times), problem.tolerance,
@@ -336,11 +336,11 @@ def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
     )  # fmt: skip
 
 
-def _enclosed(stepped: _Stepped) -> lanes.Outcome:
-    """Integrate motions under torques given by formulas, one after the other, and return their outcome.
+def _one_by_one(stepped: _Stepped) -> lanes.Outcome:
+    """Integrate the trajectories ``stepped`` one after the other; return their states, costs and messages.
 
-    Their steps are limited by bounds of the rates or need a check; the stepper in SIMD lanes supports neither.
-    ``stepped`` holds the trajectories.
+    This is for motions that the stepper in SIMD lanes does not support: under torques given by formulas, whose bounds
+    limit each step, or motions that may grow as t^3 from rest, so that each step needs a check.
     """
     problem, (plan, kernel) = stepped.problem, stepped.moved
     path = taylor_library(plan, kernel, problem.tolerance, projected=False)

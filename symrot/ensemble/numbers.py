@@ -52,8 +52,7 @@ class Numbers:
         return Plan(self._variation.scene_of(self._chosen[k]), self._plan.structure, ()).constants
 
     def bound(self, parameters: Parameters, epoch: float = 0.0) -> Floats:
-        """Return the values of k kernel parameters for each of n trajectories, shape (n, k), exact except for one
-        rounding.
+        """Return the values of k kernel parameters for each trajectory, shape (n, k), each rounded only once.
 
         A kernel gets the scene's constants, and formulas in them, as these parameters. A parameter that depends on the
         time at which the kernel's clock shows 0 is evaluated at ``epoch``, s.

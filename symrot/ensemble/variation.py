@@ -291,8 +291,9 @@ def _constant_place(field: str, entry: int | str | None) -> tuple[str, int | Non
 
 
 def _unit(row: list[float]) -> tuple[Fraction, Fraction, Fraction, Fraction]:
-    """Return a quaternion of four doubles divided by its norm, as fractions; the norm is then 1 with an error below
-    2^-200.
+    """Return a quaternion of four doubles divided by its norm, as fractions.
+
+    The norm of the result differs from 1 by less than 2^-200.
     """
     q0, q1, q2, q3 = number.unit([Fraction(value) for value in row])
     return q0, q1, q2, q3

@@ -144,7 +144,7 @@ class Case(ABC):
     def search(self, *searches: Search, places: Sequence[int] | None = None) -> Counterexample | None:
         """Return the first counterexample that one of ``searches`` returns for one of the entries ``places``, or None.
 
-        ``places`` are numbers of entries; without it the unproven entries are searched. A search is a function such as
+        ``places`` are indices of entries; without it the unproven entries are searched. A search is a function such as
         :func:`symrot.exact.counterexample.rational_witness`. A point that provably violates a hypothesis is skipped.
         """
         for search in searches:

@@ -136,7 +136,7 @@ def enclosure(formula: Expr, values: Mapping[Expr, Any] | None = None) -> Any:
     -------
     interval or None
         None if the formula is not proven to be real, if a function is unknown, or if too many digits would be needed.
-        Terms that SymPy has cancelled are not checked.
+        SymPy cancels terms such as ``log(x) - log(x)`` when it builds a formula; whether they are real is not checked.
     """
     iv.dps = DIGITS
     try:

@@ -256,7 +256,7 @@ def _lifted(ring: FormulaRing, equations: Sequence[tuple[Expr, Expr]]) -> Lift:
 def _combination(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> list[tuple[Expr, Fraction]] | None:
     """Return a polynomial as a sum of multiples of inverse functions and pi: pairs (function or pi, rational factor).
 
-    ``2*asin(x) - pi`` gives (asin(x), 2) and (pi, -1). Return None for any other polynomial. ``names`` maps the numbers
+    ``2*asin(x) - pi`` gives (asin(x), 2) and (pi, -1). Return None for any other polynomial. ``names`` maps the indices
     of variables to functions.
     """
     terms = []

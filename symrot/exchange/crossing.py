@@ -76,8 +76,7 @@ def require_boundary(surface: Surface, where: str) -> str:
 
 
 def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """Return the indices of triangles through which straight lines test whether the surface separates inside from
-    outside.
+    """Return the indices of the triangles through which straight lines test what is inside the surface.
 
     They are the largest triangle of each shell and others at equal distances in the list, so many that the test takes a
     few seconds at most. ``numbers`` gives the shell of each triangle, and ``count`` is the number of shells.
@@ -94,8 +93,7 @@ def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[
 
 
 def _passes(corners: Floats, boxes: _Boxes, triangle: int, where: str, surface: Surface) -> int:
-    """Test a line through the triangle with the index ``triangle``; return 1 if it passes, 0 if no line could be
-    tested.
+    """Test a line through the triangle number ``triangle``; return 1 if it passes, 0 if no line could be tested.
 
     A line passes if all its points have the winding number 0 or 1; otherwise InputError is raised, with ``where`` as
     the place of the surface. A line that meets an edge cannot be tested; three points of the triangle are tried in

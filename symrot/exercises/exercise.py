@@ -10,6 +10,7 @@ from sympy import Expr, Rational, Symbol, pi, sstr
 
 from symrot.exact.decide import decide
 from symrot.exercises.problem import Asked, Line, Problem, Quantity
+from symrot.exercises.sketches import sketch
 from symrot.exercises.units import decimal, factor_of, unit_latex
 from symrot.proof.derivation import ProofError
 from symrot.proof.notation.printer import PagePrinter
@@ -153,7 +154,7 @@ class Exercise:
     solution : tuple of Equation
         The lines of the solution, in order.
     figure : str
-        SVG, or empty.
+        A drawing of the arrangement with the letters of the exercise, SVG; empty if the template has none.
 
     Examples
     --------
@@ -228,7 +229,7 @@ def make(template: str, topic: str, seed: int, problem: Problem, source: Random)
         template, topic, seed, problem.title, problem.statement,
         tuple(Datum(sstr(q.symbol), formula(q.symbol), number, q.unit, q.words) for q, number in drawn),
         tuple(_questions(problem, values)), _hints(problem, drawn), tuple(_solution(template, problem, drawn, values)),
-        problem.figure,
+        sketch(template),
     )  # fmt: skip
 
 

@@ -129,8 +129,6 @@ class Problem:
         The quantities that the questions ask for.
     fits : callable
         A function that takes numbers (symbol -> value in SI units) and returns whether they are possible together.
-    figure : str
-        A drawing as SVG, or an empty text.
     """
 
     title: str
@@ -140,7 +138,6 @@ class Problem:
     lines: tuple[Line, ...]
     asked: tuple[Asked, ...]
     fits: Callable[[Mapping[Symbol, Expr]], bool] = lambda values: True
-    figure: str = ""
 
 
 Template = Callable[[Random], Problem]

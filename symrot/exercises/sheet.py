@@ -1,13 +1,15 @@
 """Sheets of exercises that are chosen by topic and random seed."""
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import cycle
 from random import Random
 from typing import Any, overload
 
 from symrot.errors import InputError
 from symrot.exercises.exercise import SCHEMA, Exercise, make, sheet_data
-from symrot.exercises.templates import chosen, template, topic_of
+from symrot.exercises.templates import TOPICS, chosen, template, topic_of
 
 __all__ = ["ExerciseSheet", "exercise", "read_sheet"]
 
@@ -82,18 +84,19 @@ class ExerciseSheet:
         return self.markdown()
 
 
-def exercise(topic: str = "", *, seed: int = 0, count: int = 1) -> ExerciseSheet:
+def exercise(topic: str | Sequence[str] = "", *, seed: int = 0, count: int = 1) -> ExerciseSheet:
     """Return a sheet of exercises with random numbers, hints and proven solutions.
 
     Parameters
     ----------
-    topic : str
-        A topic or the name of a template, see ``symrot exercise --list``; an empty text takes all topics in turn.
+    topic : str or sequence of str
+        A topic or the name of a template, see ``symrot exercise --list``, or several of them, whose exercises take
+        turns; an empty text stands for all topics.
     seed : int
         Seed of the random choices. Another seed gives other numbers and begins with another template; the same seed
         gives the same exercises on every machine.
     count : int
-        The number of exercises.
+        The number of exercises. Each of several topics has as many of them as any other, or one less.
 
     Returns
     -------
@@ -113,13 +116,29 @@ def exercise(topic: str = "", *, seed: int = 0, count: int = 1) -> ExerciseSheet
     >>> (sheet,) = symrot.exercise("rod_about_end", seed=3)
     >>> sheet.questions[0].prompt
     'Find $I_O$, the moment of inertia about the axis, as a formula in $m$, $L$.'
+    >>> [each.topic for each in symrot.exercise(["gears", "rolling"], count=3)]
+    ['gears', 'rolling', 'gears']
     """
     if not isinstance(seed, int) or seed < 0:
         raise InputError(f"seed: expected a whole number, 0 or more, got {seed!r}")
     if not isinstance(count, int) or not 1 <= count <= MOST:
         raise InputError(f"count: expected a whole number from 1 to {MOST}, got {count!r}")
-    names = chosen(topic)
-    return ExerciseSheet(tuple(_exercise(names[(seed + n) % len(names)], seed + n // len(names)) for n in range(count)))
+    topics = [topic] if isinstance(topic, str) else list(topic)
+    if not all(isinstance(each, str) for each in topics):
+        raise InputError(f"topic: expected the name of a topic, or a list of such names, got {topic!r}")
+    if any(topics):
+        lists, start = [chosen(each) for each in topics], seed
+    else:
+        lists = [*TOPICS.values()]
+        start, first = divmod(seed, len(lists))
+        lists = lists[first:] + lists[:first]
+    names = [members[(start + n // len(lists)) % len(members)] for n, members in zip(range(count), cycle(lists))]
+    uses: Counter[str] = Counter()
+    exercises = []
+    for name in names:
+        exercises.append(_exercise(name, seed + uses[name]))
+        uses[name] += 1
+    return ExerciseSheet(tuple(exercises))
 
 
 def _exercise(name: str, seed: int) -> Exercise:

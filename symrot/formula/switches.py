@@ -40,14 +40,17 @@ from symrot.formula.squares import as_polynomial, square_under_root
 from symrot.formula.tree import SWITCHING, Node, children, evaluate, names, parse, text
 
 __all__ = [
-    "CHANGING", "MODES", "Conditions", "Smooth", "Switch", "between_sides", "blended", "chosen", "condition_error",
-    "has_choices", "has_switches", "hold", "on_line", "placed", "smooth",
+    "CHANGING", "MODES", "STATES", "Conditions", "Smooth", "Switch", "between_sides", "blended", "chosen",
+    "condition_error", "has_choices", "has_switches", "hold", "on_line", "placed", "smooth",
 ]  # fmt: skip
 
 ONE: Node = ("number", Fraction(1))
 HALF: Node = ("number", Fraction(1, 2))
 PI: Node = ("symbol", "pi")
-CHANGING = frozenset({"t", *(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4))})
+STATES = ("omega_1", "omega_2", "omega_3", "q0", "q1", "q2", "q3")
+"""The names of the states of a motion in formulas: angular velocity in the body frame, and quaternion."""
+
+CHANGING = frozenset({"t", *STATES})
 BENDING = {*SWITCHING, "abs", "atan2"}
 CONDITIONS = {"less", "and", "or", "not"}
 MODES = "switch_"  # prefix of the names of modes

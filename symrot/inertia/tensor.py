@@ -36,8 +36,9 @@ def matrix(source: Any) -> Tensor:
 
 
 def vector(source: Any) -> Vector:
-    """Return three components, given as a list, a row or a column, as a tuple; raise ``ValueError`` if they are not
-    three.
+    """Return three components, given as a list, a row or a column, as a tuple.
+
+    ``ValueError`` is raised if they are not three.
     """
     components = _items(source)
     if len(components) == 1:

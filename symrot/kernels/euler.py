@@ -49,7 +49,7 @@ def _called(sequence: str) -> str:
 
 def _lock(sequence: str) -> str:
     singular = str(rate_jacobian(sequence).determinant).lstrip("-")
-    return f"{singular} != 0; near it, digits are lost as 1/{singular}"
+    return f"{singular} != 0; rounding errors grow as 1/{singular}"
 
 
 def _regular_box(sequence: str) -> Box:

@@ -16,8 +16,8 @@ operations, in units in the last place (ulp):
 - ``sine_bend`` and ``tangent_bend``, parts of the derivatives of ``sine_gap`` and ``tangent_gap``: within 4 ulp, the
   second for |x| <= pi (measured 3.1 and 3.2). For larger |x| its absolute error is at most 4 * 2^-53/x^2 (the largest
   factor measured is 1.1 instead of 4).
-- ``arc_ratio``, atan2(s, c)/s for the sine and cosine of half an angle of rotation: within 4 ulp for c >= 0, which is
-  always so for quaternions whose sign is chosen for the shorter rotation (measured 1.6; batches 1.2).
+- ``arc_ratio``, atan2(s, c)/s for the sine and cosine of half an angle of rotation: within 4 ulp for c >= 0 (measured
+  1.6; batches 1.2). Kernels call it with c = abs(q0).
 
 Batches compute these functions without a branch, with the sine, cosine and arc tangent of ``symrot_math.h``.
 """

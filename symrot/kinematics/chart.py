@@ -79,8 +79,7 @@ class SingularSet:
         return bool(self.values is S.EmptySet)
 
     def points(self) -> tuple[Expr, ...]:
-        """Return the values of the variable at which the chart is singular, in increasing order; empty if there are
-        none.
+        """Return the values of the variable at which the chart is singular, in increasing order; there may be none.
 
         If the values repeat with the period 2 pi, those of one period are returned: of [0, 2 pi), or of [2 pi, 4 pi) if
         [0, 2 pi) contains none. Example: the set of all n pi gives (0, pi).

@@ -284,8 +284,7 @@ def _rate_jacobian(sequence: str, frame: str, parameters: tuple[Expr, ...]) -> E
 
 @cache
 def sequences_at_lock(sequence: str) -> dict[str, Set]:
-    """Return, for each other sequence, at which gimbal-lock attitudes of ``sequence`` that other sequence is locked
-    too.
+    """Return, for each other sequence, the gimbal-lock attitudes of ``sequence`` at which both are in gimbal lock.
 
     In gimbal lock the attitude depends only on the sum or difference of the first and the last angle. One of these two
     angles is therefore set to zero: the last angle of an intrinsic sequence, the first of an extrinsic one. The other

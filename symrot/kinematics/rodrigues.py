@@ -149,10 +149,10 @@ MODIFIED = Projection("mrp", symbols.mrp, 1, "modified Rodrigues parameters, axi
 
 
 def projection(name: str) -> Projection:
-    """Return the set of parameters called ``name``, ``"rodrigues"`` or ``"mrp"``, which project unit quaternions onto
-    space.
+    """Return the set of parameters called ``name``, ``"rodrigues"`` or ``"mrp"``, as a :class:`Projection`.
 
-    The result has methods for the conversion from and to quaternions.
+    Both project unit quaternions from a point onto a space of three dimensions; the result has methods for the
+    conversion from and to quaternions.
     """
     for which in (CLASSICAL, MODIFIED):
         if which.name == name:

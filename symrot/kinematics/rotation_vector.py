@@ -145,8 +145,12 @@ def quaternion_of_rotation_vector(vector: Sequence[Any] | Matrix = symbols.rotat
 def rotation_vector_of_quaternion(q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
     """Return the rotation vector, shape (3, 1), rad, of a quaternion q of any norm: its length is at most 2 pi.
 
-    It is at most pi if q0 >= 0. At zero angle the formula is undefined, as in :func:`axis_angle_of_quaternion`.
+    It is at most pi if q0 >= 0. If the vector part is (0, 0, 0) and q0 a positive number, it is zero, the limit of the
+    formula; for other such q0 it is undefined, as in :func:`axis_angle_of_quaternion`.
     """
+    q0, *vector = expressions(q, 4, "a quaternion")
+    if q0.is_positive and not any(vector):
+        return ImmutableMatrix(vector)
     axis_and_angle = axis_angle_of_quaternion(q)
     return ImmutableMatrix(axis_and_angle[3] * axis_and_angle[:3, 0])
 

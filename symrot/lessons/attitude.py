@@ -50,6 +50,7 @@ LESSONS = {
         ),
         kernel="rotation_vector_dcm",
         topic="axis_and_angle",
+        library=("The axis without loss of digits",),
     ),
     "composition": Lesson(
         question="A body rotates twice, about two axes. Which single rotation is that, and does the order matter?",

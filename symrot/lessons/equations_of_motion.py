@@ -56,6 +56,7 @@ LESSONS = {
         ),
         kernel="euler_zxz_body_rates",
         topic="euler_equations",
+        library=("The other sequences",),
     ),
     "work_and_power": Lesson(
         question="What does a torque do to the energy of a rotating body?",

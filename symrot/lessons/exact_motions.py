@@ -60,6 +60,7 @@ LESSONS = {
         kernel="rigid_body_principal",
         topic="free_bodies",
         library=(
+            "The angular momentum in the body",
             "The third angle as an integral of the third kind",
             "The third angle without an integral",
         ),
@@ -87,6 +88,7 @@ LESSONS = {
         ),
         kernel="rigid_body_principal",
         topic="stability",
+        library=("The attitude",),
     ),
     "heavy_top_motion": Lesson(
         question="The axis of a top nutates and precesses. Is there a formula for its attitude at any time?",
@@ -127,6 +129,7 @@ LESSONS = {
         worked="period_of_rod",
         kernel="torque_gravity",
         topic="pendulums",
+        library=("The pendulum as a heavy top",),
     ),
     "sleeping_top": Lesson(
         question="A fast top stands upright as if it slept. At which spin does it begin to fall?",
@@ -152,6 +155,7 @@ LESSONS = {
         ),
         kernel="heavy_top_symmetric",
         topic="heavy_tops",
+        library=("The acceleration of the height, and the angle of precession",),
     ),
     "symmetric_gyrostat": Lesson(
         question="How does a spinning wheel along the axis of a satellite change its wobble?",
@@ -210,6 +214,8 @@ LESSONS = {
         kernel="torque_constant_body",
         topic="euler_equations",
         library=(
+            "Weak damping",
+            "The attitude of this body",
             "The attitude in closed form",
             "Far from resonance",
             "The coefficients far from resonance",

@@ -109,7 +109,8 @@ class Lesson:
     topic : str
         Topic of exercises.
     library : tuple of str
-        Titles of sections that only symrot's numeric code needs; a course can leave them out.
+        Titles of the last sections of the derivation that only symrot's numeric code needs; they are printed on an
+        appendix, a page of their own.
 
     Examples
     --------

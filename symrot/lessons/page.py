@@ -1,4 +1,7 @@
-"""The page of a derivation as a lesson: the paragraphs before its steps and after them."""
+"""The page of a derivation as a lesson: the paragraphs before its steps and after them.
+
+The steps that only symrot's numeric code needs are on an appendix, a page of their own.
+"""
 
 from collections.abc import Sequence
 from dataclasses import fields, replace
@@ -11,13 +14,24 @@ from symrot.lessons.numbers import numbers_of
 from symrot.lessons.table import LESSONS
 from symrot.proof.page import Figure, Page, Passage, Section, Step, Table
 
-__all__ = ["taught"]
+__all__ = ["APPENDIX", "appendix", "taught"]
+
+APPENDIX = "_appendix"
+"""The name of an appendix is the name of its derivation with this ending, such as ``driven_rotation_appendix``."""
+
+Items = list[Section | Passage | Step | Table | Figure]
 
 
 def taught(page: Page, figures: Sequence[Figure] = ()) -> Page:
     """Return a page with its lesson: question, figures, prerequisites in front; numbers, mistake, links at the end.
 
-    ``page`` is the page of a derivation of the catalogue; its lesson is looked up by its name.
+    ``page`` is the page of a derivation of the catalogue; its lesson is looked up by its name. The result does not have
+    the sections that only symrot's numeric code needs: :func:`appendix` has them, and a sentence in front links to it.
+
+    Raises
+    ------
+    InputError
+        If the sections for the numeric code are not the last sections of the page.
 
     Examples
     --------
@@ -26,16 +40,49 @@ def taught(page: Page, figures: Sequence[Figure] = ()) -> Page:
     """
     lesson = LESSONS[page.name]
     opening: list[Passage | Figure] = [Passage(f"**{lesson.question}**"), *figures, Passage(_before(lesson))]
-    beyond = _steps_of(page, lesson.library)
-    if beyond:
-        opening.append(Passage(_for_the_library(lesson.library)))
+    course, library = _divided(page, lesson.library)
+    if library:
+        opening.append(Passage(_to_the_appendix(page, course, library)))
     closing: list[Section | Passage] = [
         Section("With numbers"), *numbers_of(page, lesson),
         Section("A common mistake"), *mistake_passages(lesson.mistake),
         Section("Go on"), Passage(_links(page.name, lesson)),
     ]  # fmt: skip
-    plain = Page(**{each.name: getattr(page, each.name) for each in fields(Page)})
-    return replace(plain, opening=opening, closing=closing, beyond=beyond)
+    return replace(_plain(page), items=course, opening=opening, closing=closing)
+
+
+def appendix(page: Page) -> Page | None:
+    """Return the page with the steps of a derivation that only symrot's numeric code needs, or None if there are none.
+
+    ``page`` is the page of a derivation of the catalogue. The steps keep their numbers: if ``page`` has 34 steps and
+    the numeric code needs the last 26, those of the appendix are numbered 9 to 34.
+
+    Raises
+    ------
+    InputError
+        If the sections for the numeric code are not the last sections of the page.
+
+    Examples
+    --------
+    >>> appendix(derivation("elliptic_functions")).title
+    "Jacobi's elliptic functions by their derivatives: for the numeric code"
+    >>> appendix(derivation("poinsot")) is None
+    True
+    """
+    course, library = _divided(page, LESSONS[page.name].library)
+    if not library:
+        return None
+    about = (
+        f"This page continues {_link(page.name)}, with the notation and the results of that page. Only symrot's "
+        "numeric code needs its steps; a course can leave them out."
+    )
+    first = page.first + len(replace(_plain(page), items=course).steps)
+    title = f"{page.title}: for the numeric code"
+    return replace(_plain(page), name=f"{page.name}{APPENDIX}", title=title, about=about, items=library, first=first)
+
+
+def _plain(page: Page) -> Page:
+    return Page(**{each.name: getattr(page, each.name) for each in fields(Page)})
 
 
 def _before(lesson: Lesson) -> str:
@@ -43,37 +90,30 @@ def _before(lesson: Lesson) -> str:
     return f"**You need before:** {pages or 'vectors, matrices and derivatives; no other page'}."
 
 
-def _steps_of(page: Page, sections: Sequence[str]) -> int:
-    """Return how many steps the sections with the titles ``sections`` of a page have together.
+def _divided(page: Page, sections: Sequence[str]) -> tuple[Items, Items]:
+    """Return the items of a page before the sections with the titles ``sections``, and the items in these sections.
 
     Raises
     ------
     InputError
-        If the page does not have one of the sections.
+        If the sections are not the last sections of the page.
     """
-    counts: dict[str, int] = {}
-    title = ""
-    for item in page.items:
-        if isinstance(item, Section):
-            title = item.title
-        elif isinstance(item, Step):
-            counts[title] = counts.get(title, 0) + 1
-        elif isinstance(item, Table):
-            counts[title] = counts.get(title, 0) + len(item.steps)
-    if not set(sections) <= set(counts):
-        missing = [section for section in sections if section not in counts]
-        raise InputError(
-            f"{page.name}: expected titles of sections with steps on this page, {[*counts]}, got {missing}"
-        )
-    return sum(counts[section] for section in sections)
+    titles = [item.title for item in page.items if isinstance(item, Section)]
+    if [*sections] != titles[len(titles) - len(sections) :]:
+        raise InputError(f"{page.name}: expected the last sections of the page, {titles}, got {[*sections]}")
+    places = (n for n, item in enumerate(page.items) if isinstance(item, Section) and item.title in sections)
+    place = next(places, len(page.items))
+    return page.items[:place], page.items[place:]
 
 
-def _for_the_library(sections: Sequence[str]) -> str:
-    titles = [f'"{section}"' for section in sections]
-    if len(titles) == 1:
-        return f"A course can leave out the section {titles[0]}: only symrot's numeric code needs it."
-    listed = f"{', '.join(titles[:-1])} and {titles[-1]}"
-    return f"A course can leave out the sections {listed}: only symrot's numeric code needs them."
+def _to_the_appendix(page: Page, course: Items, library: Items) -> str:
+    """Return the sentence that leads from a lesson to its appendix, with the numbers of the steps there."""
+    before, count = (len(Page("", "", items=items).steps) for items in (course, library))
+    first, last = page.first + before, page.first + before + count - 1
+    target = f"[{'another page' if count == 1 else 'a page of their own'}]({page.name}{APPENDIX}.md)"
+    if count == 1:
+        return f"Step {first}, which only symrot's numeric code needs, is on {target}."
+    return f"Steps {first} to {last}, which only symrot's numeric code needs, are on {target}."
 
 
 def _link(name: str) -> str:

@@ -15,6 +15,7 @@ from typing import Any
 import symrot
 from symrot.dynamics.structure import Pattern, Structure
 from symrot.errors import InputError
+from symrot.formula import switches
 from symrot.planning.general_structure import constants_of, general_structure, switching_function
 from symrot.planning.rules import (
     DIRECTED,
@@ -32,7 +33,7 @@ __all__ = ["START_CONSTANTS", "STATES", "Plan", "make_plan", "structure_key"]
 ZERO, FREE = Pattern.ZERO, Pattern.FREE  # a global name is looked up faster than a member of an Enum
 START_CONSTANTS = frozenset({f"omega_{i}" for i in (1, 2, 3)} | {f"initial_q{i}" for i in range(4)})
 """The constants of a structure that are numbers of the initial state; all others belong to body and torques."""
-STATES = ("omega_1", "omega_2", "omega_3", "q0", "q1", "q2", "q3", "theta")
+STATES = (*switches.STATES, "theta")
 
 
 @dataclass(frozen=True, repr=False)

@@ -58,7 +58,8 @@ class RuleOutcome(NamedTuple):
     derivation : str
         Name of the derivation that justifies the decision; empty if no derivation is needed.
     item : str
-        The subject of the rule, from the table of rules; empty in the outcome that the function of the rule returns.
+        The subject of the rule, such as "products of inertia". It is empty in what a rule's function returns; the
+        caller adds it from :data:`RULES`.
 
     Examples
     --------

@@ -125,10 +125,7 @@ class Derivation(PrintedPage):
         self.rates |= rates or {}
 
     def section(self, title: str) -> None:
-        """Begin a new section of the page;
-
-        ``title`` is its heading, and all later steps and paragraphs belong to it.
-        """
+        """Begin a new section of the page, with the heading ``title``; all later steps and paragraphs belong to it."""
         self.items.append(Section(title))
 
     def passage(self, text: str, *equations: tuple[Any, Any]) -> None:
@@ -192,8 +189,8 @@ class Derivation(PrintedPage):
             Intermediate equations (words, left, right), proven too, for the page that shows the step in detail.
         board : sequence of (str, str)
             The proof as a teacher writes it on the board: reasons and LaTeX of expressions that lead from the left side
-            to the right one. Each is parsed and proven equal to the left side; the page in detail shows them instead of
-            components.
+            to the right one. Each is parsed and proven equal to the left side. The page that shows the step in detail
+            prints these expressions instead of multiplying out the components of the vectors and matrices.
 
         Raises
         ------
@@ -306,10 +303,9 @@ class Derivation(PrintedPage):
     def _read(self, text: str, sides: tuple[Any, Any] = (S.Zero, S.Zero)) -> list[Any]:
         """Return the values of the LaTeX ``text``, which is displayed for a side of an equation, as a list.
 
-        A formula gives one value; a chain ``X = Y`` gives the value of each of its sides. ``sides`` are both sides of
-        the
-        equation: the text may contain their symbols without a declared meaning. Unread is raised if it cannot be
-        parsed.
+        A formula gives one value; a chain ``X = Y`` gives the value of each of its sides. ``sides`` are the two sides
+        of the equation that the step proves: symbols that occur in them need no definition on the page to be read.
+        Unread is raised if the text cannot be parsed.
         """
         used = {symbol for side in sides for symbol in side.free_symbols}
         names = {key(formula(symbol)): symbol for symbol in used} | self.names
@@ -395,9 +391,10 @@ def _shape(side: Any) -> Any:
 
 
 def _as_side(display: Any, side: Any) -> Any:
-    """Return the value of a displayed form in the shape of ``side``, the side of an equation that it replaces.
+    """Return the value of ``display``, which the page prints instead of ``side``, in the shape of ``side``.
 
-    If the side is a square matrix, a number becomes that multiple of the identity matrix, such as 1 the identity.
+    If the side is a matrix, 0 becomes the zero matrix; if it is square, another number becomes this multiple of the
+    identity matrix.
     """
     display = _frozen(display)
     if isinstance(side, MatrixBase) and not isinstance(display, MatrixBase):

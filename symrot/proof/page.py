@@ -131,10 +131,7 @@ class Drawing(Protocol):
     """Protocol of a drawing that can be written as SVG, the format of the figures on pages."""
 
     def svg(self, title: str, description: str) -> str:
-        """Return the drawing as the text of an SVG file;
-
-        ``title`` and ``description`` are its words for screen readers.
-        """
+        """Return the drawing as the text of an SVG file; screen readers speak its ``title`` and its ``description``."""
 
 
 @dataclass(frozen=True)
@@ -202,8 +199,6 @@ class Page:
         Paragraphs and figures above the paragraph about the subject.
     closing : list
         Headings and paragraphs below the steps and the units.
-    beyond : int
-        How many of the steps a course can leave out, because only the library needs them.
     file : str
         The path of the catalogue file, relative to the folder of symrot; empty for a page outside the catalogue.
     """
@@ -217,17 +212,12 @@ class Page:
     file: str = ""
     opening: list[Passage | Figure] = field(default_factory=list)
     closing: list[Section | Passage] = field(default_factory=list)
-    beyond: int = 0
 
     @property
     def extent(self) -> str:
-        """The number of steps in words for a table of contents:
-
-        "12 steps", or "12 steps, 3 of them for the library only".
-        """
+        """The number of steps in words for a table of contents: "1 step", "12 steps"."""
         count = len(self.steps)
-        words = f"{count} {'step' if count == 1 else 'steps'}"
-        return f"{words}, {self.beyond} of them for the library only" if self.beyond else words
+        return f"{count} {'step' if count == 1 else 'steps'}"
 
     @property
     def steps(self) -> tuple[Step, ...]:

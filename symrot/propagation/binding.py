@@ -37,16 +37,17 @@ def two_doubles(top: int, bottom: int) -> tuple[float, ...]:
 
 
 class Binding:
-    """Function that returns the parameter values of a kernel for a plan with any initial state of its scene.
+    """Function that returns the values of a kernel's parameters for one initial state of a scene.
 
-    Values that do not depend on the initial state are computed once.
+    It takes a plan that contains this initial state, and returns a list of doubles. Values that do not depend on the
+    initial state are computed once.
 
     Parameters
     ----------
     parameters : pairs of name and formula
         Parameters of a :class:`symrot.planning.scene_kernel.SceneKernel`.
     plan : Plan
-        Plan of the scene, with any initial state.
+        Plan of the scene, with any initial state; the plans in calls may differ from it in their initial state only.
     rounded : function
         Takes the numerator and denominator of a value, and returns the doubles that represent the value.
     known : mapping
@@ -77,10 +78,10 @@ class Binding:
         ]
 
     def __call__(self, plan: Plan) -> list[float]:
-        """Return the parameter values for a plan of the first plan's structure, with the same or another initial state.
+        """Return the parameter values for ``plan``, which may differ from the constructor's in its initial state.
 
-        Each value is computed exactly and rounded once. The list has one or two doubles per parameter, as ``rounded``
-        returns.
+        Each value is computed exactly and rounded once. The list has one double per parameter, or two whose sum is more
+        accurate, as the constructor's function ``rounded`` decides.
         """
         numbers = self._numbers.copy()
         if self._moving:

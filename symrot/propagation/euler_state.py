@@ -102,7 +102,8 @@ class _Kernel(NamedTuple):
 class _Block(NamedTuple):
     """Part of a motion in which the states are angles of one Euler sequence: first and last time, s, and a function.
 
-    The function takes times, s, and returns omega and quaternion, shape (n, 7).
+    The function takes times, s, and returns omega and quaternion, one row for each time: shape (n, 7), or fewer columns
+    if the plan leaves out components of omega because they are constant.
     """
 
     first: float
@@ -114,9 +115,9 @@ class _Block(NamedTuple):
 class EulerMotion(Motion):
     """Motion of a scene whose attitude is stepped as Euler angles instead of a quaternion.
 
-    ``sequence`` is the Euler sequence at the start. ``switching`` says whether the states change to the angles of its
-    partner near gimbal lock. All times are scene times, not times since the start, so that they stay the same when the
-    Euler sequence changes.
+    ``sequence`` is the Euler sequence at the start. If ``switching`` is true, the states change near gimbal lock to the
+    angles of another sequence, the partner of the first, which is regular there. All times are scene times, not times
+    since the start, so that they stay the same when the Euler sequence changes.
     """
 
     def __init__(self, plan: Plan, method: str, tolerance: float, sequence: str, switching: bool) -> None:
@@ -257,9 +258,10 @@ class EulerMotion(Motion):
         return states
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return omega and quaternion at the times, shape (n, 7), and the cost of the motion.
+        """Return omega and quaternion at the times, one row for each, and the cost of the motion.
 
-        ``in_order`` is not used: the times are sorted in any case.
+        The shape is (n, 7); there are fewer columns if the plan leaves out components of omega because they are
+        constant. ``in_order`` is not used: the times are sorted in any case.
         """
         began = perf_counter()
         self._count = [0, 0, 0, 0]

@@ -145,7 +145,11 @@ class _Function(TorqueSource):
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Delete the exception of the previous motion; accept all times, as the domain of a function is not known."""
+        """Prepare for a motion from ``low`` to ``high``, s: forget an exception of the function in the last motion.
+
+        The method of a torque that is a table refuses times outside the table here. The domain of a function is not
+        known, so all times are accepted.
+        """
         self.error = None
 
     def failure(self) -> BaseException | None:
@@ -174,7 +178,7 @@ class _CFunction(TorqueSource):
         return self
 
     def pointer_in(self, library: Path) -> Any:
-        """Return the user's C function itself."""
+        """Return the user's C function, which the stepper calls; ``library`` is not needed for it."""
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
@@ -219,7 +223,7 @@ class _Table(TorqueSource):
         self.user, self.knots = _pieces(t, values, switching)
 
     def pointer_in(self, library: Path) -> Any:
-        """Return the function that interpolates the table, which is part of the library of the motion."""
+        """Return the C function that interpolates the table; ``library``, with the kernel, contains it."""
         return ctypes.CDLL(str(library)).symrot_table_torque
 
     def check(self, low: float, high: float) -> None:
@@ -332,8 +336,9 @@ class ExternalSetup:
     source : TorqueSource
         The source of the torque.
     torque_parameters : tuple of float
-        Parameters of the kernel after the parameters of the scene: the addresses of the torque function and of
-        ``user``, the frame (1 for space), and the nine entries of the inverse inertia tensor.
+        Parameters of the kernel after the parameters of the scene: the address of the torque function, the address of
+        the data with which it is called (its argument ``user``, such as a table), the frame (1 for space), and the nine
+        entries of the inverse inertia tensor.
     breaks : tuple of float
         Times, s, at which a step ends: the switching times, and the knots of a table.
     longest_step : float
@@ -392,7 +397,8 @@ def external_setup(
 class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
     """Motion of a scene under a torque that is a function or a table, evaluated at the times of the scene.
 
-    ``shared`` holds what does not depend on the initial state, and ``plan`` contains the initial state.
+    ``shared`` holds the parts that all motions of this scene share, and ``plan`` the scene's plan with the initial
+    state of this motion.
     """
 
     has_external_torque = True
@@ -404,7 +410,8 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
     def from_start(self, initial: Initial) -> "ExternallyDrivenMotion":
         """Return the motion from another initial state; nothing is derived or compiled again.
 
-        The initial state may be any, since no state is left out under such a torque.
+        Every initial state is accepted: under a torque without a formula all states are integrated, whatever their
+        start.
         """
         return ExternallyDrivenMotion(self._shared, self.setup.plan.from_start(initial))
 
@@ -434,9 +441,9 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
             raise failure from failure.__cause__
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at the times, shape (n, N), and the cost of the motion, whatever the order of the times.
+        """Return the states at ``times``, s, in any order, shape (n, N), and the cost of the motion.
 
-        The times are in s. An exception that the torque function raises is raised again.
+        ``in_order``, whether the times increase, is not used. An exception of the torque function is raised again.
         """
         low, high = (float(times.min()), float(times.max())) if len(times) else (self.start, self.start)
         return self._guarded(low, high, lambda: self.stepping.restarted().sample(times))

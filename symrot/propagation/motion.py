@@ -61,10 +61,10 @@ def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
 
 
 def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
-    """Return the plan without the simplifications that eliminate states, for a motion in closed form.
+    """Return the plan without the simplifications that eliminate states, for a motion in the closed form ``form``.
 
-    A closed form gives all states at no cost, since nothing has to be integrated. ``form`` is named in the reason that
-    the plan gives.
+    A closed form gives all states at no cost, since nothing has to be integrated. The last row of the plan names the
+    closed form as the reason.
     """
     structure = plan.structure.unreduced()
     rows, before = [], structure.reductions
@@ -135,7 +135,7 @@ class Setup:
 
     @cached_property
     def rate_binding(self) -> Binding:
-        """Function from a plan, with any initial state of the scene, to the parameters of the rates, in doubles."""
+        """Function that takes a plan with an initial state and returns the parameters of the rates, in doubles."""
         return Binding(self.kernel.rate_parameters, self.plan, known={EPOCH: Fraction(self.epoch)})
 
     @cached_property
@@ -161,9 +161,9 @@ class Setup:
         return formula_deviations(self.plan, self.kernel)
 
     def shifted(self) -> tuple[Plan, SceneKernel]:
-        """Return a plan and its kernel that count time from an epoch, a parameter that can change between steps.
+        """Return a plan and its kernel that count time from an epoch, a parameter that a stepper can change.
 
-        If the rates do not depend on time, plan and kernel of the setup are returned.
+        If the rates do not depend on time, the present plan and kernel are returned.
         """
         is_shifted = self.plan.structure.clock is not None
         return (self.plan, self.kernel) if is_shifted else time_shift.time_shifted(self.plan, self.kernel)
@@ -190,9 +190,9 @@ class SteppedSetup:
 
     @cached_property
     def integration(self) -> Integration:
-        """The integration from the initial state of the setup's plan, with checked arguments.
+        """The integration from the initial state of ``setup.plan``, the plan that all motions of the scene share.
 
-        Motions from other initial states copy this integration, so that the arguments are checked only once.
+        Motions from other initial states copy this integration, so that tolerance and library are checked only once.
         """
         setup, plan = self.setup, self.setup.plan
         parameters, state = setup.rate_binding(plan), plan.initial_state
@@ -205,7 +205,8 @@ class SteppedSetup:
     def on_own_clock(self) -> "SteppedSetup":
         """A copy of the setup whose clock, the time that the stepper counts, shows 0 at the start of the motion.
 
-        Times near a late start then keep all digits. If the rates depend on time, the copy has a library of its own.
+        Times near a late start then keep all digits. If the rates depend on time, the copy has another compiled
+        library, whose rates take the epoch, the scene time at which the clock shows 0, as a parameter.
         """
         setup = self.setup.on_own_clock
         if setup.plan is self.setup.plan:  # the rates do not depend on the time
@@ -221,7 +222,7 @@ def _stepped_on_own_clock(setup: Setup) -> SteppedSetup:
 
 @final
 class ClosedFormSetup:
-    """The data shared by all motions of one plan that have a closed form: a setup, and the kind of closed form."""
+    """The data that all motions of one scene in closed form share: plan, kernel and kind of closed form."""
 
     def __init__(self, setup: Setup, form: ClosedForm) -> None:
         self.setup, self.form = setup, form
@@ -275,7 +276,7 @@ class Motion(ABC):
     def epoch(self) -> float:
         """Time of the scene, s, at which the clock of the motion shows 0.
 
-        The clock is the time that the stepper counts. The epoch is 0 if this is the time of the scene.
+        The clock is the time that the stepper counts. If it counts the time of the scene, the epoch is 0.
         """
         return self.setup.epoch
 
@@ -442,9 +443,10 @@ class ShiftableMotion(RestartableMotion):
         """
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at times of the scene, shape (n, N), and the cost of the motion.
+        """Return the states at ``times``, s, of the scene, shape (n, N), and the cost in steps and evaluations.
 
-        The stepper uses the clock on which times lose the fewest digits.
+        The stepper counts the time of the scene, or the time since the start if all times lie near a late start and
+        keep more digits then. ``in_order`` promises that the times are finite and never decrease.
         """
         if not self._shifts(times):
             return self.steps(times, in_order)
@@ -575,7 +577,10 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def stepping(self) -> Integration:
-        """The integration of the motion by its stepper in C, with checked arguments."""
+        """The object that integrates this motion in C from its initial state.
+
+        Its methods return the states at sample times, or the polynomials of all steps.
+        """
         state = self.plan.initial_state
         if self.choice.method == "taylor":  # the Taylor stepper holds the time in two doubles and moves no clock
             parameters = self.taylor_parameters
@@ -637,16 +642,20 @@ class SciPyMotion(ShiftableMotion):
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch, python_rates)
 
     def deviations(self, parameters: Sequence[float]) -> "Deviations | None":
-        """Return the bounds that limit SciPy's steps for given parameters of the rates; None if no limit is needed."""
+        """Return the function that bounds how far the rates may change within a step of SciPy.
+
+        SciPy's steps are limited by it, so that none passes over a short pulse of a torque. None means that no torque
+        has a formula, so that no limit is needed. ``parameters`` are the parameters of the rates.
+        """
         if self.setup.deviations is None:
             return None
         names = [name for name, _ in self.kernel.rate_parameters]
         return self.setup.deviations(dict(zip(names, parameters, strict=True)))
 
     def options(self, parameters: Sequence[float]) -> "Options":
-        """Return SciPy's method and its limits for this motion, for given parameters of the rates.
+        """Return SciPy's method, its error control and the limits of its steps for this motion.
 
-        The parameters matter for the bounds that keep a step from passing over a short pulse of a torque.
+        ``parameters`` are the parameters of the rates; bounds of the rates keep a step from passing over a short pulse.
         """
         from symrot.propagation.steppers.fallback import Options
 
@@ -727,10 +736,10 @@ def stepped_motion(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotio
 
 
 def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotion | SciPyMotion:
-    """Return the numerically integrated motion of a plan, on a clock that shows 0 at its start.
+    """Return the numerically integrated motion of a plan; if its rates depend on time, on a clock of its own.
 
-    The epoch, the time of the scene at which the clock shows 0, is a parameter of the rates. If the rates do not depend
-    on time, the motion keeps the clock of the scene.
+    This clock shows 0 at the start of the motion; the epoch, the time of the scene at which it shows 0, is a parameter
+    of the rates. Otherwise the motion keeps the clock that shows the time of the scene.
     """
     setup = _setup(plan, choice, tolerance)
     timed, steps_in_c = setup.kernel.rates.uses("t"), choice.method in ("taylor", "dop853")

@@ -198,7 +198,8 @@ class Propagator:
         setup, began = motion.setup, perf_counter()
         if events is not None and self.sensitivities is not None:
             raise InputError(
-                "events: leave them out with sensitivities, because the time of an event changes with the variables"
+                "events: expected none together with sensitivities, because the time of an event would change with "
+                "the variables of the derivatives; make one propagator for each"
             )
         try:
             if events is not None:

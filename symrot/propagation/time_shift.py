@@ -46,10 +46,10 @@ def starts_far(start: float, low: float, high: float) -> bool:
 
 
 def time_shifted(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
-    """Return a plan and its kernel in which time is counted from an epoch, a new constant of the plan.
+    """Return a plan and its kernel that count time from an epoch, a new constant of the plan.
 
-    The epoch is the time of the scene at which the clock shows 0. If the rates do not depend on time, plan and kernel
-    are returned unchanged.
+    The epoch is a time of the scene, s: in the result, t is the time of the scene minus the epoch. If the rates do not
+    depend on time, plan and kernel are returned unchanged.
     """
     if not kernel.rates.uses("t"):
         return plan, kernel
@@ -88,10 +88,10 @@ class ShiftedParameters:
         self._lines = [_line(node) for node in self._formulas]
 
     def parameters(self, epoch: float | Fraction) -> list[float]:
-        """Return the values of all formulas for an epoch, s, each computed exactly and rounded once.
+        """Return the values of all parameters of the rates for an epoch, s, each computed exactly and rounded once.
 
-        The epoch, the time at which the stepper's clock shows 0, is given on the clock of the motion.
-        IntegrationStopped is raised if a value exceeds the range of doubles.
+        The stepper sets its clock to 0 again and again in a long motion; ``epoch`` is the time of the last reset, s, on
+        the clock of the motion. IntegrationStopped is raised if a value exceeds the range of doubles.
         """
         time = self._start + Fraction(epoch)
         top, bottom, values = time.numerator, time.denominator, {EPOCH: time}

@@ -65,9 +65,10 @@ class Invariant(NamedTuple):
 
 
 class MotionSource(Protocol):
-    """Interface of the propagator to which a trajectory refers: it computes more about the same motion.
+    """Interface of the propagator to which a trajectory refers, so that it can compute more about its motion on demand.
 
-    Examples are the dense solution, derivatives, and the motion again after a trajectory has been pickled.
+    Examples are states between samples (the dense solution) and derivatives. A trajectory that was loaded by pickle
+    also computes its motion again in this way.
     """
 
     def motion_from(self, initial: Initial) -> Motion:
@@ -146,9 +147,10 @@ class Trajectory(MotionSamples):
             self.events = events.events
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the samples and the propagator for pickle; a copy prepares the motion again only if it needs more.
+        """Return the samples and the propagator for pickle, without the motion.
 
-        A trajectory without a propagator cannot be pickled: PicklingError is raised.
+        A copy uses the samples; it prepares the motion again only when it needs more, such as states between them. A
+        trajectory without a propagator cannot be pickled: PicklingError is raised.
         """
         if self._propagator is None:
             raise PicklingError("expected a trajectory that a propagator returned, got one made from states alone")
@@ -316,10 +318,10 @@ class Trajectory(MotionSamples):
         """
         if isinstance(times, bool) or not isinstance(times, int | np.integer):
             return self.at(times)
-        if times < 2 or not len(self):
-            raise InputError(
-                f"times: expected 2 or more as the number of new samples, and a trajectory with samples, got {times}"
-            )
+        if times < 2:
+            raise InputError(f"times: expected 2 or more as the number of new samples, got {times}")
+        if not len(self):
+            raise InputError("times: expected sample times instead of a number, since the trajectory has no samples")
         return self.at(np.linspace(float(self.t.min()), float(self.t.max()), int(times)))
 
     @cached_property
@@ -418,5 +420,5 @@ class Trajectory(MotionSamples):
         return symrot.show(self, path)
 
     def _repr_html_(self) -> str:
-        """Return the page of the motion in a frame, as a notebook shows it: a text of HTML."""
+        """Return HTML that shows the animated page of the motion in a notebook, inside an iframe."""
         return symrot.in_notebook(self)

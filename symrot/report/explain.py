@@ -38,7 +38,7 @@ def _row(item: str, skipped: bool, why: str, derivation: str = "", operations: C
 
 
 def _ladder(plan: Plan) -> "list[PlanRow]":
-    """Return the rows of the table `symrot explain` about rules: first the general motion, then each rule in its order.
+    """Return the rows about rules in the table of `symrot explain`: first the general motion, then each rule.
 
     A rule, such as using a symmetry, simplifies the equations. Each row counts the operations that remain after the
     rule, and those that it saves.
@@ -190,5 +190,9 @@ def lines(report: "PlanReport") -> list[str]:
 
 
 def explanation(plan: Plan) -> str:
-    """Return the table `symrot explain` of a plan as text: items computed or skipped, by which rule, and savings."""
+    """Return the table that the command `symrot explain` prints for a plan, as text.
+
+    It lists which parts of the motion are computed and which are skipped, by which rule, and how many operations that
+    saves.
+    """
     return "\n".join(lines(facts(plan)))

@@ -128,7 +128,8 @@ def save(trajectory: "Trajectory", path: str | Path, quantities: Sequence[str] |
 
     An NPZ file contains arrays by name and ``metadata``, a JSON text; it can be loaded with ``allow_pickle=False``, and
     :func:`symrot.load` reads it. A CSV file contains comment lines, a line of column names, and numbers with all digits
-    (``pandas.read_csv(file, comment="#")``). The times of events are written too, in an NPZ file with the states.
+    (``pandas.read_csv(file, comment="#")``). Both also contain the times of the requested events, and an NPZ file
+    contains the quantities at these times.
 
     Parameters
     ----------

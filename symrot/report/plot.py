@@ -256,8 +256,8 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
     Parameters
     ----------
     trajectory : Trajectory
-        The motion. The panel draws its dense solution between its first and its last sample; of a motion of an
-        ensemble or of a file, it joins the samples.
+        The motion. The panel draws its dense solution between its first and its last sample. A motion that belongs to
+        an ensemble, or was read from a file, has no dense solution: the panel then joins its samples by lines.
     ax : matplotlib Axes, optional
         The axes to draw into; default: axes of a new figure of ``matplotlib.pyplot``.
     panel : str

@@ -1,4 +1,4 @@
-"""The figure that shows how many operations and how much time kernels save that are specialised to their scenes."""
+"""The figure of the operations and the time that kernels of single scenes save, compared with a general kernel."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -19,7 +19,7 @@ LEAST = 0.6  # position on the logarithmic axis of a motion without any operatio
 
 
 def figure(ladder: Mapping[str, Any]) -> Any:
-    """Return a matplotlib Figure of the operations and time that kernels save which are specialised to their scenes.
+    """Return a matplotlib Figure that compares kernels made for one scene with the general kernel: operations and time.
 
     ``ladder`` is the result of :func:`symrot.bench.skip.measure`; the figure has one row per kernel.
     """

@@ -120,7 +120,8 @@ def _states(names: list[str]) -> str:
 
 def _steps(cost: "CostRecord", exact: bool) -> str:
     if exact:
-        return f"no steps, {duration(cost['seconds'])}; ready in {duration(cost['preparation_seconds'])}"
+        samples, preparation = duration(cost["seconds"]), duration(cost["preparation_seconds"])
+        return f"no steps, {samples} for the samples, {preparation} to prepare"
     again = f" ({cost['rejected']} tried again)" if cost["rejected"] else ""
     return (
         f"{cost['steps']} steps{again}, {cost['evaluations']} evaluations in {duration(cost['seconds'])}; "
@@ -153,9 +154,9 @@ def _settings(report: "RunReport") -> list[tuple[str, str]]:
 def _switches(times: list[float], switchings: "list[SwitchingRecord]", start: str, stop: str) -> list[tuple[str, str]]:
     """Return a row (label, text) for each function with jumps or kinks: the times at which it switched.
 
-    At such a time the motion crosses the jump or kink, begins to slide along it, or leaves it. ``times`` are all of
-    them, ``switchings`` say which function switched and how; ``start`` and ``stop`` are the first and last time as
-    text.
+    At such a time the motion crosses the jump or kink, begins to slide along it, or leaves it. ``times`` are the
+    switching times of all functions together, ``switchings`` say which function switched and how; ``start`` and
+    ``stop`` are the first and last time of the motion as text.
     """
     by_function: dict[str, list[tuple[float, str]]] = {}
     for item in switchings:

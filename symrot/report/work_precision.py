@@ -176,8 +176,8 @@ def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, A
     floors = [_least_errors(study) for study in (first, second)]
     if not methods:
         raise InputError(
-            "--compare: expected two studies that measured the same method at the same power of ten of the error, got "
-            "studies without such a pair"
+            "--compare: expected two studies that both measured a method at the same power of ten of the error, such "
+            "as 1e-9, got studies without such a method"
         )
     return {
         "format": "symrot comparison 1",

@@ -382,7 +382,7 @@ def _entries(tensor: list[list[Any]]) -> Content:
 
 
 def _tensor(scene: _Scene) -> list[list[Any]]:
-    """Return the rows of the scene's inertia tensor: as the content gives it, or else as computed from the shapes."""
+    """Return the rows of the scene's inertia tensor as its file gives them, or as computed if its file gives shapes."""
     match scene.content["body"]:
         case {"principal": [a, b, c]}:
             return [[a, 0, 0], [0, b, 0], [0, 0, c]]

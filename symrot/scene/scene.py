@@ -270,15 +270,18 @@ class _Origin(NamedTuple):
     scene_values: Mapping[str, Any]
 
     def has_parts_of(self, scene: Scene) -> bool:
-        """Return whether the body and torques of ``scene`` are still those read from this content.
+        """Return whether ``scene`` still has the body and torques that were read from this content.
 
-        They are not if ``dataclasses.replace`` put others in their place.
+        It does not if ``dataclasses.replace`` made a scene with another body or other torques.
         """
         return all(one is other for one, other in zip(self.parts, _parts(scene), strict=True))
 
 
 def _parts(scene: Scene) -> tuple[Any, ...]:
-    """Return the body, the torques and the table of a scene: the parts that :meth:`Scene.to_dict` cannot write anew."""
+    """Return the parts of a scene that :meth:`Scene.to_dict` cannot translate back: body, torques and samples.
+
+    If one of them was replaced after the scene was read, the content of the file no longer describes the scene.
+    """
     return scene.body, scene.torques, scene.table
 
 
@@ -357,7 +360,7 @@ def load_scene(source: SceneSource, *, table_folders: str | Path | Sequence[str 
 def shipped_scenes() -> list[tuple[str, str, str]]:
     """Return the name, the title and the source of every scene that comes with symrot.
 
-    Other parts of the scene files, such as bodies and torques, are not checked.
+    The rest of the scene files, such as bodies and torques, is not checked here.
 
     Returns
     -------

@@ -107,7 +107,8 @@ def read_design(
     vary : mapping
         For each value that varies, its name and its law, see :func:`symrot.sweeps.laws.read_law`.
     attitudes : str
-        ``scene`` or ``uniform``.
+        ``scene``: all trajectories start with the attitude of the scene, unless a law varies it; ``uniform``: with
+        random attitudes, uniformly distributed over all rotations.
     sampling : str
         A name in :data:`symrot.sweeps.points.SAMPLINGS`.
     count : number, optional

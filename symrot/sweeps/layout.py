@@ -76,18 +76,19 @@ class Header:
 
 
 class Store(Protocol):
-    """The interface of stores for the results of a sweep.
+    """The interface of stores for the results of a sweep, which are written in chunks of trajectories.
 
-    Even if the process is killed, a chunk is missing or complete.
+    A chunk is stored as a whole: if the process is killed while it writes, the chunk counts as missing.
     """
 
     header: Header
 
     @property
-    def alone(self) -> str:
-        """A text that describes the statistics, if the store has removed the values of the outputs and has only these.
+    def only_statistics(self) -> str:
+        """The statistics whose values the store has instead of the values of the outputs, as a text; usually empty.
 
-        It is empty if the values are stored.
+        The text is not empty if the values of the outputs were removed after the statistics had been computed from
+        them.
         """
 
     def pending(self) -> list[tuple[int, int]]:
@@ -105,11 +106,11 @@ class Store(Protocol):
     def table(self, name: str) -> NDArray[Any] | None:
         """Return the array of statistics called ``name``, such as ``energy_mean``, or None if there is none."""
 
-    def finish(self, tables: list[Table], alone: str) -> None:
+    def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        ``alone`` is a text that describes the statistics if they are to be stored without the values of the outputs:
-        these values are then removed. If it is empty, the values stay.
+        If ``only_statistics``, a text that describes the statistics, is not empty, remove the values of the outputs, so
+        that only statistics stay.
         """
 
 

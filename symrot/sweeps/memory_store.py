@@ -38,8 +38,8 @@ class MemoryStore:
         self._arrays[MESSAGE] = np.full(header.count, "", dtype=object)
 
     @property
-    def alone(self) -> str:
-        """Always empty, because results in memory are used only by the sweep that computed them."""
+    def only_statistics(self) -> str:
+        """Empty: this store has the values of the outputs, not only statistics of them."""
         return ""
 
     def pending(self) -> list[tuple[int, int]]:
@@ -64,14 +64,14 @@ class MemoryStore:
         """Return whether the values of the array ``name`` are stored."""
         return name in self._arrays
 
-    def finish(self, tables: list[Table], alone: str) -> None:
+    def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        ``alone`` is a text that describes the statistics if they are to be stored without the values of the outputs:
-        these values are then removed. If it is empty, the values stay.
+        If ``only_statistics`` is not empty, remove the values of the outputs. It is a text that describes the
+        statistics, for stores that write it into a file; this store does not need it.
         """
         self.tables = tables
-        if alone:
+        if only_statistics:
             for variable in self.header.variables:
                 self._arrays.pop(variable.name, None)
 

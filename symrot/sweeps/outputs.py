@@ -205,7 +205,11 @@ def variable_keys(outputs: Sequence[SweepOutput]) -> list[str]:
 
 
 def _reduction(word: str, times: Floats) -> tuple[str, float, str]:
-    """Return reduction, time (s), and ending of the output's name for a word after @: ``end``, ``max``, ``2.5``."""
+    """Return (reduction, time in s, ending) for the word after @ in an output's name, such as ``omega_1@max``.
+
+    ``max`` gives ("max", 0.0, "@max"). A time gives the reduction "at": 2.5 gives ("at", 2.5, "@2.5"), and ``start``
+    and ``end`` give the first and the last of ``times``.
+    """
     if word in REDUCTIONS:
         return word, 0.0, f"@{word}"
     if word in AT_TIMES:
@@ -231,7 +235,10 @@ def sample_times(outputs: Sequence[SweepOutput], times: Floats) -> Floats:
 
 
 def evaluate(outputs: Sequence[SweepOutput], ensemble: Any, times: Floats, samples: Floats) -> dict[str, Floats]:
-    """Return the outputs of the motions of an ensemble by name, each of shape (n, m) or (n,).
+    """Return the outputs of the n motions of an ensemble by name.
+
+    The shape is (n, m) for an output at all sample times, and (n,) for an output at one time or a reduction such as
+    max.
 
     Parameters
     ----------
@@ -240,9 +247,10 @@ def evaluate(outputs: Sequence[SweepOutput], ensemble: Any, times: Floats, sampl
     ensemble : Ensemble
         n motions with samples at the times ``samples``.
     times : array, shape (m,)
-        The sample times of the sweep, s.
+        The sample times that the sweep asks for, s.
     samples : array
-        The times of the samples, s, ascending, from :func:`sample_times`.
+        All times at which the ensemble was computed, s, ascending, from :func:`sample_times`: those in ``times``, and
+        single times of outputs such as ``omega_1@2.5``.
     """
     places = np.searchsorted(samples, times) if np.isin(times, samples).all() else np.empty(0, dtype=np.intp)
     values: dict[str, Floats] = {}

@@ -72,8 +72,8 @@ class ParquetStore:
         return self.path / f"part-{start:012d}.parquet"
 
     @property
-    def alone(self) -> str:
-        """Always empty, because this store always has the values of the outputs."""
+    def only_statistics(self) -> str:
+        """Empty: this store has the values of the outputs, not only statistics of them."""
         return ""
 
     def pending(self) -> list[tuple[int, int]]:
@@ -142,23 +142,26 @@ class ParquetStore:
         return np.asarray(rows["value"].to_numpy().reshape(shape))
 
     def has(self, name: str) -> bool:
-        """Return whether the array ``name`` can be read from one column.
+        """Return whether the array ``name`` can be read from one column: input, output, status or message.
 
         An attitude cannot, because each of its four components has a column of its own.
         """
-        return all(variable.dimensions in ((), (TIME,)) for variable in self.header.variables if variable.name == name)
+        columns = (variable.name for variable in self.header.variables if variable.dimensions in ((), (TIME,)))
+        return name in (STATUS, MESSAGE, *columns)
 
-    def finish(self, tables: list[Table], alone: str) -> None:
+    def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        A text ``alone`` that is not empty asks to remove the values of the outputs; raise InputError then, since this
-        store cannot remove them.
+        If ``only_statistics`` is not empty, the values of the outputs would have to be removed, which this store cannot
+        do: InputError is raised.
         """
         if tables:
             rows = self._arrow.Table.from_pylist([row for table in tables for row in _rows(table, self.header.times)])
             write(self.path / STATISTICS, lambda stream: self._parquet.write_table(rows, stream))
-        if alone:
-            raise InputError("keep: expected a Zarr output, FILE.zarr, for statistics without values")
+        if only_statistics:
+            raise InputError(
+                "keep: expected 'all' for a Parquet file, got 'statistics'; write FILE.zarr to store statistics only"
+            )
 
     def dataset(self) -> Any:
         """Return the results as a pandas DataFrame."""

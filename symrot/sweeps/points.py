@@ -3,9 +3,11 @@
 Each point is computed from the seed and its index alone. Therefore any process can compute any range of points, and the
 points have the same bits however the ranges are chosen.
 
-- ``random``: one Philox stream for each name. Philox computes the k-th number of its stream directly from k.
-- ``latin``: a Latin hypercube: for n points, each name has one point in each of n intervals of equal length. The order
-  of the intervals is a permutation of 0 to n - 1 by a Feistel network, which needs no memory for the permutation.
+- ``random``: one stream of Philox numbers for each varied value. Philox computes the k-th number of its stream directly
+  from k.
+- ``latin``: a Latin hypercube: the range of each varied value is divided into n intervals of equal length for n points,
+  and each interval contains one point. The order of the intervals is a permutation of 0 to n - 1 by a Feistel network,
+  which needs no memory for the permutation.
 - ``sobol``: scrambled Sobol points of ``scipy.stats.qmc.Sobol``, which skips to the index of the first point.
 """
 
@@ -66,8 +68,9 @@ def _latin(seed: int, streams: Sequence[str], count: int, start: int, stop: int)
 def permuted(index: Words, count: int, keys: Words) -> Words:
     """Return the images of ``index`` under a random permutation of 0 to ``count - 1``; ``keys`` determine it.
 
-    A Feistel network permutes all numbers with an even number of bits. It is applied again to an index as long as the
-    result is ``count`` or more (cycle walking); this gives a permutation of the numbers below ``count``.
+    A Feistel network permutes the numbers below a power of 4, here the smallest that is not below ``count``. While the
+    result for an index is ``count`` or more, the network is applied to the result again (cycle walking); this gives a
+    permutation of the numbers below ``count``.
     """
     half = max(1, (int(count - 1).bit_length() + 1) // 2)
     shift, mask = np.uint64(half), np.uint64(2**half - 1)

@@ -99,10 +99,9 @@ def run_here(job: Job, ranges: Sequence[Range], workers: int) -> Iterator[Chunk]
 
 @contextmanager
 def _without_main() -> Iterator[None]:
-    """Hide the main program of the caller from new processes.
+    """Hide the main program of the caller from new processes, which compute trajectories and do not need it.
 
-    New processes would import the main program, which fails for a program without ``if __name__ == "__main__"``. A
-    chunk does not need the main program.
+    They would import it, which fails for a program without ``if __name__ == "__main__"``.
     """
     main = sys.modules["__main__"]
     sys.modules["__main__"] = ModuleType("__main__")

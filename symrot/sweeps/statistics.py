@@ -128,7 +128,10 @@ def _of_variable(store: Store, statistics: Sequence[Statistic], variable: Variab
 
 @dataclass(frozen=True)
 class _Survey:
-    """The number of values, the extremes and the mean of each column; a column is one sample time, or the only one."""
+    """The number of values, the extremes and the mean of each column of an output, over all trajectories.
+
+    An output has one column per sample time, or a single column if it has one value per trajectory.
+    """
 
     number: NDArray[np.int64]
     low: Floats
@@ -218,7 +221,7 @@ def order_statistics(blocks: Blocks, low: Floats, high: Floats, ranks: NDArray[n
     searches = []
     for k in np.flatnonzero(~np.isnan(low)).tolist():
         first, last = (int(key) for key in _keys(np.array([low[k], high[k]])))
-        searches.append(_Search(k, first, last, {int(rank): [int(rank)] for rank in ranks[:, k]}))
+        searches.append(_Search(k, first, last, {int(rank): int(rank) for rank in ranks[:, k]}))
     values: dict[tuple[int, int], float] = {}
     while searches:
         searches = _narrowed(blocks, searches, values)
@@ -231,13 +234,13 @@ def order_statistics(blocks: Blocks, low: Floats, high: Floats, ranks: NDArray[n
 class _Search:
     """An interval of keys (integers in the order of the values) of one column, with the ranks that are searched in it.
 
-    ``ranks`` maps each rank among the values in the interval to the corresponding ranks in the whole column.
+    ``ranks`` maps the rank of a value among the values in the interval to its rank among all values of the column.
     """
 
     column: int
     first: int
     last: int
-    ranks: dict[int, list[int]]
+    ranks: dict[int, int]
     number: int = -1  # number of values in the interval; -1: unknown
 
 
@@ -251,7 +254,7 @@ def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, i
     for search in searches:
         if search.first == search.last:
             value = float(_values(np.array([search.first], dtype=np.uint64))[0])
-            values |= {(search.column, rank): value for own in search.ranks.values() for rank in own}
+            values |= {(search.column, rank): value for rank in search.ranks.values()}
         else:
             open_searches.append(search)
     if not open_searches:
@@ -277,7 +280,7 @@ def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, i
     for k, search in enumerate(open_searches):
         if small[k]:
             ordered = _values(np.sort(np.concatenate(members[k])))
-            values |= {(search.column, rank): float(ordered[r]) for r, own in search.ranks.items() for rank in own}
+            values |= {(search.column, rank): float(ordered[r]) for r, rank in search.ranks.items()}
         else:
             narrower += _split(search, counts[k], shifts[k])
     return narrower
@@ -290,12 +293,12 @@ def _split(search: _Search, counts: NDArray[np.int64], shift: int) -> list[_Sear
     """
     ends = np.cumsum(counts)
     parts: dict[int, _Search] = {}
-    for rank, own in search.ranks.items():
+    for rank, whole in search.ranks.items():
         k = int(np.searchsorted(ends, rank, side="right"))
         first = search.first + (k << shift)
         last = min(search.last, first + (1 << shift) - 1)
         part = parts.setdefault(k, _Search(search.column, first, last, {}, int(counts[k])))
-        part.ranks[rank - int(ends[k] - counts[k])] = own
+        part.ranks[rank - int(ends[k] - counts[k])] = whole
     return list(parts.values())
 
 

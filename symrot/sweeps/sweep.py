@@ -232,10 +232,10 @@ def sweep(
     if target is None:
         _require_memory(header)
     store: Store = MemoryStore(header) if target is None else STORES[target.suffix.lower()](target, header)
-    alone = repr(chosen) if keep == "statistics" else ""
-    if store.alone:
-        _require_same(store.alone, alone, target)
-        store.finish([], alone)  # removes values that a process that was stopped left
+    only_statistics = repr(chosen) if keep == "statistics" else ""
+    if store.only_statistics:
+        _require_same(store.only_statistics, only_statistics, target)
+        store.finish([], only_statistics)  # removes values that a process that was stopped left
     else:
         pending = store.pending()
         done = header.count - sum(stop - start for start, stop in pending)
@@ -248,7 +248,7 @@ def sweep(
                 progress(done, header.count)
         outputs_of_store = [each for each in header.variables if each.name in {one.name for one in job.outputs}]
         tables = statistics_of(store, chosen, outputs_of_store, note) if chosen else []
-        store.finish(tables, alone)
+        store.finish(tables, only_statistics)
     return _result(store, target)
 
 
@@ -266,8 +266,8 @@ def _require(condition: bool, where: str, expectation: str, value: object) -> No
 def _require_same(present: str, statistics: str, path: Path | None) -> None:
     if present != statistics:
         raise InputError(
-            f"{path}: expected the same statistics and keep as before, because the values of the trajectories were "
-            "removed there; choose another name for other results"
+            f"{path}: expected the same values of `statistics` and `keep` as when this file was written: it has "
+            "statistics only, and the values of the trajectories were removed; write other results to another file"
         )
 
 

@@ -140,10 +140,10 @@ def _numbers_in(content: Content) -> list[str]:
 
 
 def constants_of(path: Path, scene: Scene, content: Content) -> list[str]:
-    """Return the names of the constants of motion's equations, such as ``A``, that the number at ``path`` may change.
+    """Return the names of those constants of the equations of motion that the number at ``path`` may change.
 
-    The result depends only on the table of the scene file that contains the number, so that it is the same for all
-    values.
+    An example is ``A``, a principal moment of inertia. The result depends only on the table of the scene file that
+    contains the number, so that it is the same for all values.
     """
     places = constant_places(scene)
     if path[0] == "initial":

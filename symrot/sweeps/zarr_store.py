@@ -69,7 +69,7 @@ class ZarrStore:
             attributes = dict(zarr.open_group(str(self.path), mode="r").attrs)
             identity, rows = json.loads(attributes[IDENTITY]), int(attributes[ROWS])
         except (OSError, LookupError, ValueError, TypeError):
-            raise InputError(f"{expectation}, got something else; choose another name") from None
+            raise InputError(f"{expectation}, got something else at this path; choose another name") from None
         if different := difference(header.identity, identity):
             raise InputError(f"{expectation}, got those of a sweep with a different {different}; choose another name")
         return replace(header, rows=rows)
@@ -141,24 +141,25 @@ class ZarrStore:
         return bool(self._group.attrs.get(FINISHED, False))
 
     @property
-    def alone(self) -> str:
-        """A text that describes the statistics, if the store has removed the values of the outputs and has only these.
+    def only_statistics(self) -> str:
+        """The statistics whose values the store has instead of the values of the outputs, as a text; usually empty.
 
-        It is empty if the values are stored.
+        The text is not empty if the values of the outputs were removed after the statistics had been computed from
+        them.
         """
         return str(self._group.attrs.get(REMOVED, ""))
 
-    def finish(self, tables: list[Table], alone: str) -> None:
+    def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        ``alone`` is a text that describes the statistics if they are to be stored without the values of the outputs:
-        these values are then removed. If it is empty, the values stay.
+        If ``only_statistics``, a text that describes the statistics, is not empty, store it and remove the values of
+        the outputs, so that only statistics stay.
         """
         for table in tables:
             _add(self._group, table)
         self._group.attrs[FINISHED] = True
-        if alone:
-            self._group.attrs[REMOVED] = alone  # before the first array is removed
+        if only_statistics:
+            self._group.attrs[REMOVED] = only_statistics  # before the first array is removed
             self._open.clear()
             for variable in self.header.variables:
                 if variable.name in self._group:

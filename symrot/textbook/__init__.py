@@ -119,7 +119,10 @@ def errata() -> tuple[Erratum, ...]:
 
 
 def conditions() -> tuple[Condition, ...]:
-    """Return the conditions that documents do not state, which symrot proves to suffice but cannot find by itself."""
+    """Return conditions that documents leave out, as :class:`Condition`; with them, symrot proves their claims.
+
+    For other claims symrot finds the missing condition by itself; these cannot be found in this way.
+    """
     return tuple(
         Condition(entry["claim"], tuple(entry["given"]), entry["words"]) for entry in _content("errata")["condition"]
     )

@@ -155,8 +155,9 @@ def _faces(shape: Shape) -> Iterator[tuple[dict[str, str], tuple[Coordinate, ...
 def _is_line(position: Sequence[Node], values: Mapping[str, float], grids: Mapping[str, list[float]]) -> bool:
     """Return whether a face is only a line or a point, as the inner face of a solid cylinder is, at radius 0.
 
-    ``position`` are the formulas of x, y, z in the shape's coordinates and lengths, ``values`` the coordinate that is
-    constant on the face, and the lengths; ``grids`` the values of the other coordinates.
+    ``position`` are the formulas of x, y, z in the shape's coordinates and dimensions. ``values`` has the dimensions
+    and the value of the coordinate that is constant on the face, by name; ``grids`` has the values of the other
+    coordinates.
     """
     inside = {name: grid[0] + INSIDE * (grid[-1] - grid[0]) for name, grid in grids.items()}
 

@@ -1,7 +1,7 @@
 """The content of a scene's page: kernels as JavaScript, adjustable constants, the body, and reference samples.
 
-The kernels are derived for the scene with all constants free, because the page changes them: its equations are more
-general than the plan of the scene, and the same for all values.
+The page lets the reader change the constants of the scene. Its kernels are therefore derived without the
+simplifications that hold only for the scene's own numbers, such as equal moments.
 """
 
 import json
@@ -134,7 +134,7 @@ def with_attitude(scene: Scene) -> Scene:
 def _why_played(scene: Scene, trajectory: Trajectory | None) -> str:
     """Return why a page plays a motion that symrot computed beforehand; empty if the page computes the motion.
 
-    ``trajectory`` is the motion to play, if its torque has no formula.
+    ``trajectory`` is this motion if a torque has no formula (a function in Python or C), otherwise None.
     """
     if trajectory is not None:
         return "a torque without a formula acts, so symrot computed this motion beforehand"
@@ -287,7 +287,8 @@ def _angle_kernels(sequence: str) -> dict[str, Program]:
 def _kernel_text(kernel: SceneKernel, constants: Sequence[str], sequence: str) -> str:
     """Return the JavaScript of all functions with which a page computes the motion of a scene.
 
-    They compute the rates of the state, the printed quantities, and from ``constants`` the parameters of both.
+    They compute the rates of the state and the output quantities, the parameters of these two functions from
+    ``constants``, and the Euler angles of ``sequence`` from a quaternion and back.
     """
     programs = {
         "rates": kernel.rates,
@@ -366,10 +367,10 @@ def _sliders(scene: Scene, plan: Plan) -> list[Slider]:
 
 
 def _fields(plan: Plan) -> Iterator[tuple[str, Field]]:
-    """Yield name and field for each constant of a torque that may change while the others stay the same.
+    """Yield (name, field) for each constant of a torque that can be changed without changing another constant.
 
-    A field describes one number of a torque in a scene file: its name, unit and meaning. The page has a slider for
-    each.
+    A field describes one entry of a torque in a scene file: its name, unit and meaning. The page has a slider for each
+    constant. Components of a unit vector are left out.
     """
     for torque in plan.structure.torques:
         fields = {field.name: field for field in TORQUE_KINDS[torque.kind].fields}

@@ -1,4 +1,4 @@
-"""The work behind the commands that emit, certify, audit and bound kernels, print derivations and check the install.
+"""The functions behind the commands: they emit, certify, audit and bound kernels, print derivations, check the install.
 
-Some of these functions are public.
+The public functions symrot.emit, certify, audit, bound and plan, among others, are defined here.
 """

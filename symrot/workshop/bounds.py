@@ -74,7 +74,7 @@ def _check_unit(
 ) -> None:
     """Raise InputError if the box contains no unit quaternion, because then every bound would hold vacuously.
 
-    ``group`` lists the four components of the quaternion by index text, such as ``"q[1]"``; ``box`` has the range of
+    ``group`` lists the four components of the quaternion, such as ``"q[1]"``; ``box`` has the range of
     each input.
     """
     ends = [sorted(box[place], key=abs) for place in group]
@@ -129,9 +129,9 @@ def section(kernel: KernelText, ranges: Sequence[str]) -> dict[str, Any]:
 
 @contextmanager
 def _in_scene_names(kernel: KernelText) -> Iterator[None]:
-    """Run a ``with`` block; in an InputError from it, write the scene's names in place of index texts.
+    """Run a ``with`` block; in an InputError from it, write the scene's names of inputs.
 
-    The message then says, for example, ``omega_3`` and not ``y[2]``.
+    The message then says, for example, ``omega_3`` and not ``y[2]``, the place in the C argument.
     """
     try:
         yield
@@ -163,7 +163,7 @@ def facts(kernel: str, ranges: Sequence[str], precision: str) -> dict[str, Any]:
 
 
 def _names(kernel: KernelText) -> dict[str, str]:
-    """Return a map from index text to a scene's name: ``"y[2]"`` -> ``"omega_3"``; empty for a library kernel."""
+    """Return a map from input to a scene's name: ``"y[2]"`` -> ``"omega_3"``; empty for a library kernel."""
     if not isinstance(kernel, SceneText):
         return {}
     return {place: symbol for place, (symbol, _) in kernel.inputs.components.items()}
@@ -254,9 +254,10 @@ def _free(kernel_problem: RoundingProblem, box: Mapping[str, tuple[Fraction, Fra
 
 
 def target_lines(resized: Mapping[str, Any]) -> list[str]:
-    """Return the lines that `symrot bound` prints about the largest box;
+    """Return the lines that `symrot bound --target` prints: ranges of the inputs on which no error exceeds the target.
 
-    ``resized`` is the data of :func:`target_facts`.
+    ``resized`` is the data of :func:`target_facts`. The ranges are those of the user, all made wider or narrower by one
+    factor, as far as the target allows.
     """
     return [
         f"{resized['kernel']}: no error is larger than {resized['target']:g}",

@@ -25,7 +25,8 @@ LONGEST = 200  # largest number of characters of a line or reason in a message
 def kernel_of(name: str) -> str | None:
     """Return the library kernel or the shipped scene to which the C function ``symrot_NAME`` belongs, or None.
 
-    A library kernel has the name of its function; for a scene it is ``SCENE_rates``.
+    ``name`` is NAME. ``"quaternion_dcm"`` is a library kernel and gives itself; ``"t_handle_rates"`` gives the scene
+    ``"t_handle"``.
     """
     if is_kernel(name):
         return name
@@ -67,9 +68,10 @@ def _first_line(text: str, emitted: str) -> str:
 
 
 def _meaning(text: str, emitted: KernelUnderTest) -> str:
-    """Return a remark in brackets on an edited C text: it has lost the formulas, or performs other operations.
+    """Return a remark in brackets on what an edited C text computes; ``emitted`` is the kernel as symrot prints it.
 
-    ``emitted`` is the kernel as symrot prints it. The remark is empty if the text performs the same operations.
+    It says why symrot cannot prove that the text computes the kernel's formulas, or that it does so by other
+    operations. It is empty if the text performs the same operations.
     """
     file = f"{emitted.name}.c"
     symbols = {place: symbol for place, (symbol, _) in emitted.places.items()}

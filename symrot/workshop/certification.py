@@ -155,7 +155,7 @@ class RoundingBounds:
     precision : str
         ``"double"`` or ``"float"``.
     box : mapping of str to (float, float)
-        A map from the index text of each input to its range, in the unit of the input.
+        A map from each input, such as ``"theta"``, ``"omega[0]"`` or ``"y[2]"``, to its range, in the input's unit.
     outputs : tuple of OutputError
     assumptions : tuple of str
         The assumptions under which the bounds hold.
@@ -199,7 +199,7 @@ class LargestBox:
     size : float
         Width of the box, relative to the width of the box from which the search started.
     box : mapping of str to (float, float)
-        A map from the index text of each input to its range, in the unit of the input.
+        A map from each input, such as ``"theta"``, ``"omega[0]"`` or ``"y[2]"``, to its range, in the input's unit.
     error : float
         The largest error bound of an output on that box.
     data : mapping

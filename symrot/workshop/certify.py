@@ -71,7 +71,8 @@ def _proven_statement(data: Data) -> Data | None:
 def _programs() -> str:
     """Return the SHA-256 of all source files of symrot and of the version of SymPy, for keys of the cache.
 
-    Any change of the programs that prove a statement so makes the stored statements unusable.
+    The cache stores proven statements. After any change of the programs that prove them, the hash differs, and stored
+    statements are no longer used.
     """
     root = Path(symrot.__file__).parent
     digest = sha256(version("sympy").encode())
@@ -166,7 +167,9 @@ def _recomputed_bounds(data: Data, text: str, progress: Callable[[str], object])
 
 
 def flag_lines(flags: str) -> list[str]:
-    """Return a list of one line, which says what of any certificate holds for code compiled with ``flags``.
+    """Return a list of one line: which promises of a certificate hold for code compiled with ``flags``, and why.
+
+    The promises are the bits of the C text and its error bounds; without them, CertificateError is raised.
 
     Raises
     ------
@@ -208,9 +211,10 @@ def certify(
     kernel : str
         A kernel of the library, a scene, or a file NAME.c or NAME.cert.json exactly as symrot emits it.
     ranges : sequence of str
-        ``NAME=LOW:HIGH``, ranges of inputs for which rounding errors are bounded. Other inputs have the kernel's own
-        ranges, which a scene has only for parameters, time and quaternion; its errors are bounded only if ``ranges``
-        is not empty.
+        ``NAME=LOW:HIGH``, ranges of inputs for which rounding errors are bounded. For a library kernel, each input has
+        a standard range that is used if none is passed. For a scene, only parameters, time and quaternion have one:
+        ranges of the other states, such as omega_1, must be passed. Without ``ranges``, the errors of a scene's kernel
+        are not bounded.
     directory : Path, optional
         Folder for the kernel and its certificate; without it no file is written.
     objects : bool
@@ -307,9 +311,10 @@ def all_lines(certificates: Mapping[str, Data]) -> list[str]:
 
 
 def refuted(certificates: Iterable[Data]) -> bool:
-    """Return whether one of the certificates records object code that differs from the C text.
+    """Return whether a certificate records object code that is not proven to compute the bits of the C text.
 
-    Only object code counts whose compiler flags must preserve every bit of the results.
+    Object code is considered if its compiler's flags preserve every bit; code compiled with ``-ffast-math``, for
+    example, is not. A certificate that records only such other code gives True as well.
     """
     return any(data.get("objects") and not object_code.holds(data["objects"]) for data in certificates)
 

@@ -35,7 +35,11 @@ def prove(directory: Path, demanded: bool, progress: Callable[[str], object]) ->
 
 
 def facts(directory: Path, written: list[Path], result: CoqResult | None) -> dict[str, Any]:
-    """Return the theorems and Coq's result as data for JSON; the arguments are those and results of :func:`prove`."""
+    """Return the theorems and Coq's result as data for JSON.
+
+    ``directory`` is the folder that was passed to :func:`prove`; ``written`` and ``result`` are what it returned: the
+    written files, and Coq's result or None if Coq is not installed.
+    """
     report: dict[str, Any] = {
         "directory": str(directory),
         "files": [f"{name}.v" for name in (RULES, *coq_file_names(), ASSUMPTIONS)],

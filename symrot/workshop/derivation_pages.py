@@ -14,12 +14,22 @@ from symrot.catalogue import READING_ORDER, derivation, names
 from symrot.errors import InputError
 from symrot.figures.table import figures_of
 from symrot.files.reading import refuse_special
-from symrot.lessons.page import taught
+from symrot.lessons.page import APPENDIX, appendix, taught
+from symrot.lessons.table import LESSONS
 from symrot.proof.derivation import PrintedPage
 from symrot.proof.page import Figure, Page, Passage, Section, Step, Table
 from symrot.proof.pages import book, latex_book, math_font
 
-__all__ = ["check", "derive_all", "illustrated", "pages", "write_handout", "write_pages"]
+__all__ = [
+    "check",
+    "derivation_of",
+    "derive_all",
+    "illustrated",
+    "pages",
+    "printed_page",
+    "write_handout",
+    "write_pages",
+]
 
 Chapters = dict[str, list[PrintedPage]]
 """Chapter -> its pages, in reading order."""
@@ -29,6 +39,9 @@ ABOUT = (
     "Every formula that symrot computes with, from first principles, in reading order. Each step was proven when its "
     "page was printed: the exact normal form of left minus right is zero."
 )
+
+APPENDICES = "Appendices: for the numeric code"
+"""The title of the last chapter, with the pages that a course can leave out."""
 
 FEW_FIGURES = 3
 """A page with no more figures opens with the first of them, also if it belongs to a section."""
@@ -48,7 +61,7 @@ def illustrated(page: Page) -> PrintedPage:
     """Return a derivation's page with its figures and its lesson: question, numbers, a common mistake for students.
 
     A figure is at the top of the page or below the heading of its section. A page with few figures has at least one at
-    the top.
+    the top. The steps that only symrot's numeric code needs are not on it (see :func:`printed_page`).
 
     Raises
     ------
@@ -62,6 +75,12 @@ def illustrated(page: Page) -> PrintedPage:
     >>> [item.name for item in page.opening if isinstance(item, Figure)][0]
     'poinsot'
     """
+    whole, top = _with_figures(page)
+    return _printed(taught(whole, top))
+
+
+def _with_figures(page: Page) -> tuple[Page, list[Figure]]:
+    """Return a derivation's page with figures below the headings of their sections, and the figures for its top."""
     figures = figures_of(page.name)
     by_section: dict[str, list[Figure]] = {}
     for figure in figures:
@@ -78,14 +97,64 @@ def illustrated(page: Page) -> PrintedPage:
     if by_section:
         raise InputError(f"{page.name}: expected figures in sections of the page, got figures in {[*by_section]}")
     values = {each.name: getattr(page, each.name) for each in fields(Page)}
-    lesson = taught(Page(**values | {"items": items}), top)
-    return PrintedPage(**{each.name: getattr(lesson, each.name) for each in fields(Page)})
+    return Page(**values | {"items": items}), top
+
+
+def _printed(page: Page) -> PrintedPage:
+    return PrintedPage(**{each.name: getattr(page, each.name) for each in fields(Page)})
+
+
+def derivation_of(name: str) -> str:
+    """Return the name of the derivation that a page belongs to.
+
+    It is ``name`` without the ending ``_appendix``: ``driven_rotation`` for ``driven_rotation_appendix``.
+    """
+    return name.removesuffix(APPENDIX)
 
 
 @cache
-def _page(name: str) -> PrintedPage:
-    """Return the page of the derivation ``name`` with its figures and its lesson; it is made once per process."""
-    return illustrated(derivation(name))
+def printed_page(name: str) -> PrintedPage:
+    """Return a page as it is printed; it is made once per process.
+
+    Parameters
+    ----------
+    name : str
+        The name of a derivation, for the lesson with its figures, or that name with the ending ``_appendix``, for the
+        steps of the derivation that only symrot's numeric code needs.
+
+    Raises
+    ------
+    InputError
+        If there is no such derivation, or if it has no appendix.
+
+    Examples
+    --------
+    >>> printed_page("driven_rotation_appendix").title
+    'Constant torque and damping about one axis: for the numeric code'
+    """
+    if not name.endswith(APPENDIX):
+        return illustrated(derivation(name))
+    rest = appendix(_with_figures(derivation(derivation_of(name)))[0])
+    if rest is None:
+        raise InputError(f"expected a derivation with an appendix, got {name!r}")
+    return _printed(rest)
+
+
+def _page_names() -> tuple[str, ...]:
+    """Return the names of all pages: the derivations in reading order, and their appendices in the same order."""
+    return (*names(), *_appendices(names()))
+
+
+def _appendices(derivations: Sequence[str]) -> list[str]:
+    """Return the names of the appendices of some derivations; a derivation without an appendix has none in the list."""
+    return [f"{name}{APPENDIX}" for name in derivations if LESSONS[name].library]
+
+
+def _chapters(chosen: Sequence[str]) -> dict[str, list[str]]:
+    """Return a map from the title of a chapter to the names of those of its pages that are in ``chosen``."""
+    whole = READING_ORDER | {APPENDICES: _appendices(names())}
+    chapters = {title: [name for name in members if name in chosen] for title, members in whole.items()}
+    return {title: members for title, members in chapters.items() if members}
 
 
 def pages(say: Say = _quiet) -> dict[str, str]:
@@ -93,16 +162,13 @@ def pages(say: Say = _quiet) -> dict[str, str]:
 
     The table of contents (``README.md``) comes first. ``say`` is called with a line of text before each derivation.
     """
-    derived = {}
-    for name in names():
-        say(f"deriving {name} ..")
-        derived[name] = _page(name)
+    derived = _derived(_page_names(), say)
     lines = [
         f"# {TITLE}",
         "",
         *wrap(ABOUT, 110, break_on_hyphens=False),
     ]
-    for part, members in READING_ORDER.items():
+    for part, members in _chapters(_page_names()).items():
         lines += ["", f"## {part}", ""]
         lines += [f"- [{derived[name].title}]({name}.md), {derived[name].extent}" for name in members]
     lines += ["", "Printed by `symrot derive --all`; do not edit.", ""]
@@ -110,11 +176,20 @@ def pages(say: Say = _quiet) -> dict[str, str]:
     return texts | {figure.file: figure.svg() for page in derived.values() for figure in _figures(page)}
 
 
+def _derived(chosen: Sequence[str], say: Say) -> dict[str, PrintedPage]:
+    """Return a map from name to page; ``say`` is called with a line of text before each page is derived."""
+    derived = {}
+    for number, name in enumerate(chosen, 1):
+        say(f"{number} of {len(chosen)}: deriving {name}")
+        derived[name] = printed_page(name)
+    return derived
+
+
 def _figures(page: Page) -> list[Figure]:
     return [item for item in [*page.opening, *page.items] if isinstance(item, Figure)]
 
 
-def write_pages(directory: Path | str, form: str, chosen: Sequence[str] = ()) -> list[Path]:
+def write_pages(directory: Path | str, form: str, chosen: Sequence[str] = (), say: Say = _quiet) -> list[Path]:
     """Write derivations into a directory, as documents of LaTeX or as a book in HTML, and return the paths.
 
     The book in HTML begins with ``index.html``. With LaTeX, each page is a document, and ``book.tex`` has all of them;
@@ -127,7 +202,9 @@ def write_pages(directory: Path | str, form: str, chosen: Sequence[str] = ()) ->
     form : str
         ``"latex"`` or ``"html"``.
     chosen : sequence of str
-        Names of derivations; all if empty. Their order is the reading order.
+        Names of pages (see :func:`printed_page`); all if empty. Their order is the reading order.
+    say : callable
+        Called with a line of text about progress before each derivation.
 
     Raises
     ------
@@ -136,13 +213,10 @@ def write_pages(directory: Path | str, form: str, chosen: Sequence[str] = ()) ->
     """
     if form not in FORMS:
         raise InputError(f"form: expected {' or '.join(FORMS)}, got {form!r}")
-    derived = {name: _page(name) for name in chosen or names()}
+    derived = _derived(chosen or _page_names(), say)
     directory = Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
-    chapters = {
-        chapter: [derived[name] for name in members if name in derived] for chapter, members in READING_ORDER.items()
-    }
-    chapters = {chapter: members for chapter, members in chapters.items() if members}
+    chapters = {chapter: [derived[name] for name in members] for chapter, members in _chapters([*derived]).items()}
     written = []
     for name, content in FORMS[form](chapters).items():
         path = directory / name
@@ -154,7 +228,7 @@ def write_pages(directory: Path | str, form: str, chosen: Sequence[str] = ()) ->
     return written
 
 
-def write_handout(directory: Path | str, form: str, chosen: Sequence[str]) -> list[Path]:
+def write_handout(directory: Path | str, form: str, chosen: Sequence[str], say: Say = _quiet) -> list[Path]:
     """Write the pages of a few derivations into a directory, for students, and return the paths.
 
     Links to pages that are neither in the handout nor in the directory become plain text. Parameters and exceptions
@@ -162,7 +236,7 @@ def write_handout(directory: Path | str, form: str, chosen: Sequence[str]) -> li
     page.
     """
     if form != "markdown":
-        paths = write_pages(directory, form, chosen)
+        paths = write_pages(directory, form, chosen, say)
         present = _present(Path(directory), chosen, ".html")
         for path in paths if form == "html" else ():
             if path.suffix == ".html":
@@ -172,8 +246,7 @@ def write_handout(directory: Path | str, form: str, chosen: Sequence[str]) -> li
     present = _present(directory, chosen, ".md")
     written = []
     texts: dict[str, str] = {}
-    for name in chosen:
-        page = _page(name)
+    for name, page in _derived(chosen, say).items():
         texts[f"{name}.md"] = _only_links_to(present, LINK, page.markdown())
         texts |= {figure.file: figure.svg() for figure in _figures(page)}
     for file, text in texts.items():
@@ -194,7 +267,7 @@ def _present(directory: Path, chosen: Sequence[str], suffix: str) -> set[str]:
 
     ``suffix`` is that of the pages, such as ``.html``.
     """
-    return {name for name in names() if name in chosen or (directory / f"{name}{suffix}").is_file()}
+    return {name for name in _page_names() if name in chosen or (directory / f"{name}{suffix}").is_file()}
 
 
 def _only_links_to(present: set[str], link: re.Pattern[str], text: str) -> str:
@@ -202,7 +275,7 @@ def _only_links_to(present: set[str], link: re.Pattern[str], text: str) -> str:
 
     ``link`` matches a link; its groups ``page`` and ``label`` are the derivation and the words of the link.
     """
-    missing = set(names()) - present
+    missing = set(_page_names()) - present
     return link.sub(lambda match: match["label"] if match["page"] in missing else match[0], text)
 
 

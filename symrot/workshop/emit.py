@@ -27,12 +27,12 @@ class _Texts(NamedTuple):
 class Emitted(_Texts):
     """An emitted kernel: its name, its text, and in C its header (empty for other targets).
 
-    In Python and JavaScript the function has the name of the kernel; in C its name is ``function``, with the prefix
-    ``symrot_``.
+    In Python and JavaScript the function has the name of the kernel. In C its name is the value of the property
+    ``function``, the kernel's name with the prefix ``symrot_``.
 
-    ``certificate`` is the text of the kernel's certificate, which is proven when it is first read. The certificate of a
-    library kernel contains the bounds of its rounding errors on its own box; the certificate of a scene's kernel
-    contains the bounds that were passed to :func:`emit`.
+    The property ``certificate`` is the text of the kernel's certificate, which is proven when it is first read. The
+    certificate of a library kernel contains bounds of its rounding errors on the standard ranges of its inputs; the
+    certificate of a scene's kernel contains the bounds that were passed to :func:`emit`.
 
     Attributes
     ----------
@@ -98,7 +98,7 @@ def plan(scene: SceneSource) -> Plan:
 
     Notes
     -----
-    Source: each row names the derivation that justifies it.
+    Source: each item of the plan names the derivation that justifies it.
 
     Examples
     --------

@@ -78,7 +78,7 @@ def _check_finite(name: str, ends: Ends, text: str) -> None:
 
 
 def _place(kernel_problem: RoundingProblem, inputs: SceneInputs | None, name: str, text: str) -> str:
-    """Return the index text of the input that ``name`` means, such as ``angles[1]``, or the name of a scene's constant.
+    """Return the input component that ``name`` means, such as ``angles[1]``, or the name of a scene's constant.
 
     ``text`` is the whole range, NAME=LOW:HIGH, for the InputError that an unknown name raises.
     """

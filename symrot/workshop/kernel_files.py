@@ -126,8 +126,8 @@ def _slots(path: Path) -> dict[str, Any]:
 def _files_of(name: str, subfolder: str, targets: Sequence[str], directory: Path) -> dict[str, str]:
     """Return all files of the kernel ``name`` in the languages ``targets``, as a map from path to text.
 
-    The certificate is among them. Paths are relative to ``directory``, in which an earlier certificate may be;
-    ``subfolder`` is empty or ``scenes/``.
+    The certificate is among them. Paths are relative to ``directory``; ``subfolder`` is empty or ``scenes/``. If the
+    folder has an earlier certificate of the kernel, its bounds of rounding errors are used again.
     """
     kernel, files = kernel_text(name), dict[str, str]()
     for target in targets:

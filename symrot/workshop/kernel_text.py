@@ -87,9 +87,10 @@ class KernelText(ABC):
         return bounds
 
     def certificate(self, bounds: Bounds | None = None) -> str:
-        """Return the text of the kernel's certificate with the section ``bounds``;
+        """Prove all statements about the kernel, and return the text of its certificate.
 
-        CertificateError if a proof fails.
+        ``bounds`` are the bounds of rounding errors that it states (:meth:`rounding`); without bounds, this section is
+        left out. CertificateError is raised if a proof fails.
         """
         text, section = certificate_text(self.under_test(bounds)), self.rounding(bounds)
         return with_sections(text, {"rounding": section}) if isinstance(section, dict) else text
@@ -131,7 +132,10 @@ class LibraryText(KernelText):
         self.name, self._definition = name, definition(name)
 
     def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
-        """Return the pair (C source, header); its head states the kernel's own bounds, whatever ``bounds`` is."""
+        """Return the pair (C source, header); the comment at the head of each states bounds of rounding errors.
+
+        These are the bounds that come with symrot. The argument ``bounds`` has an effect for kernels of scenes only.
+        """
         return self._c
 
     @cached_property
@@ -168,11 +172,18 @@ class LibraryText(KernelText):
         return jax_source(kernel_program(self.name), kernel_description(self._definition, "jax"))
 
     def rounding(self, bounds: Bounds | None) -> Bounds | None:
-        """Return the kernel's own bounds, or None if it has none."""
+        """Return the bounds of rounding errors that come with symrot for this kernel, or None if there are none.
+
+        The argument ``bounds`` has an effect for kernels of scenes only.
+        """
         return self._section if isinstance(self._section, dict) else None
 
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
-        """Return the kernel with its texts, formulas and laws."""
+        """Return the kernel with its texts, formulas and laws, for proofs that the texts compute the formulas.
+
+        The argument ``bounds`` has an effect for kernels of scenes only: the texts state the bounds that come with
+        symrot.
+        """
         description = kernel_description(self._definition, "c")
         return library_kernel_under_test(self._definition, description, self._certified_files(bounds))
 
@@ -252,7 +263,10 @@ class SceneText(KernelText):
         return jax_source(self.program, self._description("jax"))
 
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
-        """Return the kernel with its texts and equations."""
+        """Return the kernel with its texts and equations of motion, for proofs that the texts compute the equations.
+
+        ``bounds`` are bounds of rounding errors that the comments in the C files state; None for no bounds.
+        """
         lowered, files, (formulas, _) = self._lowered, self._certified_files(bounds), self._formulas
         return scene_kernel_under_test(
             self._equations, lowered.program, lowered.parameters, self._description("c"), files,
@@ -261,7 +275,11 @@ class SceneText(KernelText):
 
     @cached_property
     def inputs(self) -> SceneInputs:
-        """The inputs of the kernel, for bounds of its errors: arguments, values and formulas of parameters, times."""
+        """The inputs of the kernel, on which the bounds of its rounding errors depend.
+
+        They are its arguments, the value and the formula of each parameter p[0], p[1], .., the values of the physical
+        constants in these formulas, and the first and last time of the scene.
+        """
         parameters, constants = self._lowered.parameters, self.plan.constants
         formulas = {f"p[{place}]": parameter for place, parameter in enumerate(parameters)}
         arguments, values = self._lowered.program.signature.arguments, tuple(bind(parameters, constants))
@@ -269,9 +287,11 @@ class SceneText(KernelText):
 
 
 def kernel_text(kernel: KernelText | SceneSource, jacobian: Sequence[str] = ()) -> KernelText:
-    """Return the texts of a kernel of the library, which is printed once per process, or of a scene.
+    """Return the object that prints a kernel: all its texts, in every language.
 
-    ``jacobian`` names the inputs, states or constants by which the derivatives of the outputs are computed too.
+    ``kernel`` is the name of a library kernel (whose object is made once per process), a scene, the name of a shipped
+    scene, the path of a scene file, or a KernelText, which is returned unchanged. ``jacobian`` names the inputs, states
+    or constants by which the derivatives of the outputs are computed too.
     """
     if isinstance(kernel, KernelText):
         return kernel

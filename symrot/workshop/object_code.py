@@ -56,8 +56,8 @@ def objects_of(texts: Mapping[str, str], source: str, programs: str) -> Data:
 def holds(section: Data | None) -> bool:
     """Return whether the object code in a certificate's section is proven to perform the C text, bit by bit.
 
-    Only code counts whose compiler flags must preserve the bits of results; without any such code the result is False.
-    ``section`` is the section ``objects`` of a certificate, or None.
+    Object code is considered if its compiler's flags preserve every bit of the results; if there is none, the result is
+    False. ``section`` is the section ``objects`` of a certificate, or None.
     """
     strict = [item for item in _objects(section) if item["flags_hold"] == BITS]
     return bool(strict) and all(function["verdict"] == IDENTICAL for item in strict for function in item["functions"])

@@ -189,7 +189,10 @@ class StepText(StepFiles):
 
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
         """Raise CertificateError: a step has a certificate of its own kind, see :attr:`certified`."""
-        raise CertificateError(f"{self.name}: expected a kernel, got a step, whose certificate states its formula only")
+        raise CertificateError(
+            f"{self.name}: expected a kernel of the library or of a scene, got a time step; "
+            "`symrot certify SCENE --step METHOD` certifies steps"
+        )
 
     @cached_property
     def certified(self) -> StepUnderTest:

@@ -88,7 +88,10 @@ def _number(value: Any, place: str) -> Any:
         return value
     if not isinstance(value, Expr) or not value.is_number or not value.is_real:
         names = ", ".join(sorted(map(str, getattr(value, "free_symbols", ())))) or str(value)
-        raise InputError(f"from_sympy: {place}: expected a real number, got {names}; write body.subs or xreplace first")
+        raise InputError(
+            f"from_sympy: {place}: expected a real number, got {names}; replace symbols by numbers, "
+            "for example by xreplace, before the body is passed to symrot"
+        )
     if isinstance(value, Rational):
         return Fraction(int(value.p), int(value.q))
     return float(value) if isinstance(value, Float) or value.has(Float) else str(value)

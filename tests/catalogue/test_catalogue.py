@@ -18,6 +18,8 @@ from symrot.cli.main import main
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
 from symrot.exact import is_zero
+from symrot.lessons.page import APPENDIX
+from symrot.lessons.table import LESSONS
 from symrot.proof.derivation import Derivation, ProofError
 from symrot.proof.page import Page, Step, Table
 from symrot.proof.pages import latex_book, latex_document
@@ -246,7 +248,8 @@ def test_all_pages_can_be_written_as_html(derived, tmp_path, capsys):
     assert main(["derive", "--all", "--format", "html", "-o", str(tmp_path / "site")]) == 0
     files = {path.name for path in (tmp_path / "site").iterdir()}
     assert len(capsys.readouterr().out.split()) == len(files)
-    assert files == {f"{name}.html" for name in derived} | {"index.html", "search.js", "math.woff2"}
+    appendices = {f"{name}{APPENDIX}" for name in derived if LESSONS[name].library}
+    assert files == {f"{name}.html" for name in {*derived} | appendices} | {"index.html", "search.js", "math.woff2"}
     for path in (tmp_path / "site").glob("*.html"):
         for target in re.findall(r'href="([^"#]+)"', path.read_text()):
             assert (tmp_path / "site" / target).exists(), (path.name, target)
@@ -305,6 +308,7 @@ def test_a_long_formula_in_a_sentence_is_displayed_in_latex():
 
 
 def test_a_proof_on_the_board_fits_on_a_screen(derived):
+    assert sum(bool(step.board) for page in derived.values() for step in page.steps) > 40
     for page in derived.values():
         for number, step in enumerate(page.steps, 1):
             if step.board:
@@ -332,19 +336,38 @@ def test_one_step_on_the_command_line(form, start, capsys):
     "words, complaint",
     [
         (["heavy_top", "--step", "99"], "a step from 1 to 17, got 99"),
-        (["heavy_top", "--detail"], "expected --step N"),
-        (["heavy_top", "poinsot"], "expected a folder, -o DIR, and no --step"),
+        (["heavy_top", "--detail"], "--detail needs --step N"),
+        (["heavy_top", "poinsot"], "several NAMEs need a folder for their pages, -o DIR"),
         (["heavy_top", "poinsod", "-o", "no_such"], "'poinsod' (did you mean 'poinsot'?"),
         (["--step", "2"], "expected a NAME"),
         (["--all", "--step", "2"], "expected a NAME"),
         (["heavy_top", "--step", "two"], "invalid int"),
         (["--all", "--format", "html"], "expected a folder, -o DIR"),
-        (["--check", "--format", "latex"], "--check compares the Markdown pages"),
+        (["--check", "--format", "latex"], "--check compares Markdown pages only"),
+        (["--all", "-o", __file__], "expected -o with a folder for the pages, got the file"),
+        (["--all", "--format", "html", "-o", __file__], "expected -o with a folder for the pages, got the file"),
+        (["poinsot", "-o", __file__], "expected -o with a folder for the pages, got the file"),
+        (["poinsot_appendix"], "expected a derivation with an appendix, got 'poinsot_appendix'"),
     ],
 )
-def test_a_step_that_cannot_be_shown_is_refused(words, complaint, capsys):
+def test_a_page_that_cannot_be_printed_is_refused(words, complaint, capsys):
     assert main(["derive", *words]) == 2
     assert complaint in capsys.readouterr().err
+
+
+def test_an_appendix_is_printed_by_its_name(capsys):
+    assert main(["derive", "elliptic_functions_appendix"]) == 0
+    text = capsys.readouterr().out
+    assert "**4.** The three functions" in text and "**3.**" not in text and "A common mistake" not in text
+    assert main(["derive", "elliptic_functions_appendix", "--step", "4"]) == 0
+    assert "**4.** The three functions" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("form", ["html", "latex", "markdown"])
+def test_progress_is_shown_while_pages_are_written(form, tmp_path):
+    lines = []
+    derivation_pages.write_handout(tmp_path, form, ["spherical_body", "intermediate_axis"], lines.append)
+    assert lines == ["1 of 2: deriving spherical_body", "2 of 2: deriving intermediate_axis"]
 
 
 def test_the_catalogue_is_named_without_sympy():

@@ -88,7 +88,7 @@ FAULTS = (
     ('where = "p. 17"', 'verdict = "true"', "got 'verdict'"),
     ('symbols = ["t"]', 'symbols = "t"', "a list of texts"),
     ('symbols = ["t"]', 'symbols = ["t", "t"]', "every name once"),
-    ('symbols = ["t"]', 'symbols = ["phi"]', "declared once"),
+    ('symbols = ["t"]', 'symbols = ["phi"]', "declared once, got 'phi' twice"),
     ('symbols = ["t"]', 'symbols = ["sin"]', "built in"),
     ('symbols = ["t"]', 'symbols = ["__import__"]', "letters, digits"),
     ('symbols = ["t"]', "", "body-rates-zxz: .*declared"),

@@ -32,7 +32,7 @@ def test_a_correct_formula_stays_recognised_in_a_context_that_fits(formula, cont
     ("tan gamma = (I/I_s) tan theta", {"where": CONES}, "wrong_symbol", "tan(gamma) = I_s/I*tan(theta)"),
     ("cos(Phi) = tr(A) - 1", {"where": MATRIX}, "factor", "cos(Phi) = 1/2*(trace(A) - 1)"),
     ("p_psi = I_3 psi'", {"where": ["p_psi = momentum of psi of a symmetric top with Euler angles phi, theta, psi"]},
-     "missing_term", "p_psi = I_3*(psi' + cos(theta)*diff(phi(t), t))"),
+     "missing_term", "p_psi = I_3*(psi' + cos(theta)*phi')"),
     ("phi' = I_3 omega_3/I_1", {"where": ["phi' = precession rate in space"], "body": FREE}, "factor",
      "phi' = I_3*omega_3/(I_1*cos(theta))"),
     ("sum M_z = I_z omega_z'", {"body": "asymmetric body in general motion, principal axes x, y, z"}, "missing_term",

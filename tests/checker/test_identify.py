@@ -1,6 +1,7 @@
 """Names of formulas, up to renaming, transposition, sign and storage order; every name that is given is proven."""
 
 import json
+import tomllib
 
 import pytest
 from sympy import Matrix, Rational, Symbol, cos, pi, sin, symbols
@@ -59,6 +60,15 @@ def test_the_file_is_as_printed():
 @pytest.mark.campaign
 def test_the_whole_file_is_as_printed():
     assert known_formulas.FILE.read_text(encoding="utf-8") == known_formulas.page()
+
+
+def test_the_file_has_the_same_formulas_as_toml():
+    entries = tomllib.loads(known_formulas.FILE.read_text(encoding="utf-8"))["formula"]
+    keys = [entry.pop("key") for entry in entries]
+    formulas = known_formulas.by_fingerprint()
+    for key, entry in zip(keys, entries, strict=True):
+        assert known_formulas.Known(**entry) in formulas[key]
+    assert sum(map(len, formulas.values())) == len(entries)
 
 
 # -- names ------------------------------------------------------------------------------------------------------------

@@ -11,6 +11,10 @@ from tests.campaigns.checker.printed import names_fault, offers
 
 FAULTS = (
     ("T = ½ I ω", "exponent", "T = 1/2*I*ω^2"), ("H_G = I_G omega^2", "exponent", "H_G = I_G*omega"),
+    ("ω_p = M g l sin θ/(I₃ω₃)", "factor", "ω_p = M*g*l/(I₃*ω₃)"),
+    ("R_12 = q_1 q_2 - q_3 q_4", "factor", "R_12 = 2*(q_1*q_2 - q_3*q_4)"),
+    ("ψ̇ = (ω₂ sin φ + ω₁ cos φ)/cos θ", "wrong_symbol", "ψ' = (ω₂*sin(φ) + omega_3*cos(φ))/cos(θ)"),
+    ("τ = F × r", "sign_of_term", "τ = cross(r, F)"),
     ("I_zz = m/12 (a^2 + b)", "exponent", "I_zz = m*(a^2 + b^2)/12"),
     ("I_z = m/12 (a^2 - b^2)", "sign_of_term", "I_z = m*(a^2 + b^2)/12"),
     ("I = 2m/5 (R_2^5 - R_1^5)/(R_2^2 - R_1^2)", "exponent", "I = 2*m/5*(R_2^5 - R_1^5)/(R_2^3 - R_1^3)"),
@@ -40,8 +44,8 @@ def test_the_part_at_fault_is_named_and_repaired(claim, code, repaired):
 
 @pytest.mark.thinned(4)
 @pytest.mark.parametrize("claim", [
-    "I = 13/20 m r^2", "a = p_psi/I_1", "I_z = 9/16 m R^2", "P = 2 M omega", "Omega = a g b/(c d)", "T = I/k", "v = omega r",
-    "E = a x^2 + b y^2", "tau = F d cos(theta)", "omega_2^2 = (M^2 - 2EI_1)/I_3", "V = -m g l cos(theta)", "a = omega^2 r",
+    "I = 13/20 m r^2", "a = p_psi/I_1", "I_z = 9/16 m R^2", "P = 2 M omega", "Omega = a g b/(c d)", "T = I/k",
+    "E = a x^2 + b y^2", "tau = F d cos(theta)", "omega_2^2 = (M^2 - 2EI_1)/I_3", "V = -m g l cos(theta)",
     "I = 1/12 m L^2 + m d^2", "I = m (a^2 + 4 b^2)/12", "I = m (R^2 + 5 a^2/4)",
     "tau = -m g l sin(theta)", "E = 1/2 m v^2 + 1/2 k x^2", "F = mu m g cos(theta)",
 ])  # fmt: skip
@@ -154,3 +158,28 @@ def test_a_fault_in_an_equation_is_found_from_the_known_relation(claim, code, re
 ])  # fmt: skip
 def test_only_a_special_case_or_another_axis_excuses_a_formula_near_a_known_one(claim, verdict):
     assert symrot.check(claim).verdict == verdict
+
+
+@pytest.mark.parametrize(("claim", "where", "repair"), [
+    ("K = 1/2 m v^2 (1 + k/R)", ["k = radius of gyration"], "K = 1/2*m*v^2*(1 + k^2/R^2)"),
+    ("U = 1/2 I (omega_2 - omega_1)^2", ["U = work"], "U = 1/2*I*(omega_2^2 - omega_1^2)"),
+    ("I_xy = Ibar_xy + m d_x^2", [], "I_xy = Ibar_xy + m*d_x*d_y"),
+    ("R_12 = n_x n_y (1 - cos theta) - n_z cos theta", [], "R_12 = n_x*n_y*(1 - cos(theta)) - n_z*sin(theta)"),
+    ("theta_1' = omega_1 + (omega_2 sin theta_1 + omega_3 cos theta_1) tan theta_1", [],
+     "theta_1' = omega_1 + (omega_2*sin(theta_1) + omega_3*cos(theta_1))*tan(theta_2)"),
+    ("omega_3 = theta_1' sin theta_2 + theta_2'", [], "omega_3 = theta_1'*sin(theta_2) + theta_3'"),
+    ("k = k_bar + d", [], "k^2 = k_bar^2 + d^2"),
+    ("tr R = 1 + cos theta", [], "trace(R) = 1 + 2*cos(theta)"),
+    ("Omega_1^2 + Omega_2^2 = phi'^2 sin theta + theta'^2", [], "Omega_1^2 + Omega_2^2 = phi'^2*sin(theta)^2 + theta'^2"),
+    ("b_0^2 - b_1^2 - b_2^2 - b_3^2 = 1", ["b = Euler parameters"], "b_0^2 + b_1^2 + b_2^2 + b_3^2 = 1"),
+    ("M_1 = 3 n (J_3 - J_2) C_23 C_33", ["n = mean motion"], "M_1 = 3*n^2*(J_3 - J_2)*C_23*C_33"),
+])  # fmt: skip
+def test_usual_slips_are_found(claim, where, repair):
+    """A square lost in a quotient or in all terms, an index, an angle or a rate written twice, a lost 2, lost signs."""
+    verdict = symrot.check(claim, where=where)
+    assert (verdict.verdict, verdict.repairs[0].text) == ("doubtful", repair)
+
+
+@pytest.mark.parametrize("claim", ["M_1 = 3 n^2 (J_3 - J_2) C_23 C_33", "G_1 = 3 n^2 (I_3 - I_2) c_2 c_3"])
+def test_the_torque_of_the_gravity_gradient_is_known_in_the_letters_of_books(claim):
+    assert symrot.check(claim).verdict == "recognised"

@@ -32,13 +32,20 @@ def test_one_exercise_is_graded_by_its_name_and_seed(capsys):
     assert code == 0 and json.loads(text)["credit"] == 2
 
 
+def test_topics_take_turns(capsys):
+    code, text, _ = run(capsys, "exercise", "gears", "rolling", "--count", "5", "--format", "json")
+    sheet = json.loads(text)["exercises"]
+    assert code == 0 and [each["topic"] for each in sheet] == ["gears", "rolling", "gears", "rolling", "gears"]
+    assert len({each["template"] for each in sheet}) == 5
+
+
 def test_the_list_names_every_topic(capsys):
     code, text, _ = run(capsys, "exercise", "--list")
     assert code == 0 and "gears\n  ring_fixed\n" in text
 
 
 @pytest.mark.parametrize("arguments, words", [
-    (("exercise", "cooking"), "expected a topic"), (("exercise", "--count", "many"), "invalid whole number"),
+    (("exercise", "cooking"), "expected a topic"), (("exercise", "gears", "rollin"), "did you mean 'rolling'"), (("exercise", "--count", "many"), "invalid whole number"),
     (("exercise", "--format", "pdf"), "invalid choice"), (("exercise", "gears", "--list"), "--list alone"),
     (("exercise", "--count", "0"), "count: expected"), (("grade", "x.json"), "expected EXERCISES.json"),
     (("grade", "--name", "rod_about_end", "1"), "expected --seed"), (("grade", "no.json", "no.txt"), "no.json: No such file"),

@@ -5,11 +5,18 @@ import json
 import re
 import shutil
 import subprocess
+from base64 import b64decode
 from xml.etree.ElementTree import fromstring
 
 import pytest
 
 import symrot
+from symrot.errors import InputError
+from symrot.exercises.formats.figures import image, tikz, title_of
+from symrot.exercises.sheet import read_sheet
+from symrot.exercises.sketches import SKETCHES
+from symrot.exercises.templates import TOPICS
+from tests.exercises.moodle_import import faults
 
 SHEET = symrot.exercise("", seed=1, count=6)
 BROWSER = next((path for name in ("chromium", "google-chrome") if (path := shutil.which(name))), None)
@@ -37,39 +44,41 @@ def test_the_latex_compiles(tmp_path):
     assert done.returncode == 0, done.stdout[-2000:]
 
 
-NEEDED = {
-    "numerical": (
-        "name/text",
-        "questiontext/text",
-        "generalfeedback/text",
-        "answer/text",
-        "answer/tolerance",
-        "showunits",
-    ),
-    "shortanswer": ("name/text", "questiontext/text", "generalfeedback/text", "answer/text", "usecase"),
-    "category": ("category/text",),
-}
-"""Type of a question of Moodle -> the elements that its import reads."""
+def test_moodle_imports_every_question():
+    assert list(faults(SHEET.moodle())) == []
 
 
-def faults_of_quiz(text):
-    """Return what Moodle's importer would miss in a quiz."""
-    quiz = fromstring(text.partition("\n")[2])
-    assert quiz.tag == "quiz"
-    for question in quiz:
-        kind = question.get("type")
-        if question.tag != "question" or kind not in NEEDED:
-            yield f"{question.tag} {kind}"
-            continue
-        yield from (f"{kind}: {path}" for path in NEEDED[kind] if question.find(path) is None)
-        fractions = [float(answer.get("fraction")) for answer in question.findall("answer")]
-        if kind != "category" and max(fractions, default=0) != 100:
-            yield f"{kind}: no right answer"
+WRONG = {
+    "not XML": ("</quiz>", ""),
+    "expected the root quiz": ("quiz>", "quizz>"),
+    "a question of a known type": ('type="numerical"', 'type="number"'),
+    "a category without a name": ("<text>$course$/", "<text/><text>$course$/"),
+    "slack of an answer is not read": ("tolerance>", "slack>"),
+    "expected a number as tolerance": ("<tolerance>", "<tolerance>about "),
+    "feedbacks is not read": ("generalfeedback", "feedbacks"),
+    "a name with 0 characters": ("<name>", "<name><text/></name><name>"),
+    "a name with 256 characters": ("<name>", f"<name><text>{256 * 'x'}</text></name><name>"),
+    "unknown format 'tex'": ('format="html"', 'format="tex"'),
+    "text with elements in it": ("&lt;p&gt;", "<p/>"),
+    "questiontext without text": ('<questiontext format="html">', '<questiontext format="html"><text/>'),
+    "is not encoded in base64": ('encoding="base64">', 'encoding="base64">*'),
+    "addresses of files": ("@@PLUGINFILE@@/", "@@PLUGINFILE@@/no_"),
+    "an answer with 99.0 %": ('fraction="100"', 'fraction="99"'),
+    "no answer with all marks": ('fraction="100"', 'fraction="90"'),
+    "an empty answer": ('format="moodle_auto_format">', 'format="moodle_auto_format"><text/>'),
+    "penalty: expected a number from 0 to 1": ("<penalty>", "<penalty>-"),
+    "units without a name": ("<unit_name>", "<unit_name/><unit_name>"),
+    "one of them 1": ("<multiplier>1", "<multiplier>10"),
+    "showunits does not suit": ("<showunits>0", "<showunits>3"),
+}  # words of a fault -> a change of the file that makes it
 
 
-def test_the_quiz_has_all_that_moodle_reads():
-    assert list(faults_of_quiz(SHEET.moodle())) == []
-    assert list(faults_of_quiz(SHEET.moodle().replace("tolerance>", "slack>")))
+@pytest.mark.parametrize("fault", WRONG)
+def test_a_file_that_moodle_refuses_is_noticed(fault):
+    text = symrot.exercise("rod_about_end").moodle()
+    before, after = WRONG[fault]
+    assert before in text and not list(faults(text))
+    assert any(fault in words for words in faults(text.replace(before, after)))
 
 
 def test_the_numbers_of_the_quiz_are_the_answers_with_their_units():
@@ -129,8 +138,32 @@ def test_the_page_answers_in_a_browser(tmp_path):
     assert ">Right.</output>" in html.unescape(done.stdout)
 
 
-@pytest.mark.parametrize("name", ["period_of_rod", "piston_speed"])
-def test_a_sketch_has_a_title_and_the_colour_of_the_text(name):
-    figure = symrot.exercise(name)[0].figure
-    assert fromstring(figure).find("{http://www.w3.org/2000/svg}title").text and 'stroke="currentColor"' in figure
-    assert figure in symrot.exercise(name).html()
+def test_a_third_of_the_templates_have_figures():
+    templates = {name for names in TOPICS.values() for name in names}
+    assert set(SKETCHES) <= templates and len(SKETCHES) > len(templates) / 2
+
+
+@pytest.mark.parametrize("draw", dict.fromkeys(SKETCHES.values()), ids=lambda draw: draw.__name__)
+def test_a_sketch_has_a_title_and_stays_inside_its_frame(draw):
+    svg = draw()
+    width, height = map(int, re.search(r'viewBox="0 0 (\d+) (\d+)"', svg).groups())
+    assert title_of(svg) and 'stroke="currentColor"' in svg
+    places = [pair for d in re.findall(r' d="([^"]*)"', svg) for pair in re.findall(r"[ML](\S+) (\S+)", d)]
+    places += re.findall(r' x="(\S+)" y="(\S+)"', svg)
+    assert all(0 <= float(x) <= width and 0 <= float(y) <= height for x, y in places)
+
+
+def test_a_figure_is_in_every_format():
+    sheet = symrot.exercise("spin_for_precession")
+    figure = sheet[0].figure
+    assert figure in sheet.html() and figure == read_sheet(json.loads(sheet.json()), "sheet")[0].figure
+    address = re.search(r"!\[A top [^]]*\]\(data:image/svg\+xml;base64,([^)]*)\)", sheet.markdown())[1]
+    assert b64decode(address) == image(figure) and b"currentColor" not in image(figure)
+    quiz = fromstring(sheet.moodle().partition("\n")[2])
+    assert {b64decode(file.text) for file in quiz.iter("file")} == {image(figure)}
+    assert r"\begin{tikzpicture}" in sheet.latex() and r"{$\omega_3$}" in sheet.latex()
+
+
+def test_a_drawing_that_latex_cannot_have_is_refused():
+    with pytest.raises(InputError, match="got an element 'polygon'"):
+        tikz('<svg xmlns="http://www.w3.org/2000/svg"><polygon/></svg>')

@@ -18,6 +18,7 @@ from symrot.conventions import EXTRINSIC_SEQUENCES, INTRINSIC_SEQUENCES, SEQUENC
 from symrot.errors import InputError
 from symrot.kinematics import conversions as cv
 from symrot.kinematics.continuity import continuous_quaternion, unwrap_euler
+from symrot.kinematics.rotation_vector import rotation_vector_of_quaternion
 from tests.reference.quaternions import (
     DIGITS,
     LOCKED,
@@ -459,3 +460,8 @@ def test_neither_sympy_nor_scipy_is_imported():
     code = f"import sys, {names}; print([m for m in ('sympy', 'scipy') if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_the_rotation_vector_of_the_identity_is_zero():
+    """The axis is undefined there, but the rotation vector has a limit."""
+    assert list(rotation_vector_of_quaternion([2, 0, 0, 0])) == [0, 0, 0]

@@ -17,7 +17,7 @@ from symrot.kernels.library import kernel_names
 from symrot.lessons.lesson import Mistake, Number
 from symrot.lessons.mistakes import mistake_passages, refutation
 from symrot.lessons.numbers import value_of
-from symrot.lessons.page import taught
+from symrot.lessons.page import APPENDIX, appendix, taught
 from symrot.lessons.scene_values import scene_values
 from symrot.lessons.table import LESSONS
 from symrot.proof.page import Figure, Section
@@ -146,7 +146,26 @@ def test_a_lesson_does_not_depend_on_hashing():
 
 def test_a_section_for_the_library_must_exist(monkeypatch):
     page = derivation("driven_rotation")
-    assert taught(page).beyond == len(page.steps) - 12
     monkeypatch.setitem(LESSONS, "driven_rotation", replace(LESSONS["driven_rotation"], library=("No such",)))
-    with pytest.raises(InputError, match=r"titles of sections with steps on this page, .*, got \['No such'\]"):
+    with pytest.raises(InputError, match=r"expected the last sections of the page, .*, got \['No such'\]"):
         taught(page)
+
+
+def test_an_appendix_has_the_steps_that_the_lesson_leaves_out():
+    for name in names():
+        page = derivation(name)
+        lesson, rest = taught(page), appendix(page)
+        assert (rest is not None) == bool(LESSONS[name].library)
+        steps = lesson.steps + (rest.steps if rest else ())
+        assert list(map(id, steps)) == list(map(id, page.steps))
+        links = [item.text for item in lesson.opening if f"({name}{APPENDIX}.md)" in item.text]
+        assert len(links) == (rest is not None)
+        if rest:
+            assert rest.first == len(lesson.steps) + 1 and f"]({name}.md)" in rest.about
+            assert re.search(rf"tep(s {rest.first} to {len(page.steps)}| {rest.first}), which only", links[0])
+
+
+def test_only_the_last_sections_can_be_for_the_library(monkeypatch):
+    monkeypatch.setitem(LESSONS, "poinsot", replace(LESSONS["poinsot"], library=("The polhode",)))
+    with pytest.raises(InputError, match=r"last sections of the page, .*'The herpolhode'\], got \['The polhode'\]"):
+        appendix(derivation("poinsot"))

@@ -208,7 +208,7 @@ def test_sensitivities_leave_the_motion_as_it_is():
         ({"sensitivities": ["body.about"]}, "expected a number or a vector"),
         ({"sensitivities": ["omega"], "state": "ZXZ"}, "expected the state 'quaternion'"),
         ({"sensitivities": ["omega"], "torque": lambda t, w, q: (0, 0, 0)}, "expected torques with formulas"),
-        ({"sensitivities": ["omega"], "events": ["omega_3 == 0"]}, "leave them out with sensitivities"),
+        ({"sensitivities": ["omega"], "events": ["omega_3 == 0"]}, "expected none together with sensitivities"),
     ],
 )
 def test_what_has_no_sensitivities_is_refused_in_a_sentence(options, message):

@@ -148,7 +148,7 @@ def test_statistics_alone_leave_no_values(tmp_path):
 @pytest.mark.parametrize("options", [{"statistics": "mean", "keep": "statistics"}, {"statistics": "envelope"}, {}])
 def test_values_that_were_removed_are_not_taken_for_results(tmp_path, options):
     sweep(path=tmp_path / "a.zarr", statistics="envelope", keep="statistics")
-    with pytest.raises(InputError, match="the values of the trajectories were removed there"):
+    with pytest.raises(InputError, match="the values of the trajectories were removed"):
         sweep(path=tmp_path / "a.zarr", **options)
 
 
@@ -236,3 +236,12 @@ def test_the_description_names_what_identifies_a_sweep(tmp_path):
     identity = json.loads((tmp_path / "a.parquet" / "_sweep.json").read_text())["identity"]
     assert {"scene", "vary", "seed", "count", "times", "output"} <= set(identity)
     assert ZarrStore.__doc__
+
+
+def test_a_parquet_file_has_only_the_arrays_of_its_header(tmp_path):
+    pytest.importorskip("pyarrow")
+    result = sweep(path=tmp_path / "out.parquet", count=5)
+    store = result._store
+    assert store.has("status") and store.has(OUTPUTS[0]) and not store.has("no such array")
+    with pytest.raises(InputError, match="expected one of status"):
+        result.array("no such array")

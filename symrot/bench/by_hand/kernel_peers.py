@@ -79,10 +79,9 @@ TEXTBOOK: dict[str, Callable[[], list[sympy.Expr]]] = {
 
 
 def derivatives_of(name: str) -> tuple[str, list[tuple[str, str]]]:
-    """Return the kernel that the kernel ``name`` extends by derivatives, and those derivatives as pairs (output,
-    input).
+    """Return the kernel that the kernel ``name`` extends by derivatives, and these derivatives.
 
-    A kernel without derivatives gives its own name and an empty list.
+    A derivative is a pair of names (output, input). A kernel without derivatives gives its own name and an empty list.
     """
     entries = [output.split(BY) for output in _outputs(kernel_program(name).signature) if BY in output]
     return name.split(BY)[0], [(output, variable) for output, variable in entries]

@@ -64,8 +64,7 @@ class Contestant(NamedTuple):
 
 
 def _exact(problem: Problem, tolerance: float) -> Run:
-    """Return the function that is timed for the closed form: from an end time, s, to (state at this time, number of
-    steps).
+    """Return the function that is timed for the closed form: from an end time, s, to (state, number of steps).
 
     A closed form takes no steps, so the number is 0. Each call also computes the constants of the closed form from the
     initial state. ``tolerance`` has no effect.

@@ -50,9 +50,7 @@ class Problem:
 
     @cached_property
     def kernel(self) -> SceneKernel:
-        """The compiled functions of the scene: the rates dy/dt of the integrated states, and the outputs such as omega
-        and q.
-        """
+        """The compiled functions of the scene: the rates dy/dt of the states, and the outputs such as omega."""
         return scene_kernel(self.plan)
 
     @cached_property

@@ -34,10 +34,10 @@ class Carried(NamedTuple):
 
 
 def laws() -> list[tuple[str, bool]]:
-    """Return the laws by which one step changes the distance of a point from the fixed point, as (formula, whether
-    proven).
+    """Return the laws by which one step changes lengths, as pairs (formula, whether it was proven).
 
-    A tangent step moves the point from r to r' = r + h omega x r, a secant step to r' = r + h omega x (r + r')/2.
+    A length is the distance of a point from the fixed point. A tangent step moves the point from r to r' = r + h omega
+    x r, a secant step to r' = r + h omega x (r + r')/2.
     """
     from sympy import Matrix, eye, symbols
 

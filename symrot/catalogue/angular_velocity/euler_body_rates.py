@@ -16,7 +16,7 @@ from symrot.proof.derivation import Derivation, Step
 
 RATES = Matrix(symbols.angle_rates)
 EXAMPLE = "ZXZ"
-"""The sequence for which the page prints the whole argument; the others are rows of tables."""
+"""The sequence for which the page prints the proof in full; tables on the page have a row for each sequence."""
 
 THREE_AXES = r"\dot\phi\,e_z + \dot\theta\,R_z(\phi)\,e_x + \dot\psi\,R_z(\phi)\,R_x(\theta)\,e_z"
 

@@ -41,7 +41,7 @@ def derive() -> Derivation:
     d.tabulate(
         "The cosine $c$ of the angle between the first and the last axis determines how close an attitude is to gimbal "
         r"lock: the eigenvalues of $B^{\mathsf T} B$ are $1$ and $1 \pm c$, and $B^{-1} \det B$ is finite at every "
-        "angle. The last column has the sequences without gimbal lock at any attitude where this sequence is in gimbal "
+        "angle. The last column has the sequences that are regular wherever the sequence of the row is in gimbal "
         "lock.",
         ("Sequence", "Kind", "$c$", "Gimbal lock at", "Sequences without gimbal lock there"),
         [
@@ -115,7 +115,7 @@ def _locked(d: Derivation, sequence: str, point: LockedPoint) -> tuple[Step, Ste
             lost,
         )
     no_rotation = d.step(
-        "No angle rates rotate the body about $n$, which has length 1.",
+        "No rates of the angles give an angular velocity along $n$, which has length 1.",
         Matrix([*(jacobian.T * lost), squared(lost)]),
         Matrix([0, 0, 0, 1]),
         because="$n$ is perpendicular to all three axes of rotation",

@@ -47,6 +47,10 @@ def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  #
         because=r"$d$ is constant, and $\dot R = R\,[\omega_b]_\times$",
         relations=UNIT,
         named=r"\frac{d}{dt} (x + R\,d)",
+        board=(
+            ("The vector $d$ is constant:", r"v + \dot R\,d"),
+            (r"$\dot R = R\,[\omega_b]_\times$:", r"v + R \left( \omega_b \times d \right)"),
+        ),
         display=r"v + R \left( \omega_b \times d \right)",
     )
     d.step(
@@ -56,6 +60,11 @@ def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  #
         because=r"$\omega \times d$ is perpendicular to $d$",
         relations=UNIT,
         named=r"(v_Q - v_P) \cdot R\,d",
+        board=(
+            ("The velocity of the previous step is inserted:", r"R \left( \omega_b \times d \right) \cdot R\,d"),
+            ("A rotation preserves scalar products:", r"(\omega_b \times d) \cdot d"),
+            ("A cross product is perpendicular to its factors:", "0"),
+        ),
     )
     d.step(
         "The acceleration of $Q$ relative to $P$, in body components, has a term from the angular acceleration and a "
@@ -67,6 +76,17 @@ def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  #
         relations=UNIT,
         named=r"R^{\mathsf T} (a_Q - a_P)",
         display=r"\dot\omega_b \times d + \omega_b \times (\omega_b \times d)",
+        board=(
+            (
+                r"The rate of $R \left( \omega_b \times d \right)$, by the product rule:",
+                r"R^{\mathsf T} \left( R \left( \dot\omega_b \times d \right) + \dot R \left( \omega_b \times d "
+                r"\right) \right)",
+            ),
+            (
+                r"$\dot R = R\,[\omega_b]_\times$ and $R^{\mathsf T} R = 1$:",
+                r"\dot\omega_b \times d + \omega_b \times (\omega_b \times d)",
+            ),
+        ),
     )
     d.step(
         r"The centripetal term of the acceleration points toward the axis through $P$ along $\omega$; its size is "
@@ -87,6 +107,10 @@ def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  #
         V + OMEGA.cross(offset),
         because="the cross product is linear in each factor",
         named=r"v_Q + \omega \times (r - d)",
+        board=(
+            ("The velocity of $Q$ is inserted:", r"v_P + \omega \times d + \omega \times (r - d)"),
+            ("The cross product is linear:", r"v_P + \omega \times r"),
+        ),
         display=r"v_P + \omega \times r",
     )
 
@@ -109,6 +133,10 @@ def _moving(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  
         "velocity relative to the body",
         relations=UNIT,
         named=r"R^{\mathsf T} (v_Q - v_P)",
+        board=(
+            ("The product rule:", r"R^{\mathsf T} \left( \dot R\,d + R\,u \right)"),
+            (r"$\dot R = R\,[\omega_b]_\times$ and $R^{\mathsf T} R = 1$:", r"\omega_b \times d + u"),
+        ),
         display=r"\omega_b \times d + u",
     )
     d.step(
@@ -120,6 +148,18 @@ def _moving(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  
         relations=UNIT,
         named=r"R^{\mathsf T} (a_Q - a_P)",
         display=r"\dot\omega_b \times d + \omega_b \times (\omega_b \times d) + 2\,\omega_b \times u + w",
+        board=(
+            (
+                r"The rate of $R \left( \omega_b \times d + u \right)$ has two terms. In the body the vector in the "
+                r"brackets changes at the first rate, and $\dot R = R\,[\omega_b]_\times$ gives the second:",
+                r"\left( \dot\omega_b \times d + \omega_b \times u + w \right) + \omega_b \times \left( \omega_b "
+                r"\times d + u \right)",
+            ),
+            (
+                r"Both terms contain $\omega_b \times u$:",
+                r"\dot\omega_b \times d + \omega_b \times (\omega_b \times d) + 2\,\omega_b \times u + w",
+            ),
+        ),
     )
     d.step(
         "The Coriolis acceleration does no work on the relative motion.",
@@ -145,6 +185,14 @@ def _axis(d: Derivation) -> None:
         because=r"$\omega \times (\omega \times v)$ is $-|\omega|^2$ times the component of $v$ perpendicular to "
         r"$\omega$",
         named=r"v + \omega \times d_0",
+        board=(
+            ("The definition of $d_0$:", r"v + \frac{1}{|\omega|^2}\,\omega \times (\omega \times v)"),
+            (
+                r"$a \times (b \times c) = b\,(a \cdot c) - c\,(a \cdot b)$:",
+                r"v + \frac{1}{|\omega|^2} \left( \omega\,(\omega \cdot v) - |\omega|^2\,v \right)",
+            ),
+            ("The terms with $v$ alone cancel:", r"\frac{\omega \cdot v}{|\omega|^2}\,\omega"),
+        ),
         display=r"\frac{\omega \cdot v}{|\omega|^2}\,\omega",
     )
     plane = {symbols.omega_1: 0, symbols.omega_2: 0, symbols.v_z: 0}

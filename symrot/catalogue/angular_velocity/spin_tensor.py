@@ -110,6 +110,18 @@ def _frames(d: Derivation) -> None:
         because=r"$\frac{d}{dt} (R_1 R_2) = \dot R_1 R_2 + R_1 \dot R_2$",
         relations=[unit_relation(Q), unit_relation(P)],
         named=r"\frac{d}{dt} \left( R_1 R_2 \right)",
+        board=(
+            ("The product rule:", r"\dot R_1 R_2 + R_1 \dot R_2"),
+            (
+                r"$\dot R_1 = [\omega]_\times R_1$ and $\dot R_2 = [\gamma]_\times R_2$:",
+                r"[\omega]_\times R_1 R_2 + R_1\,[\gamma]_\times R_2",
+            ),
+            (
+                r"A rotated skew matrix is the skew matrix of the rotated vector, $R_1\,[\gamma]_\times = [R_1 "
+                r"\gamma]_\times R_1$:",
+                r"\left( [\omega]_\times + [R_1 \gamma]_\times \right) R_1 R_2",
+            ),
+        ),
         display=r"\left[ \omega + R_1 \gamma \right]_\times R_1 R_2",
     )
 
@@ -127,6 +139,11 @@ def _points(d: Derivation) -> None:
         because="the components of the position in body axes are constant",
         relations=unit,
         named=r"\frac{d}{dt}\,(R\,d)",
+        board=(
+            ("The vector $d$ is constant:", r"\dot R\,d"),
+            (r"$\dot R = R\,[\omega_b]_\times$:", r"R \left( \omega_b \times d \right)"),
+            ("A rotation preserves cross products:", r"\omega_s \times R\,d"),
+        ),
         display=r"\omega_s \times R\,d",
     )
     d.notation({}, pairs(symbols.offset, moving))
@@ -137,6 +154,11 @@ def _points(d: Derivation) -> None:
         because="the product rule gives one term from each factor",
         relations=unit,
         named=r"R^{\mathsf T} \frac{d}{dt}\,(R\,d)",
+        board=(
+            ("The product rule:", r"R^{\mathsf T} \left( R\,\dot d + \dot R\,d \right)"),
+            (r"$\dot R = R\,[\omega_b]_\times$:", r"R^{\mathsf T} R \left( \dot d + \omega_b \times d \right)"),
+            (r"$R^{\mathsf T} R = 1$:", r"\dot d + \omega_b \times d"),
+        ),
         display=r"\dot d + \omega_b \times d",
     )
     d.step(
@@ -146,6 +168,14 @@ def _points(d: Derivation) -> None:
         because=r"$\omega \times \omega = 0$",
         relations=unit,
         named=r"R^{\mathsf T} \dot\omega_s",
+        board=(
+            (
+                r"The product rule for $\omega_s = R\,\omega_b$:",
+                r"R^{\mathsf T} \left( R\,\dot\omega_b + \dot R\,\omega_b \right)",
+            ),
+            (r"$\dot R = R\,[\omega_b]_\times$ and $R^{\mathsf T} R = 1$:", r"\dot\omega_b + \omega_b \times \omega_b"),
+            (r"$\omega_b \times \omega_b = 0$:", r"\dot\omega_b"),
+        ),
         display=r"\dot\omega_b",
     )
     velocity = OMEGA_S.cross(U)

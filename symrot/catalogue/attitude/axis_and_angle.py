@@ -29,6 +29,7 @@ def derive() -> Derivation:
     _forward(d)
     _back(d)
     _half_turn(d)
+    _without_loss(d)
     return d
 
 
@@ -46,6 +47,10 @@ def _forward(d: Derivation) -> None:
         because="$n \\cdot n = 1$",
         relations=UNIT,
         named=r"v_\perp \cdot n",
+        board=(
+            (r"The definition of $v_\perp$:", r"v \cdot n - (n \cdot v)\,(n \cdot n)"),
+            (r"$n \cdot n = 1$:", "0"),
+        ),
     )
     d.step(
         r"The product $n \times v$ is perpendicular to $v_\perp$ and has the same length. The vectors $v_\perp$ and $n "
@@ -143,20 +148,27 @@ def _half_turn(d: Derivation) -> None:
         display=r"n\,n^{\mathsf T}",
     )
     d.step(
-        r"Every column of $R + 1$ is a multiple of the axis. The longest column has at least the length $2/\sqrt 3$.",
-        Matrix.hstack(*((half + eye(3)).col(k).cross(N) for k in range(3))),
-        0,
-        because=r"column $k$ is $2\,n_k\,n$, and the sum of the three squares $n_k^2$ is 1",
-        relations=UNIT,
-        named=r"(R + 1)\,e_k \times n,\ k = 1, 2, 3",
-    )
-    d.step(
         r"The sign of $n$ is arbitrary: $n$ and $-n$ give the same rotation by $\pi$.",
         dcm_of_axis_angle(-N, pi) - half,
         0,
         because=r"rotations by $\pi$ and by $-\pi$ are equal",
         relations=UNIT,
         named=r"R(-n, \pi) - R(n, \pi)",
+    )
+
+
+def _without_loss(d: Derivation) -> None:
+    d.section("The axis without loss of digits")
+    half = dcm_of_axis_angle().subs(ALPHA, pi)
+    d.notation({"R": Matrix(half)})
+    d.step(
+        r"At the angle $\pi$ every column of $R + 1$ is a multiple of the axis. The longest column has at least "
+        r"the length $2/\sqrt 3$.",
+        Matrix.hstack(*((half + eye(3)).col(k).cross(N) for k in range(3))),
+        0,
+        because=r"column $k$ is $2\,n_k\,n$, and the sum of the three squares $n_k^2$ is 1",
+        relations=UNIT,
+        named=r"(R + 1)\,e_k \times n,\ k = 1, 2, 3",
     )
     matrix = dcm_of_axis_angle()
     d.notation({"R": Matrix(matrix)})

@@ -125,7 +125,7 @@ def _order(d: Derivation) -> None:
     )
     half_n, half_k = dcm_of_axis_angle(N, pi), dcm_of_axis_angle(K, pi)
     d.step(
-        r"Rotations by $\pi$ about two perpendicular axes can be exchanged too.",
+        r"Two rotations by $\pi$ about perpendicular axes also give the same attitude in either order.",
         half_n * half_k - half_k * half_n,
         0,
         because="the products of the two quaternions differ only in sign, and $q$ and $-q$ describe the same attitude",
@@ -193,10 +193,15 @@ def _frames(d: Derivation) -> None:
         named=r"R(R_z(\phi)\,e_x, \theta)\,R_z(\phi)",
         display=r"R_z(\phi)\,R_x(\theta)",
     )
+    d.notation({"R_z": intrinsic[0], "R_x": intrinsic[1]})
     d.step(
         "The inverse of a product is the product of the inverse rotations in reverse order.",
         (intrinsic[0] * intrinsic[1]) * (intrinsic[1].T * intrinsic[0].T),
         eye(3),
         because="the inner pair of inverse rotations cancels first",
         named=r"R_z R_x \cdot R_x^{\mathsf T} R_z^{\mathsf T}",
+        board=(
+            (r"$R_x R_x^{\mathsf T} = 1$:", r"R_z R_z^{\mathsf T}"),
+            (r"$R_z R_z^{\mathsf T} = 1$:", r"\mathbf{1}"),
+        ),
     )

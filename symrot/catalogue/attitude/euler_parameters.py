@@ -7,7 +7,8 @@ from symrot.catalogue.tools.motion import squared
 from symrot.conventions import INTRINSIC_SEQUENCES
 from symrot.kinematics.euler import dcm, quaternion_of_euler
 from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
-from symrot.proof.derivation import Derivation
+from symrot.proof.derivation import Derivation, Step
+from symrot.proof.notation.printer import formula
 
 PHI, THETA, PSI = symbols.angles
 Q = symbols.quaternion
@@ -94,22 +95,6 @@ def _precession(d: Derivation) -> None:
 
 def _all(d: Derivation) -> None:
     d.section("All sequences")
-    d.passage(
-        "For each sequence, the product of the three factors is printed, and its rotation is proven to be the "
-        "rotation of the three angles. The reason is the same for all sequences and is printed for the first sequence "
-        "only."
-    )
-    for sequence in INTRINSIC_SEQUENCES:
-        q = quaternion_of_euler(sequence)
-        d.define(f"{sequence}:", "q", q)
-        d.step(
-            "The quaternion gives the rotation of the three angles.",
-            quaternion_to_dcm(q),
-            dcm(sequence),
-            because="the quaternion of a product is the product of the quaternions",
-            named="R(q)",
-            display=rf"R_{{\mathrm{{{sequence}}}}}(\phi, \theta, \psi)",
-        )
     d.step(
         "An extrinsic sequence has the parameters of the intrinsic sequence of the reversed name, with the first and "
         "the last angle exchanged.",
@@ -126,4 +111,23 @@ def _all(d: Derivation) -> None:
         because="$q_1^2 + q_2^2 + q_3^2 = 1 - q_0^2$",
         relations=[unit_relation()],
         named=r"\mathrm{tr}\,R",
+    )
+    d.tabulate(
+        r"The parameters of all sequences, each the product of three factors. For each of them $R(q)$ is proven to be "
+        r"the matrix of the three rotations, $R(\phi, \theta, \psi)$.",
+        ("Sequence", "$q$"),
+        [((sequence, f"${formula(quaternion_of_euler(sequence))}$"), [_step(d, sequence)]) for sequence in
+         INTRINSIC_SEQUENCES],
+    )  # fmt: skip
+
+
+def _step(d: Derivation, sequence: str) -> Step:
+    """Add the step that the Euler parameters of one sequence give the rotation of its three angles; return the step."""
+    return d.step(
+        f"The Euler parameters give the rotation {sequence}.",
+        quaternion_to_dcm(quaternion_of_euler(sequence)),
+        dcm(sequence),
+        because="the quaternion of a product is the product of the quaternions",
+        named="R(q)",
+        display=rf"R_{{\mathrm{{{sequence}}}}}(\phi, \theta, \psi)",
     )

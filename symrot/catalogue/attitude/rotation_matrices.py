@@ -58,12 +58,20 @@ def derive() -> Derivation:
         named=r"\tfrac12\, \frac{\partial^2}{\partial u\,\partial u} \left( |R u|^2 - |u|^2 \right)",
         display=r"R^{\mathsf T} R - 1",
     )
+    d.notation({"R": MATRIX, "u": U, "v": V})
     d.step(
         r"If $R^{\mathsf T} R = 1$, the angles between vectors do not change either.",
         (MATRIX * U).dot(MATRIX * V) - U.dot(V),
         U.dot(excess * V),
         because=r"the same matrix $R^{\mathsf T} R$ occurs in the product of two different vectors",
         named=r"R u \cdot R v - u \cdot v",
+        board=(
+            (
+                r"$R$ moves to the other factor as its transpose, $R u \cdot w = u \cdot R^{\mathsf T} w$:",
+                r"u \cdot R^{\mathsf T} R\,v - u \cdot v",
+            ),
+            ("The vectors are factored out:", r"u \cdot \left( R^{\mathsf T} R - 1 \right) v"),
+        ),
         display=r"u^{\mathsf T} \left( R^{\mathsf T} R - 1 \right) v",
     )
     d.step(
@@ -151,12 +159,26 @@ def _angle(d: Derivation) -> None:
             named=rf"R_{name}^{{\mathsf T}} R_{name}",
         )
     cayley = _cayley()
+    d.notation({"R": cayley, "g": Matrix(symbols.rodrigues)})
     d.step(
         r"Any three numbers $g$ give a rotation $R = (1 - [g]_\times)^{-1} (1 + [g]_\times)$ (Cayley).",
         cayley.T * cayley,
         eye(3),
         because=r"$1 + [g]_\times$ and $1 - [g]_\times$ commute, and are transposes of each other",
         named=r"R^{\mathsf T} R",
+        board=(
+            (
+                r"The transpose of $[g]_\times$ is $-[g]_\times$:",
+                r"\left( \mathbf{1} - [g]_\times \right) \left( \mathbf{1} + [g]_\times \right)^{-1} "
+                r"\left( \mathbf{1} - [g]_\times \right)^{-1} \left( \mathbf{1} + [g]_\times \right)",
+            ),
+            (
+                "All four factors commute:",
+                r"\left( \mathbf{1} - [g]_\times \right) \left( \mathbf{1} - [g]_\times \right)^{-1} "
+                r"\left( \mathbf{1} + [g]_\times \right)^{-1} \left( \mathbf{1} + [g]_\times \right)",
+            ),
+            ("Each factor meets its inverse:", r"\mathbf{1}"),
+        ),
     )
     d.step(
         "The determinant of Cayley's matrix is 1.",

@@ -59,6 +59,15 @@ def derive() -> Derivation:
         because=r"$I_\rho\, r = m\,(|\rho|^2 r - (r \cdot \rho)\,\rho)$, and the first term is along $r$",
         relations=unit,
         named=r"\tau = \rho \times \frac{1}{a} \left. \frac{\partial F}{\partial \epsilon} \right|_0",
+        board=(
+            ("The tidal force is inserted:", r"\rho \times m\,n^2 \left( 3\,(r \cdot \rho)\,r - \rho \right)"),
+            (r"$\rho \times \rho = 0$:", r"3 m\,n^2\,(r \cdot \rho)\,\rho \times r"),
+            (
+                "The factors are exchanged; a multiple of $r$ may be added to the second factor:",
+                r"3 n^2\,r \times m \left( |\rho|^2\,r - (r \cdot \rho)\,\rho \right)",
+            ),
+            (r"$I_\rho\,r = m \left( |\rho|^2\,r - (r \cdot \rho)\,\rho \right)$:", r"3 n^2\,r \times I_\rho\,r"),
+        ),
         display=r"3 n^2\, r \times I_\rho\, r",
     )
     torque = 3 * n**2 * R.cross(TENSOR * R)
@@ -69,6 +78,10 @@ def derive() -> Derivation:
         0,
         because="a vector product is perpendicular to its factors",
         named=r"\tau \cdot r",
+        board=(
+            ("The torque is inserted:", r"3 n^2 \left( r \times I\,r \right) \cdot r"),
+            ("A cross product is perpendicular to its factors:", "0"),
+        ),
     )
 
     d.section("The invariant")

@@ -45,7 +45,8 @@ def _torque(d: Derivation, torque: Matrix, line: Matrix, momentum: Matrix, motio
     d.section("The torque of steady precession")
     d.passage(
         r"The Euler angles have the sequence ZXZ. The nutation and the rates $\dot\phi$ of precession and $\dot\psi$ "
-        "of spin are constant. The axle would tilt about the line of nodes:",
+        "of spin are constant. A change of the nutation would tilt the axle about the line of nodes, which has the "
+        "direction:",
         ("e", line),
     )
     d.notation({r"\dot L_s": torque, "L_s": momentum, "e_z": Matrix([0, 0, 1]), "A": A, "C": C})

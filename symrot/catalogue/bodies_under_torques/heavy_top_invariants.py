@@ -29,19 +29,33 @@ def derive() -> Derivation:
         "to the centre of mass:",
             (r"\gamma", r"R^{\mathsf T} \gamma_s"), (r"\tau_b", r"W\, c \times \gamma"))  # fmt: skip
     fixed = Matrix(symbols.normal)
+    dcm_sb = Matrix(quaternion_to_dcm())
+    d.notation(
+        {"R": dcm_sb, r"\gamma_s": fixed, r"\gamma": dcm_sb.T * fixed, r"\omega": OMEGA, "I": TENSOR, "c": ARM},
+        attitude_rates(),
+    )
     d.step(
         "In body axes, the direction of gravity rotates backwards (Poisson's equation).",
-        rate(Matrix(quaternion_to_dcm()).T * fixed, attitude_rates()),
-        (Matrix(quaternion_to_dcm()).T * fixed).cross(OMEGA),
+        rate(dcm_sb.T * fixed, attitude_rates()),
+        (dcm_sb.T * fixed).cross(OMEGA),
         because=r"the direction is fixed in space, and $\dot R = R\,[\omega_b]_\times$",
         relations=[unit_relation()],
         named=r"\dot\gamma",
+        board=(
+            (r"The direction $\gamma_s$ is constant in space:", r"\dot R^{\mathsf T} \gamma_s"),
+            (
+                r"$\dot R = R\,[\omega]_\times$, and a skew matrix changes its sign if it is transposed:",
+                r"-\omega \times R^{\mathsf T} \gamma_s",
+            ),
+            ("The factors are exchanged, which changes the sign:", r"\gamma \times \omega"),
+        ),
         display=r"\gamma \times \omega",
     )
     weight = symbols.W * ARM.cross(DOWN)
     falling = pairs(symbols.vertical, DOWN.cross(OMEGA))
     motion = pairs(symbols.omega_b, angular_acceleration(TENSOR, OMEGA, weight)) | falling
     d.section("Every body")
+    d.notation({r"\gamma": DOWN, "W": symbols.W}, motion)
     energy = OMEGA.dot(TENSOR * OMEGA) / 2 - symbols.W * ARM.dot(DOWN)
     d.step(
         "The energy is constant.",
@@ -49,6 +63,19 @@ def derive() -> Derivation:
         0,
         because="the power of the weight is minus the rate of potential energy",
         named=r"\frac{d}{dt} \left( \tfrac12\,\omega \cdot I\,\omega - W\, c \cdot \gamma \right)",
+        board=(
+            (
+                "The tensor is symmetric and the vectors are constant in the body:",
+                r"\omega \cdot I\,\dot\omega - W\,c \cdot \dot\gamma",
+            ),
+            (
+                r"Euler's equations with the torque $W\,c \times \gamma$, and Poisson's equation $\dot\gamma = "
+                r"\gamma \times \omega$:",
+                r"\omega \cdot \left( W\,c \times \gamma - \omega \times I\,\omega \right) - W\,c \cdot (\gamma "
+                r"\times \omega)",
+            ),
+            ("The two triple products are equal, and a cross product is perpendicular to its factors:", "0"),
+        ),
     )
     d.step(
         "The vertical component of the angular momentum is constant.",
@@ -56,6 +83,15 @@ def derive() -> Derivation:
         0,
         because="the weight has no moment about the vertical",
         named=r"\frac{d}{dt} \left( I\,\omega \cdot \gamma \right)",
+        board=(
+            ("The product rule:", r"I\,\dot\omega \cdot \gamma + I\,\omega \cdot \dot\gamma"),
+            (
+                r"Euler's equations and $\dot\gamma = \gamma \times \omega$:",
+                r"\left( W\,c \times \gamma - \omega \times I\,\omega \right) \cdot \gamma + I\,\omega \cdot (\gamma "
+                r"\times \omega)",
+            ),
+            (r"$c \times \gamma$ is perpendicular to $\gamma$, and the two other triple products cancel:", "0"),
+        ),
     )
     d.step(
         "The direction of gravity remains a unit vector.",
@@ -63,6 +99,11 @@ def derive() -> Derivation:
         0,
         because="the rate of a unit vector is perpendicular to it",
         named=r"\frac{d}{dt}\,|\gamma|^2",
+        board=(
+            ("The product rule:", r"2\,\gamma \cdot \dot\gamma"),
+            (r"$\dot\gamma = \gamma \times \omega$:", r"2\,\gamma \cdot (\gamma \times \omega)"),
+            ("A cross product is perpendicular to its factors:", "0"),
+        ),
     )
     d.section("The symmetric top")
     inertia, arm = diag(symbols.A, symbols.A, symbols.C), Matrix([0, 0, symbols.c_3])

@@ -121,7 +121,7 @@ def _slope(d: Derivation) -> None:
     )
     speed = symbols.v_x
     d.step(
-        "The acceleration of the rolling body also conserves the energy, since friction does no work.",
+        "With this acceleration of the rolling body its energy is constant, since friction does no work.",
         rate(
             HALF * M * speed**2 + HALF * gyration * (speed / R) ** 2 - M * G * symbols.x * sin(slope),
             {speed: solution[acceleration], symbols.x: speed},

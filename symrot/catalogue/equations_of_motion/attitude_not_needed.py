@@ -53,8 +53,8 @@ def derive() -> Derivation:
         (r"\tau_b", r"R(q)^{\mathsf T} \tau_s"),
     )
     d.step(
-        "If a torque is constant in space, the derivative of its body components with respect to a quaternion "
-        "component is as large as the torque itself.",
+        "If a torque is constant in space, its body components depend on the attitude: at $q = 1$ their derivative "
+        "with respect to $q_1$ has twice the length of the part of the torque that is perpendicular to axis 1.",
         squared(torque.jacobian([Q[1]]).subs(dict(zip(Q, (1, 0, 0, 0), strict=True)))),
         4 * (force[1] ** 2 + force[2] ** 2),
         because="a small rotation about axis 1 changes every vector that is not along axis 1",

@@ -63,7 +63,7 @@ def derive() -> Derivation:
         because=r"$\tau_b = R^{\mathsf T} \tau_s$, and the inertia tensor has an inverse",
         board=(
             (
-                "The angular acceleration is inserted; the inertia tensor and its inverse cancel:",
+                "The angular acceleration is inserted into the left side; the inertia tensor and its inverse cancel:",
                 r"\left( \tau_b - \omega_b \times I\,\omega_b \right) + \omega_b \times I\,\omega_b",
             ),
             ("The gyroscopic terms cancel:", r"\tau_b"),

@@ -36,7 +36,7 @@ def derive() -> Derivation:
     )
     struck = V + OMEGA.cross(PLACE)
     change = dv + domega.cross(PLACE)
-    d.notation({"m": M, "I": INERTIA, "d": PLACE, "J": J, "K": MOBILITY, "n": N, r"\omega": OMEGA})
+    d.notation({"m": M, "v": V, "I": INERTIA, "d": PLACE, "J": J, "K": MOBILITY, "n": N, r"\omega": OMEGA})
     d.notation({r"\Delta v": dv, r"\Delta\omega": domega, "v_d": struck, r"\Delta v_d": change})
     _place(d, change)
     _energy(d, dv, domega, struck, change)
@@ -53,6 +53,20 @@ def _place(d: Derivation, change: Matrix) -> None:
         MOBILITY * J,
         because=r"$(I^{-1} (d \times J)) \times d = -[d]_\times I^{-1} [d]_\times J$",
         named=r"\Delta v_d = \Delta v + \Delta\omega \times d",
+        board=(
+            (
+                r"$\Delta v = \tfrac1m J$ and $\Delta\omega = I^{-1} (d \times J)$:",
+                r"\tfrac1m\,J + I^{-1} (d \times J) \times d",
+            ),
+            (
+                "The factors of the second cross product are exchanged, which changes its sign:",
+                r"\tfrac1m\,J - d \times I^{-1} (d \times J)",
+            ),
+            (
+                "A cross product is a multiplication by a skew matrix:",
+                r"\left( \tfrac1m\,\mathbf{1} - [d]_\times I^{-1} [d]_\times \right) J",
+            ),
+        ),
         display=r"K J, \quad K = \tfrac1m\,\mathbf{1} - [d]_\times I^{-1} [d]_\times",
     )
     d.step(
@@ -70,6 +84,13 @@ def _place(d: Derivation, change: Matrix) -> None:
         squared(J) / M + PLACE.cross(J).dot(INERTIA.inv() * PLACE.cross(J)),
         because="the first term of the sum is positive, and the second is not negative",
         named=r"J \cdot K J",
+        board=(
+            ("The definition of $K$:", r"\tfrac1m\,|J|^2 - J \cdot \left( d \times I^{-1} (d \times J) \right)"),
+            (
+                r"$J \cdot (d \times u) = -(d \times J) \cdot u$:",
+                r"\tfrac1m\,|J|^2 + (d \times J) \cdot I^{-1} (d \times J)",
+            ),
+        ),
         display=r"\tfrac1m\,|J|^2 + (d \times J) \cdot I^{-1} (d \times J)",
     )
 
@@ -86,6 +107,19 @@ def _energy(d: Derivation, dv: Matrix, domega: Matrix, struck: Matrix, change: M
         J.dot(struck + change / 2),
         because="kinetic energy is quadratic in the velocities",
         named=r"T' - T",
+        board=(
+            (
+                r"The squares are multiplied out, with $\Delta v = \tfrac1m J$ and $I\,\Delta\omega = d \times J$:",
+                r"v \cdot J + \tfrac{1}{2 m}\,|J|^2 + \omega \cdot (d \times J) + "
+                r"\tfrac12\,(d \times J) \cdot I^{-1} (d \times J)",
+            ),
+            (
+                r"$\omega \cdot (d \times J) = J \cdot (\omega \times d)$ and $v_d = v + \omega \times d$; the other "
+                r"two "
+                r"terms are $\tfrac12 J \cdot K J$:",
+                r"J \cdot v_d + \tfrac12\,J \cdot K J",
+            ),
+        ),
         display=r"J \cdot \left( v_d + \tfrac12\,\Delta v_d \right)",
     )
     d.step(
@@ -95,6 +129,12 @@ def _energy(d: Derivation, dv: Matrix, domega: Matrix, struck: Matrix, change: M
         HALF * J.dot(MOBILITY * J),
         because="the velocity before the blow is zero",
         named="T'",
+        board=(
+            (
+                r"The work of a blow, with $v_d = 0$ and $\Delta v_d = K J$:",
+                r"\tfrac12\,J \cdot K J",
+            ),
+        ),
         display=r"\tfrac12\,J \cdot K J",
     )
 

@@ -6,8 +6,9 @@ from symrot import symbols
 from symrot.catalogue.tools.motion import TENSOR, pairs, rate
 from symrot.conventions import INTRINSIC_SEQUENCES
 from symrot.kinematics.euler import rate_jacobian
-from symrot.proof.derivation import Derivation
+from symrot.proof.derivation import Derivation, Step
 
+EXAMPLE = "ZXZ"
 ANGLES, RATES = Matrix(symbols.angles), Matrix(symbols.angle_rates)
 MOTION = pairs(symbols.angles, symbols.angle_rates) | pairs(symbols.angle_rates, symbols.angle_accelerations)
 TORQUE, MOMENTUM = Matrix(symbols.torque_b), Matrix(symbols.rotor)
@@ -33,6 +34,7 @@ def derive() -> Derivation:
     _transposition(d)
     _equations(d)
     _torques(d)
+    _other_sequences(d)
     return d
 
 
@@ -40,27 +42,47 @@ def _transposition(d: Derivation) -> None:
     d.section("Lagrange's operator on a product with omega")
     d.passage(
         r"Let $\mu$ be any vector with constant body components. Lagrange's operator $E$ is applied to the product "
-        r"$\mu \cdot \omega = \mu \cdot B \dot q$, for every sequence. The reason is the same for all sequences and "
-        "is printed for the first sequence only:",
+        r"$\mu \cdot \omega = \mu \cdot B \dot q$:",
         (r"E_k[T]", r"\frac{d}{dt} \frac{\partial T}{\partial \dot q_k} - \frac{\partial T}{\partial q_k}"),
     )
-    for sequence in INTRINSIC_SEQUENCES:
-        body = rate_jacobian(sequence)
-        omega = body * RATES
-        d.notation({"B": body.as_immutable(), r"\omega": omega, r"\mu": MOMENTUM})
-        d.step(
-            f"{sequence}.",
-            lagrange(MOMENTUM.dot(omega)),
-            body.T * omega.cross(MOMENTUM),
-            because="the columns of $B$ are the axes of the rotations, which rotate with the later rotations "
-            "of the sequence",
-            named=r"E[\mu \cdot \omega]",
-            display=r"B^{\mathsf T} \left( \omega \times \mu \right)",
-        )
+    _one_sequence(
+        d, EXAMPLE, f"For the sequence {EXAMPLE}, Lagrange's operator gives a cross product, multiplied by the "
+        r"transpose of $B$."
+    )  # fmt: skip
     d.passage(
-        r"In the kinetic energy $\tfrac12\,\omega \cdot I\,\omega$ the vector is $\mu = I\,\omega$, which changes "
-        r"with time; this adds the term $B^{\mathsf T} I \dot\omega$. The other term, $B^{\mathsf T} (\omega \times "
-        r"I\,\omega)$, is the gyroscopic term."
+        r"In the kinetic energy $\tfrac12\,\omega \cdot I\,\omega$, the angular momentum $I\,\omega$ takes the place "
+        r"of the constant vector $\mu$. It changes with time, which adds the term $B^{\mathsf T} I \dot\omega$ to "
+        r"Lagrange's expression. The term above becomes the gyroscopic term $B^{\mathsf T} (\omega \times "
+        r"I\,\omega)$."
+    )
+
+
+def _one_sequence(d: Derivation, sequence: str, claim: str) -> Step:
+    """Add the step, with the text ``claim``, that gives Lagrange's operator on mu . omega for one Euler sequence."""
+    body = rate_jacobian(sequence)
+    omega = body * RATES
+    d.notation({"B": body.as_immutable(), r"\omega": omega, r"\mu": MOMENTUM})
+    return d.step(
+        claim,
+        lagrange(MOMENTUM.dot(omega)),
+        body.T * omega.cross(MOMENTUM),
+        because="the columns of $B$ are the axes of the rotations, which rotate with the later rotations "
+        "of the sequence",
+        named=r"E[\mu \cdot \omega]",
+        display=r"B^{\mathsf T} \left( \omega \times \mu \right)",
+    )
+
+
+def _other_sequences(d: Derivation) -> None:
+    d.section("The other sequences")
+    others = [sequence for sequence in INTRINSIC_SEQUENCES if sequence != EXAMPLE]
+    rows = [((sequence,), [_one_sequence(d, sequence, f"The sequence {sequence}.")]) for sequence in others]
+    d.tabulate(
+        r"The first step of the lesson, $E[\mu \cdot \omega] = B^{\mathsf T} (\omega \times \mu)$, is proven for each "
+        "of the other sequences with the matrix $B$ of that sequence. So the equations of motion are equivalent for "
+        "each of them.",
+        ("Sequence",),
+        rows,
     )
 
 

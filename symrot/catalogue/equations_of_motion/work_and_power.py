@@ -36,12 +36,16 @@ def _forces(d: Derivation) -> None:
     d.notation({"v_d": V + OMEGA.cross(OTHER)})
     second = Matrix(symbols.torque_b)
     d.step(
-        "The power of a force at $r$ from a reference point with the velocity $v$ is the power of the force at the "
-        "reference point plus the power of its moment.",
+        "The power of a force on a body is the power that it has at a reference point plus the power of its moment. "
+        "The reference point of the body has the velocity $v$, and $r$ leads from there to the force.",
         FORCE.dot(V + OMEGA.cross(POINT)),
         FORCE.dot(V) + POINT.cross(FORCE).dot(OMEGA),
         because="the factors of a triple product may be permuted cyclically",
         named=r"F \cdot (v + \omega \times r)",
+        board=(
+            ("The scalar product is linear:", r"F \cdot v + F \cdot (\omega \times r)"),
+            ("The factors of a triple product may be permuted cyclically:", r"F \cdot v + (r \times F) \cdot \omega"),
+        ),
         display=r"F \cdot v + (r \times F) \cdot \omega",
     )
     d.step(
@@ -50,6 +54,13 @@ def _forces(d: Derivation) -> None:
         (POINT - OTHER).cross(FORCE).dot(OMEGA),
         because="the velocity of the reference point cancels",
         named=r"F \cdot v_r - F \cdot v_d",
+        board=(
+            ("The velocities of both points contain the same $v$:", r"F \cdot (\omega \times (r - d))"),
+            (
+                "The factors of a triple product may be permuted cyclically:",
+                r"\left( (r - d) \times F \right) \cdot \omega",
+            ),
+        ),
         display=r"\left( (r - d) \times F \right) \cdot \omega",
     )
     d.step(
@@ -58,10 +69,14 @@ def _forces(d: Derivation) -> None:
         0,
         because="the distance between the points does not change",
         named=r"\epsilon\,(r - d) \cdot \left( \omega \times r - \omega \times d \right)",
+        board=(
+            ("The cross product is linear:", r"\epsilon\,(r - d) \cdot \left( \omega \times (r - d) \right)"),
+            ("A cross product is perpendicular to its factors:", "0"),
+        ),
     )
     dcm_sb = Matrix(quaternion_to_dcm())
     d.notation(
-        {r"\tau_b": second, r"\omega_b": OMEGA, r"\tau_s": dcm_sb * second, r"\omega_s": dcm_sb * OMEGA}
+        {"R": dcm_sb, r"\tau_b": second, r"\omega_b": OMEGA, r"\tau_s": dcm_sb * second, r"\omega_s": dcm_sb * OMEGA}
     )  # fmt: skip
     d.step(
         "Power is the same in body and space components.",
@@ -70,6 +85,10 @@ def _forces(d: Derivation) -> None:
         because="a rotation preserves scalar products",
         relations=[unit_relation()],
         named=r"\tau_s \cdot \omega_s",
+        board=(
+            (r"$\tau_s = R\,\tau_b$ and $\omega_s = R\,\omega_b$:", r"\tau_b \cdot R^{\mathsf T} R\,\omega_b"),
+            (r"$R^{\mathsf T} R = 1$:", r"\tau_b \cdot \omega_b"),
+        ),
         display=r"\tau_b \cdot \omega_b",
     )
 
@@ -85,6 +104,14 @@ def _energy(d: Derivation) -> None:
         TORQUE.dot(OMEGA),
         because=r"the gyroscopic term is perpendicular to $\omega$",
         named=r"\frac{d}{dt}\,\tfrac12\,\omega \cdot I\,\omega",
+        board=(
+            (
+                "The tensor is symmetric and constant, so the two terms of the product rule are equal:",
+                r"\omega \cdot I\,\dot\omega",
+            ),
+            ("Euler's equations:", r"\omega \cdot \left( \tau - \omega \times I\,\omega \right)"),
+            ("A cross product is perpendicular to its factors:", r"\tau \cdot \omega"),
+        ),
         display=r"\tau \cdot \omega",
     )
     falling = pairs(symbols.velocity, FORCE / symbols.m)
@@ -122,6 +149,16 @@ def _kinds(d: Derivation) -> None:
         because=r"the direction of gravity $\gamma$ rotates backwards in the body, $\dot\gamma = \gamma \times \omega$",
         relations=[unit_relation()],
         named=r"\dot V = -\frac{d}{dt}\,W\,c \cdot \gamma",
+        board=(
+            (
+                r"The vector $c$ is constant in the body, and $\dot\gamma = \gamma \times \omega$:",
+                r"-W\,c \cdot (\gamma \times \omega)",
+            ),
+            (
+                "The factors of a triple product may be permuted cyclically:",
+                r"-\left( W\,c \times \gamma \right) \cdot \omega",
+            ),
+        ),
         display=r"-\left( W\,c \times \gamma \right) \cdot \omega",
     )
     d.notation({"h": Matrix(symbols.rotor)})

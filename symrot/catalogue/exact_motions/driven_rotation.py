@@ -23,7 +23,7 @@ def derive() -> Derivation:
         "driven_rotation",
         title="Constant torque and damping about one axis",
         source="Leimanis, *The General Problem of the Motion of Coupled Rigid Bodies about a Fixed Point*, section "
-        "15; for the last section Zener, *Proc. R. Soc. A* 137 (1932) 696",
+        "15; for the attitude Zener, *Proc. R. Soc. A* 137 (1932) 696",
         about=(
             "Under a motor and a brake about a principal axis, rate and angle of the rotation are elementary "
             "functions of time. If a symmetric body also rotates about a transverse axis, its transverse angular "
@@ -33,6 +33,7 @@ def derive() -> Derivation:
     _pushed(d)
     _braked(d)
     _across(d)
+    _weakly_braked(d)
     _attitude(d)
     _by_kummer(d)
     _far(d)
@@ -89,7 +90,7 @@ def _decay() -> tuple[Expr, Expr, Expr]:
 
 def _braked(d: Derivation) -> None:
     d.section("With linear damping")
-    speed, angle, decay = _decay()
+    speed, angle, _ = _decay()
     d.passage(
         r"A brake adds the torque $-b_3\,\omega_3$. The rate then approaches $\tau_3 / b_3$:",
         (r"\omega_3(t)", speed),
@@ -117,36 +118,6 @@ def _braked(d: Derivation) -> None:
         Matrix([START, 0]),
         because="$e^0 = 1$",
         named=r"\begin{bmatrix} \omega_3(0) \\ \theta(0) \end{bmatrix}",
-    )
-    x = symbols.v
-    d.passage(
-        "For weak damping, both formulas are differences of large numbers, which lose digits. This is avoided by the "
-        "functions $f_1 = (e^x - 1)/x$ and $f_2 = (e^x - 1 - x)/x^2$ of $x = -b_3 t / C$, which are regular at $x = "
-        "0$:"
-    )
-    first, second = (
-        (exp(-DRAG * T / C) - 1) / (-DRAG * T / C),
-        (exp(-DRAG * T / C) - 1 + DRAG * T / C) / (DRAG * T / C) ** 2,
-    )
-    power = -DRAG * T / C
-    d.notation({"x": power, "f_1": (exp(power) - 1) / power, "f_2": (exp(power) - 1 - power) / power**2})
-    d.step(
-        "The rate and the angle under a torque with damping are written with $f_1$ and $f_2$; these formulas also hold "
-        "without damping.",
-        Matrix([speed, angle]),
-        Matrix([START * decay + PUSH / C * T * first, START * T * first + PUSH / C * T**2 * second]),
-        because="the equation is multiplied by the denominators",
-        named=r"\begin{bmatrix} \omega_3(t) \\ \theta(t) \end{bmatrix}",
-        display=r"\begin{bmatrix} \omega_3\,e^x + \frac{\tau_3}{C}\,t\,f_1 \\ \omega_3\,t\,f_1 + \frac{\tau_3}{C}\,t^2 "
-        r"f_2 \end{bmatrix}",
-    )
-    d.step(
-        r"At $x = 0$ the functions have the limits $f_1 = 1$ and $f_2 = \tfrac12$ (l'Hospital's rule), which give the "
-        "motion without damping.",
-        Matrix([(exp(x) - 1).diff(x) / x.diff(x), (exp(x) - 1 - x).diff(x, 2) / (x**2).diff(x, 2)]).subs(x, 0),
-        Matrix([1, HALF]),
-        because="$e^0 = 1$",
-        named=r"\begin{bmatrix} f_1(0) \\ f_2(0) \end{bmatrix}",
     )
 
 
@@ -180,6 +151,42 @@ def _across(d: Derivation) -> None:
         (C - A) / (A * C) * PUSH,
         because="the angular acceleration of the phase is twice the coefficient of $t^2$",
         named=r"\frac{d^2}{dt^2} \left( \frac{C - A}{A}\,\theta(t) \right)",
+    )
+
+
+def _weakly_braked(d: Derivation) -> None:
+    d.section("Weak damping")
+    speed, angle, decay = _decay()
+    x = symbols.v
+    d.notation({r"\omega_3(t)": speed, r"\theta(t)": angle})
+    d.passage(
+        "For weak damping, the formulas for rate and angle are differences of large numbers, which lose "
+        "digits. This is avoided by the functions $f_1 = (e^x - 1)/x$ and $f_2 = (e^x - 1 - x)/x^2$ of $x = -b_3 t / "
+        "C$, which are regular at $x = 0$:"
+    )
+    first, second = (
+        (exp(-DRAG * T / C) - 1) / (-DRAG * T / C),
+        (exp(-DRAG * T / C) - 1 + DRAG * T / C) / (DRAG * T / C) ** 2,
+    )
+    power = -DRAG * T / C
+    d.notation({"x": power, "f_1": (exp(power) - 1) / power, "f_2": (exp(power) - 1 - power) / power**2})
+    d.step(
+        "The rate and the angle under a torque with damping are written with $f_1$ and $f_2$; these formulas also hold "
+        "without damping.",
+        Matrix([speed, angle]),
+        Matrix([START * decay + PUSH / C * T * first, START * T * first + PUSH / C * T**2 * second]),
+        because="the equation is multiplied by the denominators",
+        named=r"\begin{bmatrix} \omega_3(t) \\ \theta(t) \end{bmatrix}",
+        display=r"\begin{bmatrix} \omega_3\,e^x + \frac{\tau_3}{C}\,t\,f_1 \\ \omega_3\,t\,f_1 + \frac{\tau_3}{C}\,t^2 "
+        r"f_2 \end{bmatrix}",
+    )
+    d.step(
+        r"At $x = 0$ the functions have the limits $f_1 = 1$ and $f_2 = \tfrac12$ (l'Hospital's rule), which give the "
+        "motion without damping.",
+        Matrix([(exp(x) - 1).diff(x) / x.diff(x), (exp(x) - 1 - x).diff(x, 2) / (x**2).diff(x, 2)]).subs(x, 0),
+        Matrix([1, HALF]),
+        because="$e^0 = 1$",
+        named=r"\begin{bmatrix} f_1(0) \\ f_2(0) \end{bmatrix}",
     )
 
 

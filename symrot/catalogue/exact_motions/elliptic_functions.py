@@ -1,6 +1,6 @@
 """Jacobi's elliptic functions, defined by their derivatives: addition theorems, zeta and theta functions."""
 
-from sympy import Matrix, Symbol, cos, diff, sech, sin, tanh
+from sympy import Matrix, S, Symbol, cos, diff, sech, sin, tanh
 
 from symrot.catalogue.tools.elliptic import CN, DN, MU, SN, W_VALUES, I, derivatives, imaginary, shifted, squares
 from symrot.catalogue.tools.motion import rate
@@ -17,18 +17,17 @@ def derive() -> Derivation:
         title="Jacobi's elliptic functions by their derivatives",
         source="Whittaker & Watson, *A Course of Modern Analysis*, 4th ed., chapters 21 and 22",
         about=(
-            "This page proves the properties of elliptic functions that the exact motions of rigid bodies need: three "
-            "derivatives, the addition theorems, the zeta function, and the rate of the argument of a theta function. "
-            "The three derivatives are the definition; each other property follows from the properties before it, "
-            "without tables."
+            "This derivation defines the elliptic functions by their derivatives and proves the properties that the "
+            "exact motions of rigid bodies need: the addition theorems, the zeta function, and the rate of the "
+            "argument of a theta function. Each property follows from the properties before it, without tables."
         ),
     )
     _definition(d)
+    _limits(d)
     _sums(d)
     _zeta(d)
     _theta(d)
     _imaginary(d)
-    _limits(d)
     return d
 
 
@@ -46,7 +45,8 @@ def _definition(d: Derivation) -> None:
         *((rf"\frac{{d}}{{du}}\,\mathrm{{{name}}}", value) for name, value in derivatives().items()),
     )
     d.step(
-        "Two sums of squares are constant, so they keep the value 1 that they have at $u = 0$.",
+        r"Two sums of squares, $\mathrm{cn}^2 + \mathrm{sn}^2$ and $\mathrm{dn}^2 + \mu\,\mathrm{sn}^2$, are constant. "
+        "They keep the value 1 that they have at $u = 0$.",
         Matrix([rate(CN**2 + SN**2, derivatives()), rate(DN**2 + MU * SN**2, derivatives())]),
         0,
         because="the derivative of each function is a multiple of the product of the other two, and the two terms of "
@@ -71,8 +71,8 @@ def _sums(d: Derivation) -> None:
         d.notation({rf"\mathrm{{{name}}}(u + w)": here, rf"\mathrm{{{name}}}(u - w)": there, r"\Delta": BELOW})
     for claim, name, left, right, value in (
         (
-            "The three functions have the same derivatives with respect to $u$ as sn, cn and dn. The derivative of "
-            "$S$ is:",
+            r"The functions $S$, $\hat C$ and $\hat D$ have the same derivatives with respect to $u$ as sn, cn and "
+            "dn. The derivative of $S$ is:",
             "S",
             s,
             c * dn,
@@ -101,8 +101,8 @@ def _sums(d: Derivation) -> None:
         named=r"\begin{bmatrix} S \\ \hat C \\ \hat D \end{bmatrix}_{u = 0}",
     )
     d.step(
-        r"The sums of the values at $u + w$ and $u - w$ are simpler, with $\Delta = 1 - "
-        r"\mu\,\mathrm{sn}_w^2\,\mathrm{sn}^2$:",
+        r"The values of sn at $u + w$ and $u - w$ have a simple sum, and so have those of dn, with $\Delta = 1 "
+        r"- \mu\,\mathrm{sn}_w^2\,\mathrm{sn}^2$:",
         Matrix([s + shifted(-1)[0], dn + shifted(-1)[2]]),
         Matrix([2 * SN * CN_W * DN_W, 2 * DN * DN_W]) / BELOW,
         because="sn is odd, and cn and dn are even",
@@ -120,7 +120,7 @@ def _zeta(d: Derivation) -> None:
     along = derivatives()
     d.passage(
         r"Let $Z(u)$ be the odd function with $Z' = \mathrm{dn}^2 - e$. The constant $e$ is the mean of "
-        r"$\mathrm{dn}^2$, so that $Z$ is periodic; the value of $e$ does not matter here."
+        r"$\mathrm{dn}^2$, so that $Z$ is periodic; the proofs on this page hold for any constant $e$."
     )
     d.step(
         "The zeta function has the addition theorem $Z(u + w) = Z(u) + Z(w) - "
@@ -159,8 +159,9 @@ def _theta(d: Derivation) -> None:
     )
     d.step(
         r"The function $\mathrm{H} = \Theta\,\mathrm{sn}$ has the logarithmic derivative $Z + "
-        r"\mathrm{cn}\,\mathrm{dn} / \mathrm{sn}$. Its derivative is like that of $Z$, with $1/\mathrm{sn}^2$ in "
-        r"place of $\mu\,\mathrm{sn}^2$, as after a shift by half a period.",
+        r"\mathrm{cn}\,\mathrm{dn} / \mathrm{sn}$. The derivative of this expression is that of $Z$ with "
+        r"$1/\mathrm{sn}^2$ in place of $\mu\,\mathrm{sn}^2$; a shift of $u$ by half a period, $i K'$, exchanges "
+        "these two.",
         DN**2 + rate(CN * DN / SN, along),
         1 - 1 / SN**2,
         because=r"$\mathrm{dn}^2 = 1 - \mu\,\mathrm{sn}^2$",
@@ -207,6 +208,7 @@ def _imaginary(d: Derivation) -> None:
 def _limits(d: Derivation) -> None:
     d.section("Parameters with elementary functions")
     u = Symbol("u")
+    d.notation({"u": u}, {u: S.One})
     for claim, parameter, functions, why in (
         (
             r"At $\mu = 0$ the functions sn, cn, dn are sine, cosine and 1.",

@@ -36,10 +36,10 @@ def derive() -> Derivation:
         ),
     )
     _two_turns(d)
+    _special(d)
     turning = _momentum(d)
     _third_kind(d, turning)
     _theta(d)
-    _special(d)
     return d
 
 
@@ -167,6 +167,7 @@ def _momentum(d: Derivation) -> dict[str, Expr]:
     along = derivatives(speed, parameter)
     omega = TENSOR.inv() * momentum
     d.notation({r"\sigma": SIGN, "p": speed, r"\mu": parameter, "L": momentum, r"\omega": omega}, along)
+    d.notation({r"\dot L": rate(momentum, along)})
     d.nonzero("The moments of axes 2 and 3 are different,", C - B, "C - B")
     d.nonzero("and so are the moments of axes 1 and 3,", C - A, "C - A")
     d.notation({"H": sqrt(ONE**2 + THREE**2), "T": momentum.dot(omega) / 2})
@@ -273,15 +274,16 @@ def _theta(d: Derivation) -> None:
     imag = -THREE / ONE, H / ONE, TWO / ONE  # sn/i, cn, dn at w
     d.passage(
         r"Let $N$ be the function whose logarithm has the derivative $Y = \tfrac12 Z + \tfrac{i}{2}\,\mathrm{dn}$, "
-        "where $Z$ is the [zeta function](elliptic_functions.md). Up to an exponential factor, it is the theta "
-        r"function $\theta_4$ of the squared nome, shifted by half its imaginary period: $N(u) = \theta_4\left( "
+        "where $Z$ is the [zeta function](elliptic_functions_appendix.md). Up to an exponential factor, it is the "
+        r"theta function $\theta_4$ of the squared nome, shifted by half its imaginary period: $N(u) = \theta_4\left( "
         r"\tfrac{\pi}{2 K} (u + i K');\ q^2 \right)$. Let $w$ be a point of the imaginary axis with the following "
         "values."
     )
     s, c, dn = imag
     d.step(
         r"At $w$, let $\mathrm{sn}_w = -i\,\ell_3 / \ell_1$, $\mathrm{cn}_w = H / \ell_1$ and $\mathrm{dn}_w = \ell_2 "
-        r"/ \ell_1$. There is a point with these values, since they satisfy the two quadratic relations.",
+        r"/ \ell_1$. The three functions have these values at a point, since the values satisfy $\mathrm{cn}_w^2 + "
+        r"\mathrm{sn}_w^2 = 1$ and $\mathrm{dn}_w^2 + \mu\,\mathrm{sn}_w^2 = 1$.",
         Matrix([c**2 - s**2, dn**2 - MU * s**2]),
         Matrix([1, 1]),
         because=r"$H^2 = \ell_1^2 + \ell_3^2$ and $\ell_2^2 = \ell_1^2 + \mu\,\ell_3^2$",
@@ -295,12 +297,12 @@ def _theta(d: Derivation) -> None:
     d.passage(
         r"For real $u$ the argument of $N(u + w)$ has the derivative $(Y(u + w) - \overline{Y(u + w)})/2i$ with "
         "respect to $u$. The complex conjugate is obtained by replacing $u + w$ by $u - w$ and $i$ by $-i$. By the "
-        "addition theorems of [Z and dn](elliptic_functions.md), the derivative is the real constant $Z(w)/2i$ plus "
-        "a function of sn and dn."
+        "addition theorems of [Z and dn](elliptic_functions_appendix.md), the derivative is the real constant "
+        "$Z(w)/2i$ plus a function of sn and dn."
     )
     d.step(
-        "In the derivative of the argument of $N(u + w)$, the function of sn and dn is a constant minus the variable "
-        r"term in the rate of $\psi$.",
+        "This function of sn and dn, the variable part of the derivative of the argument of $N(u + w)$, is a constant "
+        r"minus the term with $\Delta$ of $\dot\psi$, up to a constant factor.",
         argument,
         H * TWO / (2 * ONE * THREE) - TWO / (2 * ONE * THREE) * (H - THREE * DN) / below,
         because=r"$\mathrm{sn}_w, \mathrm{cn}_w, \mathrm{dn}_w$ are substituted, and the polynomial division "

@@ -89,6 +89,14 @@ def derive() -> Derivation:
         relations=RELATIONS,
         named=r"\begin{bmatrix} L \cdot L \\ B\,L \cdot \omega \end{bmatrix}",
     )
+    d.step(
+        r"For $t \to \pm\infty$ the angular momentum in the body is along the intermediate axis, in opposite "
+        "directions.",
+        Matrix([momentum.subs(h, 1), momentum.subs(h, -1)]),
+        SIGN * H * Matrix([0, 1, 0, 0, -1, 0]),
+        because=r"$h \to \pm 1$",
+        named=r"\begin{bmatrix} L(\infty) \\ L(-\infty) \end{bmatrix}",
+    )
     _attitude(d, momentum, omega)
     return d
 
@@ -141,14 +149,6 @@ def _attitude(d: Derivation, momentum: Matrix, omega: Matrix) -> None:
         relations=RELATIONS,
         named=r"\dot R",
         display=r"R\,[\omega]_\times",
-    )
-    d.step(
-        "Long before and long after the motion, the angular momentum is along the intermediate axis, in opposite "
-        "directions.",
-        Matrix([momentum.subs(h, 1), momentum.subs(h, -1)]),
-        SIGN * H * Matrix([0, 1, 0, 0, -1, 0]),
-        because=r"$h \to \pm 1$",
-        named=r"\begin{bmatrix} L(\infty) \\ L(-\infty) \end{bmatrix}",
     )
 
 

@@ -66,7 +66,7 @@ def _nutation(d: Derivation) -> None:
     d.notation({"u": u, r"p_\phi": momentum, r"p_\psi": spin, r"2 E - \frac{p_\psi^2}{C}": energy})
     d.notation({"E": (energy + spin**2 / C) / 2})
     d.step(
-        "The cubic polynomial of energy and momenta has the zeros $u_1, u_2, u_3$.",
+        "The cubic polynomial in $u$ that the energy and the momenta determine has the zeros $u_1, u_2, u_3$.",
         (energy - 2 * W * ARM * u) * (1 - u**2) / A - (momentum - spin * u) ** 2 / A**2,
         cubic(u),
         because="both sides are cubics with equal values at $u = 1$ and $u = -1$ and two equal coefficients",

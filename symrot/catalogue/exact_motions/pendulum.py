@@ -25,8 +25,8 @@ def derive() -> Derivation:
         ),
     )
     _plane(d)
-    _turning(d)
     _spherical(d)
+    _turning(d)
     return d
 
 
@@ -137,8 +137,8 @@ def _spherical(d: Derivation) -> None:
     highest = -(1 + U1 * U2) / (U1 + U2)
     d.passage(
         r"If $p_\psi = 0$ but $p_\phi \ne 0$, the pendulum moves around the vertical, and its height oscillates "
-        "between $u_1$ and $u_2$, measured from the support. These two heights give the third zero of the cubic "
-        "polynomial:",
+        "between $u_1$ and $u_2$, measured from the support. These two heights give the third zero of the "
+        "cubic polynomial of the [heavy top](heavy_top_motion.md):",
         ("u_3", highest),
     )
     d.nonzero("The two heights are not both zero,", U1 + U2, "u_1 + u_2")
@@ -147,8 +147,8 @@ def _spherical(d: Derivation) -> None:
     energy = 2 * W * ARM * (U1 + U2 + highest)
     d.notation({"E": energy / 2, r"p_\phi": sqrt(square)})
     d.step(
-        r"The cubic polynomial of energy and momentum has the zeros $u_1$, $u_2$ and $u_3$ if $p_\phi^2$ has the value "
-        "below.",
+        r"The cubic polynomial in $u$ that energy and momentum determine has the zeros $u_1$, $u_2$ and $u_3$ if "
+        r"$p_\phi^2$ has the value below.",
         energy * (1 - u**2) / A - 2 * W * ARM * u * (1 - u**2) / A - square / A**2,
         cubic(u).subs(U3, highest),
         because=r"$u_1 u_2 + u_2 u_3 + u_3 u_1 = -1$",
@@ -156,15 +156,16 @@ def _spherical(d: Derivation) -> None:
         display=r"\frac{2 W c_3}{A} (u - u_1)(u - u_2)(u - u_3)",
     )
     d.step(
-        r"The square of $p_\phi$ is not negative only if $u_1 + u_2 \le 0$: the mean of both heights is below the "
-        "support.",
+        r"The square of $p_\phi$ is not negative only if $u_1 + u_2 \le 0$: the mean of the heights $u_1$ and "
+        "$u_2$ is below the support.",
         square * (U1 + U2),
         -2 * A * W * ARM * (1 - U1**2) * (1 - U2**2),
         because="$1 - u^2$ is not negative",
         named=r"p_\phi^2\,(u_1 + u_2)",
     )
     d.step(
-        "If both heights are equal, the pendulum moves on a cone. The square of its rate about the vertical is:",
+        "If the heights $u_1$ and $u_2$ are equal, the pendulum moves on a cone. The square of its rate about the "
+        "vertical is then:",
         square.subs(U2, U1) / (A * (1 - U1**2)) ** 2,
         -W * ARM / (A * U1),
         because=r"$\dot\phi = p_\phi / (A \sin^2\theta)$",

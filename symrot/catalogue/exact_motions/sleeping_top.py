@@ -29,6 +29,7 @@ def derive() -> Derivation:
     )
     _through(d)
     _separatrix(d)
+    _precession(d)
     return d
 
 
@@ -74,9 +75,9 @@ def _through(d: Derivation) -> None:
         named=r"\left. \left( \frac{d}{dt} \sin\tfrac\theta2 \right)^2 \right|_{u = 1}",
     )
     d.passage(
-        r"When the axis passes through the vertical, $\phi - \psi$ changes at a constant rate, by the [partial "
-        r"fractions](heavy_top_motion.md) with $p_\phi = p_\psi$. If $\sin\tfrac\theta2$ is given a sign, the attitude "
-        "is a smooth function of time."
+        r"In this motion $\phi - \psi$ changes at a constant rate, as the [partial "
+        r"fractions](heavy_top_motion.md) show for $p_\phi = p_\psi$. If $\sin\tfrac\theta2$ changes its sign "
+        "whenever the axis passes through the vertical, as cn does, the attitude is a smooth function of time."
     )
 
 
@@ -115,17 +116,8 @@ def _separatrix(d: Derivation) -> None:
         named=r"\dot u^2",
         display=r"\frac{2 W c_3}{A} (u - u_1)(u - 1)^2",
     )
-    d.step(
-        "The acceleration of the height $u$ is half the derivative of the cubic polynomial, as it must be.",
-        rate(rate(height, along), along),
-        cubic(symbols.gamma_3).diff(symbols.gamma_3).subs(both).subs(symbols.gamma_3, height) / 2,
-        because="the acceleration of the height is half the derivative of the cubic",
-        named=r"\ddot u",
-        display=r"\frac{W c_3}{A} \frac{\partial}{\partial u} (u - u_1)(u - 1)^2",
-    )
     momentum = SUM.subs(both) / 2
     d.notation({r"p_\psi": momentum}, {T: Integer(1)})
-    turned = momentum / (2 * A) * T + atan(2 * A * speed / momentum * h)
     d.step(
         r"Both momenta are equal. They are below the [bound](heavy_top.md) $p_\psi^2 = 4 A W c_3$ for a sleeping top, "
         r"and reach it in the limit $u_1 \to 1$.",
@@ -135,15 +127,6 @@ def _separatrix(d: Derivation) -> None:
         named=r"p_\psi^2",
     )
     d.step(
-        "The angle of precession is the sum of a part that grows at a constant rate and an arctangent.",
-        rate(turned, along | {T: Integer(1)}),
-        momentum / (A * (1 + height)),
-        because=r"$1 + u = 1 + u_1 + (1 - u_1)\,h^2$",
-        named=r"\frac{d}{dt} \left( \frac{p_\psi}{2 A}\,t + \arctan \frac{2 A\,p\,h}{p_\psi} "
-        r"\right)",
-        display=r"\frac{p_\psi}{A (1 + u)}",
-    )
-    d.step(
         "The sine of half the nutation is proportional to a hyperbolic secant: the axis falls from near the vertical "
         "to the height $u_1$ at $t = 0$, then rises towards the vertical again, without reaching it in a finite time.",
         (1 - height) / 2,
@@ -151,4 +134,34 @@ def _separatrix(d: Derivation) -> None:
         because="$1 - u$ is substituted",
         named=r"\sin^2 \tfrac\theta2",
         display=r"\tfrac12 (1 - u_1)\,\mathrm{sech}^2\,p\,t",
+    )
+
+
+def _precession(d: Derivation) -> None:
+    d.section("The acceleration of the height, and the angle of precession")
+    lowest, h = U1, TURN
+    height = 1 - (1 - lowest) * (1 - h**2)
+    both = {U2: Integer(1), U3: Integer(1)}
+    speed = SPEED.subs(both)
+    along = {h: speed * (1 - h**2)}
+    momentum = SUM.subs(both) / 2
+    d.notation({"u": height, "h": h}, along)
+    d.step(
+        "The acceleration of the height $u$ is half the derivative of the cubic polynomial, as it must be.",
+        rate(rate(height, along), along),
+        cubic(symbols.gamma_3).diff(symbols.gamma_3).subs(both).subs(symbols.gamma_3, height) / 2,
+        because="the acceleration of the height is half the derivative of the cubic",
+        named=r"\ddot u",
+        display=r"\frac{W c_3}{A} \frac{\partial}{\partial u} (u - u_1)(u - 1)^2",
+    )
+    d.notation({r"p_\psi": momentum}, {T: Integer(1)})
+    turned = momentum / (2 * A) * T + atan(2 * A * speed / momentum * h)
+    d.step(
+        "The angle of precession is the sum of a part that grows at a constant rate and an arctangent.",
+        rate(turned, along | {T: Integer(1)}),
+        momentum / (A * (1 + height)),
+        because=r"$1 + u = 1 + u_1 + (1 - u_1)\,h^2$",
+        named=r"\frac{d}{dt} \left( \frac{p_\psi}{2 A}\,t + \arctan \frac{2 A\,p\,h}{p_\psi} "
+        r"\right)",
+        display=r"\frac{p_\psi}{A (1 + u)}",
     )

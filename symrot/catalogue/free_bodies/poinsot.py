@@ -59,6 +59,14 @@ def _rolling(d: Derivation) -> None:
         because="there is no torque",
         relations=[unit_relation()],
         named=r"\frac{d}{dt} (R\,L)",
+        board=(
+            ("The product rule:", r"\dot R\,L + R\,\dot L"),
+            (
+                r"$\dot R = R\,[\omega]_\times$, and Euler's equations without torque, $\dot L = L \times \omega$:",
+                r"R \left( \omega \times L + L \times \omega \right)",
+            ),
+            ("A cross product changes its sign if its factors are exchanged:", "0"),
+        ),
     )
     d.step(
         r"The distance of the tangent plane from the centre is $\omega \cdot L / |L| = 2 T / |L|$. It is constant, so "

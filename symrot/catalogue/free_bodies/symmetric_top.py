@@ -163,8 +163,8 @@ def _angles(d: Derivation) -> None:
         named=r"\begin{bmatrix} \dot\phi \\ \dot\theta \\ \dot\psi \end{bmatrix}",
     )
     d.step(
-        r"The rate of the spin angle is opposite to the rate of the transverse part in the body: $\dot\psi = "
-        r"-\lambda$.",
+        r"The transverse part of $\omega$ rotates in the body at the rate $\lambda$, and the spin angle changes at the "
+        r"opposite rate: $\dot\psi = -\lambda$.",
         rates[2],
         -((c - a) / a * omega[2]),
         because=r"$C\,\omega_3 = H \cos\theta$",
@@ -183,7 +183,7 @@ def _angles(d: Derivation) -> None:
     )
     d.step(
         "The sines of the half angles of space cone and body cone are in the ratio of the rates of spin angle and "
-        "precession. So equal lengths of both cones roll on each other.",
+        "precession. So equal arcs on the rims of both cones roll on each other.",
         squared(omega.cross(axis_s)) * rates[0] ** 2,
         squared(omega.cross(axis_b)) * rates[2] ** 2,
         because=r"$\omega \times \omega = 0$, with the sum substituted for one factor",

@@ -4,6 +4,7 @@ from sympy import Matrix, eye, zeros
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, TENSOR, squared
+from symrot.catalogue.tools.particles import sums_over
 from symrot.inertia.tensor import inertia_of_point
 from symrot.proof.derivation import Derivation
 
@@ -43,6 +44,16 @@ def _one_particle(d: Derivation) -> None:
         mass * (squared(point) * eye(3) - point * point.T) * OMEGA,
         because=r"$r \times (\omega \times r) = |r|^2 \omega - r\,(r \cdot \omega)$",
         named=r"r \times m\,(\omega \times r)",
+        board=(
+            (
+                r"$a \times (b \times c) = b\,(a \cdot c) - c\,(a \cdot b)$:",
+                r"m \left( \omega\,(r \cdot r) - r\,(r \cdot \omega) \right)",
+            ),
+            (
+                r"$r\,(r \cdot \omega) = r\,r^{\mathsf T} \omega$:",
+                r"m \left( |r|^2\,\mathbf{1} - r\,r^{\mathsf T} \right) \omega",
+            ),
+        ),
         display=r"m \left( |r|^2\,\mathbf{1} - r\,r^{\mathsf T} \right) \omega",
     )
     d.step(
@@ -94,6 +105,7 @@ def _center(d: Derivation) -> None:
     moving = zip(MASSES, POINTS, strict=True)
     momentum = sum(((PLACE + p).cross(m * (V + OMEGA.cross(p))) for m, p in moving), zeros(3, 1))
     tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
+    d.notation(sums_over(MASSES, POINTS) | {"x": PLACE, "v": V, "M": mass, "I": tensor})
     d.step(
         "The angular momentum of a body is that of its total mass at the centre of mass, plus that of the rotation "
         "about the centre of mass.",
@@ -101,7 +113,19 @@ def _center(d: Derivation) -> None:
         PLACE.cross(mass * V) + tensor * OMEGA,
         because=rf"the mixed terms contain the factor ${COUNT} m_i\,r_i = 0$",
         relations=list(balance),
-        named=rf"{COUNT} (x + r_i) \times m_i \left( v + \omega \times r_i \right)",
+        named=rf"{COUNT} \left( (x + r_i) \times m_i \left( v + \omega \times r_i \right) \right)",
+        board=(
+            (
+                "The product is multiplied out:",
+                r"\sum_i (m_i\,x \times v) + x \times \left( \omega \times \sum_i (m_i\,r_i) \right) + \sum_i "
+                r"(m_i\,r_i) \times v + \sum_i (m_i\,r_i \times (\omega \times r_i))",
+            ),
+            (r"$\sum_i m_i\,r_i = 0$:", r"M\,x \times v + \sum_i (m_i\,r_i \times (\omega \times r_i))"),
+            (
+                "The last sum is the angular momentum of the rotation about the centre of mass:",
+                r"x \times M\,v + I\,\omega",
+            ),
+        ),
         display=r"x \times M v + I\,\omega",
     )
 
@@ -118,6 +142,16 @@ def _properties(d: Derivation) -> None:
         sum(m * squared(OMEGA.cross(p)) for m, p in zip(MASSES, POINTS, strict=True)),
         because=r"$\omega \cdot (r \times (\omega \times r)) = |\omega \times r|^2$",
         named=r"\omega \cdot I\,\omega",
+        board=(
+            (
+                "The angular momentum is a sum over the particles:",
+                r"\omega \cdot \sum_i (m_i\,r_i \times (\omega \times r_i))",
+            ),
+            (
+                r"$\omega \cdot (r \times u) = (\omega \times r) \cdot u$, with $u = \omega \times r$:",
+                r"\sum_i (m_i\,|\omega \times r_i|^2)",
+            ),
+        ),
         display=rf"{COUNT} m_i\,|\omega \times r_i|^2",
     )
     d.step(

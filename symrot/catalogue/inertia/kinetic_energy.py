@@ -4,6 +4,7 @@ from sympy import Matrix, Rational, cos, diag, sin, zeros
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, TENSOR, squared
+from symrot.catalogue.tools.particles import sums_over
 from symrot.inertia.tensor import about_point, inertia_of_point
 from symrot.kinematics.euler import rate_jacobian
 from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
@@ -45,6 +46,16 @@ def _sum(d: Derivation) -> None:
         HALF * OMEGA.dot(Matrix(inertia_of_point(symbols.m, point)) * OMEGA),
         because=r"$|\omega \times r|^2 = |\omega|^2 |r|^2 - (\omega \cdot r)^2$",
         named=r"\tfrac12\,m\,|\omega \times r|^2",
+        board=(
+            (
+                r"$|\omega \times r|^2 = |\omega|^2 |r|^2 - (\omega \cdot r)^2$ (Lagrange's identity):",
+                r"\tfrac12\,m \left( |\omega|^2\,|r|^2 - (\omega \cdot r)^2 \right)",
+            ),
+            (
+                r"$|\omega|^2 = \omega \cdot \omega$ and $(\omega \cdot r)^2 = \omega \cdot r\,r^{\mathsf T} \omega$:",
+                r"\tfrac12\,\omega \cdot m \left( |r|^2\,\mathbf{1} - r\,r^{\mathsf T} \right) \omega",
+            ),
+        ),
         display=r"\tfrac12\,\omega \cdot m \left( |r|^2\,\mathbf{1} - r\,r^{\mathsf T} \right) \omega",
     )
     d.passage(
@@ -55,7 +66,7 @@ def _sum(d: Derivation) -> None:
     )
     balance = sum((m * p for m, p in zip(MASSES, POINTS, strict=True)), zeros(3, 1))
     tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
-    d.notation({"I": tensor, "v": V, "M": sum(MASSES)})
+    d.notation(sums_over(MASSES, POINTS) | {"I": tensor, "v": V, "M": sum(MASSES)})
     d.step(
         "König's theorem: the kinetic energy is that of the total mass at the centre of mass, plus the energy of the "
         "rotation about the centre of mass.",
@@ -64,6 +75,22 @@ def _sum(d: Derivation) -> None:
         because=rf"the mixed term is $v \cdot (\omega \times {COUNT} m_i\,r_i) = 0$",
         relations=list(balance),
         named=rf"\tfrac12 {COUNT} m_i\,|v + \omega \times r_i|^2",
+        board=(
+            (
+                "The square is multiplied out:",
+                r"\tfrac12 \sum_i (m_i\,|v|^2) + \sum_i (m_i\,v \cdot (\omega \times r_i)) + \tfrac12 \sum_i "
+                r"(m_i\,|\omega \times r_i|^2)",
+            ),
+            (
+                r"$v$ and $\omega$ are the same for all particles:",
+                r"\tfrac12\,M\,|v|^2 + v \cdot \left( \omega \times \sum_i (m_i\,r_i) \right) + \tfrac12 \sum_i "
+                r"(m_i\,|\omega \times r_i|^2)",
+            ),
+            (
+                r"$\sum_i m_i\,r_i = 0$, and the last sum is $\omega \cdot I\,\omega$:",
+                r"\tfrac12\,M\,|v|^2 + \tfrac12\,\omega \cdot I\,\omega",
+            ),
+        ),
         display=r"\tfrac12\,M\,|v|^2 + \tfrac12\,\omega \cdot I\,\omega",
     )
     d.notation({"I": TENSOR, "I_O": Matrix(about_point(TENSOR, symbols.m, ARM))})
@@ -102,7 +129,7 @@ def _forms(d: Derivation) -> None:
     )
     dcm_sb = Matrix(quaternion_to_dcm())
     turned = dcm_sb * TENSOR * dcm_sb.T
-    d.notation({r"\omega_s": dcm_sb * OMEGA, r"\omega_b": OMEGA, "I_s": turned, "I_b": TENSOR})
+    d.notation({"R": dcm_sb, r"\omega_s": dcm_sb * OMEGA, r"\omega_b": OMEGA, "I_s": turned, "I_b": TENSOR})
     d.step(
         "The kinetic energy is the same in space axes, where the inertia tensor changes with time.",
         HALF * (dcm_sb * OMEGA).dot(turned * dcm_sb * OMEGA),
@@ -110,6 +137,16 @@ def _forms(d: Derivation) -> None:
         because=r"$R^{\mathsf T} R = 1$ is applied twice",
         relations=[unit_relation()],
         named=r"\tfrac12\,\omega_s \cdot I_s\,\omega_s",
+        board=(
+            (
+                r"$\omega_s = R\,\omega_b$ and $I_s = R\,I_b R^{\mathsf T}$:",
+                r"\tfrac12\,R\,\omega_b \cdot R\,I_b\,R^{\mathsf T} R\,\omega_b",
+            ),
+            (
+                r"$R^{\mathsf T} R = 1$, and a rotation preserves scalar products:",
+                r"\tfrac12\,\omega_b \cdot I_b\,\omega_b",
+            ),
+        ),
         display=r"\tfrac12\,\omega_b \cdot I_b\,\omega_b",
     )
     principal = diag(*symbols.principal)

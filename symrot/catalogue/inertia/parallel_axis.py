@@ -45,7 +45,8 @@ def derive() -> Derivation:
         display="F(r) + F(r')",
     )
     d.step(
-        "At zero the linear term vanishes. This proves the theorem of parallel axes.",
+        "Added over the body, $F$ is evaluated at the first moment, which is zero. This proves the theorem of parallel "
+        "axes.",
         linear.subs(dict.fromkeys(R, S.Zero)),
         0,
         because="the positions are measured from the centre of mass",

@@ -19,8 +19,8 @@ MEASURE = {"solid": "V", "surface": "S", "curve": r"\ell"}
 PRODUCTS = ((0, 1), (0, 2), (1, 2))
 LONG = 300  # characters of LaTeX
 SPECIAL = {"tetrahedron": {"vertices": [(0, 0, 0), (symbols.a, 0, 0), (0, symbols.b, 0), (0, 0, symbols.c)]}}
-"Tetrahedron with one corner at the origin and three edges along the axes; every other tetrahedron is a linear image "
-"of it."
+"Tetrahedron with one corner at the origin and three edges along the axes; a linear map and a shift turn it into any "
+"other tetrahedron."
 
 Moments = dict[tuple[int, ...], Expr]
 

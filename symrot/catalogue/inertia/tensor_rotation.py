@@ -24,7 +24,7 @@ def derive() -> Derivation:
     unit = [unit_relation()]
     dcm_sb, point = Matrix(quaternion_to_dcm()), Matrix(symbols.position)
     d.step(
-        "The tensor of a rotated point is the rotated tensor.",
+        "If a point of the body is rotated, its contribution to the inertia tensor is rotated too.",
         Matrix(inertia_of_point(symbols.m, dcm_sb * point)),
         Matrix(rotate(inertia_of_point(symbols.m, point), dcm_sb)),
         because="$R$ preserves lengths, and $(R r)(R r)^{\\mathsf T} = R\\,r\\,r^{\\mathsf T} R^{\\mathsf T}$",
@@ -43,6 +43,13 @@ def derive() -> Derivation:
         because=r"$R^{\mathsf T} R = 1$ is applied twice",
         relations=unit,
         named=r"\omega_s \cdot I_s\,\omega_s",
+        board=(
+            (
+                r"$\omega_s = R\,\omega_b$ and $I_s = R\,I_b R^{\mathsf T}$:",
+                r"R\,\omega_b \cdot R\,I_b\,R^{\mathsf T} R\,\omega_b",
+            ),
+            (r"$R^{\mathsf T} R = 1$, and a rotation preserves scalar products:", r"\omega_b \cdot I_b\,\omega_b"),
+        ),
         display=r"\omega_b \cdot I_b\,\omega_b",
     )
     d.step(
@@ -64,6 +71,17 @@ def derive() -> Derivation:
         because=r"$\dot R = [\omega_s]_\times R$",
         relations=unit,
         named=r"\dot I_s",
+        board=(
+            (
+                r"The product rule for $I_s = R\,I_b R^{\mathsf T}$:",
+                r"\dot R\,I_b\,R^{\mathsf T} + R\,I_b\,\dot R^{\mathsf T}",
+            ),
+            (
+                r"$\dot R = [\omega_s]_\times R$, and the transpose of a skew matrix is its negative:",
+                r"[\omega_s]_\times R\,I_b\,R^{\mathsf T} - R\,I_b\,R^{\mathsf T} [\omega_s]_\times",
+            ),
+            (r"$R\,I_b R^{\mathsf T} = I_s$:", r"[\omega_s]_\times I_s - I_s\,[\omega_s]_\times"),
+        ),
         display=r"[\omega_s]_\times I_s - I_s\,[\omega_s]_\times",
     )
     motion = attitude_rates() | pairs(symbols.omega_b, symbols.omega_rates)
@@ -77,6 +95,13 @@ def derive() -> Derivation:
         r"$\dot\omega_s = R\,\dot\omega_b$",
         relations=unit,
         named=r"\dot I_s\,\omega_s + I_s\,\dot\omega_s",
+        board=(
+            (
+                "The rate of the tensor is inserted:",
+                r"\omega_s \times I_s\,\omega_s - I_s \left( \omega_s \times \omega_s \right) + I_s\,\dot\omega_s",
+            ),
+            (r"$\omega_s \times \omega_s = 0$:", r"I_s\,\dot\omega_s + \omega_s \times I_s\,\omega_s"),
+        ),
         display=r"I_s\,\dot\omega_s + \omega_s \times I_s\,\omega_s",
     )
     d.notation({"I_s": dcm_sb * (symbols.A * eye(3)) * dcm_sb.T})

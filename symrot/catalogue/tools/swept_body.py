@@ -94,11 +94,13 @@ def _small_angle(d: Derivation) -> None:
     slope = square * (e - v * h) / (2 * (1 - square * v))
     motion = {X: S.One, R: X / R, e: moved * slope}
     d.passage(
-        r"The small angle has the rate $\dot\phi\,m_2/(1 + m_3) = \kappa^2 h / r^5$ with $h = -c/(1 + m_3)$. Let "
-        r"$\delta = \frac{x}{r} e(v)$, where $e$ satisfies $\kappa^2 e - 2 (1 - \kappa^2 v) e' = \kappa^2 v h$."
+        r"The small angle by which the rotation about $m$ exceeds the integral of $r$ has the rate $\dot\phi\,m_2/(1 + "
+        r"m_3) = \kappa^2 h / r^5$ with $h = -c/(1 + m_3)$. Let $\delta = \frac{x}{r} e(v)$, where $e$ satisfies "
+        r"$\kappa^2 e - 2 (1 - \kappa^2 v) e' = \kappa^2 v h$."
     )
     d.step(
-        r"The function $\delta$ has the rate of the small angle.",
+        r"The derivative of the function $\delta$ is the rate of this small angle, so $\delta$ is the angle up to a "
+        "constant.",
         rate(X / R * e, motion).subs(h, -c / (1 + third)),
         -KAPPA / R**2 * (KAPPA / R**3 * c) / (1 + third),
         because=r"$\frac{d}{dx} \frac{x}{r} = \kappa^2 / r^3$, and $\dot v = -2 x v^2$",

@@ -128,7 +128,7 @@ FUNCTIONS_WITH_LIMIT = (
 class _EqualityProver:
     """The evaluation of a C text's operations in exact fractions of polynomials, for comparison with the formulas.
 
-    ``symbol_of`` maps the index text of an input, such as ``"q[1]"``, to its symbol; ``intended`` maps the symbol of an
+    ``symbol_of`` maps an input component, such as ``"q[1]"``, to its symbol; ``intended`` maps the symbol of an
     input to the formula for which it stands.
     """
 
@@ -146,7 +146,7 @@ class _EqualityProver:
         self.in_series: set[int] = set()
 
     def run(self) -> dict[str, Quotient]:
-        """Return the exact value of each output component, by its index text such as ``"q[1]"``."""
+        """Return a map from each output component, such as ``"q[1]"``, to its exact value."""
         nodes = self.operations.nodes
         for node in nodes:
             if node[0] == "select" and node[1] == "<":
@@ -329,9 +329,9 @@ def prove_equal(
     operations : Operations
         The operations that were read from the C text.
     symbol_of : mapping of str to str
-        A map from the index text of an input, such as ``"q[1]"``, to its symbol in the formulas.
+        A map from each input component, such as ``"q[1]"``, to its symbol in the formulas.
     formulas : mapping of str to Expr
-        A map from the index text of an output to its formula.
+        A map from each output component, such as ``"dq[1]"``, to its formula.
     named : sequence of (Symbol, Expr)
         Intermediate quantities: symbols that later quantities and the formulas use, with their formulas.
     parameters : mapping of str to Expr, optional

@@ -279,7 +279,7 @@ def _imul(state: MachineState, instruction: Instruction) -> None:
     target, *sources = instruction.operands
     size = _size(instruction)
     if not 1 <= len(sources) <= 2:
-        raise NotUnderstood("expected operands of the kinds that the instruction table lists, got others")
+        raise NotUnderstood("expected operands for which symrot knows the effect of this instruction, got others")
     first, second = (
         read(state, instruction, item, size) for item in (sources if len(sources) == 2 else (target, *sources))
     )

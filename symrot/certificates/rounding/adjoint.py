@@ -224,7 +224,10 @@ def _angle(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Ar
 
 
 def _error_of_root(state: _ErrorPass, operands: Sequence[Array], total: Array) -> Array:
-    """Return a bound of the error that rounding the squares and their sum causes in the root of a sum of squares."""
+    """Return a bound of an error of sqrt(a^2 + b^2 + ..): the part caused by rounding the squares and their sum.
+
+    ``operands`` are intervals of a, b, .., ``total`` those of the sum. Near zero, the bound is infinite.
+    """
     squares = [intervals.half_ulp(intervals.magnitude(intervals.square(part)), state.precision) for part in operands]
     size = intervals.magnitude(total) * (1 + len(operands) * 2.0**-22)  # bound of a partial sum, its rounding included
     error = sum(squares, (len(operands) - 1) * intervals.half_ulp(size, state.precision))

@@ -33,8 +33,10 @@ NARROWEST = 2.0**-24  # relative to the box: a part this narrow without a bound 
 class SearchResult:
     """The result of a search: no error on the box exceeds ``bound``; the bound at the point ``worst`` is ``pointwise``.
 
-    ``turns`` says that errors are measured modulo 2 pi. If no bound was found, ``bound`` is infinite and ``obstacle``
-    is the operation (node) that prevents a bound near the point ``worst``.
+    ``largest_value`` is the largest absolute value of the output at the evaluated points, ``evaluations`` the number of
+    evaluated boxes. ``converged`` says that ``bound`` is at most 2 % above ``pointwise``, ``turns`` that errors are
+    measured modulo 2 pi. If no bound was found, ``bound`` is infinite and ``obstacle`` is the operation (node) that
+    prevents a bound near the point ``worst``.
     """
 
     bound: float

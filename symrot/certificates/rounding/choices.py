@@ -81,7 +81,7 @@ def _narrow_end(nodes: Sequence[Node], k: int, row: int, end: Array, computed: l
 
 
 def _middle(one: Node, other: Node) -> int | None:
-    """Return the node p if the two nodes are p + q and p - q, in any order; otherwise None."""
+    """Return the index of the node p if one node is p + q and the other p - q; otherwise None."""
     if (one[0], other[0]) == ("sub", "add"):
         one, other = other, one
     if (one[0], other[0]) != ("add", "sub") or set(one[1:]) != set(other[1:]):

@@ -93,9 +93,10 @@ def _size(x: Array) -> Array:
 
 @dataclass(frozen=True)
 class _EvenFunction:
-    """An even function of x: a series in x^2 for |x| < 2; for |x| >= 2 a formula for numbers and one for intervals.
+    """An even function of x such as sin(x)/x, evaluated on intervals without division by a small x.
 
-    The function decreases for 0 <= x <= ``end``, and its absolute value is at most ``crude`` everywhere.
+    For |x| < 2 it is a series in x^2, for |x| >= 2 a formula: ``formula`` for numbers and ``on_intervals`` for
+    intervals. The function decreases for 0 <= x <= ``end``, and its absolute value is at most ``crude`` everywhere.
     """
 
     series: tuple[float, ...]

@@ -43,9 +43,9 @@ class RoundingProblem:
     symbols: Mapping[str, str]  # place -> component, such as "angles[1]" -> "theta"
 
     def place(self, name: str) -> str:
-        """Return the index text of an input, such as ``"q[1]"``;
+        """Return the input component that ``name`` means, such as ``"q[1]"``.
 
-        ``name`` is that text or the input's symbol, such as ``"q1"``.
+        ``name`` is that text itself or the input's symbol, such as ``"q1"``. InputError is raised for any other name.
         """
         for place, symbol in self.symbols.items():
             if name in (place, symbol):

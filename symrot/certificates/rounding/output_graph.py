@@ -249,7 +249,11 @@ class _GraphReader:
         return self.put(kind, *(self.read(i) for i in operands(node)))
 
     def squares(self, index: int, depth: int = 0) -> list[tuple[int, int]] | None:
-        """Return the terms x of a sum of squares x^2, each with its number of roundings; None for any other node."""
+        """Return pairs (x, roundings) for the terms of a sum of squares x^2, or None if the operation is no such sum.
+
+        x is the index of an operation; ``roundings`` counts the square and the additions in which the term takes part.
+        ``depth`` is the number of additions so far.
+        """
         node = self.source[index]
         if node[0] == "mul" and node[1] == node[2]:
             return [(node[1], depth + 1)]

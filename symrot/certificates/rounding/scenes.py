@@ -27,7 +27,7 @@ ANY, UNIT = (-LARGEST, LARGEST), (Fraction(-1), Fraction(1))
 class SceneInputs:
     """The arguments of a scene's kernel, the values of its parameters, and its first and last time (s).
 
-    ``formulas`` maps a parameter's index text, such as ``"p[0]"``, to its name and formula; ``constants`` maps the name
+    ``formulas`` maps a parameter, such as ``"p[0]"``, to its name and formula; ``constants`` maps the name
     of each physical constant in these formulas to its value.
     """
 
@@ -39,7 +39,7 @@ class SceneInputs:
 
     @property
     def components(self) -> dict[str, tuple[str, str]]:
-        """A map from the index text of each input component, such as ``"y[0]"``, to its symbol and unit."""
+        """A map from each input component, such as ``"y[0]"``, to its symbol and unit."""
         return {
             (each.name if each.is_scalar else f"{each.name}[{i}]"): component[:2]
             for each in self.arguments

@@ -151,13 +151,13 @@ def _counts(term: Node) -> Counter[str]:
     """Return how often each index occurs in a term; an index inside a square counts twice."""
     counts: Counter[str] = Counter(_indices(term))
     for part in term.args:
-        own = _counts_of_terms(part) if term.value == "integral_over_body" else _counts(part)
+        own = _free_counts(part) if term.value == "integral_over_body" else _counts(part)
         is_square = term.kind == "power" and part is term.args[0] and term.args[1] == number(2)
         counts.update(own + own if is_square else own)
     return counts
 
 
-def _counts_of_terms(integrand: Node) -> Counter[str]:
+def _free_counts(integrand: Node) -> Counter[str]:
     """Return the free indices of the integrand of an integral over a body, {"i": 1, "j": 1} for ``r_i r_j``.
 
     An index is free if it occurs once in a term of the integrand. An index that occurs twice in a term, as k in ``r_k

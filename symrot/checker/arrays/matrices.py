@@ -9,7 +9,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 from symrot.checker.claim.shapes import Shape, shape_of
-from symrot.checker.claim.tree import Node, number, walk
+from symrot.checker.claim.tree import TIME, Node, is_derivative, number, walk
 from symrot.checker.claim.vectors import is_tensor
 
 __all__ = [
@@ -20,9 +20,6 @@ __all__ = [
 OF_MATRICES = ("det", "trace", "inverse", "adjugate", "transpose")
 UNIT_NAMES = ("I", "E", "I_3", "E_3")
 COLUMN = (3, 1)
-
-
-TIME = Node("name", "t")
 
 
 def matrix_of_entries(name: str, timed: bool = False) -> Node:
@@ -104,7 +101,7 @@ def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, 
             is_vector = Node("call", "dot", (first, second)) in nodes  # F·d = F d cos θ
             is_capital = name[:1].isupper() and name in vectors and not is_tensor(name)
             if is_capital and _is_array(second, vectors) and not is_vector:
-                rates = [n.args[0].value for n in nodes if n.kind == "call" and n.value == "diff"]
+                rates = [n.args[0].value for n in nodes if is_derivative(n)]
                 matrices[name] = name in rates
     return matrices
 
@@ -117,7 +114,7 @@ def rate_matrices(relation: tuple[str, Node, Node]) -> dict[str, bool]:
     """
     matrices: dict[str, bool] = {}
     for side, other in (relation[1:], relation[:0:-1]):
-        is_rate = side.kind == "call" and side.value == "diff" and len(side.args) == 2
+        is_rate = is_derivative(side) and len(side.args) == 2
         name = str(side.args[0].value) if is_rate else str(side.value).removesuffix("_dot")
         if not name[:1].isupper() or (not is_rate and name == side.value):
             continue
@@ -128,9 +125,7 @@ def rate_matrices(relation: tuple[str, Node, Node]) -> dict[str, bool]:
                     matrices[name] = is_rate
     for node in (node for side in relation[1:] for _, node in walk(side) if node.kind == "product"):
         for pair in pairwise(node.args):  # R' R^T and R^T R'
-            rates = [
-                part.args[0] for part in pair if part.kind == "call" and part.value == "diff" and len(part.args) == 2
-            ]
+            rates = [part.args[0] for part in pair if is_derivative(part) and len(part.args) == 2]
             transposes = [part.args[0] for part in pair if part.kind == "transpose"]
             if rates and rates == transposes and (name := str(_bare(rates[0]).value))[:1].isupper():
                 matrices[name] = True

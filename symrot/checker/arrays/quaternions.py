@@ -10,11 +10,10 @@ from dataclasses import dataclass, replace
 
 from symrot.checker.arrays.rotated_vectors import as_matrix_of_map
 from symrot.checker.claim.shapes import Shape, shape_of
-from symrot.checker.claim.tree import Node, number, product, walk
+from symrot.checker.claim.tree import TIME, Node, is_derivative, number, product, walk
 
 __all__ = ["CONJUGATE", "Quaternions", "quaternion_product", "used_quaternions"]
 
-TIME = Node("name", "t")
 CONJUGATE, PRODUCT = "conjugate", "qmul"
 LETTERS = ("q", "p", "Q", "P")
 """First letters of names that are usually quaternions."""
@@ -84,11 +83,9 @@ def used_quaternions(
     used = {str(node.value) for side in (left, right) for _, node in walk(side) if node.kind == "name"}
     if on_matrix:
         reader.pure = {name: None for name in reader.pure if name in used}
-    moving = any(node.kind == "call" and node.value == "diff" for side in sides for _, node in walk(side))
+    moving = any(is_derivative(node) for side in sides for _, node in walk(side))
     definitions = [part for name in names for part in _definitions(name, used, moving)]
-    lefts, rights = (
-        _with_time(side, {n for n in used if n not in dict(definitions)}, names, moving) for side in (left, right)
-    )
+    lefts, rights = (_with_time(side, names, moving) for side in (left, right))
     first = names[0] if names else ""
     parts = dict(definitions).get(first)
     notes = [f"{first} is a quaternion with the scalar part {first}_0 and Hamilton's product"] if parts else []
@@ -201,7 +198,7 @@ def _turned(sides: Sequence[Node]) -> Sequence[Node]:
         if other.kind != "product" or not all(factor.kind == "name" for factor in factors):
             continue
         names = [str(factor.value) for factor in factors]
-        rate = _bare(side.args[0]) if side.kind == "call" and side.value == "diff" else side
+        rate = _bare(side.args[0]) if is_derivative(side) else side
         moved = {str(rate.value), str(rate.value).removesuffix("_prime")} if rate.kind == "name" else set()
         is_sandwich = len(names) == 3 and names[0] == names[2] != names[1] and names[1] in moved
         if is_sandwich and names[0].islower():
@@ -357,7 +354,7 @@ def _column(parts: Sequence[Node]) -> Node:
     return Node("call", "Matrix", (Node("list", ("[", "]"), tuple(parts)),))
 
 
-def _with_time(node: Node, used: Collection[str], names: Sequence[str], moving: bool) -> Node:
+def _with_time(node: Node, names: Sequence[str], moving: bool) -> Node:
     """Return a tree with q_1(t) for q_1, and so on for all components of the quaternions ``names``, if ``moving``.
 
     Otherwise return the tree unchanged.
@@ -365,4 +362,4 @@ def _with_time(node: Node, used: Collection[str], names: Sequence[str], moving: 
     components = {f"{name}{style}{n}" for name in names for style in ("", "_") for n in range(4)}
     if moving and node.kind == "name" and node.value in components:
         return Node("call", node.value, (TIME,), node.span)
-    return replace(node, args=tuple(_with_time(child, used, names, moving) for child in node.args))
+    return replace(node, args=tuple(_with_time(child, names, moving) for child in node.args))

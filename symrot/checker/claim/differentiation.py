@@ -12,8 +12,7 @@ from sympy.core.function import AppliedUndef
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import with_time
-from symrot.checker.claim.tree import Node, walk, with_names
-from symrot.checker.typed.cursor import TIME
+from symrot.checker.claim.tree import TIME, Node, is_derivative, walk, with_names
 from symrot.exact import normal_form
 from symrot.exact.decision import flatten
 from symrot.exact.ring.ratio import TooLarge
@@ -31,7 +30,7 @@ def as_functions(claim: Claim) -> Claim | None:
     assert claim.relation is not None
     sign, *sides = claim.relation
     nodes = [node for side in sides for _, node in walk(side)]
-    derivatives = [node for node in nodes if _is_derivative(node)]
+    derivatives = [node for node in nodes if is_derivative(node)]
     variables = {argument for node in derivatives for argument in node.args[1:] if argument.kind != "number"}
     names = {str(node.args[0].value) for node in derivatives if node.args[0].kind == "name"}
     names -= {"t", "pi", *(str(variable.value) for variable in variables), *dict(claim.define)}
@@ -79,7 +78,7 @@ def is_rule(claim: Claim) -> bool:
     """
     assert claim.relation is not None
     nodes = [[node for _, node in walk(side)] for side in claim.relation[1:]]
-    derivatives = [[node for node in side if _is_derivative(node)] for side in nodes]
+    derivatives = [[node for node in side if is_derivative(node)] for side in nodes]
     sides = (claim.equation.left, claim.equation.right)
     values = [[_plain(value) for value in flatten(side)[0]] for side in sides]
     letters = [{letter for value in side for letter in value.atoms(Symbol, AppliedUndef)} for side in values]
@@ -98,8 +97,4 @@ def _plain(value: Expr) -> Expr:
 def _is_of_formula(derivative: Node) -> bool:
     """Return whether a derivative is that of a sum, product or power without further derivatives: ``diff(x*y, t)``."""
     inner = derivative.args[0]
-    return inner.kind in ("sum", "product", "power") and not any(_is_derivative(node) for _, node in walk(inner))
-
-
-def _is_derivative(node: Node) -> bool:
-    return node.kind == "call" and node.value == "diff"
+    return inner.kind in ("sum", "product", "power") and not any(is_derivative(node) for _, node in walk(inner))

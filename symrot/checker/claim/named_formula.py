@@ -11,7 +11,7 @@ from typing import NamedTuple
 from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.scope import is_matrix
-from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk
+from symrot.checker.claim.tree import Node, is_derivative, negated, number, product, sum_of, text, walk
 from symrot.checker.claim.vectors import is_components
 from symrot.errors import InputError
 from symrot.exact import normal_form
@@ -79,7 +79,7 @@ def open_formula(claim: Claim) -> NamedFormula | None:
     known = {"pi", "t", *dict(claim.define)}
     for side in (left, right):
         for _, node in walk(side):
-            if node.kind == "call" and node.value == "diff":
+            if is_derivative(node):
                 names, others = ({*_letters_of(part)} for part in (node.args[:1], node.args[1:]))
                 if names and not names & {*known, *others} and not _depends_on_time(node):
                     return NamedFormula(text(left), left, right, solve=None)
@@ -93,10 +93,10 @@ def _is_open_rate(side: Node, other: Node) -> bool:
     ``other``, the other side, has a letter that this formula lacks, as alpha in ``(I w^2/2)' = I w alpha``. No such
     equation is an identity.
     """
-    derivatives = (node for _, node in walk(side) if node.kind == "call" and node.value == "diff")
+    derivatives = (node for _, node in walk(side) if is_derivative(node))
     has_rate = any(not _is_name(node.args[0]) and {v.value for v in node.args[1:]} == {"t"} for node in derivatives)
     others = {*_letters_of([other])}
-    if any(node.kind == "call" and node.value == "diff" for _, node in walk(other)):
+    if any(is_derivative(node) for _, node in walk(other)):
         return False  # both sides are derivatives: nothing is given by a letter
     if other == number(0) and side.kind == "product" and any(map(_is_rate, side.args)):
         return True
@@ -136,7 +136,7 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     defined = {name for quantities in letters for name, _ in quantities} & (known - {"pi", "t"})
     if not claim.hypotheses and not defined and (_is_open_rate(left, right) or _is_open_rate(right, left)):
         return NamedFormula(text(left), left, right, solve=None)
-    is_moving = any(node.kind == "call" and node.value == "diff" for side in (left, right) for _, node in walk(side))
+    is_moving = any(is_derivative(node) for side in (left, right) for _, node in walk(side))
     if not claim.hypotheses and left.kind == "name" and _has_own_letters(_letters_by_definition(claim, left, right)):
         return NamedFormula(text(left), left, right, solve=None)
     if claim.hypotheses or any(
@@ -314,7 +314,7 @@ def _has_open_derivative(left: Node, right: Node, known: Collection[str]) -> boo
     """
     for side in (left, right):
         for _, node in walk(side):
-            if node.kind == "call" and node.value == "diff" and node.args[0].kind == "name":
+            if is_derivative(node) and node.args[0].kind == "name":
                 name, *variables = node.args
                 if name.value not in known and name not in variables and any(v.value != "t" for v in variables):
                     return True
@@ -351,7 +351,7 @@ def _is_name(tree: Node) -> bool:
 def _is_rate(tree: Node) -> bool:
     """Return whether a tree is a time derivative of a name or of a function of time, such as ``diff(x(t), t)``."""
     times = [argument.value for argument in tree.args[1:]]
-    return tree.kind == "call" and tree.value == "diff" and _is_name(tree.args[0]) and {*times} == {"t"}
+    return is_derivative(tree) and _is_name(tree.args[0]) and {*times} == {"t"}
 
 
 def is_name_or_rate(tree: Node) -> bool:
@@ -439,7 +439,7 @@ def _equation_of_motion(left: Node, right: Node) -> NamedFormula | None:
     rule of differentiation.
     """
     terms = [*_terms(left), *map(negated, _terms(right))]
-    derivatives = {node for term in terms for _, node in walk(term) if node.kind == "call" and node.value == "diff"}
+    derivatives = {node for term in terms for _, node in walk(term) if is_derivative(node)}
     order = max((len(node.args) for node in derivatives), default=0)
     highest = [node for node in derivatives if len(node.args) == order]
     if len(highest) != 1 or not all(map(_is_rate, derivatives)):

@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Protocol
 
 from symrot.checker.claim.reader import Reading, Relation, read_expression, read_relation
-from symrot.checker.claim.tree import Node, text
+from symrot.checker.claim.tree import Node, is_derivative, text
 from symrot.errors import InputError
 
 __all__ = ["Notation", "TypedNotation", "notation_of", "with_formulas"]
@@ -64,9 +64,10 @@ class TypedNotation:
 
         ``parent`` is the kind of the node above the tree; empty for a whole formula.
         """
-        if node.kind == "call" and node.value == "diff":
+        if is_derivative(node):
             name = str(node.args[0].value)
-            if name not in self.timed or not (_is_rate(node) or _is_rate_of_name(node)):
+            is_rate = _is_rate(node) or (name in self.timed and _is_rate_of_name(node))
+            if not self.timed or not is_rate:
                 return replace(node, args=tuple(self._in_full(child) for child in node.args))
             return Node("name", self.spelling.get(name, name) + "'" * (len(node.args) - 1))
         if node.kind == "call" and node.value in self.timed:

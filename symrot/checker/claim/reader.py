@@ -14,11 +14,10 @@ from itertools import pairwise
 from typing import Any
 
 from symrot.checker.claim.functions import BUILT_IN
-from symrot.checker.claim.tree import Node, number
+from symrot.checker.claim.tree import TIME, Node, number
 from symrot.checker.typed.copied_text import without_surroundings
 from symrot.checker.typed.cursor import (
     DEEPEST_NESTING,
-    TIME,
     Doubt,
     Vocabulary,
     is_cross_letter,

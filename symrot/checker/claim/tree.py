@@ -25,7 +25,19 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
-__all__ = ["Node", "negated", "number", "product", "replaced", "sum_of", "text", "walk", "with_names"]
+__all__ = [
+    "TIME",
+    "Node",
+    "is_derivative",
+    "negated",
+    "number",
+    "product",
+    "replaced",
+    "sum_of",
+    "text",
+    "walk",
+    "with_names",
+]
 
 Path = tuple[int, ...]
 
@@ -38,6 +50,15 @@ class Node:
     value: Any = None
     args: tuple["Node", ...] = ()
     span: tuple[int, int] = field(default=(0, 0), compare=False)
+
+
+TIME = Node("name", "t")
+"""The name t, by which the derivatives ``diff(omega_1, t)`` are taken."""
+
+
+def is_derivative(node: Node) -> bool:
+    """Return whether the root of a tree is a derivative: ``diff(omega_1, t)``."""
+    return node.kind == "call" and node.value == "diff"
 
 
 def number(value: int | Fraction) -> Node:

@@ -8,7 +8,7 @@ import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from symrot.checker.claim.tree import Node, number, product, walk
+from symrot.checker.claim.tree import TIME, Node, is_derivative, number, product, walk
 
 __all__ = [
     "MARK",
@@ -22,7 +22,6 @@ __all__ = [
 ]
 
 MARK = "\N{RIGHTWARDS ARROW}"
-TIME = Node("name", "t")
 BASES = (("i", "j", "k"), *(tuple(f"e{mark}{axis}" for axis in axes) for mark in ("_", "") for axes in ("123", "xyz")))
 """Names of the vectors of a basis: these are the axes if a text has two of them, and, but for i, no other vector."""
 
@@ -134,7 +133,7 @@ def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vect
     """
     trees = [node for side in sides for _, node in walk(side)]
     used = {str(node.value) for node in trees if node.kind == "name"}
-    rates = [node for node in trees if node.kind == "call" and node.value == "diff" and node.args[-1] == TIME]
+    rates = [node for node in trees if is_derivative(node) and node.args[-1] == TIME]
     moving = {node.value for rate in rates for _, node in walk(rate.args[0])}
     places = {
         name: place

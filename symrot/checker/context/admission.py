@@ -161,9 +161,10 @@ def _is_along(name: str, line: str) -> bool:
 
 
 def _where_else(place: str, line: str, name: str) -> str:
-    """Return where the axis of the formula named ``name`` is, in words; it is not along a ``line`` of its body.
+    """Return words for the axis of the formula named ``name``, which is not along ``line``: "about an end".
 
-    ``place`` is the place in the name. It is no answer if the line passes through it too.
+    They are ``place``, the place of the axis in the name, unless the place is empty or the ``line`` of this body passes
+    through it too: then they are "about another axis".
     """
     _, bodies = LINES[line]
     places = [own for body, (own, _) in bodies.items() if body in bodies_of_formula(name)]

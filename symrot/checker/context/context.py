@@ -10,7 +10,7 @@ from difflib import get_close_matches
 from fractions import Fraction
 
 from symrot.checker.claim.reader import read_expression
-from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim.tree import Node, is_derivative, walk
 from symrot.checker.context.bodies import BODIES, Body, body_of_words
 from symrot.checker.context.quantities import (
     AMBIGUOUS,
@@ -97,9 +97,10 @@ class Meaning:
     def is_of(self, name: str) -> bool:
         """Return whether this is the meaning of ``name``, or of the vector or matrix that has ``name`` as an entry.
 
-        A meaning that the user gave for L counts for L_x too, and one for A counts for A_12.
+        A meaning that the user gave for L counts for L_x too, and one for A counts for A_12; one for a quaternion beta
+        counts for beta_0.
         """
-        stem = re.sub(r"_?[xyz1-3]$", "", name)
+        stem = re.sub(r"_?[0-4]$" if self.quantity.title == "quaternion" else r"_?[xyz1-3]$", "", name)
         return name in self.names or stem in self.names or f"{stem}_i" in self.names or matrix_of(name) in self.names
 
 
@@ -349,7 +350,7 @@ def _name(tree: Node) -> str | None:
     """Return the name that a tree is, x for ``x(t)`` and ``dx`` for its time derivative; None for any other formula."""
     if tree.kind == "name":
         return str(tree.value)
-    if tree.kind == "call" and tree.value == "diff":
+    if is_derivative(tree):
         inner = _name(tree.args[0])
         return None if inner is None else "d" * (len(tree.args) - 1) + inner
     if tree.kind == "call" and [argument.value for argument in tree.args] == ["t"]:

@@ -80,7 +80,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("Lagrangian", (), ("Lagrangian",), "", ENERGY),
     Quantity("work", (), ("work",), "W_k", ENERGY),
     Quantity("power", (), ("power",), "", "W"),
-    Quantity("angular momentum", ("moment of momentum",), ("angular momentum",), "H|L_[123]|h_[123]", MOMENTUM),
+    Quantity("angular momentum", ("moment of momentum",), ("angular momentum",), "H|L_[123]|h_[123]|h_w", MOMENTUM),
     Quantity("momentum of precession", ("momentum of phi", "momentum of the precession angle"),
              ("momentum of precession",), "p_phi", MOMENTUM),
     Quantity("momentum of nutation", ("momentum of theta", "momentum of the nutation angle"),
@@ -92,6 +92,8 @@ QUANTITIES: tuple[Quantity, ...] = (
              ("torque",), "M|tau_[123]", TORQUE),
     Quantity("angular velocity", ("body rate", "angular rate", "angular speed", "rotation rate"),
              ("angular velocity", "length of the angular velocity"), f"{OMEGAS}|Omega|omega_p|n", RATE),
+    Quantity("mean motion", ("orbital rate", "orbit rate", "rate of the orbit", "orbital angular velocity"),
+             (), "n", RATE),
     Quantity("precession rate", ("rate of precession", "precession", "angular velocity of precession"),
              ("precession",), "dphi|Omega|n", RATE),
     Quantity("slow precession rate", ("rate of slow precession", "slow precession"), ("slow precession",),
@@ -196,7 +198,8 @@ ROUND = (
 BALLS = ("a sphere", "a spherical shell", "a hollow sphere")
 LINES: dict[str, tuple[tuple[str, ...], dict[str, tuple[str, str]]]] = {
     "about a diameter": (
-        ("diameter", "axis in plane through centre"),
+        ("diameter", "central diameter", "diameter through centre", "transverse diameter",
+         "axis in plane through centre"),
         {**dict.fromkeys(ROUND, (CENTRE, "xy")), **dict.fromkeys(BALLS, (CENTRE, "xyz"))},
     ),
     "about its axis": (

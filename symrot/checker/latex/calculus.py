@@ -3,8 +3,8 @@
 from dataclasses import replace
 from itertools import takewhile
 
-from symrot.checker.claim.tree import Node, negated, number, product, walk
-from symrot.checker.latex.cursor import CLOSING, TIME, is_d, is_letter
+from symrot.checker.claim.tree import TIME, Node, negated, number, product, walk
+from symrot.checker.latex.cursor import CLOSING, is_d, is_letter
 from symrot.checker.latex.names import NamesPart, appended
 from symrot.checker.latex.sums import FUNCTIONS
 from symrot.checker.typed.defined_functions import DEFINED, DISPUTED, INVERSES, instead

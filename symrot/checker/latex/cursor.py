@@ -17,10 +17,9 @@ from symrot.latex import cursor, tree
 from symrot.latex.reader import read
 from symrot.latex.tokens import GREEK, Token, tokens
 
-__all__ = ["CLOSING", "JOINTS", "MATRIX_CALLS", "TIME", "UPRIGHT", "Cursor", "Names", "is_d", "is_letter"]
+__all__ = ["CLOSING", "JOINTS", "MATRIX_CALLS", "UPRIGHT", "Cursor", "Names", "is_d", "is_letter"]
 
 CLOSING = {"(": ")", "[": "]", "\\{": "\\}"}
-TIME = Node("name", "t")
 UPRIGHT = ("\\mathrm", "\\mathit", "\\mathsf", "\\textrm")
 MATRIX_CALLS = ("Matrix", "cross", "skew", "vee", "inverse", "transpose", "eye", "diag", "qmul",
                 "dcm_of", "hstack", "adjugate", *ROTATIONS)  # fmt: skip

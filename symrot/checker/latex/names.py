@@ -5,9 +5,9 @@ from dataclasses import replace
 
 from symrot.checker.arrays.quaternions import CONJUGATE
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
-from symrot.checker.claim.tree import Node, negated, number, sum_of
+from symrot.checker.claim.tree import TIME, Node, is_derivative, negated, number, sum_of
 from symrot.checker.claim.vectors import MARK, is_tensor
-from symrot.checker.latex.cursor import CLOSING, TIME, UPRIGHT, is_letter
+from symrot.checker.latex.cursor import CLOSING, UPRIGHT, is_letter
 from symrot.checker.latex.sums import SumsPart
 from symrot.latex import tree
 
@@ -328,6 +328,6 @@ class NamesPart(SumsPart):
 
 def appended(node: Node, variable: Node) -> Node:
     """Return the derivative of a formula by a variable; for ``diff(x, t)`` and t return ``diff(x, t, t)``."""
-    if node.kind == "call" and node.value == "diff" and node.args[-1] == variable == TIME:
+    if is_derivative(node) and node.args[-1] == variable == TIME:
         return Node("call", "diff", (*node.args, variable))
     return Node("call", "diff", (node, variable))

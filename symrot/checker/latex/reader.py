@@ -18,10 +18,10 @@ from symrot.checker.claim.reader import (
     read_expression,
     read_relation,
 )
-from symrot.checker.claim.tree import Node, sum_of, text, walk
+from symrot.checker.claim.tree import TIME, Node, is_derivative, sum_of, text, walk
 from symrot.checker.claim.vectors import Vector, used_vectors, without_marks
 from symrot.checker.latex.calculus import DOTS, CalculusPart
-from symrot.checker.latex.cursor import JOINTS, TIME, UPRIGHT, Names, is_letter
+from symrot.checker.latex.cursor import JOINTS, UPRIGHT, Names, is_letter
 from symrot.checker.latex.names import NAME_MARKS, OPERATORS, VECTOR_MARKS
 from symrot.checker.latex.sums import FUNCTIONS, SIGNS
 from symrot.errors import InputError
@@ -159,7 +159,7 @@ def _on_constants(sides: Sequence[Node], vectors: Collection[str]) -> tuple[str,
     ``sides`` are those of all equations of the text. There is at most one note.
     """
     nodes = [node for side in sides for _, node in walk(side)]
-    rates = [node.args[0] for node in nodes if node.kind == "call" and node.value == "diff" and node.args[-1] == TIME]
+    rates = [node.args[0] for node in nodes if is_derivative(node) and node.args[-1] == TIME]
     parts = (part for rate in rates if rate.kind != "call" for _, part in walk(rate))
     inner = {argument for node in nodes if node.kind == "call" for argument in node.args if argument == TIME}
     names = sorted({str(part.value) for part in parts if part.kind == "name" and part not in inner} - {"pi", *vectors})

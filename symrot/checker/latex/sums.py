@@ -11,7 +11,7 @@ from symrot.checker.arrays.pauli import commutator
 from symrot.checker.arrays.quaternions import CONJUGATE, quaternion_product
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.reader import DEEPEST_NESTING
-from symrot.checker.claim.tree import Node, negated, number, product, sum_of
+from symrot.checker.claim.tree import Node, is_derivative, negated, number, product, sum_of
 from symrot.checker.claim.vectors import MARK
 from symrot.checker.latex.cursor import CLOSING, UPRIGHT, Cursor, is_d, is_letter
 from symrot.checker.latex.macros import INSTEAD
@@ -417,6 +417,6 @@ def last_factor(node: Node) -> Node:
 
 def name_of(node: Node) -> str:
     """Return the name of a symbol or function, or of what is differentiated: "x" for x, x(t) and dx/dt; else ""."""
-    if node.kind == "call" and node.value == "diff":
+    if is_derivative(node):
         node = node.args[0]
     return str(node.value) if node.kind in ("name", "call") else ""

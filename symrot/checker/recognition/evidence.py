@@ -6,11 +6,12 @@ from itertools import pairwise
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
-from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim.tree import TIME, Node, walk
 from symrot.checker.context.admission import ANGLES, COMPONENTS, admits_letters, admits_name
 from symrot.checker.context.angle_orders import are_roll_pitch_yaw
 from symrot.checker.context.context import Context
 from symrot.checker.recognition.identification import plain_name, unit_of
+from symrot.checker.recognition.letters import is_atom
 from symrot.checker.recognition.nearby import Near
 from symrot.checker.repair.edits import neighbours
 from symrot.checker.repair.filter import matrix_entries
@@ -34,6 +35,7 @@ __all__ = [
     "keeps_places",
     "misfit_of",
     "names_in",
+    "quantities_in",
     "quantity_name",
     "rarity_of",
     "says_too_little",
@@ -41,7 +43,6 @@ __all__ = [
     "words_of",
 ]  # fmt: skip
 
-TIME = Node("name", "t")
 
 LEAST_SYMBOLS_EDITED = 3
 """The fewest symbols of a scalar formula that is edited."""
@@ -54,6 +55,9 @@ MANY_ENTRIES = 4
 
 SAFE_BY_UNIT = ("exponent", "factor", "wrong_symbol", "extra_term", "missing_term")
 """The faults that a wrong unit proves."""
+
+SURE_IF_STATED = ("sin_cos_swap", "half_angle", "double_half_angle", "exponent")
+"""The faults of a formula whose letters are all stated, so that it can be no other formula."""
 
 QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"I(_bar)?_?(xy|yx|yz|zy|xz|zx|12|21|23|32|13|31)", ("product of inertia",)),
@@ -82,7 +86,8 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"[Hh](_?([xyzOGCPAB0-3]|cm))?", ("angular momentum",)),
     (r"L(_?([xyzOGCPAB0-3]|cm))?", ("angular momentum", "Lagrangian", "torque")),
     (r"p_?(phi|theta|psi|varphi)|P_?(phi|theta|psi)", ("momentum of",)),
-    (r"M", ("torque", "angular momentum of")), (r"(M|N|tau|Gamma|Q)(_?[a-zA-Z1-3]+)?", ("torque",)),
+    (r"M", ("torque", "angular momentum of", "gyroscopic couple")),
+    (r"(M|N|tau|Gamma|Q)(_?[a-zA-Z1-3]+)?", ("torque", "gyroscopic couple")),
     (r"P(_?rot)?", ("power",)), (r"e", ("angle", "energy")),
     (r"[kK](_?[a-zA-Z0-3]+)?", ("radius of gyration", "kinetic energy")),
     (r"dq_?[0-4swxyz]?|d(e|eta|epsilon)_?[0-3]?", ("quaternion",)),
@@ -132,6 +137,9 @@ COMPONENTS_OF_OMEGA = tuple(f"omega_{axis}" for axis in "xyz123")
 
 CROSS_PRODUCT = "cross product v x n"
 """The end of the names of the known cross product and of its components."""
+
+ENTRY = r"[RrACQ]_?([1-3]{2})"
+"""Pattern of the names of the entries of a rotation matrix."""
 
 USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 """The sequences of Euler angles that books use most, in this order."""
@@ -186,11 +194,12 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     True.
     """
     letters, words = names_in(named.formula), words_of(named)
-    count = len(letters | names_in(named.side)) if named.side.kind == "product" else len(letters)  # an equation
-    is_new = not names_in(near.tree) <= letters
+    quantities = len(quantities_in(named.formula))
+    count = len(letters | names_in(named.side)) if named.side.kind == "product" else quantities  # an equation
+    is_new = not quantities_in(near.tree) <= quantities_in(named.formula)
     is_special = near.is_symmetric and not OF_ANGLES.search(near.known.name)
     if is_new and (
-        max(len(letters), near.array_letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_special
+        max(quantities, near.array_letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_special
     ):
         return False  # a special case: the missing letter is zero, or equal to another one
     if near.code in ("overall_sign", "sign_of_term") and re.fullmatch("lambda|sigma|s", named.name):
@@ -218,7 +227,9 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     is_rotation = near.array_letters > 0 and near.known.name.startswith("rotation matrix")
     if is_rotation and re.fullmatch(r"[RCAQ](_\w+)?", named.name):
         return True
-    if _is_stated(claim, named, near) or _is_component_of_quaternion(named, near) or _is_entry(named, near):
+    if _is_stated(claim, named, near) or _is_component_of_quaternion(named, near) or _is_entry_of_matrix(named, near):
+        return True
+    if near.code in SURE_IF_STATED and _are_letters_stated(claim, letters):
         return True
     if words is None:
         return max(count, near.array_letters) >= MANY_LETTERS
@@ -234,6 +245,12 @@ def _is_stated(claim: Claim, named: NamedFormula, near: Near) -> bool:
     """Return whether the context of a claim says that its quantity is the one of the known formula ``near``."""
     meaning = claim.context.meaning_of(quantity_name(named))
     return meaning is not None and any(phrase in near.known.name for phrase in meaning.quantity.formulas)
+
+
+def _are_letters_stated(claim: Claim, letters: set[str]) -> bool:
+    """Return whether the context states the meanings of at least two letters, and all others are moments of inertia."""
+    stated = {letter for letter in letters if claim.context.meaning_of(letter) is not None}
+    return len(stated) > 1 and all(map(MOMENT.fullmatch, letters - stated))
 
 
 def _is_of_stated_body(claim: Claim, near: Near) -> bool:
@@ -257,11 +274,13 @@ def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
     )
 
 
-def _is_entry(named: NamedFormula, near: Near) -> bool:
-    """Return whether a claim is for an entry of a rotation matrix, such as R_12, and ``near`` is for this entry."""
-    entry = re.match(r"entry ([1-3]{2}) of the rotation matrix", near.known.name)
-    own = re.fullmatch(r"[RCAQ]_?([1-3]{2})", named.name)
-    return entry is not None and own is not None and own[1] in (entry[1], entry[1][::-1])
+def _is_entry_of_matrix(named: NamedFormula, near: Near) -> bool:
+    """Return whether a quantity, such as R_12, is named as an entry, and ``near`` is this entry of a rotation matrix.
+
+    The entry must have several terms: a single product may be that of another matrix.
+    """
+    own, entry = re.fullmatch(ENTRY, named.name), re.match(r"entry ([1-3]{2}) of the rotation matrix", near.known.name)
+    return own is not None and entry is not None and own[1] == entry[1] and has_terms(named.formula)
 
 
 def _only_in_sines(formula: Node) -> set[str]:
@@ -279,6 +298,13 @@ def _outside_of_sines(node: Node) -> set[str]:
 
 def has_terms(formula: Node) -> bool:
     return any(node.kind in ("sum", "list") for _, node in walk(formula))
+
+
+def quantities_in(formula: Node) -> set[Node]:
+    """Return the symbols, functions of time and rates in a formula: phi and its rate are two of them."""
+    if is_atom(formula):
+        return set() if formula.value in ("pi", "t") else {formula}
+    return {quantity for part in formula.args for quantity in quantities_in(part)}
 
 
 def names_in(formula: Node) -> set[str]:
@@ -347,7 +373,7 @@ def keeps_places(named: NamedFormula, known: Identification) -> bool:
     angle = re.fullmatch(r"[pP]_?(?:var)?(phi|theta|psi)", named.name)
     if momentum and angle and MOMENTA[angle[1]] != momentum[1]:
         return False
-    entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(r"[RrACQ]_?([1-3]{2})", named.name)
+    entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(ENTRY, named.name)
     if entry and own and own[1] not in (entry[1], entry[1][::-1]):
         return False
     letters = [*known.mapping.values()] or [*names_in(named.formula)]

@@ -3,8 +3,8 @@
 ``python -m symrot.checker.recognition.known_formulas`` prints the file again; none of its formulas is typed by hand.
 """
 
+import json
 import re
-import tomllib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -238,9 +238,24 @@ def _torques() -> Iterator[Named]:
     for kind, title, fields in ACTING:
         law = torque_law(FieldTorque(kind, "", tuple(fields.items())), motion)
         source = f'symrot.dynamics.torques, kind "{kind}"'
-        yield f"torque of {title}, body components", source, law.torque
+        for letters in _letters_of_books(law.torque):
+            yield f"torque of {title}, body components", source, law.torque.subs(letters)
         if law.potential is not None:
             yield f"potential of {title}", source, law.potential
+
+
+def _letters_of_books(torque: Matrix) -> list[dict[Symbol, Symbol]]:
+    """Return the letters that books use for symbols of the torque of the gravity gradient; [{}] for other torques.
+
+    The direction to the planet's centre is the third column of a rotation matrix, or a unit vector.
+    """
+    named = {symbol.name: symbol for symbol in torque.free_symbols}
+    if "mean_motion" not in named:
+        return [{}]
+    direction = [named[f"radius_{axis}"] for axis in (1, 2, 3)]
+    rate = {named["mean_motion"]: symbols.n}
+    columns = [symbols.rotation_entries[2::3], symbols.axis]
+    return [rate | dict(zip(direction, column, strict=True)) for column in columns]
 
 
 def stated() -> Iterator[Named]:
@@ -396,10 +411,17 @@ def _quoted(text: str) -> str:
 
 @cache
 def by_fingerprint() -> dict[str, list[Known]]:
-    """Return the known formulas by their key, a hash that does not depend on the names of symbols."""
+    """Return the known formulas by their key, a hash that does not depend on the names of symbols.
+
+    The values in the file as :func:`page` prints it are also JSON, which is read in a fraction of the time of TOML.
+    """
     formulas: dict[str, list[Known]] = {}
-    for entry in tomllib.loads(FILE.read_text(encoding="utf-8"))["formula"]:
-        formulas.setdefault(entry.pop("key"), []).append(Known(**entry))
+    _, *entries = FILE.read_text(encoding="utf-8").split("\n[[formula]]\n")
+    for entry in entries:
+        fields = {
+            name: json.loads(value) for name, _, value in (line.partition(" = ") for line in entry.splitlines() if line)
+        }
+        formulas.setdefault(fields.pop("key"), []).append(Known(**fields))
     return formulas
 
 

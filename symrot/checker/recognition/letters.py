@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
-from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim.tree import TIME, Node, is_derivative, walk
 from symrot.checker.recognition.parts import Letters, PointOfLetters, Values, rates_of_entries, values_of
 from symrot.checker.repair.edits import OPPOSITE
 from symrot.checker.repair.filter import NumericFilter
@@ -18,7 +18,6 @@ from symrot.checker.repair.rows import is_matrix
 
 __all__ = ["POINTS", "is_atom", "letters_of_formula", "nodes_of", "pieces_of", "text_of"]
 
-TIME = Node("name", "t")
 MOST_DRAWS = 40
 """The most random points that are drawn to find some where a formula has a value."""
 MOST_DRAWS_WITH_ROOTS = 400
@@ -58,7 +57,7 @@ def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:
         tree = trees.pop()
         if tree.kind == "call" and tree.value in OPPOSITE:
             angles[tree.args[0]] = values_of(tree.args[0], at) or ()
-        if tree.kind == "call" and tree.value == "diff" and str(tree.args[0].value) in defined_names:
+        if is_derivative(tree) and str(tree.args[0].value) in defined_names:
             trees.append(rates_of_entries(defined_names[str(tree.args[0].value)], tree.args[1:]))
         elif is_atom(tree):
             if tree.kind == "name" and tree.value in defined_names:
@@ -126,7 +125,7 @@ def is_atom(tree: Node) -> bool:
     if tree.kind == "name":
         return True
     inner = tree
-    while inner.kind == "call" and inner.value == "diff" and set(inner.args[1:]) == {TIME}:
+    while is_derivative(inner) and set(inner.args[1:]) == {TIME}:
         inner = inner.args[0]
     return inner.kind == "call" and inner.args == (TIME,) and tree.kind == "call"
 

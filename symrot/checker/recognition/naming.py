@@ -17,10 +17,10 @@ from sympy import Function, Matrix, Mul, Pow, Rational, Symbol, acos, asin, atan
 from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.interpreter import time
-from symrot.checker.claim.named_formula import NamedFormula
+from symrot.checker.claim.named_formula import NamedFormula, solution
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
-from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk, with_names
+from symrot.checker.claim.tree import Node, is_derivative, negated, number, product, sum_of, text, walk, with_names
 from symrot.checker.context.context import letters_of
 from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.recognition.evidence import (
@@ -39,6 +39,7 @@ from symrot.checker.recognition.evidence import (
     keeps_places,
     misfit_of,
     names_in,
+    quantities_in,
     quantity_name,
     rarity_of,
     says_too_little,
@@ -49,9 +50,10 @@ from symrot.checker.recognition.identification import identified, known_value
 from symrot.checker.recognition.known_formulas import ending_of
 from symrot.checker.recognition.letters import is_atom
 from symrot.checker.recognition.nearby import Near, near_formulas
+from symrot.checker.recognition.quantity_variants import is_evident_by_quantity, quantity_variants
 from symrot.checker.recognition.relations import terms_expanded, without_common_powers
 from symrot.checker.recognition.solved_relations import put_back, solved_claims
-from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, single_edits
+from symrot.checker.repair.edits import COST, FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, single_edits
 from symrot.checker.repair.filter import NumericFilter, matrix_entries
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.errors import InputError
@@ -180,7 +182,7 @@ def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | Non
     (the matrix becomes a known one by a change), the verdict also has the corrected equations as repairs.
     """
     factors = named.formula.args if named.formula.kind == "product" else ()
-    is_map = len(factors) == 2 and factors[0].value == "Matrix" and (is_atom(factors[1]) or _is_rate(factors[1]))
+    is_map = len(factors) == 2 and factors[0].value == "Matrix" and (is_atom(factors[1]) or is_derivative(factors[1]))
     if not is_map or len(matrix_entries(factors[0])) <= MOST_COMPONENTS:
         return None
     verdict = verdict_on_name(claim, named._replace(formula=factors[0]), repair)
@@ -191,10 +193,6 @@ def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | Non
         side = product([read_relation(edited.text)[2], factors[1]])
         repairs.append(replace(edited, text=f"{text(named.side)} == {text(side)}"))
     return replace(verdict, repairs=tuple(repairs))
-
-
-def _is_rate(tree: Node) -> bool:
-    return tree.kind == "call" and tree.value == "diff"
 
 
 def verdict_on_relation(claim: Claim) -> Verdict | None:
@@ -244,7 +242,29 @@ def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
         return None
     near = _near(claim, named) if named.solve is not None else _near_relation(claim, named.side, named.formula)
     is_open = words_of(named) is not None or named.solve is None
-    return _edited(claim, named) if near is None and is_open else near
+    edited = _edited(claim, named) if near is None and is_open else near
+    return _near_by_quantity(claim, named) if edited is None else edited
+
+
+def _near_by_quantity(claim: Claim, named: NamedFormula) -> Verdict | None:
+    """Return the verdict "doubtful" if a change on the side of the quantity gives a known formula; otherwise None.
+
+    So ``cos(gamma)`` should be ``cos(gamma/2)`` in the formula for the angle of two rotations, and ``k`` should be
+    ``k^2`` in ``k = I/m``.
+    """
+    for changed in quantity_variants(named):
+        if not is_evident_by_quantity(claim, named, changed):
+            continue
+        side, formula = changed.side, changed.formula
+        quantity = solution(side)
+        if quantity is None:
+            continue
+        other = named._replace(side=side, formula=formula, solve=quantity[1])
+        if readings := _readings_of_formula(claim, other, quantity[1](formula), LEAST_SYMBOLS):
+            repair = Repair(f"{text(side)} == {text(formula)}", changed.code, changed.cost)
+            diagnosis = Diagnosis(changed.code, FAULT_DESCRIPTIONS[changed.code])
+            return Verdict("doubtful", diagnosis=diagnosis, repairs=(repair,), recognised_as=readings)
+    return None
 
 
 def verdict_near_relation(claim: Claim) -> Verdict | None:
@@ -410,16 +430,25 @@ def _has_equal(claim: Claim, tree: Node, others: Collection[Node]) -> bool:
 def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
     """Return the verdict "doubtful" if undoing a usual fault makes the formula a known one; otherwise None.
 
-    Unlike :func:`_near`, this tries edits of whole formulas, one by one.
+    Unlike :func:`_near`, this tries edits of whole formulas, one by one. If a number stands alone on the right side,
+    the left side is edited.
     """
     nearest: tuple[tuple[int, int, int], Verdict] | None = None
+    if named.solve is None and named.formula.kind == "number" and named.formula.value:
+        exchanged = _edited(claim, named._replace(side=named.formula, formula=named.side))
+        if exchanged is None:
+            return None
+        repairs = tuple(replace(r, text=" == ".join(reversed(r.text.split(" == ")))) for r in exchanged.repairs)
+        return replace(exchanged, repairs=repairs)
     letters = names_in(named.formula)
-    if len(letters) < LEAST_SYMBOLS_EDITED + (not has_terms(named.formula)):
+    is_of_trace = named.side.kind == "call" and named.side.value == "trace" and has_terms(named.formula)
+    if len(quantities_in(named.formula)) < LEAST_SYMBOLS_EDITED + (not has_terms(named.formula)) and not is_of_trace:
         return None
-    for edit in _edits(claim, named.formula):
+    least = LEAST_SYMBOLS if named.solve is None and _is_stated(claim, named) else LEAST_SYMBOLS_EDITED
+    for edit in (*_edits(claim, named.formula), *_with_all_terms_added(named)):
         if names_in(edit.tree) < letters or edit.code == "extra_term":  # the formula may be a more general one
             continue
-        all_readings = _readings(claim, named, edit.tree, LEAST_SYMBOLS_EDITED)
+        all_readings = _readings(claim, named, edit.tree, least)
         readings = tuple(known for known in all_readings if not any(body in known.name for body in RARE))
         is_growth = re.fullmatch("lambda|sigma|s", named.name) is not None
         is_open = edit.code in ("sign_of_term", "overall_sign") and (is_growth or not has_terms(named.formula))
@@ -434,6 +463,14 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
         if not any(strangeness):
             break
     return nearest and nearest[1]
+
+
+def _with_all_terms_added(named: NamedFormula) -> Iterator[Edit]:
+    """Yield the formula a + b + c for ``a - b - c``, if it should be a number, as the square of a length should be."""
+    negative = [term for term in named.formula.args if term.kind == "neg"]
+    if named.solve is None and named.side.kind == "number" and named.formula.kind == "sum" and len(negative) > 1:
+        added = sum_of([term.args[0] if term.kind == "neg" else term for term in named.formula.args])
+        yield Edit("sign_of_term", COST["sign_of_term"] * len(negative), (), added)
 
 
 def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.reader import read_expression
-from symrot.checker.claim.tree import Node, Path, number, replaced, walk
+from symrot.checker.claim.tree import TIME, Node, Path, number, replaced, walk
 from symrot.checker.recognition.array_faults import ArrayFault, agree, array_faults, has_arrays, matching
 from symrot.checker.recognition.identification import UNIT_OF_NAME
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, ending_of
@@ -57,7 +57,6 @@ MOST_NODES = 500
 FEW = 3
 """The most symbols of a known formula with an angle that a claim without angles may mean."""
 SQUARED = ", squared"
-TIME = Node("name", "t")
 
 
 class Near(NamedTuple):
@@ -301,9 +300,7 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
         return []
     absent = next((name for name, other in renaming.items() if other is None), None)
     name, is_similar = absent_name(absent, renaming) if absent is not None else ("", False)
-    moving = {node.args[0] for atom in letters.atoms if atom.kind == "call" for node in nodes_of(atom) if node.args}
-    timed = Node("call", name, (TIME,))
-    lacking = (timed if timed in moving else Node("name", name)) if absent is not None else None
+    lacking = _lacking_letter(absent, name, letters) if absent is not None else None
     if lacking in letters.atoms:
         return []
     nodes = {mine: lacking if other is None else atoms[other] for mine, other in renaming.items()}
@@ -325,6 +322,19 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
         flags = other_unit, is_shifted, is_symmetric
         near_ones.append(Near(cost, code, whole, known, renamed, *flags, letter, array_letters, texts))
     return near_ones
+
+
+def _lacking_letter(absent: str, name: str, letters: Letters) -> Node:
+    """Return the tree of the quantity ``absent`` that a claim lacks, under the name ``name``.
+
+    It is a function of time if its rate occurs in the claim, and a derivative if it is the rate of an angle in a claim
+    with rates.
+    """
+    moving = {node.args[0] for atom in letters.atoms if atom.kind == "call" for node in nodes_of(atom) if node.args}
+    timed = Node("call", name, (TIME,))
+    if absent.startswith("d") and name.startswith("d") and any(atom.value == "diff" for atom in letters.atoms):
+        return Node("call", "diff", (Node("call", name[1:], (TIME,)), TIME))
+    return timed if timed in moving else Node("name", name)
 
 
 def _is_promising(search: Search, needed: Values) -> bool:

@@ -110,6 +110,26 @@ NUMBERED = re.compile("([a-z])_?([1-9])")
 """A component of a factor of a product; its groups are the letter of the component and the number of the factor."""
 
 
+def _numbered_angle(known: str, mine: str, other: str) -> str:
+    """Return the name of an angle or rate ``known`` if the angle or rate ``mine`` is called ``other``, as theta_1 is.
+
+    The angles are numbered from the first rotation to the last one or, as those of an aircraft often are, the other way
+    round. The text is empty if ``other`` has another number, or if one of the names is no angle and no rate of one.
+
+    Examples
+    --------
+    >>> _numbered_angle("psi", "phi", "theta_1"), _numbered_angle("theta", "psi", "theta_1")
+    ('theta_3', 'theta_2')
+    >>> _numbered_angle("dpsi", "theta", "theta_2"), _numbered_angle("psi", "phi", "omega_2")
+    ('dtheta_3', '')
+    """
+    place, own = ORDER.get(known.removeprefix("d")), ORDER.get(mine.removeprefix("d"))
+    stem, number = other.removeprefix("d" if mine.startswith("d") else "")[:-1], other[-1:]
+    if place is None or own is None or number not in (own, str(4 - int(own))):
+        return ""
+    return ("d" if known.startswith("d") else "") + stem + (place if number == own else str(4 - int(place)))
+
+
 def _moved(renaming: dict[str, str | None]) -> int:
     """Return the number of symbols that a renaming moves to another axis, as I_1 to I_2."""
     pairs = [(axes_of(name), axes_of(plain_name(other))) for name, other in renaming.items() if other is not None]
@@ -197,8 +217,8 @@ def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]
     Otherwise it is the usual name of the quantity.
     """
     for mine, other in renaming.items():
-        if known in ORDER and mine in ORDER and other is not None and other[-1] == ORDER[mine]:
-            return other[:-1] + ORDER[known], True
+        if other is not None and (numbered := _numbered_angle(known, mine, plain_name(other))):
+            return numbered, True
         if known in ORDER and mine in ORDER and plain_name(other or "") == mine:
             return known, True
     if (of_product := _absent_of_product(known, renaming)) is not None:

@@ -12,7 +12,7 @@ from fractions import Fraction
 from functools import reduce
 from typing import Any, NamedTuple
 
-from symrot.checker.claim.tree import Node, Path, negated, number, product, sum_of
+from symrot.checker.claim.tree import TIME, Node, Path, is_derivative, negated, number, product, sum_of
 from symrot.checker.repair.dual import minus
 from symrot.checker.repair.edits import COST, OPPOSITE, neighbours, scaled
 from symrot.checker.repair.filter import at, matrix_entries
@@ -47,7 +47,6 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
     "sin": math.sin, "cos": math.cos, "tan": math.tan, "cot": lambda x: 1 / math.tan(x),
     "sec": lambda x: 1 / math.cos(x), "csc": lambda x: 1 / math.sin(x),
 }  # fmt: skip
-TIME = Node("name", "t")
 LACKING = Node("name", "?")
 """A symbol of a known formula that a claim lacks, under a name that no text can contain."""
 HALVES = {Fraction(2): "half_angle", Fraction(1, 2): "double_half_angle"}
@@ -106,7 +105,7 @@ class PointOfLetters(Point):
     def _value(self, node: Node) -> Any:
         if node.kind == "call" and node in self.rates:
             return self.rates[node]
-        if node.kind == "call" and node.value == "diff" and str(node.args[0].value) in self.definitions:
+        if is_derivative(node) and str(node.args[0].value) in self.definitions:
             return super()._value(rates_of_entries(self.definitions[str(node.args[0].value)], node.args[1:]))
         return super()._value(node)
 
@@ -349,12 +348,48 @@ def _of_exponent(node: Node, parent: str, values: Values, letters: Letters) -> I
     elif not (node.kind in ("name", "call", "sum") and parent) and not (node.kind == "product" and parent == "inv"):
         return
     bases = values_of(base, letters.points) or ()
+    if exponent == 2 and base in letters.atoms:  # x*y was written as x^2
+        yield from _with_other_factor(base, bases, letters)
     for power in POWERS:
         if power != exponent and power and not (power < 0 and parent == "inv"):
             size = base if abs(power) == 1 else Node("power", None, (base, number(abs(power))))
             made = size if power > 0 else Node("inv", None, (size,))
             cost = COST["exponent"] + (0.0 if {power, exponent} == {1, 2} else COST["not_a_square"])
             yield Variant(Change(made, "exponent", cost), tuple(value**power for value in bases))
+
+
+def _with_other_factor(base: Node, bases: Values, letters: Letters) -> Iterator[Variant]:
+    """Yield the products of a symbol ``base`` and each other symbol, in place of its square: x*y for x^2.
+
+    ``bases`` are the values of the symbol.
+    """
+    alike = neighbours(base.value, letters.names) if base.kind == "name" else ()
+    for other, others in letters.atoms.items():
+        if other != base:
+            cost = COST["solved_neighbour" if other.value in alike or other == LACKING else "solved_symbol"]
+            made = Change(product([base, other]), "wrong_symbol", cost)
+            yield Variant(made, tuple(a * b for a, b in zip(bases, others, strict=True)))
+
+
+def _of_square(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
+    """Yield the square of a quotient, (a/b)^2 for a/b, and the sum of squares, a^2 - b^2 for (a - b)^2."""
+    factors = [factor.args[0] if factor.kind == "inv" else factor for factor in node.args]
+    if node.kind == "product" and len(factors) > 1 and parent == "sum" and all(f in letters.atoms for f in factors):
+        squares = [_square_of(factor) for factor in node.args]
+        yield Variant(Change(product(squares), "exponent", COST["exponent"]), tuple(v**2 for v in values))
+    if node.kind == "power" and node.args[0].kind == "sum" and node.args[1] == number(2):
+        terms = [negated(_square_of(t.args[0])) if t.kind == "neg" else _square_of(t) for t in node.args[0].args]
+        made = sum_of(terms)
+        changed = values_of(made, letters.points)
+        if changed is not None:
+            yield Variant(Change(made, "exponent", COST["exponent"]), changed)
+
+
+def _square_of(tree: Node) -> Node:
+    """Return the square of a tree; for 1/a it is 1/a^2."""
+    if tree.kind == "inv":
+        return Node("inv", None, (_square_of(tree.args[0]),))
+    return Node("power", None, (tree, number(2)))
 
 
 def _of_function(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
@@ -447,7 +482,7 @@ def _exchanged(tree: Node, angle: Node) -> Node:
     return replace(tree, args=tuple(_exchanged(child, angle) for child in tree.args))
 
 
-_VARIANTS = (_of_letter, _of_exponent, _of_function, _of_factor, _of_terms)
+_VARIANTS = (_of_letter, _of_exponent, _of_square, _of_function, _of_factor, _of_terms)
 
 
 def rational(values: Sequence[float]) -> Fraction | None:

@@ -347,6 +347,7 @@ def _steady() -> Iterator[Relation]:
     assert cancel(_by_spin(along).subs(THETA, pi / 2) + level) == 0
     title, words = "steady precession with a level axle", {TORQUE: "torque of", DPHI: "rate of"}
     yield Relation(title, WHEEL, TORQUE - level, words)
+    words |= {TORQUE: "gyroscopic couple of"}  # T = omega L is no torque, but twice a kinetic energy
     yield Relation(title, WHEEL, TORQUE - level.subs(C, symbols.H / SPIN), words)
     yield Relation("fast nutation of a top", HEAVY, A * symbols.n - C * SPIN, {symbols.n: "frequency of"})
 

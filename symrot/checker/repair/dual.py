@@ -7,8 +7,6 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 __all__ = [
     "Dual", "UndefinedValue", "absolute", "arctangent", "as_dual", "cosine", "exponential", "inverse", "logarithm",
     "minus", "plain", "power", "sine", "square_root",
@@ -65,19 +63,28 @@ def minus(x: Any) -> Any:
     return -x
 
 
-def _plainly(function: Any, x: Any) -> Any:
-    """Return the value of an elementary function, such as ``np.sin``, at a number or at each number of an array."""
-    return function(x) if isinstance(x, np.ndarray) else getattr(math, function.__name__)(x)
+def _is_array(x: Any) -> bool:
+    """Return whether x is an array of NumPy, of one or more dimensions."""
+    return not isinstance(x, (int, float)) and hasattr(x, "ndim")
+
+
+def _plainly(function: str, x: Any) -> Any:
+    """Return the value of an elementary function, such as ``"sin"``, at a number or at each number of an array."""
+    if not _is_array(x):
+        return getattr(math, function)(x)
+    import numpy as np  # for arrays alone, since its import takes longer than most checks
+
+    return getattr(np, function)(x)
 
 
 def sine(x: Any) -> Any:
     """Return sin x, x in rad."""
-    return Dual(sine(x.value), cosine(x.value) * x.slope) if isinstance(x, Dual) else _plainly(np.sin, x)
+    return Dual(sine(x.value), cosine(x.value) * x.slope) if isinstance(x, Dual) else _plainly("sin", x)
 
 
 def cosine(x: Any) -> Any:
     """Return cos x, x in rad."""
-    return Dual(cosine(x.value), -sine(x.value) * x.slope) if isinstance(x, Dual) else _plainly(np.cos, x)
+    return Dual(cosine(x.value), -sine(x.value) * x.slope) if isinstance(x, Dual) else _plainly("cos", x)
 
 
 def square_root(x: Any) -> Any:
@@ -85,14 +92,14 @@ def square_root(x: Any) -> Any:
     if isinstance(x, Dual):
         root = square_root(x.value)
         return Dual(root, inverse(2.0 * root) * x.slope)
-    return _plainly(np.sqrt, x)
+    return _plainly("sqrt", x)
 
 
 def absolute(x: Any) -> Any:
     """Return the absolute value of x."""
-    if isinstance(x, np.ndarray):
-        return np.abs(x)
-    return -x if plain(x) < 0 else x
+    if isinstance(x, Dual):
+        return -x if plain(x) < 0 else x
+    return abs(x)
 
 
 def plain(x: Any) -> float:
@@ -116,12 +123,12 @@ def exponential(x: Any) -> Any:
     if isinstance(x, Dual):
         value = exponential(x.value)
         return Dual(value, value * x.slope)
-    return _plainly(np.exp, x)
+    return _plainly("exp", x)
 
 
 def logarithm(x: Any) -> Any:
     """Return the natural logarithm of a positive number."""
-    return Dual(logarithm(x.value), inverse(x.value) * x.slope) if isinstance(x, Dual) else _plainly(np.log, x)
+    return Dual(logarithm(x.value), inverse(x.value) * x.slope) if isinstance(x, Dual) else _plainly("log", x)
 
 
 def power(x: Any, exponent: float) -> Any:
@@ -134,6 +141,6 @@ def power(x: Any, exponent: float) -> Any:
         return result if whole >= 0 else inverse(result)
     if isinstance(x, Dual):
         return Dual(power(x.value, exponent), exponent * power(x.value, exponent - 1) * x.slope)
-    if np.any(x < 0):
+    if (x < 0).any() if _is_array(x) else x < 0:
         raise UndefinedValue("expected a positive base of a fractional power, got a negative number")
     return x**exponent

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.functions import BUILT_IN
-from symrot.checker.claim.tree import Node, Path, text, walk
-from symrot.checker.latex.cursor import MATRIX_CALLS, TIME
+from symrot.checker.claim.tree import TIME, Node, Path, is_derivative, text, walk
+from symrot.checker.latex.cursor import MATRIX_CALLS
 from symrot.checker.repair.edits import COST, Edit
 from symrot.checker.repair.points import Point, UndefinedValue, agree, entries_of, points
 
@@ -64,7 +64,7 @@ class NumericFilter:
         self.points = points(self.symbols, self.functions, self.definitions, hypotheses, own_pieces, most=most)
         values = claim.definitions.values
         self.matrix_names = {name for name, value in values.items() if getattr(value, "is_Matrix", False)}
-        self.moving = any(node.kind == "call" and node.value == "diff" for tree in trees for _, node in walk(tree))
+        self.moving = any(is_derivative(node) for tree in trees for _, node in walk(tree))
         self.used = self._used_definitions()
         self.dependent: dict[str, set[int | str]] = {}
         self.wrong = self._wrong_entries()

@@ -11,10 +11,8 @@ from itertools import pairwise
 from random import Random
 from typing import Any
 
-import numpy as np
-
 from symrot.checker.claim.functions import ROTATIONS
-from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim.tree import Node, is_derivative, walk
 from symrot.checker.repair.dual import (
     Dual,
     UndefinedValue,
@@ -133,7 +131,7 @@ class Point:
         """
         order = 0
         inner = variable
-        while inner.kind == "call" and inner.value == "diff":
+        while is_derivative(inner):
             order += len(inner.args) - 1
             inner = inner.args[0]
         name = inner.value
@@ -258,6 +256,8 @@ def _integrated(point: Point, integrand: Node, ranges: Sequence[Node]) -> Any:
 
     Each of ``ranges`` is (variable, low, high); those of the outer variables come first.
     """
+    import numpy as np  # for integrals and hypotheses alone, since its import takes longer than most checks
+
     nodes, weights = np.polynomial.legendre.leggauss(GAUSS[min(len(ranges), 3)])
     inner, total = point, np.ones((1,) * len(ranges))
     for axis, part in enumerate(ranges):
@@ -272,7 +272,7 @@ def _integrated(point: Point, integrand: Node, ranges: Sequence[Node]) -> Any:
 
 
 def _summed(values: Any) -> Any:
-    return Dual(_summed(values.value), _summed(values.slope)) if isinstance(values, Dual) else float(np.sum(values))
+    return Dual(_summed(values.value), _summed(values.slope)) if isinstance(values, Dual) else float(values.sum())
 
 
 def _matrix(rows: Any) -> Rows:
@@ -386,9 +386,13 @@ def points(
 
 def _onto_hypotheses(point: Point, hypotheses: Sequence[tuple[Node, Node]]) -> Point | None:
     """Move a point until the hypotheses hold, by Newton's method (least-squares steps); return None if that fails."""
+    if not hypotheses:
+        return point
+    import numpy as np
+
     variables = [Node("name", name) for name in point.symbols]
     variables += [Node("call", name, (Node("name", "t"),)) for name in point.functions]
-    for _ in range(30 if hypotheses else 0):
+    for _ in range(30):
         residuals, slopes = [], []
         try:
             for left, right in hypotheses:
@@ -413,4 +417,4 @@ def _onto_hypotheses(point: Point, hypotheses: Sequence[tuple[Node, Node]]) -> P
             point.remembered,
             point.spent,
         )
-    return None if hypotheses and max(map(abs, residuals)) > 1e-12 else point
+    return None if max(map(abs, residuals)) > 1e-12 else point

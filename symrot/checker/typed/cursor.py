@@ -14,13 +14,12 @@ from symrot.checker.typed.words import ALIASES, ENGLISH
 from symrot.errors import InputError, complaint
 
 __all__ = [
-    "ADDING", "DEEPEST_NESTING", "FACTOR_MARKS", "MASS", "TIME", "Cursor", "Doubt", "Vocabulary", "is_cross_letter",
+    "ADDING", "DEEPEST_NESTING", "FACTOR_MARKS", "MASS", "Cursor", "Doubt", "Vocabulary", "is_cross_letter",
     "is_mass_before_vector", "is_usual_vector",
 ]  # fmt: skip
 
 DEEPEST_NESTING = 60
 LONGEST_NUMBER = 200
-TIME = Node("name", "t")
 ADDING = ("+", "-")
 MASS = "dm"
 """The element of mass of a body."""

@@ -2,8 +2,8 @@
 
 import re
 
-from symrot.checker.claim.tree import Node, negated, number, product, walk
-from symrot.checker.typed.cursor import ADDING, FACTOR_MARKS, TIME, Cursor
+from symrot.checker.claim.tree import TIME, Node, negated, number, product, walk
+from symrot.checker.typed.cursor import ADDING, FACTOR_MARKS, Cursor
 from symrot.checker.typed.defined_functions import DEFINED, DISPUTED, INVERSES, instead
 from symrot.checker.typed.tokens import Token
 from symrot.checker.typed.words import SINGLE_ARGUMENT

@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 from symrot.checker.arrays.index_notation import component_of_cross
 from symrot.checker.arrays.quaternions import CONJUGATE
 from symrot.checker.claim.functions import BUILT_IN
-from symrot.checker.claim.tree import Node, number, product
-from symrot.checker.typed.cursor import ADDING, DEEPEST_NESTING, MASS, TIME
+from symrot.checker.claim.tree import TIME, Node, is_derivative, number, product
+from symrot.checker.typed.cursor import ADDING, DEEPEST_NESTING, MASS
 from symrot.checker.typed.densities import over_mass
 from symrot.checker.typed.open_functions import OpenFunctionsPart
 from symrot.checker.typed.tokens import GREEK_WORDS, SIGNS, Token
@@ -188,7 +188,7 @@ class PiecesPart(OpenFunctionsPart):
                 self.index += 3
             self.timed.add(name)
             node = Node("call", name, (TIME,), node.span)
-        elif node.kind == "call" and node.value == "diff" and node.args[-1] == TIME:
+        elif is_derivative(node) and node.args[-1] == TIME:
             return Node("call", "diff", (*node.args, *[TIME] * order), self.span(start))
         return Node("call", "diff", (node, *[TIME] * order), self.span(start))
 

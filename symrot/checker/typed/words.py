@@ -57,6 +57,9 @@ _WITH_INDEX = re.compile(r"([A-Za-z]{1,3})([A-Za-z]_[A-Za-z0-9]+)", re.ASCII)
 USUAL_LETTERS = frozenset("mMghlLrRvatFIkwsuc")
 """Letters that nearly every book on mechanics uses for a quantity."""
 
+_WITH_INDICES = re.compile(r"([A-Za-z]_[0-9]){2,}", re.ASCII)
+"""A product of letters with indices, such as ``a_1b_2``."""
+
 BEFORE_INDEX = USUAL_LETTERS | {"E", "T"}
 """The letters that may stand in a word before a letter with an index: E and I_1 in ``EI_1``."""
 
@@ -112,6 +115,8 @@ def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], 
         before, last = str(with_index[1]), str(with_index[2])
         is_product = last in alone and all(letter in alone or letter in BEFORE_INDEX for letter in before)
         return ((*before, last), True) if is_product else ((), False)
+    if _WITH_INDICES.fullmatch(word):
+        return tuple(re.findall("[A-Za-z]_[0-9]", word)), True
     letters = tuple(_LETTER.findall(word))
     if "".join(letters) != word or len(letters) < 2:
         return (), False

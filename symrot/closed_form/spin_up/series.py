@@ -67,9 +67,11 @@ def _nodes() -> tuple[Floats, Floats]:
 
 
 def _first(share: float, v: float) -> Floats:
-    """Return the coefficients of the function a (see the module's text) as a polynomial in y, lowest power first.
+    """Return the coefficients of the function a as a polynomial in y, lowest power first.
 
-    ``share`` is kappa^2/radius2 and ``v`` is 1/radius2.
+    a(v) is the part ``n1 = (kappa/r) a(v)`` of a vector at rest in space; the module's text defines it, with ``v =
+    1/r^2``. y is ``radius2 v`` for a fixed radius2 (see :class:`Series`); ``share`` is kappa^2/radius2, and the
+    argument ``v`` is 1/radius2, the value of v at y = 1.
     """
     order, total = {0: 1.0}, [0.0] * (3 * _ORDERS + 1)
     total[0] = 1.0

@@ -1,6 +1,7 @@
 """C code that bounds how far the rates dy/dt deviate from constants near a step, so that no step misses a pulse.
 
-The bounds (enclosures) hold on discs of complex times and states. The code is placed between
+A pulse is a short change of the rates, such as a torque exp(-(t - 5)^2), that the Taylor series at the start of a step
+does not show. The bounds (enclosures) hold on discs of complex times and states. The code is placed between
 :file:`propagation/enclosures/disc.h`, which contains the rules of disc arithmetic, and a stepper. Standard library
 only.
 """
@@ -35,13 +36,17 @@ def enclosure_definitions(enclosure: Enclosure | None, order: int, edges: Sequen
     Parameters
     ----------
     enclosure : Enclosure or None
-        The terms to bound; None for a right-hand side that needs no bounds.
+        The terms of the rates in which a pulse may hide; None if there are no such terms.
     order : int
-        Order N of the polynomials that approximate the states; the table of radii depends on it. If the rates
-        deviate from constants by at most D on a disc whose radius in time is ``reach`` steps, a step of length h has an
-        error of at most ``h D reach^-N/((N + 1)(1 - 1/reach))``.
+        The order N of the Taylor polynomials that approximate the states in a step.
     edges : sequence of int
         State i is in block j if ``edges[j] <= i < edges[j + 1]``; each block of states has its own error.
+
+    Notes
+    -----
+    The C code bounds the terms' deviation from constants by D, on a disc of complex times whose radius is r times
+    the step h. Then the step has an error of at most ``h D r^-N/((N + 1)(1 - 1/r))``. The C table ``symrot_reaches``
+    holds the numbers r that the stepper tries, each with the factor of h D.
     """
     if enclosure is None:
         return "#define SYMROT_ENCLOSED 0\n#define SYMROT_DEPENDS 0\n"

@@ -83,10 +83,10 @@ def enclosure(system: Recurrences) -> Enclosure | None:
 
 
 def _degree(series: Series, degrees: list[int]) -> int:
-    """Return the degree of the quantity of a series as a polynomial in states, time, and sin and cos of ``a*t + b``.
+    """Return the degree of the quantity of a series as a polynomial in the states, t, sin(a t + b) and cos(a t + b).
 
-    ``degrees`` holds the degrees of the earlier series, which are its operands. The result is at least BEYOND, which
-    means "must be bounded", if the quantity is not such a polynomial, as for exp(u).
+    ``degrees`` holds the degrees of the earlier series, which are its operands. For another quantity, such as exp(u),
+    the result is at least BEYOND: a pulse may hide in it, so that the stepper must bound it.
     """
     if series.rule in ("state", "time"):
         return 1

@@ -85,7 +85,11 @@ class Share:
             yield "add", ((a, 1), (b, s * r))
 
     def _is_variable(self, pair: Any) -> bool:
-        """Return whether a pair is a sum, or a product without a number; such pairs are replaced first."""
+        """Return whether ``pair`` is a sum of two terms, or a product of two factors that are no numbers.
+
+        A pair that occurs repeatedly is computed once and replaced by a new node. Of pairs that occur equally often,
+        those for which the result is true are replaced first.
+        """
         return pair[0] == "add" or not any(self.nodes[i][0] == "num" for part in pair[1:] for i in part)
 
     def _replace(self, kind: str, pair: tuple[Any, ...], swap: Callable[..., tuple[Any, ...]]) -> None:

@@ -48,8 +48,9 @@ class Gather:
     def constant(self, value: Expr) -> tuple[int, Tree | None]:
         """Return (sign, tree) for a constant: ``value`` is the sign, 1 or -1, times the value of the tree.
 
-        The tree is a number or the symbol of a parameter, which is added to ``hoisted`` if new; None if ``value`` is 1
-        or -1.
+        The tree is None if ``value`` is 1 or -1, a number if it is rational, and otherwise the symbol of a parameter
+        that stands for the constant. ``self.hoisted`` maps each such constant to the name of its parameter; a new
+        constant is added.
         """
         sign, value = _oriented(value)
         if value == 1:

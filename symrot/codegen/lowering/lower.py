@@ -76,7 +76,11 @@ class _Writer:
                 self._count(operand, seen)
 
     def node(self, index: int) -> Node:
-        """Return the formula of the node ``index``, or the symbol of its temporary, which is added if necessary."""
+        """Return the formula of the node ``index``, or the symbol of the temporary that holds its value.
+
+        A node is assigned to a temporary if it is used repeatedly, calls a function or has a name in ``self.named``;
+        the first call for it appends (name, formula) to ``self.temporaries``.
+        """
         kind = self.nodes[index][0]
         if kind == "num":
             return ("number", self.nodes[index][1])
@@ -159,10 +163,11 @@ def _lowered(
     signature: Signature, outputs: Sequence[tuple[str, Expr]], definitions: Sequence[tuple[Symbol, Expr]],
     parameter_argument: str, flat: bool,
 ) -> tuple[Lowered, list[str]]:  # fmt: skip
-    """Return (the program with its parameters, the temporaries that have no descriptive name yet).
+    """Return (lowered, names): the program with the formulas of its parameters, and its temporaries that need names.
 
-    The arguments are those of :func:`lower`. If ``flat`` is true, nested sums are merged before common parts are
-    shared; :func:`lower` tries both and keeps the program with fewer operations.
+    The arguments are those of :func:`lower`. If ``flat`` is true, a sum inside a sum is merged with it before parts
+    that occur repeatedly are computed once. :func:`lower` tries both values and keeps the program with fewer
+    operations. The names are preliminary ones, which :func:`lower` replaces by descriptive names.
     """
     inputs = [name for a in signature.arguments if a.role == "in" for name, *_ in a.components]
     held = {symbol for _, expr in [*outputs, *definitions] for symbol in expr.free_symbols}
@@ -187,9 +192,10 @@ def _lowered(
 
 
 def _numbers(parameters: Iterable[tuple[str, Node]]) -> dict[str, Node]:
-    """Return those parameters, by name, whose formula contains no physical constant, such as 2 pi or sqrt(3).
+    """Return the parameters, by name, whose formula contains only numbers, such as ``2*pi`` or ``sqrt(3)``.
 
-    They are printed as numbers, so a temporary is named after their formula.
+    They have no physical constants such as A. The C text prints such a parameter as a number; the name of a temporary
+    that contains it is built from the formula.
     """
     return {name: formula for name, formula in parameters if names(formula) <= {"pi"}}
 
@@ -202,11 +208,11 @@ def _numbered(
     formulas: Sequence[Node],
     parameter_argument: str,
 ) -> Lowered:
-    """Return a program in which each constant is a parameter ``p0, p1, ..``, numbered by first use, and their formulas.
+    """Return a program in which each constant is a parameter ``p0, p1, ..``, and the parameters' formulas.
 
-    ``hoisted`` maps each constant to its preliminary symbol in the ``temporaries`` and ``formulas``; ``targets`` names
-    the outputs, which the formulas compute. The parameters are added to the signature as the argument
-    ``parameter_argument``.
+    The parameters are numbered by first use. ``hoisted`` maps each constant to its preliminary symbol in the
+    ``temporaries`` and ``formulas``; ``targets`` names the outputs, which the formulas compute. The parameters are
+    added to the signature as the argument ``parameter_argument``.
     """
     order: dict[str, str] = {}
     for node in [node for _, node in temporaries] + list(formulas):

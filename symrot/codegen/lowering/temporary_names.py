@@ -47,9 +47,10 @@ class _Product:
         return _Product(coefficient, tuple((symbol, power) for symbol, power in powers.items() if power))
 
     def name(self) -> str | None:
-        """Return a name such as ``two_q1_q2``, ``inv_sin_theta`` or ``A_over_C``, or None if there is no such name.
+        """Return a name for a temporary with this value: ``two_q1_q2``, ``inv_sin_theta`` or ``A_over_C``.
 
-        There is none for a mere number, nor if the table WORDS has no word for the coefficient.
+        None is returned for a mere number, and for a product whose coefficient, such as 7, has no word in the table
+        WORDS.
         """
         size = abs(self.coefficient)
         divisor = [str(size.denominator)] if size.numerator == 1 and size not in WORDS else []

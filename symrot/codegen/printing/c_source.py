@@ -11,7 +11,13 @@ from struct import pack, unpack
 from textwrap import wrap
 
 from symrot.codegen.printing.banner import WIDTH, Description, banner
-from symrot.codegen.printing.kernel_functions import NEAR, called, own_function, turning_arguments, without_branches
+from symrot.codegen.printing.kernel_functions import (
+    NEAR,
+    called,
+    has_branch_free_calls,
+    own_function,
+    turning_arguments,
+)
 from symrot.formula.program import Argument, Program
 from symrot.formula.tree import FUNCTIONS, Node, names, rename, text
 from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
@@ -155,9 +161,10 @@ def _body(
 ) -> list[str]:  # fmt: skip
     """Return the statements of a function; each value is computed just before the first output that needs it.
 
-    This order keeps few values in use at a time, so that they fit into registers. ``index_of`` returns the C
-    index of a component in its array. With ``late``, results are computed in the order of :func:`_computed_in_turn`,
-    and stored after all of them are computed.
+    This order keeps few values in use at a time, so that they fit into registers. ``index_of`` returns the C index of a
+    component in its array. With ``near``, functions such as sin are called in their versions without branches. With
+    ``late`` (:func:`_stores_last`), results are computed in the order of :func:`_computed_in_turn`, and stored after
+    all of them are computed.
     """
     results = dict(program.outputs)
     lines: list[str] = []
@@ -266,7 +273,8 @@ def c_function(program: Program, qualifier: str = "", real: Real = DOUBLE) -> st
 def _own_function(name: str, real: Real) -> list[str]:
     """Return the C definition of a function, such as sinc, that kernels call and <math.h> does not contain.
 
-    The definition evaluates one of two formulas, after a comparison. It serves the function for one sample.
+    After a comparison, the C function evaluates one of two formulas: the limit or a series near x = 0, or a quotient
+    such as sin(x)/x elsewhere. Functions for one sample call it; batch loops call that of :func:`_near_function`.
     """
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
     arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
@@ -278,9 +286,10 @@ def _own_function(name: str, real: Real) -> list[str]:
 
 
 def _near_function(name: str, real: Real) -> list[str]:
-    """Return the C definition of a function that <math.h> lacks, such as sinc, without branches, for batches.
+    """Return the C definition of a function that <math.h> lacks, such as sinc, without branches, for batch loops.
 
-    It computes both of its formulas and selects one of the results by their bits, so that compilers can vectorise it.
+    The C function evaluates both formulas, the limit or series near x = 0 and the quotient such as sin(x)/x, and takes
+    one of the two results by a bit mask from the comparison, so that compilers can vectorise the loop.
     """
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
     arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
@@ -393,11 +402,12 @@ def _streams(program: Program) -> int:
 def _stores_last(program: Program) -> bool:
     """Return whether the loop of a batch computes all results before it stores the first one.
 
-    It does if it accesses more arrays than fit in one set of the first cache: compilers load values again after a
-    store, and these values may then no longer be in the cache. Measured with gcc 12 on Zen 3, late stores reduce the
-    time of such kernels by the factor 0.9 if n is a multiple of 512 (heavy_top 0.7, but heavy_top_symmetric 1.1), and
-    do not change it for other n. For quaternion_product, with 12 arrays, the factor would be 1.15 at n = 1000 with gcc
-    tuned for Zen 3, since the loop would need 26 loads per iteration instead of 22.
+    Compilers load values again after a store. If n is a multiple of 512, the arrays of all components fall into the
+    same set of the first cache, which holds WAYS of them; with more arrays, the values are then no longer in the cache.
+    So the result is true for more than WAYS arrays. Measured with gcc 12 on Zen 3, for n a multiple of 512: time with
+    late stores divided by time without is about 0.9 (heavy_top 0.7, heavy_top_symmetric 1.1); for other n it is 1. For
+    12 arrays (quaternion_product) it would be 1.15 at n = 1000, since the loop would need 26 loads per iteration
+    instead of 22.
     """
     return _streams(program) > WAYS
 
@@ -502,7 +512,7 @@ def c_functions(program: Program, reals: Sequence[Real] = (DOUBLE,), near: bool 
         Whether batches call the functions of ``symrot_math.h``, which compilers vectorise. A block of samples with an
         angle out of the range of these functions is computed again with the C library.
     """
-    near = near and without_branches(program)
+    near = near and has_branch_free_calls(program)
     lines = _includes(program, near)
     lines += [f'#include "{program.signature.name}.h"', ""]
     for real in reals:

@@ -169,8 +169,9 @@ def _statements(index: int, op: Operation, places: dict[str, str], known: dict[s
 def _enclosed(kind: str, around: str, op: Operation, places: dict[str, str], known: dict[str, str]) -> str:
     """Return the C expression for the enclosure of one operation: a call of a function of :file:`event_enclosures.h`.
 
-    ``kind`` is the type of enclosure, in the names of C, and ``around`` the C function that makes one from a centre and
-    a radius. ``places`` maps inputs to C; ``known`` maps the states to their errors.
+    ``kind`` is the word for the type of enclosure in names of C functions, ``around`` the C function that makes an
+    enclosure from a centre and a radius. ``places`` maps inputs to C expressions; ``known`` maps each state to the C
+    expression of the error of its value.
     """
     if op.kind == "number":
         return f"symrot_{kind}_point({c_expression(('number', op.value))})"

@@ -56,7 +56,11 @@ def _needed(program: Program) -> list[str]:
 
 
 def _own_function(name: str) -> list[str]:
-    """Return the definition of a function, such as sinc, that JAX lacks, with its derivative if it has a formula."""
+    """Return the definition of a function, such as sinc, that JAX lacks.
+
+    If SLOPES has a formula of its derivative, the definition tells JAX this formula, as ``custom_jvp``; otherwise JAX
+    differentiates the definition itself.
+    """
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, "binary64")
     condition = f"{_expression(left)} {relation} {_expression(right)}"
     slope = SLOPES.get(name)

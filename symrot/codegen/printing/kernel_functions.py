@@ -10,7 +10,7 @@ from symrot.formula.program import Program
 from symrot.formula.tree import Node, children, parse
 from symrot.kernels.removable import FUNCTIONS, REMOVABLE, Removable
 
-__all__ = ["NEAR", "called", "own_function", "series", "turning_arguments", "without_branches"]
+__all__ = ["NEAR", "called", "has_branch_free_calls", "own_function", "series", "turning_arguments"]
 
 TURNING = ("sinc", *REMOVABLE)  # functions of symrot that call sine or cosine of their argument
 NEAR = (*TURNING, "arc_ratio")  # functions of symrot that have a form without branches, for batches
@@ -48,10 +48,10 @@ def turning_arguments(program: Program) -> list[Node]:
     return list(dict.fromkeys(arguments[0] for name, arguments in _calls(program) if name in ("sin", "cos", *TURNING)))
 
 
-def without_branches(program: Program) -> bool:
-    """Return whether a program calls a function, such as sin, that ``symrot_math.h`` contains without branches.
+def has_branch_free_calls(program: Program) -> bool:
+    """Return whether a program calls a function, such as sin, that ``symrot_math.h`` has without branches.
 
-    Its C file then includes that header for batches, which compilers can vectorise.
+    The C file of such a program includes that header for its batch loops, which compilers can then vectorise.
     """
     return any(name in ("sin", "cos", "atan2", "select_ge", *NEAR) for name, _ in _calls(program))
 

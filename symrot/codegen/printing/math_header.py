@@ -53,9 +53,10 @@ def _arc_coefficients(count: int) -> tuple[Fraction, ...]:
 
 
 def _nearest(series: list[Fraction], largest: Fraction, count: int) -> tuple[Fraction, ...]:
-    """Return ``count`` coefficients of a polynomial near the power series ``series`` for 0 <= t <= ``largest``.
+    """Return ``count`` coefficients of a polynomial that approximates ``series`` for 0 <= t <= ``largest``.
 
-    Of all such polynomials it has about the smallest error times t. The coefficients begin with the lowest power.
+    ``series`` holds the coefficients of a power series. The largest value of |t*(series - polynomial)| is about as
+    small as possible for this number of coefficients. The lowest power comes first.
     """
     # zeros of a Chebyshev polynomial whose last zero is moved to t = 0, because the error is weighted with t
     zeros = [Fraction(round(cos(pi * (2 * k + 1) / (2 * count + 2)) * 2**20), 2**20) for k in range(count + 1)]
@@ -76,7 +77,7 @@ def quarter_turn_parts(precision: str) -> list[Fraction]:
     """Return the parts of pi/2 that are subtracted from an angle one after the other: numbers whose sum is pi/2.
 
     All parts have so few bits that their products with the number of quarter turns are exact, except the last part,
-    which is the rest. ``precision`` is that of double or float.
+    which is the rest. ``precision`` is ``"binary64"`` (double) or ``"binary32"`` (float).
     """
     rest, parts = PI / 2, []
     for bits in _PARTS[precision]:

@@ -30,7 +30,8 @@ _NAMES["copysign"] = "np.copysign"
 def _own_function(name: str) -> list[str]:
     """Return the Python definition of a function, such as sinc, that NumPy lacks.
 
-    For arrays it evaluates both of its formulas, and ``where`` selects one for each element.
+    It has two formulas: the limit or a series near x = 0, and a quotient such as sin(x)/x elsewhere. Both are evaluated
+    on the whole array, and ``where`` selects one result for each element.
     """
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, "binary64")
     condition = f"{_expression(left)} {relation} {_expression(right)}"

@@ -16,9 +16,9 @@ def parameters_header(name: str, parameters: Sequence[tuple[str, float]]) -> str
     Parameters
     ----------
     name : str
-        Name of the step.
+        Name of the emitted time step, such as ``t_handle_rk4_step``.
     parameters : sequence of (str, float)
-        Names and values, in the order of p.
+        Names and values, in the order of the step's C argument p, the array of parameters.
     """
     guard = f"SYMROT_{name.upper()}_PARAMETERS_H"
     return "\n".join([

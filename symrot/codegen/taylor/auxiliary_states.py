@@ -151,9 +151,10 @@ class _Closure:
         return total
 
     def rate(self, variable: int) -> Polynomial:
-        """Return the time derivative of the variable with a number along the motion, as a polynomial.
+        """Return the time derivative, along the motion, of the variable with the index ``variable``, as a polynomial.
 
-        It is zero for a constant. Raise _Open if the rate is not a polynomial.
+        It is zero for a constant. _Open is raised if the derivative is not a polynomial; no auxiliary states are then
+        used.
         """
         kind, what = self.variables[variable]
         if kind == "constant":
@@ -223,9 +224,12 @@ class _Closure:
     def adjoin(self, inner: Polynomial) -> tuple[int | None, Fraction, Fraction]:
         """Return (index, factor, number) with ``inner = factor*state + number`` for the auxiliary state ``index``.
 
-        The state is added if it is new; the index is None if ``inner`` is a number. To recognise equal states, all
-        terms are brought to one degree by powers of the squared norm, which is 1. From a polynomial of degree 2, a
-        multiple of the squared norm is moved to ``number``.
+        The state is added if it is new; the index is None if ``inner`` is a number. Polynomials that differ only by the
+        identity q0^2 + q1^2 + q2^2 + q3^2 = 1 must give the same state. So each term is multiplied by powers of the
+        squared norm until all terms have the same degree: ``q0^2 + 1`` becomes ``2 q0^2 + q1^2 + q2^2 + q3^2``. From a
+        sum of squares of components, the multiple of the squared norm with the average coefficient is then subtracted,
+        and added to ``number``. _Open is raised if the degrees differ by an odd number, or if there are too many
+        states.
         """
         degrees = {self.degree(monomial) for monomial in inner.terms}
         top = max(degrees)
@@ -278,9 +282,11 @@ class _Closure:
                 self.seek(operand)
 
     def seek_in(self, s: Series) -> None:
-        """Replace the polynomials of the attitude in a sum of series by auxiliary states.
+        """Replace the polynomials of the attitude in the sum ``s`` of series by auxiliary states; nothing is returned.
 
-        Products among the operands of the sum are replaced together; then the other operands are searched.
+        Operands that are products of states of the attitude, as in ``q1 q3 + q0 q2``, are replaced together:
+        ``self.parts`` maps the sum to these operands and the terms that replace them. The other operands are searched
+        by :meth:`seek`.
         """
         alone = {
             i for i in s.operands if self.series[i].rule == "product" and self.of_attitude(self.polynomial(i))
@@ -352,7 +358,10 @@ def _total(terms: list[Node]) -> Node:
 
 
 def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
-    """Return the system in which the auxiliary states are states, without the series that they replace."""
+    """Return the system with the auxiliary states as further states, and without the series that they replace.
+
+    Such a series is, for example, ``q1 q3 + q0 q2``, half a component of R(q): as a state it needs no convolution.
+    """
     system, old = closure.system, closure.series
     count = len(system.states)
     alias = {
@@ -384,9 +393,9 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     def summed(
         terms: list[_Term], pairs: Iterable[tuple[int, Node | None]] = (), constant: Node | None = None
     ) -> Series:
-        """Return the series of a sum of auxiliary states (``terms``), other series (``pairs``) and a constant.
+        """Return the :class:`Series` of a sum of auxiliary states (``terms``), other series (``pairs``) and a constant.
 
-        ``pairs`` holds (index of a series, weight).
+        ``pairs`` holds (index of a series, weight). ``constant`` is added to coefficient 0; None stands for zero.
         """
         for term in terms:
             if term.companion is None:

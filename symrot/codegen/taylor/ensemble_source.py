@@ -104,8 +104,9 @@ class _Jet:
     """Writes the C function that computes the jet (all Taylor coefficients) of one system.
 
     In C, ``v{i}`` is the newest coefficient of series i, and ``u{i}`` is the array of all coefficients of the series
-    (for a state the array is ``x[..]``). A phase is ``first`` for order 0, ``second`` for order 1, and ``later`` for
-    all other orders.
+    (for a state the array is ``x[..]``). The coefficients of order n of all series are computed before those of order n
+    + 1. The C statements differ for n = 0, n = 1 and larger n; the argument ``stage`` of the methods is then ``first``,
+    ``second`` and ``later``.
     """
 
     def __init__(self, system: Recurrences) -> None:
@@ -176,17 +177,18 @@ class _Jet:
         sign, size = split_sign(node or ("number", 0))
         return self.weight(size) if sign > 0 else f"V_SUB(V_ALL(0.0), {self.weight(size)})"
 
-    def slot(self, number: int, phase: str, sums: str) -> str:
-        """Return the C expression for coefficient n of a slot, which is a sum of convolutions.
+    def slot(self, number: int, stage: str, sums: str) -> str:
+        """Return the C expression for coefficient n of slot ``number``, which is a sum of convolutions.
 
-        ``sums`` is the first letter of the C variables with the sums over known coefficients; the newest terms are
-        added. The result is the sum of two independent chains of operations, so that neither waits for all newest
-        coefficients.
+        A convolution is ``sum(u[k] v[n-k], k = 0..n)``. For the stage ``later``, the variable with the letter ``sums``
+        and the slot's number, such as ``a3``, holds the sum over k = 1..n-1; the terms k = 0 and k = n are added. They
+        use coefficients n, which have just been computed. The result is the sum of two independent chains of
+        operations, so that a part of it need not wait for the last of them. ``stage`` depends on n: see the class.
         """
-        older = f"{sums}{number}" if phase == "later" else ""
+        older = f"{sums}{number}" if stage == "later" else ""
         newer = ""
         for sign, (a, b, ends) in self.slots[number].terms:
-            if phase == "first":
+            if stage == "first":
                 older = _plus(older, sign, f"{self.at(a, '0')}, {self.at(b, '0')}") if ends == "both" else older
             elif a == b and ends == "both":
                 older = _plus(older, sign, f"V_ADD({self.at(a, '0')}, {self.at(a, '0')}), v{a}")
@@ -234,47 +236,47 @@ class _Jet:
 
     # -------------------------------------------------------------------------------------------- series
 
-    def coefficient(self, i: int, n: str, phase: str, sums: str) -> list[str]:
+    def coefficient(self, i: int, n: str, stage: str, sums: str) -> list[str]:
         """Return the C statements that set the variable ``v{i}`` to coefficient ``n`` (as C text) of series ``i``.
 
-        ``phase`` is ``first``, ``second`` or ``later`` (see the class), ``sums`` the letter of the variables with known
-        sums.
+        ``stage`` is ``first``, ``second`` or ``later`` (see the class). ``sums`` is ``a`` or ``b``, the first letter of
+        the C variables with the sums over earlier coefficients (:meth:`slot`).
         """
         s, name = self.series[i], f"v{i}"
         if s.rule == "sum":
-            return [f"{name} = {self.sum(s, phase == 'first')};"]
+            return [f"{name} = {self.sum(s, stage == 'first')};"]
         if s.rule == "time":
-            value = {"first": "t", "second": "unit"}.get(phase, "V_ALL(0.0)")
+            value = {"first": "t", "second": "unit"}.get(stage, "V_ALL(0.0)")
             return [f"{name} = {value};"]
         if s.rule == "theta":
-            factor = {"first": "0.0", "second": "1.0"}.get(phase, f"(double)({n})")
+            factor = {"first": "0.0", "second": "1.0"}.get(stage, f"(double)({n})")
             return [f"{name} = V_MUL(v{s.operands[0]}, V_ALL({factor}));"]
         if s.rule == "clock":
-            return self._clock_start(i, s) if phase == "first" else self._clock(s, name, n)
-        total = self.slot(self.slot_of[i][1], phase, sums)
+            return self._clock_start(i, s) if stage == "first" else self._clock(s, name, n)
+        total = self.slot(self.slot_of[i][1], stage, sums)
         if s.rule == "product":
             return [f"{name} = {total};"]
         if s.rule == "quotient":
             divisor = s.operands[-1]
-            if phase == "first":
+            if stage == "first":
                 upper = f"v{s.operands[0]}" if len(s.operands) > 1 else "V_ALL(1.0)"
                 return [f"d{i} = v{divisor};", f"{name} = V_DIV({upper}, d{i});"]
             upper = f"v{s.operands[0]}" if len(s.operands) > 1 else "V_ALL(0.0)"
             return [f"{name} = V_DIV(V_SUB({upper}, {total}), d{i});"]
         if s.rule == "driven":
-            if phase == "first" and s.function in CIRCLE:
+            if stage == "first" and s.function in CIRCLE:
                 v, w = (f"v{one}" for one in (i, s.operands[1]))
                 return [f"symrot_circle(v{s.operands[2]}, V_ALL(0.0), &{v}, &{w});"] if s.function == "sin" else []
-            if phase == "first":
+            if stage == "first":
                 return [f"{name} = {_called(s, 2)};"]
             sign = "" if s.sign > 0 else "-"
             return [f"{name} = V_MUL({total}, V_ALL({sign}symrot_inverse[{n}]));"]
         if s.rule == "root":
-            if phase == "first":
+            if stage == "first":
                 return [f"{name} = {_called(s, 0)};", f"d{i} = V_ADD({name}, {name});"]
             upper = f"V_SUB(v{s.operands[0]}, {total})" if total else f"v{s.operands[0]}"
             return [f"{name} = V_DIV({upper}, d{i});"]
-        if phase == "first":  # primitive
+        if stage == "first":  # primitive
             return [f"{name} = {_called(s, 3)};", f"d{i} = v{s.operands[2]};"]
         upper = f"V_SUB(v{s.operands[0]}, {total})" if total else f"v{s.operands[0]}"
         return [f"{name} = V_DIV({upper}, V_MUL(d{i}, V_ALL((double)({n}))));"]
@@ -314,10 +316,10 @@ class _Jet:
 
     # -------------------------------------------------------------------------------------------- orders
 
-    def order(self, n: str, phase: str, sums: str) -> list[str]:
+    def order(self, n: str, stage: str, sums: str) -> list[str]:
         """Return the C statements for coefficient ``n`` (C text) of all series and coefficient n + 1 of the states.
 
-        ``phase`` and ``sums`` are those of :meth:`coefficient`.
+        ``stage`` and ``sums`` are those of :meth:`coefficient`.
         """
         lines: list[str] = []
         made: set[int] = set()
@@ -326,15 +328,15 @@ class _Jet:
             for operand in s.operands if s.rule == "sum" else ():
                 if operand in self.shared and (slot := self.slot_of[operand][1]) not in made:
                     made.add(slot)
-                    yield f"const symrot_v s{slot} = {self.slot(slot, phase, sums)};"
+                    yield f"const symrot_v s{slot} = {self.slot(slot, stage, sums)};"
 
-        if phase != "first":
+        if stage != "first":
             lines += [f"const symrot_v p{i} = v{i};" for i in self._partners()]
         for i, s in enumerate(self.series):
             if s.rule == "state" or i in self.shared:
                 continue
             lines += slots_of(s)
-            lines += self.coefficient(i, n, phase, sums)
+            lines += self.coefficient(i, n, stage, sums)
             if i in self.stored:
                 lines.append(f"u{i}[{n}] = v{i};")
         following = {"0": "1", "1": "2", "n": "n + 1", "m": "m + 1"}[n]
@@ -342,13 +344,16 @@ class _Jet:
         for s in self.system.rates:
             lines += slots_of(s)
         rates = self.system.rates
-        lines += [f"const symrot_v y{i} = {self.sum(s, phase == 'first', 'step')};" for i, s in enumerate(rates)]
+        lines += [f"const symrot_v y{i} = {self.sum(s, stage == 'first', 'step')};" for i, s in enumerate(rates)]
         lines += [f"x[{i}][{following}] = y{i};" for i in range(len(rates))]
         lines += [f"v{series} = y{i};" for series, i in self.state.items()]
         return lines
 
     def _partners(self) -> list[int]:
-        """Return the series that the coefficients of another series need, such as cosine for sine of ``a t + b``."""
+        """Return the indices of the series whose coefficient n - 1 another series needs for coefficient n.
+
+        Sine and cosine of ``a t + b`` need each other, for example.
+        """
         return sorted({s.operands[0] for s in self.series if s.rule == "clock"})
 
     def loops(self) -> list[str]:
@@ -407,7 +412,11 @@ class _Jet:
     def _products(
         self, terms: Sequence[tuple[int, int, Convolution]], left: Sequence[int], right: Sequence[int]
     ) -> list[str]:
-        """Return the C loop over k that adds the products u[k] v[n-k] to the sums, two values of k at a time."""
+        """Return the C loop over k that adds products u[k] v[n-k] to the sums of slots, two values of k at a time.
+
+        The sums are the variables ``a{i}`` and ``b{i}``. ``terms`` holds (slot i, sign, convolution). ``left`` and
+        ``right`` are the indices of the series u and of the series v that occur in the convolutions, each once.
+        """
         lines = ["{", *(f"    symrot_v f{i} = {self.at(i, '1')};" for i in left)]
         lines.append("    for (int64_t k = 1; k < n - 1; k += 2) {")
         for new, old, ahead, behind in (("g", "f", "k + 1", "n - k"), ("f", "g", "k + 2", "n - k - 1")):
@@ -424,8 +433,11 @@ class _Jet:
         lines += [f"    {_add(f'a{i}', sign, f'f{c.a}, ' + self.at(c.b, '1'))}" for i, sign, c in terms]
         return [*lines, "}"]
 
-    def between(self) -> list[str]:
-        """Return the C statements that add the terms with coefficient n, just computed, to the sums of order n + 1."""
+    def completed_sums(self) -> list[str]:
+        """Return the C statements that complete the sums ``b{i}`` of order n + 1, once coefficients n are known.
+
+        They add the terms u[1] v[n] and u[n] v[1]; the loop before has added the others.
+        """
         lines: list[str] = []
         for i, slot in enumerate(self.slots):
             for sign, (a, b, _) in slot.terms:
@@ -452,7 +464,7 @@ class _Jet:
             "{", *_indented(orders["1"]), "}",
             "for (int64_t n = 2; n < order; n += 2) {",
             *_indented(["const int64_t m = n + 1;", *self.loops(), "{", *_indented(orders["n"]), "}",
-                        *self.between(), "{", *_indented(orders["m"]), "}"]),
+                        *self.completed_sums(), "{", *_indented(orders["m"]), "}"]),
             "}",
         ]  # fmt: skip
         places = {name: f"p[{i}]" for i, name in enumerate(self.system.parameters)}

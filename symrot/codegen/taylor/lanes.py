@@ -39,8 +39,9 @@ _Pair = tuple[tuple[int, int], tuple[int, int]]  # two factors, each given by it
 
 
 class Column(NamedTuple):
-    """Four convolutions ``sum(a[k] b[n-k])``, one in each lane, of the vectors of four series a and b.
+    """Four convolutions ``sum(a[k] b[n-k])``, one in each lane of a vector.
 
+    Lane 0 of ``a`` is combined with lane 0 of ``b``, and so on. ``a`` and ``b`` are packs, vectors of four series each.
     The range is k = 0 to n if ``ends`` is ``both``, k = 1 to n for ``last``, and k = 1 to n - 1 for ``none``.
     """
 
@@ -50,7 +51,11 @@ class Column(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """A sum of columns (vectors of four convolutions), multiplied by one constant per lane."""
+    """A sum of columns (vectors of four convolutions); each of its four elements is multiplied by a constant.
+
+    ``columns`` are indices of columns, ``weights`` the four constants: the result is ``weights * (column + column +
+    ..)``.
+    """
 
     columns: tuple[int, ...]
     weights: tuple[Node, ...]
@@ -66,9 +71,10 @@ class Term(NamedTuple):
 class Row(NamedTuple):
     """Up to four series with the same recurrence rule that are computed together, one in each lane of a SIMD vector.
 
-    ``lanes`` holds the indices of the series, or None for an unused lane, whose value is zero. ``slots`` holds the sums
-    of convolutions, ``terms`` the other terms of the rule ``sum`` or the operands of another rule, and ``constant`` the
-    numbers that are added to coefficient 0.
+    ``lanes`` holds the indices of the series, or None for an unused lane, whose value is zero. The rules are those of
+    :mod:`symrot.codegen.taylor.recurrences`. In a row of the rule ``sum``, ``slots`` are the summands that are
+    products, ``terms`` the other summands, and ``constant`` the four numbers that are added to coefficient 0. In a row
+    of another rule, ``slots`` are the convolutions of the rule and ``terms`` its operands.
     """
 
     rule: str
@@ -155,9 +161,10 @@ def _with_bundles(system: Recurrences) -> Recurrences:
 
 
 class _Placer:
-    """Assigns the series of a system to lanes of rows, and their products to columns (vectors of four convolutions).
+    """Assigns the series of a system to rows (vectors of up to four series), and their products to columns.
 
-    ``place`` maps each series to its address. A product in at most ``most_uses`` sums is computed inside these sums.
+    ``place`` maps each series to its address: row, lane and sign. A product that occurs in at most ``most_uses`` sums,
+    and nowhere else, gets no row; each of these sums computes it again.
     """
 
     def __init__(self, system: Recurrences, edges: Sequence[int], most_uses: int) -> None:
@@ -186,9 +193,10 @@ class _Placer:
         self.rows.append(row._replace(lanes=lanes))
 
     def _inlined(self, most_uses: int) -> set[int]:
-        """Return the indices of those products that are computed inside the sums that contain them, without a row.
+        """Return the indices of the products that get no row, because the sums that contain them compute them.
 
-        They occur in at most ``most_uses`` sums and in no other series.
+        They occur in at most ``most_uses`` sums and in no other series. A row is a vector of up to four series, each of
+        which is computed once and stored.
         """
         count: dict[int, int] = {}
         for s in (*self.series, *self.system.rates):
@@ -235,9 +243,11 @@ class _Placer:
         return Layout(self.series, tuple(self.rows), tuple(rates), tuple(self.columns), own, self.system.states, seeds)
 
     def _shape(self, i: int) -> tuple[int, ...]:
-        """Return a sort key by which similar series of equal rule come together, so that they share rows.
+        """Return a sort key for series of one rule.
 
-        Exponentials come after pairs such as sine and cosine; sums come in the order of decreasing numbers of products.
+        Up to four neighbours in its order are computed together, as one row. Exponentials come after pairs such as sine
+        and cosine; sums come in the order of decreasing numbers of products, so that the sums in a row have about
+        equally many.
         """
         s = self.series[i]
         products = sum(operand in self.inlined for operand in s.operands)
@@ -260,9 +270,10 @@ class _Placer:
         return tuple(Address(1, first.row, lane) if a is None else a for lane, a in enumerate(addresses))
 
     def address(self, sign: int, series: int, lane: int) -> Address:
-        """Return the position of a series in its row.
+        """Return the address of ``series``: ``sign``, the number of its row, and its lane in this row.
 
-        A row may contain copies of a series; the one in ``lane`` is preferred to the first one.
+        A row may contain copies of a series. The address of the copy in ``lane`` is returned if there is one, otherwise
+        that of the first copy.
         """
         first = self.place[series]
         return Address(sign, first.row, lane if self.rows[first.row].lanes[lane] == series else first.lane)
@@ -349,10 +360,12 @@ class _Placer:
         return Row("sum", lanes, tuple(made), tuple(terms), None if set(constants) == {ZERO} else constants)
 
     def _columns(self, lanes: list[list[tuple[int, int]]]) -> Iterable[int]:
-        """Yield the indices of columns that together contain all products of each lane, one per lane and column.
+        """Yield indices of columns, vectors of four convolutions, that together contain all products of each lane.
 
-        ``lanes`` holds for each lane pairs (sign, series of a product). While all lanes have products with a common
-        factor, these products form a column, in which the factor is broadcast.
+        ``lanes`` holds for each lane of a row the products of its sum, as pairs (sign, series of a product). Each
+        column takes at most one product from each lane. As long as a factor occurs in every lane that has products
+        left, these products form a column, in which the factor is broadcast to all lanes. Otherwise the next product of
+        each lane is taken (:meth:`_mixed`).
         """
         rest = [[(sign, self.series[p].operands[0], self.series[p].operands[1]) for sign, p in lane] for lane in lanes]
         needed = [bool(lane) for lane in lanes]
@@ -384,10 +397,11 @@ class _Placer:
         return min(common, default=None)
 
     def _mixed(self, terms: list[tuple[int, int, int] | None], needed: Sequence[bool]) -> int:
-        """Add a column of one product per lane, and return its index.
+        """Add a column that multiplies one pair of series per lane, and return its index.
 
-        ``terms`` holds a product (sign, u, v) of two series for each lane, or None. Each product is written as u v or
-        as v u, whichever allows the column to use more packs that already exist.
+        ``terms`` holds a product (sign, u, v) of two series for each lane, or None. A column is two packs (vectors of
+        four series): one holds the first factors of all lanes, the other the second factors. Each product is written as
+        u v or as v u, so that both packs are, if possible, already in use in other columns.
         """
         known = {pack for column in self.columns for pack in (column.a, column.b)}
         whole = {tuple(Address(1, row, lane) for lane in range(LANES)) for row in range(len(self.rows))}

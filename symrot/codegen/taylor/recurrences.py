@@ -14,8 +14,9 @@ primitive              ``n w[n] = (g[n] - sum(e[k] v[n-k], k = 1..n-1))/v[0]``: 
 clock                  ``n w[n] = s a v[n-1]``: exp, sin, cos, sinh, cosh of ``a t + b``
 =====================  ====================================================================================
 
-Here t is the time from the centre of the expansion, so ``t u'`` has the coefficients ``n u[n]``. Source: A.
-Griewank, A. Walther, Evaluating Derivatives, 2nd ed., sections 10.2 and 13.2.
+In the rules driven and clock, ``s v`` is the derivative of the function: for sin, v is cos and s = 1; for cos, v is sin
+and s = -1; for exp, v is exp itself. Here t is the time from the centre of the expansion, so ``t u'`` has the
+coefficients ``n u[n]``. Source: A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., sections 10.2 and 13.2.
 
 Standard library only: the recurrences of a cached kernel are built without SymPy.
 """
@@ -32,7 +33,7 @@ __all__ = ["ONE", "ZERO", "Recurrences", "Series", "recurrences", "split_sign"]
 
 ONE: Node = ("number", Fraction(1))
 ZERO: Node = ("number", Fraction(0))
-HALF_TURNS: dict[str, tuple[str, str, int, int]] = {  # function -> its pair sine-like, cosine-like, signs of rates
+SINE_COSINE_PAIRS: dict[str, tuple[str, str, int, int]] = {  # function -> pair, signs of their derivatives
     "sin": ("sin", "cos", 1, -1), "cos": ("sin", "cos", 1, -1),
     "sinh": ("sinh", "cosh", 1, 1), "cosh": ("sinh", "cosh", 1, 1),
 }  # fmt: skip
@@ -42,10 +43,11 @@ TANGENTS = {"tan": 1, "tanh": -1}  # function -> sign in t w' = (1 + sign w^2) t
 class Series(NamedTuple):
     """One series of Taylor coefficients: its rule, its operands, and the constants of the rule.
 
-    For a sum, ``weights`` holds one constant per operand, followed by the constant that is added to coefficient 0, or
-    None; for a function of ``a t + b`` (rule ``clock``), it holds a and b. If the rule does not determine coefficient
-    0, ``function`` computes it from coefficient 0 of the last operands. ``sign`` is the s of the rule, ``number`` the
-    index of a state.
+    ``operands`` are indices of series. For a sum, ``weights`` holds one constant per operand, and as its last entry the
+    constant that is added to coefficient 0, or None for no such constant. For a function of ``a t + b`` (rule
+    ``clock``), it holds a and b. A rule such as ``driven`` does not give coefficient 0: that is ``function`` of
+    coefficient 0 of the argument, which is then the last operand. ``sign`` is s in the rules ``driven`` and ``clock``:
+    1, or -1 as for cos, whose derivative is -sin. ``number`` is the index of a state.
     """
 
     rule: str  # state time sum product quotient root driven primitive clock, or theta (t u')
@@ -130,8 +132,8 @@ class _Builder:
     def read(self, node: Node) -> _Linear:
         """Return a formula as a linear form, which is a constant plus weighted series.
 
-        Series of its operations are added if they do not exist. ``2*x*y + 1`` gives the weight 2, the series of x*y,
-        and 1.
+        The list ``self.series`` gets a series for each operation in the formula that it does not have yet. ``2*x*y +
+        1`` gives the weight 2, the series of x*y, and the constant 1.
         """
         kind = node[0]
         if kind == "number":
@@ -265,8 +267,8 @@ class _Builder:
     def call(self, name: str, arguments: list[_Linear]) -> _Linear:
         if not any(argument.terms for argument in arguments):
             return _Linear(("call", name, tuple(map(_value, arguments))), {})
-        if name in HALF_TURNS:
-            return self.half_turn(name, arguments[0])
+        if name in SINE_COSINE_PAIRS:
+            return self.sine_or_cosine(name, arguments[0])
         if name not in _FUNCTIONS:
             raise InputError(
                 f"method taylor: expected functions with a Taylor series everywhere, got {name} of a quantity that "
@@ -283,12 +285,13 @@ class _Builder:
         return (weight, form.constant) if series >= 0 and self.series[series].rule == "time" else None
 
     def driven(self, functions: Sequence[tuple[str, int]], partners: Sequence[int], argument: _Linear) -> int:
-        """Return the index of the first of several Taylor series of functions whose derivatives contain each other.
+        """Return the index of the first series of several functions that are each other's derivatives.
 
-        Sine and cosine are such functions. Each is given by its name and the sign of its derivative. ``partners``
-        holds, for each function, the position of the function that its derivative contains: for sine the position of
-        cosine. The series are added if they do not exist: with the rule ``clock`` for functions of ``a t + b``,
-        otherwise with ``driven``.
+        Sine and cosine are such functions. Each function is given by its name and the sign of its derivative.
+        ``partners`` holds, for each function, the position of the function in its derivative: 1 for sine and 0 for
+        cosine, in the order (sine, cosine). The series follow each other in ``self.series``, and are added if they do
+        not exist: by the rule ``clock`` if ``argument`` is ``a t + b``, since this rule needs no convolution, otherwise
+        by the rule ``driven``.
         """
         clock = self.clock(argument)
         seed = () if clock else (self.series_of(argument),)
@@ -301,12 +304,12 @@ class _Builder:
                 self.series.append(Series(rule, (*drive, first + partner, *seed), clock or (), function, sign))
         return self.known[key]
 
-    def half_turn(self, name: str, argument: _Linear) -> _Linear:
-        """Return the function ``name`` (sin, cos, sinh or cosh) of ``argument`` as a linear form with one series.
+    def sine_or_cosine(self, name: str, argument: _Linear) -> _Linear:
+        """Return sin, cos, sinh or cosh (``name``) of ``argument`` as a linear form: its series, with weight 1.
 
-        The other function of the pair is added too, because the derivative of each contains the other.
+        The series of the other function of the pair is added too, because the derivative of each contains the other.
         """
-        sine, cosine, *signs = HALF_TURNS[name]
+        sine, cosine, *signs = SINE_COSINE_PAIRS[name]
         first = self.driven(((sine, signs[0]), (cosine, signs[1])), (1, 0), argument)
         if cosine == "cosh":
             self.cosh_arguments[first + 1] = argument
@@ -428,9 +431,9 @@ def _signed(sign: int, node: Node) -> Node:
 
 
 def split_sign(node: Node) -> tuple[int, Node]:
-    """Return (sign, formula) whose product is a constant formula; the formula has no sign in front.
+    """Return (sign, formula) such that ``node`` is their product, and the formula has no minus sign in front.
 
-    The formula ``-a`` gives -1 and a, the number -2 gives -1 and 2, and ``a`` gives 1 and a.
+    The sign is 1 or -1: the formula ``-a`` gives -1 and a, the number -2 gives -1 and 2, and ``a`` gives 1 and a.
     """
     if node[0] == "neg":
         sign, inner = split_sign(node[1])

@@ -93,9 +93,10 @@ def jet_source(layout: Layout, parameters: Sequence[str]) -> str:
 
 
 class _Jet:
-    """Writes the C function that computes the jet, all Taylor coefficients, for one layout of series in vectors.
+    """Writes the C function that computes the jet, all Taylor coefficients, of series arranged in vectors (``layout``).
 
-    A phase is ``first`` for order 0, ``second`` for order 1, and ``later`` for all other orders.
+    The coefficients of order n of all series are computed before those of order n + 1. The C statements differ for n =
+    0, n = 1 and larger n; the argument ``stage`` of the methods is then ``first``, ``second`` and ``later``.
     """
 
     def __init__(self, layout: Layout, parameters: Sequence[str]) -> None:
@@ -127,16 +128,17 @@ class _Jet:
         return f"x[{row}]" if row < self.own_rows else f"u{row}"
 
     def newest(self, pack: Pack) -> str:
-        """Return the C expression for the newest coefficients of a pack, a vector of four series.
+        """Return the C expression for the coefficients of order n, just computed, of a pack (a vector of four series).
 
         It is the name of a variable if there is one, otherwise the result of :meth:`picked`.
         """
         return f"l{self.packs[pack]}" if pack in self.packs else self.picked(pack)
 
     def picked(self, pack: Pack) -> str:
-        """Return the C expression of the newest coefficients of a pack, collected from the variables of rows.
+        """Return the C expression of the coefficients of order n of a pack, from the variables ``r{i}`` that hold them.
 
-        Row i has the variable ``r{i}``; the four series of a pack may lie in several rows.
+        ``r{i}`` is the vector of the coefficients, just computed, of row i: of the four series that are computed
+        together. A pack is a vector of any four series, so that its elements may come from several rows.
         """
         rows = sorted({address.row for address in pack})
         if _is_row(pack):
@@ -151,24 +153,25 @@ class _Jet:
             value = f"V_KEEP({value}, {', '.join(str(abs(sign)) for sign in signs)})"
         return f"V_FLIP({value}, {', '.join('-1' if sign < 0 else '1' for sign in signs)})" if -1 in signs else value
 
-    def column(self, index: int, phase: str, sums: str) -> str:
-        """Return the C expression for coefficient n of column ``index``, a vector of four convolutions.
+    def column(self, index: int, stage: str, sums: str) -> str:
+        """Return the C expression for coefficient n of the convolutions in column ``index``, a vector of four numbers.
 
-        It is the sum over known coefficients, a variable whose name begins with ``sums``, plus the terms k = 0 and k =
-        n. An empty text stands for zero.
+        A convolution is ``sum(a[k] b[n-k], k = 0..n)``. The sum over k = 1..n-1 is in the variable with the letter
+        ``sums`` and the column's number, such as ``a3``; the terms k = 0 and k = n are added. ``stage`` depends on n:
+        see the class. An empty text stands for zero.
         """
         a, b, ends = self.layout.columns[index]
-        known = f"{sums}{index}" if phase == "later" else ""
+        known = f"{sums}{index}" if stage == "later" else ""
         if ends == "none":
             return known
-        if phase == "first":
+        if stage == "first":
             return f"V_MUL({self.at(a, '0')}, {self.at(b, '0')})" if ends == "both" else ""
         last = f"{self.newest(a)}, {self.at(b, '0')}"
         inner = f"V_FMA({last}, {known})" if known else f"V_MUL({last})"
         return f"V_FMA({self.at(a, '0')}, {self.newest(b)}, {inner})" if ends == "both" else inner
 
-    def slot(self, columns: Sequence[int], phase: str, sums: str) -> str:
-        parts = [part for part in (self.column(index, phase, sums) for index in columns) if part]
+    def slot(self, columns: Sequence[int], stage: str, sums: str) -> str:
+        parts = [part for part in (self.column(index, stage, sums) for index in columns) if part]
         total = parts[0] if parts else ""
         for part in parts[1:]:
             total = f"V_ADD({total}, {part})"
@@ -176,17 +179,17 @@ class _Jet:
 
     # -------------------------------------------------------------------------------------------- rows
 
-    def sum(self, row: Row, phase: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
+    def sum(self, row: Row, stage: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
         """Return the C expression for a row of the rule ``sum``, which consists of four weighted sums of series.
 
-        They are multiplied by ``factor`` if it is not empty. ``phase`` and ``sums`` are explained in the class and in
+        They are multiplied by ``factor`` if it is not empty. ``stage`` and ``sums`` are explained in the class and in
         :meth:`column`; ``fused`` is the C function that computes a b + c. Terms that are computed last are added last,
         so that the other additions need not wait for them.
         """
         value = ""
         parts = [(self.picked(term.pack), term.weights) for term in row.terms]
-        parts += [(self.slot(slot.columns, phase, sums), slot.weights) for slot in reversed(row.slots)]
-        if phase == "first" and row.constant is not None:
+        parts += [(self.slot(slot.columns, stage, sums), slot.weights) for slot in reversed(row.slots)]
+        if stage == "first" and row.constant is not None:
             value = self._weighted(row.constant, factor) or "V_ALL(1.0)"
         for part, weights in parts:
             if part:
@@ -222,50 +225,50 @@ class _Jet:
         constant = self.constant(weights)
         return f"V_MUL({constant}, {factor})" if factor else constant
 
-    def row(self, number: int, n: str, phase: str, sums: str) -> list[str]:
+    def row(self, number: int, n: str, stage: str, sums: str) -> list[str]:
         """Return the C statements that set ``r{number}`` to coefficient ``n`` of the four series in the row ``number``.
 
-        ``phase`` and ``sums`` are explained in the class and in :meth:`column`.
+        ``stage`` and ``sums`` are explained in the class and in :meth:`column`.
         """
         row, name = self.rows[number], f"r{number}"
         terms = [self.picked(term.pack) for term in row.terms]
-        total = self.slot(row.slots[0].columns, phase, sums) if row.slots else ""
+        total = self.slot(row.slots[0].columns, stage, sums) if row.slots else ""
         if row.rule == "product":
             return [f"{name} = {total};"]
         if row.rule == "sum":
-            rest = self._rest_of_time(row) if phase == "first" else ""
-            value = self.sum(row, phase, sums, fused="symrot_fused" if rest else "V_FMA")
+            rest = self._rest_of_time(row) if stage == "first" else ""
+            value = self.sum(row, stage, sums, fused="symrot_fused" if rest else "V_FMA")
             return [f"{name} = {f'V_FMA(V_ALL(t_low), {rest}, {value})' if rest else value};"]
         if row.rule == "time":
-            value = {"first": "t", "second": "step[1]"}.get(phase, "0.0")
+            value = {"first": "t", "second": "step[1]"}.get(stage, "0.0")
             return [f"{name} = V_ALL({value});"]
         if row.rule == "theta":
-            count = {"first": "0.0", "second": "1.0"}.get(phase, f"(double)({n})")
-            return [f"{name} = {terms[0]};" if phase == "second" else f"{name} = V_MUL({terms[0]}, V_ALL({count}));"]
+            count = {"first": "0.0", "second": "1.0"}.get(stage, f"(double)({n})")
+            return [f"{name} = {terms[0]};" if stage == "second" else f"{name} = V_MUL({terms[0]}, V_ALL({count}));"]
         if row.rule == "quotient":
-            return self._quotient(row, name, phase, terms, total)
+            return self._quotient(row, name, stage, terms, total)
         if row.rule == "clock":
-            if phase == "first":
+            if stage == "first":
                 return self._clock_seed(row, name)
             rates = self._weighted(row.terms[0].weights, f"V_ALL(step[{n}])")
             return [f"{name} = V_MUL({terms[0]}, {rates});"]
         if row.rule == "driven":
-            if phase == "first":
+            if stage == "first":
                 return [f"{name} = {self._seed(row)};"]
             share = f"V_MUL({total}, V_ALL(symrot_inverse[{n}]))"
-            return [f"{name} = {total if phase == 'second' else share};"]
+            return [f"{name} = {total if stage == 'second' else share};"]
         if row.rule == "root":
-            if phase == "first":
+            if stage == "first":
                 return [f"{name} = {self._seed(row)};", f"d{number} = V_ADD({name}, {name});"]
             upper = f"V_SUB({terms[0]}, {total})" if total else terms[0]
             return [f"{name} = V_DIV({upper}, d{number});"]
-        if phase == "first":  # primitive
+        if stage == "first":  # primitive
             return [f"{name} = {self._seed(row)};", f"d{number} = {terms[0]};"]
         upper = f"V_SUB({terms[1]}, {total})" if total else terms[1]
-        lower = f"d{number}" if phase == "second" else f"V_MUL(d{number}, V_ALL((double)({n})))"
+        lower = f"d{number}" if stage == "second" else f"V_MUL(d{number}, V_ALL((double)({n})))"
         return [f"{name} = V_DIV({upper}, {lower});"]
 
-    def _quotient(self, row: Row, name: str, phase: str, terms: list[str], total: str) -> list[str]:
+    def _quotient(self, row: Row, name: str, stage: str, terms: list[str], total: str) -> list[str]:
         """Return the C statements that set ``name`` to coefficient n of ``u/v``, which is ``(u[n] - total)/v[0]``.
 
         ``terms`` holds the C expressions of v and, unless u is constant, of u; ``total`` is that of the sum of known
@@ -275,7 +278,7 @@ class _Jet:
         if len(terms) > 1:
             weights = self._weighted(row.terms[1].weights, "")
             upper = f"V_MUL({terms[1]}, {weights})" if weights else terms[1]
-        if phase != "first":
+        if stage != "first":
             return [f"{name} = V_DIV(V_SUB({upper}, {total}), {divisor});"]
         if row.constant is not None and set(row.constant) != {("number", 0)}:
             upper = f"V_ADD({upper}, {self.constant(row.constant)})"
@@ -351,10 +354,10 @@ class _Jet:
 
     # -------------------------------------------------------------------------------------------- orders
 
-    def order(self, n: str, phase: str, sums: str) -> list[str]:
+    def order(self, n: str, stage: str, sums: str) -> list[str]:
         """Return the C statements for coefficient ``n`` (C text) of all series and coefficient n + 1 of the states.
 
-        ``phase`` and ``sums`` are explained in the class and in :meth:`column`.
+        ``stage`` and ``sums`` are explained in the class and in :meth:`column`.
         """
         lines: list[str] = []
         done, packed = set(range(self.state_rows)), set[Pack]()
@@ -368,7 +371,7 @@ class _Jet:
 
         lines += pack_what_is_there()
         for number in range(self.state_rows, len(self.rows)):
-            lines += self.row(number, n, phase, sums)
+            lines += self.row(number, n, stage, sums)
             if number in self.stored:
                 lines.append(f"u{number}[{n}] = r{number};")
             done.add(number)
@@ -376,7 +379,7 @@ class _Jet:
         following = {"0": "1", "1": "2", "n": "n + 1", "m": "m + 1"}[n]
         lines.append(f"const symrot_v4 s = V_ALL(step[{following}]);")
         for number, rate in enumerate(self.layout.rates):
-            lines.append(f"const symrot_v4 x{number} = {self.sum(rate, phase, sums, 's')};")
+            lines.append(f"const symrot_v4 x{number} = {self.sum(rate, stage, sums, 's')};")
         for number in range(self.state_rows):
             lines.append(f"r{number} = x{number};")
             if number < self.own_rows or number in self.stored:
@@ -412,8 +415,11 @@ class _Jet:
             lines.append("}")
         return lines
 
-    def between(self) -> list[str]:
-        """Return the C statements that add the terms with coefficient n, just computed, to the sums of order n + 1."""
+    def completed_sums(self) -> list[str]:
+        """Return the C statements that complete the sums ``b{i}`` of order n + 1, once coefficients n are known.
+
+        They add the terms a[1] b[n] and a[n] b[1]; the loop before has added the others.
+        """
         lines: list[str] = []
         for i, (a, b, _) in enumerate(self.layout.columns):
             one, two = (self.at(a, "1"), self.at(b, "n")), (self.at(a, "n"), self.at(b, "1"))
@@ -439,7 +445,7 @@ class _Jet:
             "{", *_indented(orders["1"]), "}",
             "for (int64_t n = 2; n < order; n += 2) {",
             *_indented(["const int64_t m = n + 1;", *self.loops(), "{", *_indented(orders["n"]), "}",
-                        *self.between(), "{", *_indented(orders["m"]), "}"]),
+                        *self.completed_sums(), "{", *_indented(orders["m"]), "}"]),
             "}",
         ]  # fmt: skip
         places = {name: f"p[{i}]" for i, name in enumerate(self.parameters)}

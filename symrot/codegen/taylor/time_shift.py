@@ -57,7 +57,10 @@ def moved(program: Program, parameters: Parameters) -> tuple[Program, Parameters
 
 
 def moved_formulas(formulas: Sequence[Node], constants: Collection[str]) -> tuple[tuple[Node, ...], Parameters]:
-    """Return formulas in which the time t is counted from the epoch, and the formulas of the parameters in them.
+    """Return formulas in which t is the time since ``epoch``, and the (name, formula) of each parameter in them.
+
+    ``epoch``, in s, is a new constant: for times far from 0, ``sin(a*t)`` would lose digits. A parameter is a constant
+    part of a formula:  ``sin(a*t)`` becomes sin(a*t + p), with a parameter p whose formula is a*epoch.
 
     Parameters
     ----------
@@ -137,10 +140,10 @@ class _Mover:
         return _Form((kind, *written, *node[2:]) if kind == "**" else (kind, *written), terms, centred)
 
     def gathered(self, node: Node) -> _Form | None:
-        """Return a sum in which all terms of the form a t + b are combined into one.
+        """Return a sum in which all terms of the form a t + b are combined into one, or None if that changes nothing.
 
-        Far from t = 0 the constants b may nearly cancel. The result is None if there is nothing to combine: if all
-        terms have this form, if fewer than two have it, or if none of these terms contains the time.
+        Combining matters if constants b nearly cancel, which they do far from t = 0. It changes nothing if fewer than
+        two terms have this form or none of them contains the time. If all terms have it, the sum itself has it too.
         """
         lines: list[tuple[Node, ...]] = []
         others: list[tuple[bool, _Form]] = []

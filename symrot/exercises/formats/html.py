@@ -104,8 +104,7 @@ def _inline_display(latex: str) -> str:
 
 
 def _data(exercises: Sequence[Exercise]) -> dict[str, Any]:
-    """Return what the script of the page needs to grade numbers: for each question (``1a``) the answer, its unit, and
-    slips.
+    """Return what the script of the page needs to grade numbers: for each question (``1a``) answer, unit and slips.
 
     A slip is the wrong number that a typical mistake gives, with a hint at this mistake.
     """

@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 
 from symrot.exercises.exercise import Exercise, related
+from symrot.exercises.formats.figures import tikz
 from symrot.exercises.formats.markdown import data_text
 
 __all__ = ["latex_sheet"]
@@ -13,6 +14,8 @@ HEAD = r"""\documentclass[a4paper]{article}
 \usepackage[utf8]{inputenc}
 \usepackage{amsmath}
 \usepackage{graphicx}
+\usepackage{tikz}
+\usetikzlibrary{svg.path}
 \usepackage[margin=22mm]{geometry}
 \setlength{\parindent}{0pt}
 \setlength{\parskip}{4pt}
@@ -34,6 +37,7 @@ def latex_sheet(exercises: Sequence[Exercise]) -> str:
         parts += [
             rf"\subsection*{{{number}. {prose(exercise.title)}}}",
             prose(exercise.statement),
+            *([f"\\begin{{center}}\n{tikz(exercise.figure)}\n\\end{{center}}"] if exercise.figure else []),
             prose(data_text(exercise.data)),
             f"\\begin{{itemize}}\n{questions}\n\\end{{itemize}}",
         ]

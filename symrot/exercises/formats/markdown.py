@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from symrot.exercises.exercise import Datum, Exercise, related
+from symrot.exercises.formats.figures import image_address, title_of
 from symrot.exercises.units import unit_latex
 
 __all__ = ["data_text", "markdown_sheet"]
@@ -18,7 +19,10 @@ def markdown_sheet(exercises: Sequence[Exercise]) -> str:
     """Return exercises as Markdown text."""
     lines = ["# Exercises", ""]
     for number, exercise in enumerate(exercises, 1):
-        lines += [f"## {number}. {exercise.title}", "", exercise.statement, "", data_text(exercise.data), ""]
+        lines += [f"## {number}. {exercise.title}", "", exercise.statement, ""]
+        if exercise.figure:
+            lines += [f"![{title_of(exercise.figure)}]({image_address(exercise.figure)})", ""]
+        lines += [data_text(exercise.data), ""]
         lines += [f"- ({question.key}) {question.prompt}" for question in exercise.questions]
         lines.append("")
     lines += ["# Hints", ""]

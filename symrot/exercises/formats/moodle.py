@@ -3,17 +3,23 @@
 Source: https://docs.moodle.org/en/Moodle_XML_format. Each question of an exercise becomes one question of Moodle.
 """
 
+from base64 import b64encode
 from collections.abc import Iterator, Sequence
+from html import escape
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from symrot.exercises.exercise import Exercise, Question
-from symrot.exercises.formats.html import drawing, mathjax, solution_html
+from symrot.exercises.formats.figures import image, title_of
+from symrot.exercises.formats.html import mathjax, solution_html
 from symrot.exercises.formats.markdown import data_text
 
 __all__ = ["moodle_quiz"]
 
 TOLERANCE = 0.005
 """The largest relative error of a number that Moodle accepts: three significant digits."""
+
+WIDTH = 260
+"""The width of a figure, px."""
 
 UNIT_PENALTY = "0.1"
 SPELLING = "Write products with * and powers with ^, with one fraction, letters in the order of the alphabet."
@@ -41,8 +47,12 @@ def _questions(exercise: Exercise) -> Iterator[Element]:
         element = Element("question", type=kind)
         _text(SubElement(element, "name"), f"{exercise.title} ({exercise.template} {exercise.seed}{question.key})")
         texts = map(_paragraph, (data_text(exercise.data), _prompt(question)))
-        body = "".join((_paragraph(exercise.statement), drawing(exercise), *texts))
-        _text(SubElement(element, "questiontext", format="html"), body)
+        body = "".join((_paragraph(exercise.statement), _image(exercise), *texts))
+        content = SubElement(element, "questiontext", format="html")
+        _text(content, body)
+        if exercise.figure:
+            file = SubElement(content, "file", name=_file_name(exercise), path="/", encoding="base64")
+            file.text = b64encode(image(exercise.figure)).decode()
         _text(SubElement(element, "generalfeedback", format="html"), solution_html(exercise, mathjax))
         SubElement(element, "defaultgrade").text = "1"
         SubElement(element, "penalty").text = "0.1"
@@ -51,6 +61,18 @@ def _questions(exercise: Exercise) -> Iterator[Element]:
         for hint in exercise.hints:
             _text(SubElement(element, "hint", format="html"), mathjax(hint))
         yield element
+
+
+def _image(exercise: Exercise) -> str:
+    """Return the HTML of an exercise's figure, which Moodle stores as a file; empty if the exercise has no figure."""
+    if not exercise.figure:
+        return ""
+    title = escape(title_of(exercise.figure))
+    return f'<p><img src="@@PLUGINFILE@@/{_file_name(exercise)}" alt="{title}" width="{WIDTH}"></p>'
+
+
+def _file_name(exercise: Exercise) -> str:
+    return f"{exercise.template}.svg"
 
 
 def _prompt(question: Question) -> str:

@@ -121,18 +121,13 @@ def topic_of(name: str) -> str:
 
 
 def chosen(topic: str) -> tuple[str, ...]:
-    """Return the names of templates: all templates of a topic, one template by its name, or all for an empty text.
-
-    All templates are returned in turn: first the first template of each topic, then the second of each, and so on.
+    """Return the names of templates: all templates of a topic, or one template by its name.
 
     Raises
     ------
     InputError
         For a text that names neither a topic nor a template.
     """
-    if not topic:
-        longest = max(map(len, TOPICS.values()))
-        return tuple(names[n] for n in range(longest) for names in TOPICS.values() if n < len(names))
     if topic in TOPICS:
         return TOPICS[topic]
     if any(topic in names for names in TOPICS.values()):

@@ -19,8 +19,9 @@ MEANING = (
 
 
 def _quantities(*formulas: Expr) -> tuple[Quantity, ...]:
-    """Return the angles and rates that occur in ``formulas`` as given quantities, each with the numbers to draw it
-    from.
+    """Return the angles and rates that occur in ``formulas`` as given quantities of an exercise.
+
+    Each has a list of numbers from which its value is drawn.
     """
     used = Matrix(formulas).free_symbols
     first = tuple(quantity(each, ANGLES, "deg", NAMES[each]) for each in angles if each in used)

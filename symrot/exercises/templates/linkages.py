@@ -5,7 +5,6 @@ from random import Random
 from sympy import Expr, Symbol, asin, cos, sin, sqrt
 
 from symrot.exercises.problem import Asked, Line, Problem, quantity
-from symrot.exercises.sketches import crank_and_slider
 from symrot.symbols import F_x, L, Omega, phi, r, theta
 
 CRANK = quantity(r, "30 40 50 60 80 100", "mm", "crank")
@@ -35,7 +34,6 @@ def piston_speed(random: Random) -> Problem:
         (Line("The chain rule, with $\\dot\\phi = \\Omega$.", velocity, formula, r"\dot x"),),
         (Asked(r"\dot x", "the velocity of the piston, positive away from the crank's axis", formula, "m/s"),),
         lambda values: values[r] < values[L],
-        crank_and_slider(),
     )
 
 
@@ -51,7 +49,6 @@ def acceleration_at_dead_centre(random: Random) -> Problem:
         (Line(r"The second derivative at $\phi = 0$.", acceleration, formula, r"\ddot x"),),
         (Asked(r"\ddot x", "the acceleration of the piston, positive away from the crank's axis", formula, "m/s^2"),),
         lambda values: values[r] < values[L],
-        crank_and_slider(),
     )
 
 
@@ -68,7 +65,6 @@ def rod_rate(random: Random) -> Problem:
         (Line("The derivative of the rod's angle, times the rate of the crank.", rate, formula, r"\dot\psi"),),
         (Asked(r"\dot\psi", "the rate of the rod's angle", formula, "rad/s"),),
         lambda values: values[r] < values[L],
-        crank_and_slider(),
     )
 
 
@@ -85,7 +81,6 @@ def crank_torque(random: Random) -> Problem:
         (Line("The force times the derivative of the distance by the angle.", torque, formula, r"\tau"),),
         (Asked(r"\tau", "the torque on the crank", formula, "N m"),),
         lambda values: values[r] < values[L],
-        crank_and_slider(),
     )
 
 

@@ -5,7 +5,6 @@ from random import Random
 from sympy import Expr, Rational, cos, pi, sqrt
 
 from symrot.exercises.problem import Asked, Line, Problem, quantity
-from symrot.exercises.sketches import hanging_rod
 from symrot.inertia.solids import solid
 from symrot.symbols import L, R, g, m, theta
 
@@ -43,7 +42,6 @@ def period_of_rod(random: Random) -> Problem:
             Line("The period of small swings.", 2 * pi * sqrt(square), formula, "T"),
         ),
         (Asked("T", "the period of small swings", formula, "s"),),
-        figure=hanging_rod(),
     )
 
 
@@ -86,7 +84,6 @@ def falling_rod(random: Random) -> Problem:
             Line("The equation is solved for the rate.", rate, formula, r"\omega"),
         ),
         (Asked(r"\omega", "the rate of rotation at the lowest position", formula, "rad/s"),),
-        figure=hanging_rod(),
     )
 
 
@@ -104,5 +101,4 @@ def start_of_fall(random: Random) -> Problem:
             Line("The equation is solved for the angular acceleration.", acceleration, formula, r"\ddot\theta"),
         ),
         (Asked(r"\ddot\theta", "the angular acceleration at the release", formula, "rad/s^2"),),
-        figure=hanging_rod(),
     )

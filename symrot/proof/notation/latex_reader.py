@@ -216,7 +216,7 @@ class _Interpreter(Cursor):
             first, *others = [self.value(side) for side in divided(equation, "=")]
             places += [(first, others[0])] if len(others) == 1 else [(other, first) for other in others]
             if not others or not all(getattr(variable, "is_Symbol", False) for variable, _ in places):
-                raise Unread("expected a symbol before = in the index of a bar, got a formula")
+                raise Unread("expected equations such as x = 0 in the index of |_{x = 0}, got another formula")
         return value.subs(dict(places), simultaneous=True)
 
     def function(self, function: Callable[[Any], Any]) -> Any:
@@ -274,7 +274,7 @@ class _Interpreter(Cursor):
         if table.name not in ("bmatrix", "pmatrix", "matrix"):
             raise self.fail("a matrix", table)
         if self.at("_") and not self.at_skew():
-            raise self.fail("an operator or the end instead of an index after the matrix")
+            raise self.fail("no index after a matrix")
         return value
 
     # -- names ------------------------------------------------------------------------------------------------------

@@ -114,9 +114,9 @@ def _turning(before: Page | None, after: Page | None) -> str:
 
 
 def _mentions(page: Page, pages: Sequence[Page]) -> Iterator[str]:
-    """Yield one paragraph in HTML, "Pages that refer to this one: ..", with links to those ``pages``.
+    """Yield one paragraph in HTML, "Pages that refer to this one: ..", with a link to each page that links to ``page``.
 
-    Nothing is yielded if no other page links to ``page``.
+    ``pages`` are all pages of the book. Nothing is yielded if no other page links to ``page``.
     """
     link = f"]({page.name}.md)"
     others = [other for other in pages if other is not page and any(link in text for _, _, text in _words(other))]

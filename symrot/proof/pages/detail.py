@@ -1,7 +1,7 @@
 """One step of a derivation as a page of its own.
 
-The page may also show each rewriting of the normal form: the expressions that lead from the left side of the step to
-its right side.
+In detail, the page also shows how the checker decides the step: the chain of rewritings that turns the left side minus
+the right side into zero.
 """
 
 from sympy import MatrixBase, factor
@@ -139,10 +139,10 @@ def _chain(chain: Chain) -> list[Passage]:
 
 
 def _subtracted_multiples(link: Link) -> tuple[tuple[str, str], ...]:
-    """Return the equations below a rewriting: ``(multiple, "0")`` for each multiple of a hypothesis that it subtracts.
+    """Return the multiples of hypotheses that the rewriting ``link`` subtracts, to display below it.
 
-    ``link`` is the rewriting; a hypothesis is an expression that is zero, so its multiples are zero too. The result is
-    empty if the multiples are short enough for the sentence that explains the rewriting.
+    Each is a pair (multiple, "0"), an equation: a hypothesis is an expression that is zero, so its multiples are zero
+    too. The result is empty if the multiples are so short that the sentence about the rewriting contains them.
     """
     terms = _terms(link)
     return () if _short(terms) else tuple((term, "0") for term in terms)

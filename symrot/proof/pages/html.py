@@ -119,9 +119,9 @@ def _passage(passage: Passage) -> list[str]:
 
 
 def document(title: str, parts: Iterable[str], style: str = "") -> str:
-    """Return a self-contained HTML document;
+    """Return a self-contained HTML document, whose body has the elements ``parts``.
 
-    ``parts`` are the elements of its body, ``style`` is CSS after the usual rules.
+    ``style`` is CSS that is added after the usual rules.
     """
     title = escape(re.sub(r"[$*`]", "", title))
     head = (

@@ -83,9 +83,10 @@ def _inverse(a: Disc) -> Disc:
 def _sqrt(a: Disc, whole: float) -> Disc:
     """Return a disc that contains the square roots of all numbers in a disc.
 
-    If the disc contains zero, the root has no Taylor series there, and a step may miss all of it. The radius is then
-    the size of the root times ``whole``, which is 1 divided by the missed share (the fraction of a deviation that a
-    step misses): multiplied by this share, the radius counts the whole root as missed.
+    If the disc contains zero, the root has no Taylor series there, and a step may overlook its whole change. A step
+    limit otherwise assumes that a step overlooks only a small fraction of the radius, the missed share. So the radius
+    is then the size of the root times ``whole``, which is 1 divided by the missed share: their product is the size of
+    the whole root.
     """
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:
@@ -171,13 +172,13 @@ FUNCTIONS: dict[str, Callable[..., Disc]] = {
 
 
 def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
-    """Generate and compile a Python function that computes the bounds of an enclosure much faster than disc by disc.
+    """Generate and compile a Python function that bounds the deviations of rates, much faster than operations on discs.
 
     An enclosure is a set of terms with the rules by which they are evaluated over discs. The arguments of the function
     are (t, reach, whole, y, radii, w, a): first those of :meth:`Deviations.__call__`, then ``w``, the constant
-    coefficients in the terms, and ``a``, their absolute values. The bounds are the same as disc by disc, except where
-    numbers overflow, because the function omits :attr:`Disc.log_size`. If a bound is infinite or NaN, the caller has to
-    evaluate disc by disc.
+    coefficients in the terms, and ``a``, their absolute values. The bounds are the same as those from discs, except
+    where numbers overflow: a :class:`Disc` then continues with the logarithm of the size, which this function does not
+    compute. If a bound is infinite or NaN, the caller has to evaluate with discs.
     """
     lines, place = ["def bounds(t, reach, whole, y, radii, w, a):"], 0
     for number in enclosure.series:
@@ -222,7 +223,10 @@ def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
 
 
 class Deviations:
-    """Function that bounds how far each rate deviates from a constant while time and states vary within complex discs.
+    """Function that bounds how far rates may change while time and states vary in discs around their values.
+
+    The change of a rate, its deviation, is the distance of its values from a value at the centres of the discs. The
+    discs are complex, because such a bound also limits the coefficients of a Taylor series.
 
     Parameters
     ----------
@@ -253,11 +257,12 @@ class Deviations:
         self._sizes = [abs(weight) for weight in self._listed]
 
     def __call__(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return a bound of each rate's deviation for times within ``reach`` of t and states within ``radii`` of y.
+        """Return, for each rate, a bound of its deviation for times within ``reach`` of t and states near y.
 
-        Times and states may be complex; ``y`` and ``radii`` hold one number per state. A bound is infinite if a pole
-        may lie in these discs. ``whole`` is 1 divided by the missed share, the fraction of a deviation that a step
-        misses; it is used for square roots near zero, of which a step may miss the whole.
+        ``y`` and ``radii`` hold one number per state: the state is within this radius of y. Times and states may be
+        complex. A bound is infinite if a pole may lie in these discs. ``whole`` serves for square roots near zero,
+        whose whole change a step may overlook: it is 1 divided by the missed share, the fraction of a deviation that a
+        step overlooks otherwise.
         """
         self.spent += 1
         try:
@@ -269,10 +274,10 @@ class Deviations:
         return self.slowly(t, reach, whole, y, radii)
 
     def slowly(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return, for each rate, a bound of its deviation, like :meth:`__call__`, but computed disc by disc.
+        """Return the same bounds as :meth:`__call__`, with the same arguments, computed by operations on discs.
 
-        The arguments are those of :meth:`__call__`. A :class:`Disc` also has the logarithm of the size of its numbers.
-        Where the numbers themselves overflow, a bound can still be finite.
+        Where numbers overflow, a bound can still be finite, because a :class:`Disc` can also hold the logarithm of the
+        size of its numbers.
         """
         self.spent += SLOWER
         discs: dict[int, Disc] = {}

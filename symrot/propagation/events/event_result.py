@@ -112,7 +112,10 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
             'add "quaternion" to output.quantities'
         )
     if not plan.states:
-        raise InputError(f"events: expected a motion with states that change, got the scene {plan.scene.name!r}")
+        raise InputError(
+            f"events: every state of the scene {plan.scene.name!r} is constant, so there is no motion to search for "
+            "events; change the initial state or the torques"
+        )
     quantities = motion.kernel.quantities
     motion = motion if timed(quantities, events) else on_clock(motion, times)
     zero, sample_times = motion.epoch, times.copy()
@@ -225,10 +228,10 @@ def _joined(
 
 
 def _side(motion: Motion, end: float) -> _Side:
-    """Return the part of a motion from its start to ``end``, s, as polynomials and as a function from times to states.
+    """Return the part of a motion from its start to ``end``, s, as polynomials and as a function of times.
 
-    A side is the part after or the part before the start. By these polynomials the search for events evaluates the
-    motion, whatever its method.
+    ``end`` may lie before the start. The search for events evaluates the polynomials, whatever the method of the
+    motion.
     """
     plan = motion.plan
     start, y0 = motion.start, np.array(plan.initial_state, dtype=np.float64)

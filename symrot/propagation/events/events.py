@@ -273,11 +273,12 @@ class _Search:
         self.again, self.spent, self.allowed = False, 0.0, MOST_OPERATIONS
 
     def entries(self, piece: Piece) -> tuple[list[list[float]], ZerosNotSeparated | None]:
-        """Return the intervals of a piece that may contain zeros: lists [event, start, end, sign before, sign after].
+        """Return the intervals of a piece that may contain zeros of an event's formula, and None or an error.
 
-        Times are in s; the signs of the event's formula are 0 where they are not known. If an extremum of the formula
-        differs from zero by less than the error of the motion, it is added to ``doubts``. The second result is
-        None, or an error if the search ended early because it needed more operations than the limit.
+        An interval is a list [event, start, end, sign before, sign after]. Times are in s; signs of the formula are 0
+        where they are not known. The error says that the search ended early, because it needed more operations than the
+        limit; the intervals then cover the piece up to that time. Extrema that differ from zero by less than the error
+        of the motion are no intervals: they are added to the attribute ``doubts`` as (event, time).
         """
         edges, rows = np.ascontiguousarray(piece.edges), np.ascontiguousarray(piece.rows)
         count, listed, answer = len(rows), [], (ctypes.c_int64 * 3)()
@@ -506,7 +507,7 @@ def _settled(
     side = 1.0 if last >= first else -1.0
 
     def sign(event: int, t: float, end: float, step: float) -> int:
-        """Return the sign (1, -1 or 0) of a formula just beside t, in the direction ``step`` (1 or -1).
+        """Return the sign (1, -1 or 0) of the formula of ``event`` close to t, on the side ``step`` (1 or -1).
 
         It is 0 if the value is smaller than its rounding error at all distances up to ``end``.
         """

@@ -195,10 +195,11 @@ def fitted_pieces(
     blocks: Sequence[int],
     scales: Sequence[float],
 ) -> Generator[Piece, None, None]:
-    """Yield long pieces of polynomials that agree with a motion in closed form, which has no steps; see :func:`fitted`.
+    """Yield polynomials that agree with a motion in closed form from ``start`` to ``end``, s; see :func:`fitted`.
 
-    ``states``, ``blocks`` and ``scales`` are arguments of :func:`fitted`; ``start`` and ``end``, s, are the ends of the
-    motion, in its order. ``longest``, s, is a first guess of the length of time that one polynomial can fit.
+    ``end`` may lie before ``start``. Each piece consists of several polynomials, more and more as the motion goes on.
+    ``states``, ``blocks`` and ``scales`` are arguments of :func:`fitted`. ``longest``, s, is a first guess of the
+    length of time that one polynomial can fit.
     """
     side, t, most, count = math.copysign(1.0, end - start), start, 8.0 * longest, FEWEST
     while t != end:

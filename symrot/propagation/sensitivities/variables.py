@@ -203,7 +203,10 @@ def slopes(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> 
     first, second = (_quotient(values, size, name) for size in (step, 2 * step))
     for each, slope in first.items():
         if abs(slope - second[each]) > AGREEMENT * max(abs(slope), abs(second[each])):
-            raise InputError(f"sensitivities: {each} of the equations does not depend smoothly on {name} at its value")
+            raise InputError(
+                f"sensitivities: expected {name} with a value at which the equations have a derivative, but their "
+                f"constant {each} has a kink or a jump there; change the value slightly"
+            )
     return {each: slope for each, slope in first.items() if slope}
 
 

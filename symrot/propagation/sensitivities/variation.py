@@ -2,9 +2,9 @@
 
 The motion and its derivatives are one system, which the stepper :mod:`symrot.propagation.steppers.taylor` integrates
 in common steps. Its equations assume nothing about the numbers of the scene that a variable can change:
-a derivative by a moment of inertia needs the equations of a body without symmetry. A column consists
-of the derivatives by one variable. For the integration it is multiplied by a power of two near the size of the
-variable, so that it is about as large as the states.
+a derivative by a moment of inertia needs the equations of a body without symmetry. The derivatives of all states by one
+variable are a column of the matrix of derivatives. For the integration each column is multiplied by a power of two near
+the size of its variable, so that it is about as large as the states.
 """
 
 import json
@@ -23,6 +23,7 @@ from symrot.dynamics.structure import FieldTorque, FormulaTorque, InertiaTensor,
 from symrot.errors import InputError, PropagationError
 from symrot.formula import exact_numbers as number
 from symrot.formula.program import Program, node_from_json, node_to_json
+from symrot.formula.switches import STATES
 from symrot.planning.general_structure import PRODUCTS, constants_of, general_structure
 from symrot.planning.plan import Plan
 from symrot.planning.rules import UNIT_FIELDS, pattern
@@ -56,13 +57,13 @@ __all__ = [
 ]
 
 Floats = NDArray[np.float64]
-STATES = (*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4)))
 RATES = 3  # the first states are angular velocities
 ORDER = 20
 AT_ONCE = 6  # columns in one library: many more would take a compiler too long
 TOLERANCE = 1e-16
 SMALL = 2.0**-6  # largest size of a column below which it is integrated again in smaller units
 TRIES = 4
+MOST_RECENT = 8
 TRANSITION = ("omega", "attitude")
 
 
@@ -88,19 +89,17 @@ def variation(scene: Scene, keys: Sequence[str], times: Floats) -> Sensitivities
     PropagationError
         If the motion cannot be followed to the last time.
     """
-    require_smooth(scene)
-    variables = read_variables(scene, keys)
-    columns = columns_of(scene, variables)
-    values, slopes = _follow(scene, columns, times)
-    q = values[:, RATES:]
-    quaternion = slopes[:, RATES:]
+    equations = _equations(scene, tuple(keys) if isinstance(keys, list) else keys)
+    values, slopes = equations.follow(scene, times)
+    omega, quaternion = slopes[:, :RATES], slopes[:, RATES:]
+    variables = equations.variables
     return Sensitivities(
         tuple(variable.name for variable in variables),
         tuple(variable.unit for variable in variables),
         groups_of(variables),
-        slopes[:, :RATES],
+        omega,
         quaternion,
-        small_rotation(q, quaternion),
+        small_rotation(values[:, RATES:], quaternion),
     )
 
 
@@ -111,16 +110,13 @@ def transition_matrix(scene: Scene, start: float, stop: float) -> Floats:
     change at ``stop``; the rotation is about the body axes. ``stop`` may be before ``start``. InputError is raised if
     the torques have no derivatives: a table, or formulas that jump or bend.
     """
-    require_smooth(scene)
-    columns = columns_of(scene, read_variables(scene, TRANSITION))
     if start != float(scene.span.start):
-        values, _ = _follow(scene, columns, np.array([start]))
+        values, _ = _equations(scene, TRANSITION).follow(scene, np.array([start]))
         omega, q = values[0, :RATES], values[0, RATES:] / np.linalg.norm(values[0, RATES:])
         exact = [Fraction(x) for x in (*omega.tolist(), *q.tolist())]
         initial = Initial((exact[0], exact[1], exact[2]), (exact[3], exact[4], exact[5], exact[6]))
         scene = replace(scene, initial=initial)
-        columns = columns_of(scene, read_variables(scene, TRANSITION))
-    values, slopes = _follow(scene, columns, np.array([stop]), start)
+    values, slopes = _equations(scene, TRANSITION).follow(scene, np.array([stop]), start)
     return np.concatenate([slopes[0, :RATES], small_rotation(values[:, RATES:], slopes[:, RATES:])[0]])
 
 
@@ -139,12 +135,27 @@ class Column:
         self.variable = variable
         self.constants: Mapping[str, Fraction] = {}
         if variable.moved is None:
-            slopes = rotation_slopes(scene.initial.quaternion, variable.axis)
-            self.start = [0.0] * RATES + [float(slope) for slope in slopes]
+            self.start = self.start_from(scene.initial)
             return
         every = difference(scene, variable, lambda other: {**_start(other), **constants_of(other, general)})
         self.start = [float(every.pop(name, 0)) for name in map(_initial, STATES)]
         self.constants = every
+
+    def start_from(self, initial: Initial) -> list[float]:
+        """Return ``start`` for another initial state of the scene; only that of a small rotation depends on it."""
+        if self.variable.moved is not None:
+            return self.start
+        slopes = rotation_slopes(initial.quaternion, self.variable.axis)
+        return [0.0] * RATES + [float(slope) for slope in slopes]
+
+    @property
+    def restartable(self) -> bool:
+        """Whether the column is the same for each initial state of the scene, but for :meth:`start_from`.
+
+        It is false for a variable that sets the initial state in another form, such as ``initial.attitude.angle``.
+        """
+        variable = self.variable
+        return variable.moved is None or variable.key.startswith("omega") or not any(self.start)
 
 
 def rotation_slopes(q: Any, axis: int) -> Any:
@@ -289,65 +300,106 @@ def motion_library(plan: Plan, rates: Program, depends: Sequence[Sequence[str]])
 # ------------------------------------------------------------------------------------------------ motions
 
 
-def _follow(
-    scene: Scene, columns: Sequence[Column], times: Floats, begin: float | None = None
-) -> tuple[Floats, Floats]:
-    """Return the states at the times, shape (n, 7), and their derivatives, shape (n, 7, number of columns).
+class _Equations:
+    """The compiled equations of a scene's motion and of its derivatives by the variables ``keys``.
 
-    A column belongs to one variable of the derivatives. ``begin`` is the time, s, at which the scene has its initial
-    state; default: the start of its span.
+    They are the same for each initial state of the scene, for which :meth:`follow` integrates them.
     """
-    begin = float(scene.span.start) if begin is None else begin
-    values, slopes = [], []
-    for first in range(0, len(columns), AT_ONCE):
-        states, derivatives = _follow_some(scene, columns[first : first + AT_ONCE], times, begin)
-        values.append(states)
-        slopes.append(derivatives)
-    return values[0], np.concatenate(slopes, axis=2)
+
+    def __init__(self, scene: Scene, keys: Sequence[str]) -> None:
+        require_smooth(scene)
+        self.scene, self.keys, self.variables = scene, keys, read_variables(scene, keys)
+        columns = columns_of(scene, self.variables)
+        self.restartable = all(column.restartable for column in columns)
+        self._parts = [_Part(scene, columns[first : first + AT_ONCE]) for first in range(0, len(columns), AT_ONCE)]
+
+    def fit(self, scene: Scene, keys: Sequence[str]) -> bool:
+        """Return whether these are the equations of a scene and its derivatives by the variables ``keys``."""
+        own = self.scene
+        same = (
+            own.body is scene.body and own.torques is scene.torques and own.table is scene.table and keys == self.keys
+        )
+        return same and (self.restartable or own.initial == scene.initial)
+
+    def follow(self, scene: Scene, times: Floats, begin: float | None = None) -> tuple[Floats, Floats]:
+        """Return the states at the times, shape (n, 7), and their derivatives, shape (n, 7, number of columns).
+
+        A column belongs to one variable of the derivatives. ``begin`` is the time, s, at which ``scene`` has its
+        initial state; default: the start of its span.
+        """
+        begin = float(scene.span.start) if begin is None else begin
+        parts = [part.follow(scene, times, begin) for part in self._parts]
+        return parts[0][0], np.concatenate([slopes for _, slopes in parts], axis=2)
 
 
-def _follow_some(scene: Scene, columns: Sequence[Column], times: Floats, begin: float) -> tuple[Floats, Floats]:
-    structure = structure_of(scene, columns)
-    plan = Plan(scene, structure, ())
-    rates, parameters = rates_of(plan)
+_recent: list[_Equations] = []
+"""The equations that were used last; a propagator with another initial state needs the same ones again."""
 
-    def numbers(other: Scene) -> dict[str, Fraction]:
-        constants = {"pi": number.PI, **constants_of(other, structure)}
-        return {name: value_of(node, constants) for name, node in parameters}
 
-    own = numbers(scene)
-    moved = [difference(scene, column.variable, numbers) if column.constants else {} for column in columns]
-    depends = [[name for name, _ in parameters if name in slopes] for slopes in moved]
-    path = motion_library(plan, rates, depends)
-    sizes = [_size(scene, column) for column in columns]
-    size = len(STATES)
-    start = [float(value) for value in (*scene.initial.omega_b, *scene.initial.quaternion)]
-    for attempt in range(TRIES):
-        state, p = list(start), [float(own[name]) for name, _ in parameters]
-        for column, scale, names, slopes in zip(columns, sizes, depends, moved, strict=True):
-            state += [scale * slope for slope in column.start]
-            p += [scale * float(slopes[name]) for name in names]
-        motion = taylor.integration(path, p, state, begin, TOLERANCE)
-        try:
-            samples, _ = motion.sample_sorted(times, False)
-        except PropagationError as error:
-            raise PropagationError(f"{scene.name}: sensitivities: {error}") from None
-        derivatives = samples[:, size:].reshape(len(times), len(columns), size)
-        largest = np.max(np.abs(derivatives[:, :, RATES:]), axis=(0, 2), initial=0.0)
-        small = [k for k, reached in enumerate(largest.tolist()) if 0.0 < reached < SMALL]
-        if not small or attempt == TRIES - 1:
-            break
-        for k in small:
-            sizes[k] = ldexp(sizes[k], 1 - frexp(largest[k])[1])
-    scaled = derivatives / np.array(sizes)[None, :, None]
-    return samples[:, :size], np.ascontiguousarray(scaled.transpose(0, 2, 1))
+def _equations(scene: Scene, keys: Sequence[str]) -> _Equations:
+    """Return the equations of a scene's motion and its derivatives by the variables ``keys``, recent or new ones."""
+    equations = next((each for each in _recent if each.fit(scene, keys)), None)
+    if equations is None:
+        equations = _Equations(scene, keys)
+        _recent[:] = [equations, *_recent[: MOST_RECENT - 1]]
+    return equations
+
+
+class _Part:
+    """Up to :data:`AT_ONCE` columns of derivatives, in one library with the motion."""
+
+    def __init__(self, scene: Scene, columns: Sequence[Column]) -> None:
+        structure = structure_of(scene, columns)
+        plan = Plan(scene, structure, ())
+        rates, parameters = rates_of(plan)
+
+        def numbers(other: Scene) -> dict[str, Fraction]:
+            constants = {"pi": number.PI, **constants_of(other, structure)}
+            return {name: value_of(node, constants) for name, node in parameters}
+
+        slopes = [difference(scene, column.variable, numbers) if column.constants else {} for column in columns]
+        depends = [[name for name, _ in parameters if name in each] for each in slopes]
+        self.columns, self._path = columns, motion_library(plan, rates, depends)
+        own = numbers(scene)
+        self._values = [float(own[name]) for name, _ in parameters]
+        self._slopes = [[float(each[name]) for name in names] for each, names in zip(slopes, depends, strict=True)]
+
+    def follow(self, scene: Scene, times: Floats, begin: float) -> tuple[Floats, Floats]:
+        """Return states and derivatives as :meth:`_Equations.follow` does.
+
+        A column that stays small is integrated again in smaller units, so that the control of errors fits it.
+        """
+        columns, size = self.columns, len(STATES)
+        start = [float(value) for value in (*scene.initial.omega_b, *scene.initial.quaternion)]
+        starts = [column.start_from(scene.initial) for column in columns]
+        units = [_size(scene, column) for column in columns]
+        for attempt in range(TRIES):
+            state, p = list(start), list(self._values)
+            for unit, own, slopes in zip(units, starts, self._slopes, strict=True):
+                state += [unit * slope for slope in own]
+                p += [unit * slope for slope in slopes]
+            motion = taylor.integration(self._path, p, state, begin, TOLERANCE)
+            try:
+                samples, _ = motion.sample(times)
+            except PropagationError as error:
+                raise PropagationError(f"{scene.name}: sensitivities: {error}") from None
+            derivatives = samples[:, size:].reshape(len(times), len(columns), size)
+            largest = np.max(np.abs(derivatives[:, :, RATES:]), axis=(0, 2), initial=0.0)
+            small = [k for k, reached in enumerate(largest.tolist()) if 0.0 < reached < SMALL]
+            if not small or attempt == TRIES - 1:
+                break
+            for k in small:
+                units[k] = ldexp(units[k], 1 - frexp(largest[k])[1])
+        scaled = derivatives / np.array(units)[None, :, None]
+        return samples[:, :size], np.ascontiguousarray(scaled.transpose(0, 2, 1))
 
 
 def _size(scene: Scene, column: Column) -> float:
-    """Return the power of two by which a column of derivatives is first multiplied, near the value of its variable.
+    """Return a power of two near the value of the variable by which the derivatives in ``column`` are taken.
 
-    The derivatives are then about as large as the states, so that one error control fits both. For a component of omega
-    the largest component is used; for a rotation, or a variable that is zero, the result is 1.
+    The column is multiplied by it before the integration. The derivatives are then about as large as the states, so
+    that one error control fits both. For a component of omega the largest component is used; for a rotation, or a
+    variable that is zero, the result is 1.
     """
     value = abs(float(column.variable.value))
     if column.variable.key.startswith("omega"):

@@ -114,8 +114,8 @@ class Options:
     max_steps : int
         Largest number of evaluations of the right-hand side.
     deviations : Deviations, optional
-        Bounds on how far the right-hand side may deviate from a constant within a step. They limit the steps, so that
-        no step misses a short pulse.
+        Bounds on how far the right-hand side may change within a step. They limit the steps, so that no step misses a
+        short pulse.
     clock : callable, optional
         A :data:`Clock`, if the right-hand side can count time from an epoch.
     whole : WholeMotion, optional
@@ -178,8 +178,9 @@ def record(
 ) -> "FallbackRecording":
     """Return the motion over ``span`` as a function from times to states; the arguments are as for :func:`integrate`.
 
-    ``span`` is a pair of times, s; the start of the motion is added to it. If the motion stops early or is interrupted,
-    the attribute ``recording`` of the exception holds the motion before that time, unless it stopped at its start.
+    ``span`` is a pair of times, s; if the start ``t0`` lies outside, the motion is recorded from there. If the motion
+    stops early or is interrupted, the exception has the attribute ``recording`` with the motion before that time. It
+    has no such attribute if the motion stopped at its start.
     """
     motion = _Integration(rhs, p, y0, t0, tolerance, options)
     low, high = min(*span, motion.t0), max(*span, motion.t0)
@@ -301,8 +302,8 @@ class _Integration:
     def partial(self, times: Floats) -> tuple[NDArray[np.intp], Floats]:
         """Return the indices and the states of those sample times that the motion reached before it stopped early.
 
-        All ``times`` lie after t0 or all before it. Without a final pass of the integration, only a time equal to t0
-        counts.
+        All ``times`` lie after t0 or all before it. A motion is integrated twice, first coarsely and then finally. If
+        it stopped in the coarse pass, there are no states to return except at t0.
         """
         pieces = self.pieces if self.final else []  # results of the coarse pass are not returned
         way = max((max(abs(low - self.t0), abs(high - self.t0)) for low, high, _ in pieces), default=0.0)
@@ -364,11 +365,11 @@ class _Integration:
         return self.pieces
 
     def _follow_segment(self, segment: Segment, y: Floats, rtol: float, atol: Floats, bars: list[float]) -> None:
-        """Let SciPy integrate over a segment, as far as it can follow the motion; append the solution to ``pieces``.
+        """Let SciPy integrate over a segment, as far as it can follow the motion; append the result to ``pieces``.
 
-        ``y`` is the state at its start; ``rtol`` and ``atol`` are SciPy's tolerances. The bounds of the rates limit its
-        steps, so that no step passes over a short pulse: ``bars`` holds, for each block of states, the error that a
-        step may cause in this way.
+        ``y`` is the state at the start of the segment; ``rtol`` and ``atol`` are SciPy's tolerances. Where bounds of
+        the rates are known, they limit SciPy's steps, so that no step passes over a short pulse: ``bars`` holds, for
+        each block of states, the largest error that a step may cause by overlooking a part of the rates.
         """
         import scipy.integrate
 
@@ -485,9 +486,10 @@ class _Integration:
     def _proven(self, t: float, y: Floats, dense: Any, now: float, step: float, bars: list[float]) -> float:
         """Return the length of the part of a step, s, that is proven not to pass over a short pulse of a torque.
 
-        The step, of length ``step``, begins at ``now``, the time since the epoch, which is the scene time t, with the
-        states y. ``dense`` is SciPy's interpolant of the step, and ``bars`` the error, per block of states, that a step
-        may miss. The result is ``step`` itself if the whole step is proven.
+        The step has the length ``step`` and begins with the states y at the scene time t, at which the clock, counted
+        from the epoch, shows ``now``. ``dense`` is SciPy's interpolant of the step. ``bars`` holds, for each block of
+        states, the largest error that a step may cause by overlooking a part of the rates. The result is ``step``
+        itself if the whole step is proven.
         """
         assert self.deviations is not None
         path = np.abs(_FIT @ (dense(now + _NODES * step).T - y)).T.tolist()

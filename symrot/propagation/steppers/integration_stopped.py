@@ -64,8 +64,8 @@ def add_samples(
 ) -> None:
     """Store the samples computed before an error or interrupt, and their cost, as ``samples`` of the exception.
 
-    ``numbers`` are their indices among all requested samples, ``states`` the states. They are put before samples that
-    the exception has already. For ``cost`` = None, the cost of those is kept.
+    ``numbers`` are their indices among all requested samples, ``states`` the states. If the exception already has
+    samples, the new ones are put before them, and ``cost`` replaces their cost unless it is None.
     """
     before: Samples | None = getattr(error, "samples", None)
     if before is not None:  # samples on the other side of the start were finished before
@@ -96,5 +96,6 @@ def why_hopeless(steps: int, way: float, left: float, limit: int) -> str:
     """
     if steps * left <= HOPELESS * limit * way:
         return ""
-    more = f"{steps * left / way:.0e} of them, far" if way > 0.0 else "endlessly many,"
-    return f"steps of {way / steps:.1e} s would take {more} more than the limit of {limit}"
+    more = f"{steps * left / way:.0e} of them, far" if way > 0.0 else "endlessly many of them,"
+    each = f"each step or evaluation covers {way / steps:.1e} s"
+    return f"{each}: the motion would need {more} more than the limit of {limit}"

@@ -7,11 +7,11 @@ point, for example at rest. For such torques Dormand and Prince's method is used
 
 from symrot.dynamics.structure import FormulaTorque, Pattern, TorqueStructure
 from symrot.formula import tree as expression
+from symrot.formula.switches import CHANGING
 from symrot.planning.plan import Plan
 
 __all__ = ["non_smooth_torque"]
 
-CHANGING = frozenset({"t", *(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4))})
 BRANCHING = frozenset({"abs", "sqrt", "asin", "acos", "atan2"})  # not smooth somewhere on their domain
 
 

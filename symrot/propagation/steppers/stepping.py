@@ -188,9 +188,9 @@ def segments(t0: float, end: float, breaks: Sequence[float]) -> list[Segment]:
 
 
 def _inside(edge: float, other: float) -> float:
-    """Return a time just inside a segment, with which the rates are called at its end ``edge``.
+    """Return a time just inside a segment, at which the rates are evaluated instead of its end ``edge``.
 
-    There a torque that jumps at the edge has the value that it has inside. ``other`` is the other end of the segment.
+    A torque that jumps at the edge then has the value that it has inside. ``other`` is the other end of the segment.
     The distance from the edge is too small to affect the choice of the first step.
     """
     time = edge + SLIVER * (other - edge)
@@ -267,9 +267,10 @@ class SteppedRecording(Recording):
 
 
 class Window(NamedTuple):
-    """C function and parameters of a run, valid until the epoch, from which the kernel counts time, is moved again.
+    """The C function of a stepper and the parameters of the rates for a window of time: until the epoch is moved.
 
-    ``since`` is the number of steps after which they were set.
+    The kernel counts time from the epoch, and a stepper moves the epoch along with the motion, so that times keep
+    digits.
     """
 
     step: Callable[..., Any]
@@ -639,9 +640,11 @@ class Integration:
     def advance(self, run: Run, times: int | None, count: int, states: int | None, rows: int | None, room: int) -> int:
         """Call the stepper in C once and return its status; raise IntegrationStopped if it cannot continue.
 
-        ``times`` and ``states`` are the addresses of ``count`` sample times and of the array for their states, or None.
-        ``rows`` is the address of an array with room for the records of ``room`` steps, or None. The status is DONE at
-        the end of the segment, otherwise the caller has to call again.
+        ``times`` and ``states`` are the addresses of ``count`` sample times and of the array for their states; both are
+        None if no samples are needed, and ``count`` is then 0. ``rows`` is the address of an array for the polynomials
+        of up to ``room`` steps, one row per step, or None if they are not needed. The status is DONE at the end of the
+        segment; with any other status (the array is full, or the limit of steps per call is reached) the caller has to
+        call again.
         """
         stepper, (function, p, most) = self.stepper, self.step_function(run)
         attempts = min(most, self.max_steps - stepper.tried(run))

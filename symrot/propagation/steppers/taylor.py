@@ -64,13 +64,13 @@ ORDERS = {  # for few and for many products: least tolerance, and the fastest or
 
 
 def step_tail(tolerance: float) -> tuple[float, float]:
-    """Return a limit for the last terms of a series, and the step length, as a fraction of the span, for this limit.
+    """Return a limit for the last terms of a step's Taylor series, and the step length for which it holds.
 
-    ``tolerance`` is the error of the whole trajectory to aim for. In a step that is shorter by a factor r, the limit is
-    multiplied by r^(7/4), because errors of single steps add up about as the number of steps to this power. The final
-    error then hardly depends on the span.
+    The length is a fraction of the span. In a step that is shorter by a factor r, the limit is multiplied by r^(7/4),
+    because errors of single steps add up about as the number of steps to this power; the final error then hardly
+    depends on the span. ``tolerance`` is the error of the whole trajectory to aim for.
 
-    The constant is calibrated against references of 50 digits for free asymmetric bodies, some of which flip about the
+    The fraction is calibrated against references of 50 digits for free asymmetric bodies, some of which flip about the
     intermediate axis, and for heavy tops (``tests/propagation/test_taylor.py``): errors stay below 5 tolerances.
     """
     check_tolerance(tolerance)
@@ -201,7 +201,8 @@ class _Stepper(Stepper):
         self._jet = self._function("_jet", None, real, pointer, pointer, real, integer, pointer)
         if self._function("_carry", real, real, real)(1.0, 2.0**-60) != 2.0**-60:
             raise CompilerError(
-                f"the compiled kernel {path} ignores rounding errors that it should add; compile without -ffast-math"
+                f"the compiled kernel {path} ignores rounding errors, which it should carry from step to step: the "
+                "compiler removed this code; compile without -ffast-math"
             )
 
     def row_length(self) -> int:

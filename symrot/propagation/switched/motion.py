@@ -31,8 +31,6 @@ from symrot.scene.tables import Initial
 
 __all__ = ["SwitchedMotion", "SwitchedPropagator"]
 
-STATES = frozenset({*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4))})
-
 
 class SwitchedPropagator(Propagator):
     """Propagator of a scene with switching functions (sign, abs, ..) in its torques; see :func:`symrot.propagator`."""

@@ -35,10 +35,10 @@ Modes = dict[str, int]
 class Guard(NamedTuple):
     """A formula at whose zero a switching function (sign, floor, ..) switches: when ``formula`` becomes negative.
 
-    ``mode`` is the name of the number that replaces the function in the equations. ``change`` is added to this number
-    when the function switches; it is 0 for a sign, whose number changes from 1 to -1 or back. While a sign is held at
-    zero, ``change`` is the value, 1 or -1, with which it leaves. ``where`` lists the conditions under which the
-    function affects the motion.
+    ``mode`` is the name of the number that replaces the function in the equations. For floor, ``change`` (1 or -1) is
+    added to this number. For a sign, ``change`` is 0, and the number changes from 1 to -1 or back. A sign may be held
+    at zero while the motion slides; ``change`` is then the number, 1 or -1, that replaces the sign after the sliding
+    ends here. ``where`` lists the conditions under which the function affects the motion.
     """
 
     mode: str
@@ -148,10 +148,11 @@ class Regime:
         return self._parameters[key]
 
     def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
-        """Return the values, by name, of the modes and parameters in :attr:`formulas`.
+        """Return the values, by name, of all numbers that occur in :attr:`formulas`: modes and parameters.
 
-        The formulas are the arguments of the switching functions (sign, floor, ..). ``modes`` maps the names of these
-        functions to their values. Time is counted from the instant ``zero``, on which parameters depend.
+        The formulas are the arguments of the switching functions (sign, floor, ..). ``modes`` maps the name of each
+        function's mode, the number that replaces the function, to its value. Parameters may depend on ``zero``, the
+        instant from which time is counted.
         """
         numbers = self._parameters_under(modes).guards.parameters(zero.exact)
         return {name: number for (name, _), number in zip(self.parameters, numbers, strict=True)} | {
@@ -175,10 +176,11 @@ class Regime:
         return self._bound[place]
 
     def zeros(self, modes: Modes, zero: Instant, y: Floats) -> set[str]:
-        """Return the names of all states and parameters of output quantities that are zero at the state ``y``.
+        """Return the names of those states, and those parameters of output quantities, whose value is zero.
 
         With these names one can decide whether the argument x of a sign(x) stays zero by itself, as in a body at rest.
-        ``modes`` and ``zero`` are explained in :meth:`bound`.
+        ``y`` holds the states; ``modes`` are the values of the switching functions, and ``zero`` is the instant from
+        which time is counted.
         """
         return {name for name, value in self._inputs(modes, zero, y).items() if value == 0.0}
 
@@ -214,10 +216,10 @@ class Regime:
 
     @cached_property
     def _with_constants(self) -> tuple[Parameters, Parameters, Parameters]:
-        """Return the parameters of rates, guards and output quantities, with the scene's constants inserted.
+        """Return the parameters of rates, guards and output quantities: three tuples of pairs (name, formula).
 
-        Each is a tuple of pairs (name, formula). The formulas then contain only the epoch and the modes (values of the
-        switching functions).
+        The scene's constants are inserted into the formulas. They then contain only the epoch and the modes (values of
+        the switching functions).
         """
         modes = {switch.mode for switch in self.switches}
         known = {name: value for name, value in self.constants.items() if name not in modes}
@@ -243,9 +245,9 @@ class Regime:
 def _distance(switch: Switch) -> Node:
     """Return a formula that is zero where a switching function (sign, floor, ..) changes its value.
 
-    For a sign it is the argument; for ``floor(x)`` it is x minus the present integer, which is zero when x falls to
-    this integer. The integer is subtracted before the formula is rounded, since far from t = 0 it cancels most digits
-    of x.
+    For a sign it is the argument. For ``floor(x)`` it is x - n, where n is the present value of floor(x): x leaves the
+    interval from n to n + 1 where the formula is 0 or 1. n is subtracted exactly, before the formula is rounded: far
+    from t = 0 the difference has far fewer digits than x.
     """
     return switch.guard if switch.kind == "sign" else ("-", switch.guard, ("symbol", switch.mode))
 

@@ -75,9 +75,9 @@ class Chunk(NamedTuple):
 class SwitchedRun(RunState):
     """The computation of one motion under torques with switching functions (sign, abs, ..), from its start to its end.
 
-    ``system`` holds the switching functions of the motion, and ``end`` is the scene time, s, up to which it is
-    computed, after or before the start. The clock shows 0 at the last switch, whose time is known to twice the digits
-    of a double. The attributes ``t``, the present time, and ``end`` are times on this clock, s.
+    ``system`` holds the switching functions of the motion. The argument ``end`` is the scene time, s, up to which the
+    motion is computed, after or before the start. The attributes ``t``, the present time, and ``end`` are times, s, on
+    a clock that shows 0 at the last switch, whose time is known to twice the digits of a double.
     """
 
     def __init__(self, motion: Motion, system: SwitchedSystem, end: float) -> None:
@@ -159,7 +159,10 @@ class SwitchedRun(RunState):
             if leaving == 2:
                 way = "past" if self.side < 0.0 else "future"
                 raise IntegrationStopped(
-                    self.t, f"the motion starts where {self._name(mode)} switches and has more than one {way}", self.end
+                    self.t,
+                    f"the motion starts where {self._name(mode)} switches, and can go on with either of its values: it "
+                    f"has more than one {way}; change the initial state slightly",
+                    self.end,
                 )
 
     def _segment(self, regime: Regime, consume: Consumer) -> Guard | None:
@@ -267,12 +270,12 @@ class SwitchedRun(RunState):
         return guard
 
     def _coincident(self, regime: Regime, active: list[bool], values: list[float], most: int) -> Guard | None:
-        """Return the guard of a function that still has to switch at the present time, or None.
+        """Return a guard whose function has to switch at the present time, because it becomes negative; or None.
 
-        The guard is needed where the rates have no value. If several functions switch at one time, they do so one after
-        the other; in between, the rates may contain, for example, the root of a negative number. ``most`` is the
-        largest sign of the guard just after this time: -1 for negative guards only, 0 for guards that stay zero too.
-        ``active`` says, for each guard, whether it can end the regime; ``values`` are the parameters of the guards.
+        This matters where several functions switch at one time, which they do one after the other: before the last one,
+        the rates may have no value, such as the root of a negative number. With ``most`` = 0, a guard that stays zero
+        is returned too; with -1, only one that becomes negative. ``active`` says, for each guard, whether it can end
+        the regime; ``values`` are the parameters of the guards.
         """
         h = self.side * SHORT * self.span
         row = np.concatenate([[self.t, h, 0.0, h], self.y, np.zeros_like(self.y)])
@@ -303,14 +306,15 @@ class SwitchedRun(RunState):
     def _hop(
         self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: IntegrationStopped
     ) -> tuple[Piece, Callable[[Floats], Floats], Guard | None] | None:
-        """Return a short linear piece of motion (a hop) beyond a time where a stepper is stuck; None if too long.
+        """Return a short linear piece of motion (a hop) past a time where a stepper is stuck; None if inaccurate.
 
         Steps shrink to zero where a torque has no derivative, though its impulse is finite. Examples are sqrt(1 - t)
         before a switch at 1 s, and sqrt(t - 1) after it. As long as the impulse is less than the tolerance, the states
         may change linearly: up to a nearby switch, or away from the last switch. The hop starts at the time t, s, with
-        the states y; ``rates`` are the parameters of the rates, and ``error`` is the stepper's error. The result
-        consists of the polynomial, a function from times to states, and the guard that becomes zero at the end of the
-        hop, or None.
+        the states y; ``rates`` are the parameters of the rates, and ``error`` is the stepper's error.
+
+        The hop is a tuple of its polynomial, a function from times to states, and the guard that becomes zero at its
+        end; this guard is None if the hop does not end at a switch.
         """
         kernel, motion = regime.motion.kernel, regime.motion
         p = np.array(rates[: len(kernel.rate_parameters)])
@@ -393,11 +397,12 @@ class SwitchedRun(RunState):
         return self._past(regime, guard, instant.after(correction))
 
     def _past(self, regime: Regime, guard: Guard, instant: Instant) -> Instant:
-        """Return the time of a switch, moved past the zero of its guard; the guard must be a formula of time alone.
+        """Return a time close to a switch at which its guard, a formula of time alone, is no longer positive.
 
-        A guard is a formula at whose zero a function such as sign switches. The result is the first of a few instants
-        at which the formula is not positive. At an earlier instant, the function would switch back at once. If the
-        formula is positive at all of them, ``instant`` is returned.
+        A guard is a formula at whose zero a function such as sign switches. While it is still positive by rounding
+        errors, the function would switch back at once. Times after ``instant``, the computed time of the switch, are
+        tried at growing distances of a few units in the last place. If the formula is positive at all of them,
+        ``instant`` is returned.
         """
         formula, later = parse(guard.formula), instant
         step = self.side * math.ulp(math.ulp(instant.high))
@@ -480,7 +485,8 @@ class SwitchedRun(RunState):
     def _guard_value(self, mode: str, place: tuple[float, Floats] | None = None) -> float:
         """Return the argument of the switching function that a mode replaces, now or at ``place`` = (time, states).
 
-        For floor(x) the result is x minus the present value of floor(x), which changes where the result is 0 or 1.
+        For floor(x) the result is x - n, where n is the value of floor(x) in the present equations; floor(x) changes
+        its value where x - n is 0 or 1.
         """
         regime = self._regime(self.modes)
         return float(
@@ -506,7 +512,8 @@ class SwitchedRun(RunState):
         if mode in self.held and (guard.change == 0 or not self._still_attracts(regime)):
             raise IntegrationStopped(
                 self.t,
-                f"the motion slides along {self._names_of_held()}, but nearby motions lead away from it",
+                f"the motion slides along the jump of {self._names_of_held()}, but from this time on nearby motions "
+                "lead away from the jump to either side, so its continuation is not unique; end the motion here",
                 self.end,
             )
         self.left.add((mode, self.modes[mode]))
@@ -546,11 +553,12 @@ class SwitchedRun(RunState):
             self._wake(other)
 
     def _returns(self, mode: str) -> bool:
-        """Return whether the argument of a sign has to be held at zero, so that the motion slides.
+        """Return whether the argument of the sign with the mode ``mode`` must be held at zero: the motion slides.
 
-        It has to if one more change of the sign would give all switching functions the values that they had before at
-        the present time: without holding, the same changes would follow again and again. A function with only a kink,
-        such as abs, is not held if a function with a jump has switched since then.
+        A mode is the number that replaces a function in the equations. The argument must be held if a change of this
+        sign would restore values that all switching functions had together before, at the same time: without holding,
+        the same changes would follow again and again. A function with only a kink, such as abs, is not held if a
+        function with a jump has switched since then.
         """
         first = self.visited.get(self._state(flip=mode))
         if first is None:
@@ -592,10 +600,11 @@ class SwitchedRun(RunState):
         return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
-        """Compute a switching function such as sign(x) again, as the branch of ``where`` that contains it is used now.
+        """Set the number that replaces a function such as sign(x), its mode, to the present value of the function.
 
-        ``mode`` names the number that replaces the function in the formulas. While the branch was unused, nobody
-        watched whether x changed its sign. If x has no value now, the number is left as it is.
+        This is done when the motion begins to use the branch of ``where(condition, u, v)`` that contains the function;
+        while the branch was unused, changes of the function were not followed. If x has no value now, the number is
+        left as it is.
         """
         try:
             guard = self._guard_value(mode)
@@ -622,10 +631,11 @@ class SwitchedRun(RunState):
         self._regime(self.modes)
 
     def _comes_to_rest(self, regime: Regime) -> bool:
-        """Set each held sign(x) whose x stays at zero by itself to its value at zero, and return whether there are any.
+        """Set each held sign(x) whose x stays zero by itself to its value at zero; return whether there are any.
 
-        While x is held at zero, the formulas contain a mean of sign(x) = 1 and -1. If nothing drives x away from zero,
-        as in a body at rest, the value at zero is right instead.
+        While the motion slides, x is held at zero by a torque between those for sign(x) = 1 and -1, and the equations
+        contain a value of sign(x) between them. Nothing drives a body at rest away from zero, so no such torque is
+        needed.
         """
         resting = [mode for mode in sorted(self.held - self.rested) if self.system.matters_at_zero(mode)]
         if resting:
@@ -647,10 +657,10 @@ class SwitchedRun(RunState):
         return all(value > least * first for value, first in zip(now, self.attraction[1], strict=True))
 
     def _leaves_zero(self, regime: Regime, active: list[bool], piece: Piece) -> bool:
-        """Set each sign(x) that is 0 to the sign that x has at the end of a piece; return whether one changed.
+        """Set each sign(x) that is 0 to the sign of x at the end of ``piece``; return whether one was changed.
 
         The piece is the next part of the motion. ``active`` says, for each guard of the regime, whether it can end the
-        regime; only their functions are examined.
+        regime; the functions of other guards are left as they are.
         """
         numbers = [
             n
@@ -667,17 +677,17 @@ class SwitchedRun(RunState):
         return any(signs[n] for n in numbers)
 
     def _regime(self, modes: Modes) -> Regime:
-        """Return the regime (smooth motion between switches) for given values of the switching functions.
+        """Return the regime (smooth motion between switches) for given values ``modes`` of the switching functions.
 
-        In it, the arguments of the held functions stay at zero.
+        If the motion slides, the regime keeps the arguments of the functions in :attr:`held` at zero.
         """
         try:
             return self.system.regime(self.held, modes)
         except InputError:
             raise IntegrationStopped(
                 self.t,
-                f"the motion would slide along {self._names_of_held()}, but not in exactly one way: "
-                "the equations have no such motion or several",
+                f"the motion would slide along the jump of {self._names_of_held()}, but not in exactly one way: the "
+                "equations have no such motion or several; change the torque, or end the motion here",
                 self.end,
             ) from None
 
@@ -685,9 +695,10 @@ class SwitchedRun(RunState):
         return " and ".join(self._name(mode) for mode in sorted(self.held))
 
     def _check_held_alone(self) -> None:
-        """Raise IntegrationStopped if another function that jumps has an argument of zero all along the sliding motion.
+        """Raise IntegrationStopped if a held argument keeps the argument of another function with a jump at zero.
 
-        The equations then do not determine the value of this function.
+        An example is sign(omega_1 + omega_1^3) beside sign(omega_1): the equations of the sliding motion determine the
+        value of the held function only, not that of the other.
         """
         y = self.y.tolist()
         steps = [PERTURBATION * max(abs(self.t), self.span), *(PERTURBATION * max(1.0, abs(x)) for x in y)]
@@ -723,8 +734,9 @@ class SwitchedRun(RunState):
                 functions = f"{self._names_of_held()} and {self._name(mode)} at once"
                 raise IntegrationStopped(
                     self.t,
-                    f"the motion would slide along {functions}, but not in exactly one way: the equations do not "
-                    f"determine the value of {self._name(mode)}",
+                    f"the motion would slide along the jumps of {functions}, but not in exactly one way: the "
+                    f"equations do not determine the value of {self._name(mode)}; change the torque, or end the motion "
+                    "here",
                     self.end,
                 )
 

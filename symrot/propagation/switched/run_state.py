@@ -31,8 +31,11 @@ class RunState:
         Length of the whole motion, s, and its direction, 1 or -1.
     y : array, shape (N,)
         The states at ``t``.
-    spent, mark : int, (int, float)
-        Number of SciPy's evaluations so far; the same number, and the time covered, s, at the last check of the pace.
+    spent : int
+        Number of SciPy's evaluations so far.
+    mark : (int, float)
+        The values of ``spent`` and of the time covered, s, when it was last checked whether the motion advances so
+        slowly that its end cannot be reached.
     interrupt : KeyboardInterrupt or None
         A Ctrl-C that came while SciPy computed the motion beyond a switch.
     recent : deque of Instant

@@ -88,7 +88,8 @@ class SciPyPieces:
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
         """Yield each piece in the order of the motion: its polynomials, and a function from times to states.
 
-        The function is valid only within the piece. An error or interrupt of SciPy is raised after the piece before it.
+        The function is valid only within the piece. If SciPy stops with an error or is interrupted, the part of the
+        motion before that is yielded as a last piece, and then the exception is raised.
         """
         from symrot.propagation.steppers import fallback
 

@@ -16,7 +16,7 @@ from symrot.dynamics.structure import FormulaTorque, TorqueStructure, TorqueSwit
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import PI
 from symrot.formula.float_functions import FLOAT_FUNCTIONS
-from symrot.formula.switches import Switch, between_sides, chosen, hold, on_line, placed
+from symrot.formula.switches import STATES, Switch, between_sides, chosen, hold, on_line, placed
 from symrot.formula.tree import Node, evaluate, names, parse, rename, text
 from symrot.planning.plan import Plan
 from symrot.propagation.method import Choice
@@ -26,14 +26,15 @@ from symrot.propagation.switched.regimes import Modes, Regime
 
 __all__ = ["SwitchedSystem", "is_continuous"]
 
-STATES = frozenset({*(f"omega_{i}" for i in (1, 2, 3)), *(f"q{i}" for i in range(4))})
 CONTINUOUS = ("abs(", "max(", "min(", "clip(", "sqrt(")  # first characters of labels of functions that do not jump
 
 
 class SwitchedSystem:
-    """All switching functions (sign, abs, ..) in the torques of a plan, and the regimes (smooth motions) in between.
+    """All switching functions (sign, abs, ..) in the torques of a plan, and the equations between switches.
 
-    There is one regime for each set of functions whose arguments stay at zero while the motion slides.
+    Between two switches the motion is smooth; its equations, in which numbers replace the switching functions, are a
+    regime. While the motion slides, the arguments of some functions stay at zero, and these functions are unknowns:
+    each set of such functions has a regime of its own. The empty set has one too.
     """
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
@@ -44,7 +45,7 @@ class SwitchedSystem:
     def switches(self) -> list[Switch]:
         """The switching functions (sign, abs, ..) of all torques, each with its argument and the name of its mode.
 
-        The mode is the number that replaces the function in the formulas; its name is that among the plan's constants.
+        The mode is the number that replaces the function in the formulas; it is one of the plan's constants.
         """
         return [switch for switches in self._switches_by_torque for switch in switches]
 
@@ -54,12 +55,12 @@ class SwitchedSystem:
 
     @cached_property
     def twins(self) -> dict[str, list[tuple[str, int]]]:
-        """For each sign or abs in a torque, the functions of this torque that switch at the same time: its twins.
+        """A map from each sign or abs to its twins: functions of the same torque that switch at the same time.
 
         Two functions are twins if their arguments are multiples of each other, as in sign(omega_3) and abs(2*omega_3).
-        Each list contains the function itself, and functions that jump come first. A function is named by its mode,
-        the number that replaces it in the formulas; a twin is a pair (mode, 1 or -1), where -1 says that its argument
-        and the first twin's argument have opposite signs.
+        A function is named by its mode, the number that replaces it in the formulas. Its twins, itself included, are a
+        list of pairs (mode, 1 or -1), functions that jump first: -1 says that the argument of this function and that of
+        the first one in the list have opposite signs.
         """
         numbers: dict[str, Node] = {name: ("number", value) for name, value in self.constants.items()}
         for mode in self.switches:
@@ -134,10 +135,11 @@ class SwitchedSystem:
         return self._modes_at_start({})
 
     def beside_start(self, mode: str, sign: int) -> Modes:
-        """Return the values of all switching functions just after the start, if ``mode`` has the value ``sign``.
+        """Return the values of all switching functions just after the start, if that of ``mode`` is ``sign``.
 
-        ``mode`` names the value of a function such as sign whose argument is zero at the start, so that 1 and -1 are
-        possible. Functions whose arguments contain this function change with it.
+        A mode is the name of the number that replaces a function such as sign in the formulas. The argument of this
+        function is zero at the start, so that 1 and -1 are both possible; functions whose arguments contain it get
+        other values with it.
         """
         return self._modes_at_start({mode: sign})[0]
 
@@ -160,7 +162,7 @@ class SwitchedSystem:
                 modes[switch.mode] = 0 if switch.kind == "floor" else switch.at_zero
             modes[switch.mode] = chosen_modes.get(switch.mode, modes[switch.mode])
             values[switch.mode] = float(modes[switch.mode])
-            if guard == 0.0 and switch.kind == "sign" and names(switch.guard) & STATES:
+            if guard == 0.0 and switch.kind == "sign" and not names(switch.guard).isdisjoint(STATES):
                 undecided.add(switch.mode)
         return modes, undecided
 
@@ -187,7 +189,8 @@ class SwitchedSystem:
                 for switch in switches:
                     if names(switch.guard) & (held | tied.keys()):
                         raise InputError(
-                            f"torque: the motion slides along a function inside {switch.label}, which then has no value"
+                            f"torque: the motion slides along the jump of a function inside {switch.label}, where "
+                            f"{switch.label} has no value; write the torque without one of them inside the other"
                         )
                 own = on_own_clock(plan, self.choice, self.tolerance)
                 self._regime_of[content] = Regime(self.constants, self.switches, own, held, switches)
@@ -214,7 +217,8 @@ class SwitchedSystem:
 def _switches(torque: FormulaTorque) -> list[Switch]:
     """Return the switching functions (sign, abs, ..) of a torque, as conditions on time and states.
 
-    Their modes have the names that they have among the plan's constants, which may begin with a prefix of the torque.
+    The number that replaces a function, its mode, is a constant of the plan. There the constants of a torque may have a
+    prefix, such as ``torque2_``; the result has the names with this prefix.
     """
     own = {name: f"{torque.prefix}{name}" for name in torque.parameters}
     return [

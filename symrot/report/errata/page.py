@@ -37,9 +37,9 @@ class Block(NamedTuple):
 
 
 def page(survey: Survey) -> str:
-    """Return the text of ``errata.md``, the page of errata;
+    """Return the text of ``errata.md``, the page of errata.
 
-    ``survey`` is from :func:`symrot.report.errata.entries.survey`.
+    ``survey`` is the result of :func:`symrot.report.errata.entries.survey`.
     """
     return "\n\n".join(MARKDOWN[block.kind](block.text) for block in _blocks(survey)) + "\n"
 

@@ -97,7 +97,7 @@ def _places_of_others(node: Node, other: Node) -> list[int]:
 
 
 def latex(node: Node, letters: Mapping[str, str] = {}, functions: Collection[str] = ()) -> str:
-    """Return the LaTeX of a formula, in which marks become boxes.
+    """Return the LaTeX of a formula; its marked parts, those that an erratum corrects, are in boxes.
 
     ``letters`` maps names to the LaTeX of the document's letters; ``functions`` are the names that depend on time.
     """
@@ -113,7 +113,10 @@ def filled(template: str, parts: Mapping[str, Node], letters: Mapping[str, str],
 
 
 class _Typesetter(Writer):
-    """Writer of LaTeX as a book prints it: boxes around marks, integrals, fractions, and the document's own letters."""
+    """Writer of LaTeX as a book prints it: with integrals, fractions, and the letters of the document that is quoted.
+
+    A part of a formula that an erratum corrects is marked; marked parts are in boxes.
+    """
 
     def __init__(self, letters: Mapping[str, str], functions: Collection[str]) -> None:
         super().__init__(functions, NO_VECTORS)
@@ -170,9 +173,10 @@ class _Typesetter(Writer):
         return " ".join([*pieces, *([self._row(above, alone=False)] if above else [])])
 
     def _row(self, factors: list[Node], alone: bool = True) -> str:
-        """Return factors side by side as LaTeX; ``alone`` is true if the product has no other factors or fractions.
+        """Return ``factors`` side by side as LaTeX; a single one gets no brackets if ``alone`` is true.
 
-        Then a single factor needs no brackets.
+        ``alone`` is false if the factors are followed or preceded by other parts of the same product, such as a
+        fraction.
         """
         alone = alone and len(factors) == 1
         written = ""

@@ -73,8 +73,8 @@ def audit_step(
     missing = [each for each in SECTIONS if each not in data and each != "bounds"]
     unknown = sorted(set(data) - set(SECTIONS))
     if missing or unknown:
-        raise CertificateError(f"{path}: expected the sections of a step's certificate, got "
-                               f"{'none ' if missing else ''}{(missing or unknown)[0]!r}")  # fmt: skip
+        problem = f"{missing[0]!r} is missing" if missing else f"{unknown[0]!r} is unknown"
+        raise CertificateError(f"{path}: expected the sections of a step's certificate, but {problem}")
     if not re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII) or path.name != f"{name}.cert.json":
         raise CertificateError(f"{path}: expected the certificate of {path.name.removesuffix('.cert.json')}, "
                                f"got that of {name[:60]}")  # fmt: skip
@@ -91,7 +91,10 @@ def audit_step(
     method, rates = _method(path, data), rates_of(data)
     progress("proving ..")
     if formula_section(name, rates, method, source) != data["formula"]:
-        raise CertificateError(f"{path}: expected the proof of the C text that symrot computes now, got another one")
+        raise CertificateError(
+            f"{path}: expected 'formula' to be the proof that symrot now derives from the C text, got other content; "
+            "emit the step again"
+        )
     report = [
         f"{name}: {len(texts)} hashes agree; the C text of symrot_{name} and symrot_{name}f, and of their batch "
         f"functions, computes the {method.formula}"
@@ -187,7 +190,10 @@ def _bounds(path: Path, data: Data, method: Method, source: str, rerun: bool) ->
         for index, (symbol, _, value) in enumerate(data["rates"]["parameters"]):
             low, high = box.get(f"p[{index}]", (Fraction(0), Fraction(0)))
             if f"p[{index}]" in box and not low <= Fraction(float.fromhex(value)) <= high:
-                raise CertificateError(f"{path}: expected a box with the value of {symbol}, got one without it")
+                raise CertificateError(
+                    f"{path}: expected 'box' in 'bounds' to have a range of p[{index}] ({symbol}) that contains its "
+                    f"value {float.fromhex(value):.9g}, got {float(low):.9g} to {float(high):.9g}"
+                )
         own = bounds_of_step(operations, rates, method, box)
     except InputError as reason:
         raise CertificateError(f"{path}: {reason}") from None

@@ -2,7 +2,8 @@
 
 The text consists of the C files by which symrot itself propagates the motion, and of a function with the arguments of a
 step. The constants of the motion are computed from the state in every call, in numbers of 31 digits, so that a step
-costs the same for any dt. The parameters p are those of the closed form: moments of inertia, pull, momentum of a rotor.
+costs the same for any dt. The parameters p are those of the closed form: moments of inertia, pull (weight times the
+distance of the centre of mass, in N m), momentum of a rotor.
 """
 
 import re
@@ -31,10 +32,10 @@ Motions = Callable[[Sequence[Fraction], Sequence[Fraction]], Any]
 class _Form(NamedTuple):
     """The parts of the C text of a step that depend on which closed form the motion has.
 
-    ``parameters`` holds (name, unit and meaning, value) of each number in p, and ``tables`` the C definitions of
-    constants. ``arguments`` are the arguments of the C function that prepares a motion. ``named`` holds the indices of
-    the body axes that the closed form calls e1, e2, e3. ``motion`` is a function that returns the motion for an initial
-    omega and quaternion and for parameters that are doubles.
+    ``parameters`` holds (name, unit and meaning, value) of each number in p, the array of parameters that the C step
+    takes, and ``tables`` the C definitions of constants. ``arguments`` are the arguments of the C function that
+    prepares a motion. ``named`` holds the indices of the body axes that the closed form calls e1, e2, e3. ``motion`` is
+    a function that returns the motion for an initial omega and quaternion and for parameters that are doubles.
     """
 
     library: str

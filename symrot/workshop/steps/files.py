@@ -12,7 +12,10 @@ __all__ = ["StepFiles", "constant_table"]
 
 
 class StepFiles(KernelText):
-    """The texts of a time step, of any method; a step has no bounds of rounding errors."""
+    """The texts of a time step, of any method.
+
+    The comments in its C files state no error bounds; those of rk4 and taylor are in the certificate alone.
+    """
 
     folders: ClassVar[Mapping[str, str]] = {}
 
@@ -31,9 +34,12 @@ class StepFiles(KernelText):
         """The text of a C program that compares the step with the test vectors; it exits with 0 if all agree."""
 
     def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
-        """Return the C source and its header; ``bounds`` must be None, because a step has none."""
+        """Return the C source and its header; ``bounds`` must be None, because their comments state no error bounds."""
         if bounds:
-            raise InputError(f"{self.name}: expected no bounds, because a step has no bounds of rounding errors")
+            raise InputError(
+                f"{self.name}: expected no bounds for the C text of a time step; "
+                "`symrot certify SCENE --step METHOD --box NAME=LOW:HIGH` bounds its errors"
+            )
         return self._source_and_header
 
     def c_files(self, bounds: Bounds | None = None) -> dict[str, str]:

@@ -183,7 +183,11 @@ def _claims(source: str, given: Sequence[str] = ()) -> list[Claim]:
         return []
     for reading in readings:
         with suppress(SymrotError):
-            claims += [claim for line in claims_of_reading(reading, source, given) for claim in line]
+            for first, *others in claims_of_reading(reading, source, given):
+                claims += [first, *others]
+                if first.relation is not None:  # a = b = c says that a = c
+                    links = [(first.relation[1], link.relation[2]) for link in others if link.relation is not None]
+                    claims += [first.with_relation(("==", left, right)) for left, right in links]
     return claims
 
 

@@ -35,11 +35,10 @@ from symrot.checker.claim.shapes import (
     shape_of,
     with_unit_matrices,
 )
-from symrot.checker.claim.tree import Node, negated, walk
+from symrot.checker.claim.tree import TIME, Node, negated, walk
 from symrot.checker.claim.tree import number as number_node
 from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor, with_scalar_products
 from symrot.checker.latex.reader import Names, read_latex
-from symrot.checker.typed.cursor import TIME
 from symrot.checker.units.units import read_unit
 from symrot.errors import InputError
 

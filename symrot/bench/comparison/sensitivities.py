@@ -1,0 +1,165 @@
+"""Comparison of derivatives of motions by initial values and constants: symrot, and heyoka's variational equations.
+
+    python -m symrot.bench.comparison.sensitivities [--rounds 7] [--settings default fast compact] [--motion NAME ..]
+
+Both integrate the motion and its derivatives by the same variables as one system of equations, which symrot derives;
+heyoka differentiates it itself. The runs alternate, each from the same initial state to the same last time, and the
+median of the times counts. A run of symrot is a call of its propagator from Python, a run of heyoka the call of
+``propagate_until``. The error of a run is the largest error of the last derivatives by one variable, divided by the
+largest of them; the reference is a difference quotient of two motions of 40 digits, with an error near 1e-18.
+
+heyoka is optional: ``pip install heyoka``. Its compiler takes seconds to minutes for each setting but ``compact``.
+"""
+
+import argparse
+import json
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.bench.comparison.exact_path import DIGITS, ORDER, TAIL, ExactPath
+from symrot.bench.comparison.peers import FUNCTIONS
+from symrot.bench.comparison.problem import Problem
+from symrot.bench.comparison.race import Measured, race, seconds_of
+from symrot.bench.taylor import scene as motion_scene
+from symrot.build import cache
+from symrot.formula.tree import evaluate
+from symrot.planning.general_structure import general_structure
+from symrot.planning.plan import Plan
+from symrot.propagation.propagate import propagator
+from symrot.report.layout import columns
+from symrot.scene.scene import Scene
+
+__all__ = ["CASES", "Case", "main", "measure", "reference"]
+
+Floats = NDArray[np.float64]
+
+
+class Case(NamedTuple):
+    """A motion of :data:`symrot.bench.taylor.MOTIONS`, its duration in s, and the variables of its derivatives."""
+
+    motion: str
+    duration: int
+    variables: tuple[str, ...]
+
+
+CASES = (
+    Case("free asymmetric", 100, ("omega_1", "omega_2", "omega_3")),
+    Case("heavy symmetric", 20, ("omega_1", "omega_2", "omega_3", "weight")),
+    Case("heavy asymmetric", 20, ("omega_1", "omega_2", "omega_3", "weight")),
+    Case("gravity gradient", 20, ("omega_1", "omega_2", "omega_3")),
+)
+SETTINGS: dict[str, dict[str, bool]] = {"default": {}, "fast": {"fast_math": True}, "compact": {"compact_mode": True}}
+STEP = Fraction(1, 1 << 30)
+STATES = 7
+
+
+def reference(case: Case, variable: str) -> Floats:
+    """Return the derivatives of the seven states at the last time by one variable, from motions of 40 digits.
+
+    They are kept in the cache of kernels, because they take about half a minute.
+    """
+    import mpmath
+
+    scene = motion_scene(case.motion)
+    value = Fraction(scene.value(variable))
+    key = f"derivatives {DIGITS} {ORDER} {TAIL} {STEP} {variable} {case.duration}\n{scene.to_toml()}"
+    stored = cache.fetch(key)
+    if stored is not None:
+        return np.array(json.loads(stored))
+    ends = []
+    with mpmath.workdps(DIGITS):
+        for sign in (-1, 1):
+            other = scene.with_({variable: value + sign * STEP})
+            problem = Problem(other, Plan(other, general_structure(other), ()))
+            ends.append(ExactPath(problem.plan, problem.kernel).state(mpmath.mpf(case.duration)))
+        step = mpmath.mpf(STEP.numerator) / STEP.denominator
+        slopes = [float((high - low) / (2 * step)) for low, high in zip(*ends, strict=True)]
+    cache.store(key, json.dumps(slopes))
+    return np.array(slopes)
+
+
+def _heyoka(case: Case, scene: Scene, settings: dict[str, bool]) -> Callable[[], Floats]:
+    """Return a function that runs heyoka once and returns the derivatives at the last time, shape (7, variables)."""
+    import heyoka
+
+    problem = Problem(scene, Plan(scene, general_structure(scene), ()))
+    constants: dict[str, Any] = {name: float(value) for name, value in problem.plan.constants.items()}
+    names = [name for name in case.variables if not name.startswith("omega")]
+    constants |= {name: heyoka.par[k] for k, name in enumerate(names)}
+    functions = {name: getattr(heyoka, name) for name in FUNCTIONS}
+    parameters = {name: evaluate(node, constants, functions, float) for name, node in problem.kernel.rate_parameters}
+    states = [name for name, *_ in problem.kernel.rates.signature.argument("y").components]
+    variables = dict(zip(states, heyoka.make_vars(*states), strict=True))
+    rates = problem.kernel.rates.evaluate({**variables, **parameters, "t": heyoka.time}, functions, float)
+    system = [(variables[name], rates[f"d{name}"]) for name in states]
+    by = [variables.get(name, heyoka.par[0]) for name in case.variables]
+    equations = heyoka.var_ode_sys(system, args=by, order=1)
+    integrator = heyoka.taylor_adaptive(
+        equations, problem.y0, pars=[float(scene.value(name)) for name in names], **settings
+    )
+    start = integrator.state.copy()
+
+    def run() -> Floats:
+        integrator.time, integrator.state[:] = 0.0, start
+        integrator.propagate_until(float(case.duration))
+        return np.array(integrator.state[STATES:]).reshape(STATES, len(case.variables))
+
+    return run
+
+
+def _symrot(case: Case, scene: Scene) -> Callable[[], Floats]:
+    """Return a function that calls symrot's propagator and returns the derivatives at the last time, as _heyoka."""
+    own = propagator(scene, sensitivities=case.variables)
+    times, omega = np.array([float(case.duration)]), [float(rate) for rate in scene.initial.omega_b]
+
+    def run() -> Floats:
+        derivatives = own(times, omega=omega).sensitivities
+        assert derivatives is not None
+        return np.concatenate([derivatives.omega[-1], derivatives.quaternion[-1]])
+
+    return run
+
+
+def _error(computed: Floats, exact: Floats) -> float:
+    """Return the largest error of a column of derivatives, divided by the largest of the column's numbers."""
+    return float((np.abs(computed - exact).max(axis=0) / np.abs(exact).max(axis=0)).max())
+
+
+def measure(case: Case, rounds: int, settings: Sequence[str]) -> list[Measured]:
+    """Return the measured runs of one case: symrot's first, then heyoka's in each of the settings."""
+    scene = motion_scene(case.motion)
+    exact = np.stack([reference(case, variable) for variable in case.variables], axis=1)
+    runs = {"symrot": _symrot(case, scene)}
+    runs |= {f"heyoka {name}": _heyoka(case, scene, SETTINGS[name]) for name in settings}
+    entries = []
+    for name, run in runs.items():
+        error = _error(run(), exact)
+        entries.append((Measured(name, 0.0, 0, error, seconds_of(run)), run))
+    race(entries, rounds)
+    return [entry for entry, _ in entries]
+
+
+def main() -> None:
+    """Print the times and errors of all cases; the ratio is that of heyoka's fastest setting to symrot."""
+    parser = argparse.ArgumentParser(description="derivatives of motions: symrot and heyoka")
+    parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--settings", nargs="*", default=list(SETTINGS), choices=list(SETTINGS))
+    parser.add_argument("--motion", nargs="*", default=[case.motion for case in CASES])
+    options = parser.parse_args()
+    rows = [("motion", "program", "us", "error", "time over symrot's")]
+    for case in CASES:
+        if case.motion not in options.motion:
+            continue
+        own, *others = measure(case, options.rounds, options.settings)
+        for entry in (own, *others):
+            ratio = entry.median / own.median
+            rows.append((case.motion, entry.name, f"{entry.median * 1e6:.0f}", f"{entry.error:.1e}", f"{ratio:.2f}"))
+    print("\n".join(columns(rows)))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,66 @@
+"""Faults on the side of a claim that has its quantity: ``cos(gamma)`` for ``cos(gamma/2)``, ``k`` for ``k^2``."""
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import NamedTuple
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.named_formula import NamedFormula, is_name_or_rate
+from symrot.checker.claim.tree import Node, negated, number, sum_of
+from symrot.checker.recognition.evidence import LEAST_SYMBOLS_EDITED, names_in, quantity_name
+from symrot.checker.repair.edits import COST, OPPOSITE, scaled
+
+__all__ = ["QuantityVariant", "is_evident_by_quantity", "quantity_variants"]
+
+TWO = number(2)
+
+
+class QuantityVariant(NamedTuple):
+    """Both sides of a claim after a change of the side with its quantity, with the code and the cost of the fault."""
+
+    side: Node
+    formula: Node
+    code: str
+    cost: float
+
+
+def quantity_variants(named: NamedFormula) -> Iterator[QuantityVariant]:
+    """Yield the claim ``named`` with usual faults undone on the side of its quantity.
+
+    Another function or another multiple of its angle, the square of a quantity or its root, and the squares of all
+    terms of the equation are tried.
+    """
+    side, formula = named.side, named.formula
+    if side.kind == "call" and side.value in OPPOSITE and is_name_or_rate(side.args[0]):
+        (angle,) = side.args
+        for multiple, code in ((Fraction(1, 2), "half_angle"), (Fraction(2), "double_half_angle")):
+            yield QuantityVariant(Node("call", side.value, (scaled(angle, multiple),)), formula, code, COST[code])
+        other = Node("call", OPPOSITE[side.value], (angle,))
+        yield QuantityVariant(other, formula, "sin_cos_swap", COST["sin_cos_swap"])
+    if side.kind == "power" and side.args[1] == TWO and is_name_or_rate(side.args[0]):
+        yield QuantityVariant(side.args[0], formula, "exponent", COST["exponent"])
+    if is_name_or_rate(side):
+        square = _square_of(side)
+        yield QuantityVariant(square, formula, "exponent", COST["exponent"])
+        terms = [term.args[0] if term.kind == "neg" else term for term in formula.args]
+        if formula.kind == "sum" and all(map(is_name_or_rate, terms)):
+            squares = [negated(_square_of(t.args[0])) if t.kind == "neg" else _square_of(t) for t in formula.args]
+            yield QuantityVariant(square, sum_of(squares), "exponent", COST["exponent"])
+
+
+def _square_of(tree: Node) -> Node:
+    return Node("power", None, (tree, TWO))
+
+
+def is_evident_by_quantity(claim: Claim, named: NamedFormula, changed: QuantityVariant) -> bool:
+    """Return whether a claim whose side with the quantity may be ``changed`` more likely has this fault than none.
+
+    It has enough letters, the context says what the quantity is, or the formula has the letter of the quantity with
+    another mark, as ``k = k_bar + d`` has.
+    """
+    letters = names_in(named.formula)
+    stem = named.name.partition("_")[0]
+    if any(letter.partition("_")[0] == stem for letter in letters) and changed.formula != named.formula:
+        return True
+    is_stated = claim.context.meaning_of(quantity_name(named)) is not None
+    return len(letters) >= LEAST_SYMBOLS_EDITED + (0 if is_stated else 1)
