@@ -25,7 +25,9 @@ from symrot.checker.inequality import OPPOSITE, is_inequality, verdict_on_inequa
 from symrot.checker.marks import changed_entry, changed_spans
 from symrot.checker.measured import in_degrees, with_units
 from symrot.checker.open_equation import as_equation
-from symrot.checker.recognition.together import fit_together
+from symrot.checker.recognition.naming import recognised_edits
+from symrot.checker.recognition.together import fit_together, misplaced
+from symrot.checker.repair.edits import FAULT_DESCRIPTIONS
 from symrot.checker.rounding import with_rounding
 from symrot.checker.special_cases import for_complex_numbers, for_special_directions
 from symrot.checker.units.conversion import (
@@ -50,6 +52,9 @@ APART = "each line is a formula that symrot derives, but no body, frame or seque
 INDICES = "it is in index notation, which is not decided; write one component, such as I_xy"
 
 INDEX_CONDITION = "it restricts the quantities with indices that it names: it is a condition, and no identity"
+
+MOST_LINES, MOST_EDITS_OF_LINE = 4, 120
+"""The most lines, and the most edits of each, that are tried so that lines fit together."""
 
 NAMING = ("definition", "recognised")
 CALLS_FOR_ARRAYS = ("qmul(", "eye(", "⊗", "\\otimes")
@@ -543,9 +548,36 @@ def _on_parts(
     ]
     if worst.verdict == "recognised" and not fit_together(by_name):
         worst = replace(worst, verdict="doubtful", recognised_as=(), reason=APART)
+        worst = _with_fitting_line(claims, by_name, notation, worst)
     claim_notes = [note for line in lines for claim in line for note in claim.notes]
     seconds = sum(verdict.seconds for verdict in verdicts)
     return replace(worst, notes=tuple(dict.fromkeys([*claim_notes, *notes])), seconds=seconds)
+
+
+def _with_fitting_line(
+    claims: Sequence[Claim], lines: Sequence[tuple[str, Collection[str], Verdict]], notation: Notation, verdict: Verdict
+) -> Verdict:
+    """Return the verdict on lines that do not fit together, with the single edit of one line after which they do.
+
+    ``lines`` are those of the names on the left sides, their letters and verdicts, one for each of the ``claims``. If
+    there is no such edit, ``verdict`` is returned.
+    """
+    if len(lines) != len(claims) or len(lines) > MOST_LINES or any(claim.hypotheses for claim in claims):
+        return verdict
+    nearest: tuple[tuple[int, float], Verdict] | None = None
+    for place, claim in enumerate(claims):
+        named = named_formula(claim)
+        letters = {letter for _, own, _ in lines for letter in own}
+        edits = recognised_edits(claim, named, letters, MOST_EDITS_OF_LINE) if named is not None else ()
+        for repair, other in edits:
+            relation = read_relation(repair.text)
+            changed = [*lines[:place], (lines[place][0], _names(relation[2]), other), *lines[place + 1 :]]
+            rank = misplaced(changed), repair.cost
+            if (nearest is None or rank < nearest[0]) and fit_together(changed):
+                marked = _marked(repair, claim, notation)
+                diagnosis = Diagnosis(repair.code, FAULT_DESCRIPTIONS[repair.code])
+                nearest = rank, replace(verdict, diagnosis=diagnosis, repairs=(marked,))
+    return verdict if nearest is None else nearest[1]
 
 
 def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], both_signs: bool) -> Verdict:

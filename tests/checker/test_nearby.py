@@ -183,3 +183,17 @@ def test_usual_slips_are_found(claim, where, repair):
 @pytest.mark.parametrize("claim", ["M_1 = 3 n^2 (J_3 - J_2) C_23 C_33", "G_1 = 3 n^2 (I_3 - I_2) c_2 c_3"])
 def test_the_torque_of_the_gravity_gradient_is_known_in_the_letters_of_books(claim):
     assert symrot.check(claim).verdict == "recognised"
+
+
+@pytest.mark.parametrize(("lines", "repair"), [
+    (("I_1 = m/5 (b^2 + c^2)", "I_2 = m/5 (a^2 + b^2)", "I_3 = m/5 (a^2 + b^2)"), "I_2 = m/5*(a^2 + c^2)"),
+    (("omega_x = theta' cos phi + psi' sin theta sin phi", "omega_y = theta' sin phi - psi' sin theta cos phi",
+      "omega_z = psi' + phi' cos theta"), "omega_z = phi' + psi'*cos(theta)"),
+    (("omega_x = theta' cos psi + phi' sin theta sin psi", "omega_y = theta' sin phi - psi' sin theta cos phi",
+      "omega_z = psi' + phi' cos theta"), "omega_y = theta'*sin(psi) - phi'*sin(theta)*cos(psi)"),
+])  # fmt: skip
+def test_of_lines_that_do_not_fit_together_one_is_repaired(lines, repair):
+    """Each line alone is known; the letters of the third text mean other angles on its second line than on the first."""
+    verdict = symrot.check("\n".join(lines))
+    assert (verdict.verdict, verdict.diagnosis.code) == ("doubtful", "wrong_symbol")
+    assert [each.text for each in verdict.repairs] == [repair]

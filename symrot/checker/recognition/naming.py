@@ -7,9 +7,9 @@ it equal to one, and "definition" otherwise.
 """
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import islice
+from itertools import combinations, islice
 from typing import Any
 
 from sympy import Function, Matrix, Mul, Pow, Rational, Symbol, acos, asin, atan2
@@ -61,7 +61,9 @@ from symrot.exact.decide import decide
 from symrot.exact.printing import as_text
 from symrot.exact.ring.ratio import TooLarge
 
-__all__ = ["AS_IT_STANDS", "SQUARED", "verdict_near_relation", "verdict_on_name", "verdict_on_relation"]
+__all__ = [
+    "AS_IT_STANDS", "SQUARED", "recognised_edits", "verdict_near_relation", "verdict_on_name", "verdict_on_relation",
+]  # fmt: skip
 
 
 MOST_EDITS = 400
@@ -463,6 +465,35 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
         if not any(strangeness):
             break
     return nearest and nearest[1]
+
+
+def recognised_edits(
+    claim: Claim, named: NamedFormula, letters: Collection[str], most: int
+) -> Iterator[tuple[Repair, Verdict]]:
+    """Yield single edits of a claim's formula that make it a known one, each as a repair and with its verdict.
+
+    They are for a formula that is known but does not fit to the other lines of its text, which have the ``letters``. An
+    exchange of two letters counts as one edit. At most ``most`` edits are tried, the cheapest ones.
+    """
+    numeric = NumericFilter(claim)
+    names = sorted({*numeric.names, *letters} - {*numeric.functions})
+    edits = [*single_edits(named.formula, names, numeric.functions, numeric.is_matrix, numeric.moving)]
+    own = sorted(names_in(named.formula))
+    for first, second in combinations(own, 2):
+        exchanged = _exchanged(named.formula, {first: second, second: first})
+        if exchanged != named.formula:
+            edits.append(Edit("wrong_symbol", COST["wrong_symbol"], (), exchanged))
+    for edit in sorted(edits, key=lambda edit: edit.cost)[:most]:
+        if readings := _readings(claim, named, edit.tree, LEAST_SYMBOLS_EDITED):
+            repair = Repair(f"{text(named.side)} == {text(edit.tree)}", edit.code, edit.cost)
+            yield repair, Verdict("recognised", recognised_as=readings)
+
+
+def _exchanged(tree: Node, names: Mapping[str, str]) -> Node:
+    """Return a tree with other names of symbols and of functions of time: ``names`` maps old to new ones."""
+    is_named = tree.kind == "name" or (tree.kind == "call" and is_atom(tree))
+    value = names.get(str(tree.value), tree.value) if is_named else tree.value
+    return replace(tree, value=value, args=tuple(_exchanged(child, names) for child in tree.args))
 
 
 def _with_all_terms_added(named: NamedFormula) -> Iterator[Edit]:

@@ -8,7 +8,7 @@ import re
 from collections.abc import Mapping, Sequence
 from functools import cache
 
-__all__ = ["axes_of", "component", "is_consistent"]
+__all__ = ["axes_of", "component", "is_consistent", "quantity_of"]
 
 AXIS = {letter: axis for axis, letters in ((0, "0sw"), (1, "1x"), (2, "2y"), (3, "3z")) for letter in letters}
 """Last letter of a name -> its axis; 0 is the scalar part of a quaternion."""
@@ -39,7 +39,8 @@ def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> b
 
     If ``fixed``, each axis keeps its number; otherwise the axes may be exchanged in a cycle.
     """
-    pairs = [(_angle(known), _angle(new)) if _angle(new) != new else (known, new) for known, new in renaming]
+    rates = [(quantity_of(known), quantity_of(new)) for known, new in renaming]
+    pairs = [pair if pair[1] != own[1] else own for pair, own in zip(rates, renaming, strict=True)]
     if len({*pairs}) != len({known for known, _ in pairs}) or len({*pairs}) != len({new for _, new in pairs}):
         return False
     if not _keeps_time_order(dict(pairs)):
@@ -82,7 +83,7 @@ def component(known: str, quantity: str) -> list[tuple[str, str]]:
 
 
 @cache
-def _angle(name: str) -> str:
+def quantity_of(name: str) -> str:
     """Return the quantity to which a name belongs: phi for its rate dphi and for phi(t); other names are unchanged."""
     while (inner := RATE.fullmatch(name)) is not None:
         name = next(part for part in inner.groups() if part)

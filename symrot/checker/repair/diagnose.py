@@ -22,9 +22,10 @@ from symrot.checker.repair.insertions import exchanged_definitions, missing_matr
 from symrot.checker.repair.joined_pairs import joined_pairs, pair_of
 from symrot.checker.repair.points import UndefinedValue
 from symrot.checker.repair.solve_for_piece import solutions
+from symrot.checker.repair.whole_edits import after_whole_edits
 from symrot.checker.verdict import Diagnosis, Repair
 from symrot.errors import InputError
-from symrot.exact.decision import Decision
+from symrot.exact.decision import Decision, flatten
 
 __all__ = ["MOST_REPAIRS", "diagnose"]
 
@@ -116,6 +117,8 @@ class _Search:
             repairs = self.proven(joined_pairs(numeric, changes), MOST_REPAIRS)
         if not repairs and not self.conditional:
             repairs = self.proven(self.pairs(changes), MOST_REPAIRS)
+        if not repairs and not self.conditional:
+            repairs = self.proven(after_whole_edits(numeric, changes), MOST_REPAIRS)
         nearest = min((cost for cost, _ in self.tautologies), default=MOST_COSTLY)
         repairs = sorted((r for r in repairs if r.cost <= nearest + AS_NEAR), key=lambda repair: repair.cost)
         if 0 < len(repairs) < MOST_REPAIRS:
@@ -209,7 +212,7 @@ class _Search:
         """
         claimed = self.numeric.claim.equation
         sides = ((claimed.left, equation.left), (claimed.right, equation.right))
-        bare = [(before, after) for before, after in sides if after != 0 and not _symbols(after)]
+        bare = [(before, after) for before, after in sides if any(flatten(after)[0]) and not _symbols(after)]
         return any(map(_symbols, dict(bare))) or (len(bare) == len(sides) and bool(equation.divisors))
 
     def proven(self, candidates: Iterable[Candidate], most: int) -> list[Repair]:

@@ -44,11 +44,14 @@ class Candidate(NamedTuple):
 
 
 class NumericFilter:
-    """A fast test of repairs: it evaluates the edited claim at points that obey the hypotheses."""
+    """A fast test of repairs: it evaluates the edited claim at points that obey the hypotheses.
 
-    def __init__(self, claim: Claim) -> None:
+    It evaluates at most ``most_pieces`` pieces of trees; then every test fails.
+    """
+
+    def __init__(self, claim: Claim, most_pieces: int = MOST_PIECES) -> None:
         assert claim.relation is not None
-        self.claim = claim
+        self.claim, self.most_pieces = claim, most_pieces
         _, self.left, self.right = claim.relation
         self.definitions = dict(claim.define)
         trees = [self.left, self.right, *self.definitions.values()]
@@ -158,7 +161,7 @@ class NumericFilter:
     # -- values -----------------------------------------------------------------------------------------------------
 
     def affordable(self) -> bool:
-        return sum(point.spent[0] for point in self.points) < MOST_PIECES
+        return sum(point.spent[0] for point in self.points) < self.most_pieces
 
     def sides(self, point: Point, changes: Sequence[Change]) -> tuple[Any, Any]:
         left, right = self.left, self.right

@@ -1,0 +1,64 @@
+"""Two faults of which one changes a whole side or definition: the other one is searched after that one is undone.
+
+A transposed rotation, a product in the wrong order or a wrong sign of a side changes all values of a claim, so that no
+part of the claim tells where a second fault is. After it is undone, the second fault is a single one: then a missing
+term and a part whose right value follows from the rest can be found too.
+"""
+
+from collections.abc import Iterator, Sequence
+from itertools import islice
+
+from symrot.checker.repair.edits import single_edits
+from symrot.checker.repair.filter import Candidate, Change, NumericFilter
+from symrot.checker.repair.insertions import missing_terms
+from symrot.checker.repair.solve_for_piece import solutions
+from symrot.errors import InputError
+
+__all__ = ["after_whole_edits"]
+
+WHOLE = (
+    "overall_sign", "frame_body_space", "active_passive_transpose", "commutator_order", "quaternion_product_order",
+    "wrong_sequence_type", "inertia_product_sign",
+)  # fmt: skip
+"""The faults that change a whole side or definition."""
+
+MOST_WHOLE = 8
+"""The most faults of whole sides that are undone, the cheapest first."""
+
+MOST_EDITS = 3000
+"""The most edits that are tried after one of them is undone."""
+
+MOST_PIECES_AFTER = 60_000
+"""The most pieces of trees that may be evaluated after one of them is undone."""
+
+
+def after_whole_edits(numeric: NumericFilter, changes: Sequence[Change]) -> Iterator[Candidate]:
+    """Yield candidates with one of ``changes`` that concerns a whole side or definition, and another change after it.
+
+    All are true at the test points.
+    """
+    for first in islice((change for change in changes if change.edit.code in WHOLE), MOST_WHOLE):
+        claim = numeric.edited([first])
+        try:
+            _ = claim.equation
+        except InputError:
+            continue  # the shapes of its matrices do not fit
+        edited = NumericFilter(claim, MOST_PIECES_AFTER)
+        if len(edited.points) < 2 or edited.left.kind == edited.right.kind == "neg":
+            continue
+        second = [*_single(edited), *solutions(edited), *missing_terms(edited)]
+        for candidate in sorted(second, key=lambda candidate: candidate.cost):
+            both = {first.place: first} | {change.place: change for change in candidate.changes}
+            yield Candidate(first.cost + candidate.cost, "two_faults", tuple(both.values()))
+
+
+def _single(numeric: NumericFilter) -> Iterator[Candidate]:
+    """Yield the single edits of a claim after which it is true at the test points."""
+    for place in numeric.places:
+        tree = numeric.tree_at(place)
+        opened = numeric.open_paths(place, tree)
+        edits = single_edits(tree, numeric.names, numeric.functions, numeric.is_matrix, numeric.moving, opened)
+        for edit in islice(edits, MOST_EDITS):
+            change = Change(place, edit)
+            if numeric.sensible(place, edit.tree) and numeric.holds([change]):
+                yield Candidate(change.cost, edit.code, (change,))
