@@ -319,8 +319,9 @@ def names_in(formula: Node) -> set[str]:
 def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> bool:
     """Return whether a claim may mean a known formula, judged by the quantity's name and the units of the symbols.
 
-    ``matrix`` tells whether the claim's formula is a vector or matrix. Then it may also be the transpose of ``known``,
-    for example; a scalar formula must be equal to ``known`` as it is.
+    ``known.how`` says how the claim's formula differs from the known one. A scalar must be equal to it as it is. A
+    vector or matrix (``matrix`` is True) may also be its transpose or inverse, for example, but not the same with
+    another sign; a multiple is excluded only if the quantity's name has a known meaning.
     """
     words = words_of(named)
     if words is None and "inertia" in known.name and named.name[:1].islower():
@@ -479,8 +480,8 @@ def strangeness_of(named: NamedFormula, known: Identification) -> tuple[int, int
 def rarity_of(known: Identification) -> tuple[bool, int]:
     """Return a sort key of a known formula, smaller for those that a claim more probably means.
 
-    Formulas that match without a change, such as a transpose, come first, and among these the formulas in Euler
-    sequences that many books use.
+    Formulas that are equal to the claim's come first, before those that have to be transposed or multiplied to match.
+    Among each of these, the formulas in Euler sequences that many books use come first.
     """
     return bool(known.how), _rank_of_sequence(known.name)
 

@@ -147,9 +147,11 @@ def _value(formula: Any) -> Any:
 
 
 def _in_new_names(tree: Node, source: str, define: Sequence[tuple[str, Node]] = ()) -> Any:
-    """Return the SymPy value of a tree; its names become symbols or functions of time, as their use tells.
+    """Return the SymPy value of a tree: each name is a symbol, a function of time, or the value of its definition.
 
-    ``define`` are the names with a definition, such as vectors with their components, and ``source`` is the text.
+    Names without a definition become real symbols, or functions of time if the tree has their rates. ``define`` has
+    (name, formula) for the others, such as a vector with its components; they are replaced by the values of these
+    formulas. ``source`` is the text of the tree, for messages.
     """
     tree = with_natural_base(tree) if has_natural_base([tree]) else tree
     quantities: dict[str, Any] = {letter: Symbol(letter, real=True) for letter in letters_of_quantities([tree])}
@@ -464,10 +466,11 @@ def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, 
 def _likeliest(
     atoms: Sequence[Expr], others: Sequence[Expr], known: Mapping[Expr, tuple[str, str | None]]
 ) -> list[Expr]:
-    """Return the symbols ``others`` in the order in which units, axes and first letters best fit those of ``atoms``.
+    """Return ``others`` reordered so that each symbol fits the one at the same position in ``atoms``.
 
-    This order is tried first, as many symbols have more orders than can be tried. ``known`` has the text and the unit
-    of each symbol.
+    For each atom in turn, the best of the remaining symbols is chosen: with the same unit, the same name, the same
+    first letter, the same axis. ``known`` has the text and the unit of each symbol. The caller compares the two lists
+    in this order first, since for many symbols it cannot try all orders.
     """
     rest, ordered = list(others), []
     names = {plain_name(known[atom][0]) for atom in atoms}

@@ -44,11 +44,12 @@ FRAMES = ("body", "space")
 
 @dataclass(frozen=True)
 class Known:
-    """A formula that symrot derives, with its name, its source and its text.
+    """A formula that symrot derives: ``name`` says for what, ``source`` is its derivation page, ``text`` the formula.
 
-    ``scaled``: a multiple of the formula has the same name. ``only_named``: the formula is a product of few
-    symbols, such as ``C*omega_3``, or a sum of any vectors; it is recognised only in a claim that names the
-    quantity, with the letters that books use. ``is_relation``: it is the difference of the sides of an equation.
+    ``scaled``: a claim with a multiple of the formula gets the same name. ``only_named``: the formula says too little
+    by itself, as the product C*omega_3 or the scalar product a . b of two vectors; it is recognised only in a claim
+    that names the quantity and uses the letters of books. ``is_relation``: the formula is the left minus the right side
+    of an equation.
     """
 
     name: str
@@ -354,10 +355,11 @@ def _selected(
 
 
 def ending_of(name: str) -> str:
-    """Return the end of a known formula's name that says of which function of the quantity the formula is; "" if none.
+    """Return ", squared" or ", acos" at the end of a known formula's name; "" if the name has no such end.
 
-    The name "spin .., squared" has the end ", squared" and a formula for the square of the spin; "nutation .., acos"
-    has ", acos" and a formula for the cosine of the angle.
+    The formula then gives a function of the quantity instead of the quantity: "spin .., squared" the square of the
+    spin, "nutation .., acos" the cosine of the angle, and ".., 2 acos" the cosine of half the angle. With ", asin" it
+    gives the sine, with ", atan2" the two arguments of atan2.
     """
     ending = re.search(r", (squared|(\S+ )?(acos|asin|atan2))$", name)
     return ending[0] if ending else ""

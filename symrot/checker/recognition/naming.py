@@ -278,7 +278,8 @@ def verdict_near_relation(claim: Claim) -> Verdict | None:
 def _near_relation(claim: Claim, left: Node, right: Node) -> Verdict | None:
     """Return the verdict "doubtful" if one change makes ``left == right`` a known relation; otherwise None.
 
-    The equation is solved for each of its letters in turn, since faults are searched in formulas for one quantity.
+    The search for faults needs an equation with a single quantity on the left. So the equation is solved for each of
+    its letters in turn (rates first), and each result, such as ``T == I*alpha``, is searched until one gives a verdict.
     """
     if len(names_in(left) | names_in(right)) < LEAST_SYMBOLS_RELATED:
         return None
@@ -302,10 +303,11 @@ def _in_claim(repair: Repair, left: Node, right: Node, named: NamedFormula) -> R
 
 
 def _are_usable(claim: Claim) -> bool:
-    """Return whether a claim under these hypotheses may be compared with known formulas at points that obey them.
+    """Return whether the claim's hypotheses allow a search for faults: a comparison with known formulas at test points.
 
-    Allowed are hypotheses that give a name to a formula, and that say that a vector or quaternion has length one. Under
-    others, such as A = B for two moments, a formula may be the special case of a known one, and seem to have a fault.
+    They do if each one gives a name to a formula, or says that a vector or quaternion has length one. Under another
+    hypothesis, such as A = B for two moments, a right formula may be shorter than the known one: the search would then
+    report that a term is missing.
     """
     short = claim.defining
     return all(
@@ -365,11 +367,11 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 
 def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identification, ...]:
-    """Return, in a tuple, the known formula of ``near`` if it equals the claim's formula for letters of certain signs.
+    """Return (known formula,) if the formula of ``near`` equals its known formula for some signs of the letters.
 
-    The look-up by fingerprint misses such formulas: ``a*sqrt(1 - x/a^2)`` is ``sqrt(a^2 - x)`` for positive a only.
-    ``near`` has the known formula with its renaming, and the corrected formula that is compared. Otherwise () is
-    returned.
+    ``near.tree`` is the claim's formula, or the claim's after one correction; ``near.known`` is the known formula with
+    the letters in ``near.renaming``. ``a*sqrt(1 - x/a^2)`` equals ``sqrt(a^2 - x)`` for positive a only: the look-up of
+    known formulas, which compares for all values, misses it. The result is () if the two are not equal so.
     """
     ending = ending_of(near.known.name)
     if named.solve is None or ending not in ("", SQUARED):
@@ -516,8 +518,9 @@ def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:
 def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int) -> tuple[Identification, ...]:
     """Return the known formulas that are equal to ``tree`` and whose symbols fit the names in the claim.
 
-    The likeliest formula comes first. Formulas with fewer than ``least_symbols`` symbols are not looked up, with the
-    exception in :func:`_readings_of_formula`.
+    The likeliest comes first. Formulas with fewer than ``least_symbols`` symbols are not looked up. Only if
+    ``least_symbols`` is LEAST_SYMBOLS and the name of the claim's quantity has a known meaning, as T_rot for an energy,
+    one symbol suffices.
     """
     solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
     is_open = (words_of(named) is None or _is_stated(claim, named)) and least_symbols == LEAST_SYMBOLS
@@ -567,9 +570,10 @@ def _readings_of_formula(
 ) -> tuple[Identification, ...]:
     """Return the known formulas for the claim's quantity that are equal to ``formula``, the likeliest first.
 
-    Formulas with fewer than ``least_symbols`` symbols are not looked up, and the result is empty. But one symbol
-    suffices if the name of the claim's quantity (``named.name``) tells what it is, and ``least_symbols`` is
-    ``LEAST_SYMBOLS``.
+    Formulas with fewer than ``least_symbols`` symbols are not looked up, and the result is (). LEAST_SYMBOLS is for the
+    claim's own formula: one symbol suffices there if the name ``named.name`` has a known meaning. Callers give larger
+    numbers for edited formulas, since a short one may be equal to a known formula by chance; there is no exception for
+    these.
     """
     try:
         value = claim.with_definitions(claim.interpreter().read(formula))

@@ -86,10 +86,11 @@ WORK = new_symbol("W_k", "J")
 
 
 class Relation(NamedTuple):
-    """A relation of mechanics as a difference that is zero, with its title and the derivation that it comes from.
+    """A relation of mechanics: ``difference``, left minus right side, is zero; ``source`` is its derivation page.
 
-    ``words`` has the symbols for which the relation is solved, each with the words that the name of the solved formula
-    has before the title: "energy of" and the title "a heavy top" give "energy of a heavy top".
+    ``words`` maps each symbol for which the relation can be solved to the beginning of the solved formula's name;
+    ``title`` is the rest. With the words "energy of" for E and the title "a heavy top", the formula for E is called
+    "energy of a heavy top".
     """
 
     title: str
