@@ -27,6 +27,8 @@ from symrot.proof.pages import latex_book, latex_document
 from symrot.proof.pages.math_font import characters
 from symrot.workshop import derivation_pages
 
+pytestmark = pytest.mark.first  # all pages are derived once, for these tests and for those of lessons
+
 ROOT = Path(__file__).parents[2]
 
 
