@@ -206,6 +206,10 @@ def _on_motion(claim: Claim, verdict: Verdict) -> Verdict:
     if claim.hypotheses or claim.define or claim.context.obscure:
         return verdict
     from symrot.checker.context.relations.motion import by_motion
+    from symrot.checker.recognition.naming import AS_IT_STANDS
+
+    if any(note.startswith(AS_IT_STANDS) for note in verdict.notes):
+        return verdict
 
     return by_motion(claim, verdict)
 

@@ -64,6 +64,7 @@ LAST_FIRST = (3, 0, 1, 2)
 LETTERS = {
     "kg m^2": r"[ABCIJ]\w*|lambda_?[1-3]", "kg": r"[mM]\w*", "N": r"[WPFG]\w*", "m": r"[a-hlrsxyzLRD]\w*|ell",
     "kg m^2/s": r"[LHGhpM]\w*",
+    "kg m/s": r"[pP]\w*", "N m, of momentum": r"d[LHhM]\w*",
     "N m": r"(M|N|T|Q|tau|Gamma)(_\w+)?|K_?[1-3xyz]",
     "rad/s": r"(omega|w|Omega|n|nu|p|q|r|s|lambda)(_?\w+)?|d(phi|theta|psi|alpha|beta|gamma)(_?[1-3])?",
     "rad/s^2": r"alpha\w*|d(omega|w)\w*|dd\w+|d[pqr]", "m/s": r"[vuV]\w*", "m/s^2": r"[ga]\w*",

@@ -18,6 +18,7 @@ from symrot.checker.recognition.fingerprint import NotInField, fingerprint
 from symrot.checker.recognition.formulas.bodies import bodies
 from symrot.checker.recognition.formulas.kinematics import GYROSCOPE, along_axes, rotations, vectors
 from symrot.checker.recognition.formulas.mechanics import one_axis, tops
+from symrot.checker.recognition.formulas.points import ANY_VECTORS, GENERAL, points
 from symrot.checker.recognition.relations import primitive, relations, solved
 from symrot.conventions import SEQUENCES
 from symrot.dynamics.equations import euler_equations
@@ -274,6 +275,7 @@ def stated() -> Iterator[Named]:
         tops,
         _solved,
         vectors,
+        points,
         along_axes,
         rotations,
         bodies,
@@ -331,8 +333,8 @@ def _selected(
     They have at least ``least`` symbols, so that they can be recognised, and at most ``longest`` characters. The flag
     ``is_relation`` is stored with them: they are then differences that are zero, and are looked up for equations only.
     """
-    of_letters = {*(name for name, *_ in along_axes()), GYROSCOPE, *SCALAR_PRODUCTS}
-    seen, few = set(), {name for name, *_ in (*tops(), *one_axis(), *_solved(), *rotations(), *bodies())}
+    of_letters = {*(name for name, *_ in along_axes()), GYROSCOPE, *SCALAR_PRODUCTS, *ANY_VECTORS, *GENERAL}
+    seen, few = set(), {name for name, *_ in (*tops(), *one_axis(), *_solved(), *rotations(), *bodies(), *points())}
     for name, source, value in formulas:
         entries, shape = flatten(value)
         if sum(entry.count_ops() for entry in entries) > longest // 3:
@@ -342,7 +344,7 @@ def _selected(
             own = fingerprint(entries)
         except NotInField:
             continue
-        is_general = _is_general(entries) and not ending_of(name)
+        is_general = _is_general(entries) and not ending_of(name) and name not in GENERAL
         if is_general or len(own.atoms) < least or len(text) > longest or (name, text) in seen:
             continue
         seen.add((name, text))

@@ -7,7 +7,7 @@ it equal to one, and "definition" otherwise.
 """
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations, islice
 from typing import Any
@@ -33,7 +33,9 @@ from symrot.checker.recognition.evidence import (
     has_terms,
     has_word,
     is_evident,
+    is_in_usual_sequence,
     is_of_body,
+    is_unusual,
     keeps_places,
     misfit_of,
     names_in,
@@ -59,7 +61,9 @@ from symrot.exact.decide import decide
 from symrot.exact.printing import as_text
 from symrot.exact.ring.ratio import TooLarge
 
-__all__ = ["SQUARED", "recognised_edits", "verdict_near_relation", "verdict_on_name", "verdict_on_relation"]
+__all__ = [
+    "AS_IT_STANDS", "SQUARED", "recognised_edits", "verdict_near_relation", "verdict_on_name", "verdict_on_relation",
+]  # fmt: skip
 
 
 MOST_EDITS = 400
@@ -81,6 +85,12 @@ MOST_SOLVED = 4
 
 PER_NAME, PER_PLACE = 0.1, 0.3
 """The costs of a symbol with a new name, and of a component or an axis that the name of the quantity does not say."""
+
+AS_IT_STANDS = "as it stands, it is the"
+"""The beginning of a note on the unusual convention in which a doubtful claim is right."""
+
+EXCHANGES = ("wrong_symbol", "sin_cos_swap")
+"""The faults that turn a formula in one convention into a formula in another."""
 
 AS_NEAR = 0.15
 """The most by which the cost of a moment of inertia, about a parallel axis, may exceed the cost of the nearest one."""
@@ -119,7 +129,9 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     readings = _readings(claim, named, named.formula, LEAST_SYMBOLS)
     readings = readings or _with_other_products(claim, named, named.formula)
     if readings:
-        return Verdict("recognised", recognised_as=readings, notes=_on_signs_of_products(claim, named, readings))
+        usual = _near_usual(claim, named, readings) if repair else None
+        recognised = Verdict("recognised", recognised_as=readings, notes=_on_signs_of_products(claim, named, readings))
+        return recognised if usual is None else usual
     nearest = _nearest(claim, named) if repair else None
     if nearest is not None:
         return nearest
@@ -137,6 +149,32 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
             "it may be a definition"
         )
     return Verdict("definition", reason=reason)
+
+
+def _near_usual(claim: Claim, named: NamedFormula, readings: Sequence[Identification]) -> Verdict | None:
+    """Return the verdict "doubtful" on a claim that is known in an unusual convention and nearly known in a usual one.
+
+    ``readings`` are the known formulas that the claim is equal to. For ``psi' = (omega_2 sin phi + omega_1 cos
+    phi)/cos theta`` these are in the space frame, while omega_1 and omega_2 usually are components in the body: there
+    omega_1 should be omega_3. Return None if the convention is usual, or if the context of the claim states one.
+    """
+    if claim.context or claim.hypotheses or not all(is_unusual(known) for known in readings):
+        return None
+    words, quantity = words_of(named), quantity_name(named)
+    nearby = [near for near in near_formulas(claim, named, lambda known: has_word(known.name, words))
+              if near.code in EXCHANGES and is_in_usual_sequence(near.known.name)]  # fmt: skip
+    nearby.sort(key=lambda near: near.cost + PER_NAME * near.renamed + PER_PLACE * misfit_of(quantity, near.known.name))
+    for near in nearby[:MOST_PROOFS]:
+        usual = tuple(known for known in _readings(claim, named, near.tree, 1) if not is_unusual(known))
+        if usual:
+            return Verdict(
+                "doubtful",
+                diagnosis=Diagnosis(near.code, FAULT_DESCRIPTIONS[near.code]),
+                repairs=(Repair(f"{text(named.side)} == {text(near.tree)}", near.code, near.cost),),
+                recognised_as=usual,
+                notes=(f"{AS_IT_STANDS} {readings[0]}",),
+            )
+    return None
 
 
 def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | None:

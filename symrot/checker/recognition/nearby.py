@@ -108,7 +108,10 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
     for mine, known in chain((("", known) for known in _known_formulas() if fits(known)), _relations(quantity)):
         is_wrong_kind = _is_column(known) != is_matrix(scale[0])
         is_of_body = claim.context.body is not None and claim.context.body.kind.title in known.name
-        is_other = _has_angles(known) != bool(letters.angles) and len(_names(known)) > FEW
+        has_one_angle = (
+            len(letters.angles) == 1 and len(_names(known)) == len(letters.atoms) - 1
+        )  # in a factor too many
+        is_other = _has_angles(known) != bool(letters.angles) and len(_names(known)) > FEW and not has_one_angle
         is_wrong_kind = is_wrong_kind or (is_other and not is_of_body)
         if is_wrong_kind or abs(len(_names(known)) - len(letters.atoms)) > 1:
             continue
