@@ -25,7 +25,7 @@ from symrot.checker.repair.solve_for_piece import solutions
 from symrot.checker.repair.whole_edits import after_whole_edits
 from symrot.checker.verdict import Diagnosis, Repair
 from symrot.errors import InputError
-from symrot.exact.decision import Decision
+from symrot.exact.decision import Decision, flatten
 
 __all__ = ["MOST_REPAIRS", "diagnose"]
 
@@ -212,7 +212,7 @@ class _Search:
         """
         claimed = self.numeric.claim.equation
         sides = ((claimed.left, equation.left), (claimed.right, equation.right))
-        bare = [(before, after) for before, after in sides if after != 0 and not _symbols(after)]
+        bare = [(before, after) for before, after in sides if any(flatten(after)[0]) and not _symbols(after)]
         return any(map(_symbols, dict(bare))) or (len(bare) == len(sides) and bool(equation.divisors))
 
     def proven(self, candidates: Iterable[Candidate], most: int) -> list[Repair]:
