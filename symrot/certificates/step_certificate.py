@@ -11,7 +11,7 @@ also bound the errors of one step: rounding (:mod:`symrot.certificates.rounding`
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from hashlib import sha256
 from struct import pack, unpack
@@ -23,9 +23,18 @@ from symrot.certificates.readback.operations import Operations
 from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.certificates.rounding.bounds import rounding_section
 from symrot.certificates.rounding.scenes import ANY
-from symrot.certificates.truncation import truncation_bounds
-from symrot.codegen.steps import SIZE, Method, WithDerivatives, step_signature, stepped
+from symrot.certificates.truncation import DEFECT, truncation_bounds
+from symrot.codegen.steps import (
+    SIZE,
+    Method,
+    RungeKutta,
+    WithDerivatives,
+    step_signature,
+    stepped,
+    without_factors,
+)
 from symrot.errors import CertificateError, InputError
+from symrot.formula.exact_numbers import PI
 from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import FUNCTIONS, Node, parse, text
 
@@ -274,13 +283,53 @@ def bounds_of_step(
     for place, ends in rounding["box"].items():
         low, high = (Fraction(float.fromhex(end)) for end in ends)
         ranges[symbols[place]] = (low, high) if (low, high) != ANY else (Fraction(0), Fraction(0))  # it is not used
-    errors = truncation_bounds(rates, method, ranges)
+    errors = truncation_bounds(rates, _with_intended_constants(rates, method), ranges)
     return {
         "meaning": "for each state after one step on the box: |computed - exact motion| <= rounding + truncation, from "
         "the same floating-point start, size and parameters",
         "truncation": {name: value.hex() for name, value in errors.items()},
         "rounding": rounding,
     }
+
+
+def _with_intended_constants(rates: Program, method: Method) -> Method:
+    """Return a method with the exact coefficients for which the constants of the C text stand.
+
+    The bounds of rounding errors are those from exact constants: from the fraction that the reader of the C text
+    recovers, such as 1/3, or from any number that rounds to the constant. Coefficients that are rounded decimals are
+    replaced by the fractions; CertificateError is raised if one of them fits no constant.
+    """
+    if not isinstance(method, RungeKutta) or not method.rounded:
+        return method
+    factors = [abs(factor) for factor in dict.fromkeys(without_factors(rates)[1])]
+
+    def exact(value: Fraction) -> Fraction:
+        fractions = [(_intended(value * factor), factor) for factor in factors]
+        near = [own / factor for own, factor in fractions if own is not None and abs(own / factor - value) < DEFECT]
+        coefficient = near[0] if near else value
+        for own, factor in fractions:
+            if own is not None and own != coefficient * factor:
+                raise CertificateError(
+                    f"{method.name}: expected the constant of the coefficient {float(value)!r} to stand for it, got "
+                    f"one that stands for {own}"
+                )
+        return coefficient
+
+    return replace(
+        method,
+        nodes=tuple(map(exact, method.nodes)),
+        stages=tuple({j: exact(a) for j, a in stage.items()} for stage in method.stages),
+        weights={j: exact(b) for j, b in method.weights.items()},
+    )
+
+
+def _intended(value: Fraction) -> Fraction | None:
+    """Return the fraction that the reader of C text recovers from a number rounded to a double; None if it is none."""
+    try:
+        constant = intended_value(Fraction(float(value)), "binary64")
+    except CertificateError:
+        return None
+    return constant.fraction * PI if constant.times_pi else constant.fraction
 
 
 def _symbols_by_place(signature: Signature) -> dict[str, str]:

@@ -15,12 +15,15 @@ orders n + 1 to m - 1 are exact polynomials in the start, in which equal terms o
 remainder of order m is bounded by intervals.
 
 A Taylor step has order n by construction, and b = 0. For a Runge-Kutta method, the order conditions of all rooted trees
-with up to n nodes are checked exactly.
+with up to n nodes are checked exactly. If the coefficients are rounded decimals, as those of dop853, the conditions
+hold up to small defects. The coefficient of h^k of x(h) - S(h) is then a sum over the trees with k nodes: the defect of
+each tree's condition times an elementary differential of the rates. Without the defects, and with absolute values in
+all places, this sum is a coefficient of the series Z with ``Z = h f(start + Z)`` (the implicit Euler step).
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations_with_replacement
 from math import inf, nextafter, prod
@@ -34,9 +37,9 @@ from symrot.codegen.taylor.coefficients import coefficients
 from symrot.codegen.taylor.recurrences import recurrences
 from symrot.errors import CertificateError, InputError
 from symrot.formula.program import Program
-from symrot.formula.tree import Node
+from symrot.formula.tree import Node, names
 
-__all__ = ["PIECES", "require_order", "truncation_bounds"]
+__all__ = ["DEFECT", "PIECES", "require_order", "truncation_bounds"]
 
 PIECES = 24
 """Number of parts into which the box of the start is divided at most."""
@@ -47,6 +50,7 @@ HIGHEST = 10  # such a coefficient has a lower order
 MOST_TERMS = 4000  # of such a coefficient of a state; with more, intervals alone bound the error
 GROWTH = Fraction(1, 8)  # by which the box around a motion grows in each attempt, relative to its width
 ATTEMPTS = 24
+DEFECT = Fraction(1, 10**25)  # of an order condition, for a method whose coefficients are rounded decimals
 
 Box = Mapping[str, tuple[Fraction, Fraction]]  # name of an input, such as "omega_1" or "dt" -> least and largest value
 
@@ -175,6 +179,32 @@ class _Power:
         return _Power((start, *(_dot(slope.terms[: n + 1], rates[n::-1]) / (n + 1) for n in range(len(rates)))))
 
 
+class _Majorant(_Power):
+    """A power series that bounds the absolute values of another one's coefficients; differences are sums for it."""
+
+    @staticmethod
+    def of(value: Any, count: int) -> "_Majorant":
+        return value if isinstance(value, _Majorant) else _Majorant((value, *(0,) * (count - 1)))
+
+    def __add__(self, other: Any) -> "_Majorant":
+        right = _Majorant.of(other, len(self.terms))
+        return _Majorant(tuple(a + b for a, b in zip(self.terms, right.terms, strict=True)))
+
+    __radd__ = __sub__ = __rsub__ = __add__
+
+    def __neg__(self) -> "_Majorant":
+        return self
+
+    def __mul__(self, other: Any) -> "_Majorant":
+        return _Majorant(_Power.__mul__(self, _Majorant.of(other, len(self.terms))).terms)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> "_Majorant":
+        divisor = _Majorant.of(other, len(self.terms)).terms[0]  # polynomial rates are divided by numbers only
+        return _Majorant(tuple(a / divisor for a in self.terms))
+
+
 def _dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
     """Return the sum of the products ``a[i]*b[i]``; exact zeros, which are integers, cost nothing."""
     return sum((x * y for x, y in zip(a, b, strict=True) if not (_is_zero(x) or _is_zero(y))), start=0)
@@ -269,27 +299,38 @@ def _weight(tree: Tree, method: RungeKutta) -> list[Fraction]:
     ]
 
 
-def require_order(method: Method) -> None:
-    """Raise CertificateError unless a method has the order that it states.
+def require_order(method: Method) -> tuple[Fraction, ...]:
+    """Return the largest defects of a method's order conditions: for the trees with 1, 2, .. nodes, up to its order.
+
+    They are zero unless the coefficients of the method are rounded decimals. A larger defect than :data:`DEFECT` raises
+    CertificateError, as does any defect of a method whose coefficients are exact.
 
     Source: Hairer, Norsett, Wanner, Solving ODEs I, 2nd ed., theorem II.2.13.
     """
     method = method.plain if isinstance(method, WithDerivatives) else method
     if isinstance(method, TaylorSeries):
-        return
+        return (Fraction(0),) * method.order
+    most = DEFECT if method.rounded else Fraction(0)
     for node, stage in zip(method.nodes, method.stages, strict=True):
-        if sum(stage.values(), Fraction(0)) != node:
+        if abs(sum(stage.values(), Fraction(0)) - node) > most:
             raise CertificateError(
                 f"{method.name}: expected each node to be the sum of the weights of its stage, got {node}"
             )
-    for tree in (tree for size in range(1, method.order + 1) for tree in _trees(size)):
-        weights = _weight(tree, method)
-        total = sum((b * weights[stage] for stage, b in method.weights.items()), Fraction(0))
-        if total != Fraction(1, _density(tree)):
-            raise CertificateError(
-                f"{method.name}: expected a method of order {method.order}, got one that violates the order condition "
-                f"of a tree with {_size(tree)} nodes: {total} instead of 1/{_density(tree)}"
-            )
+    return tuple(max(_defect(tree, method, most) for tree in _trees(size)) for size in range(1, method.order + 1))
+
+
+def _defect(tree: Tree, method: RungeKutta, most: Fraction) -> Fraction:
+    """Return the defect of the order condition of one tree; raise CertificateError if it is larger than ``most``."""
+    weights = _weight(tree, method)
+    total = sum((b * weights[stage] for stage, b in method.weights.items()), Fraction(0))
+    defect = abs(total - Fraction(1, _density(tree)))
+    if defect > most:
+        got = total if not method.rounded else f"{float(total)!r}, by {float(defect):.1e},"
+        raise CertificateError(
+            f"{method.name}: expected a method of order {method.order}, got one that violates the order condition "
+            f"of a tree with {_size(tree)} nodes: {got} instead of 1/{_density(tree)}"
+        )
+    return defect
 
 
 # --- the bound --------------------------------------------------------------------------------------------------------
@@ -315,9 +356,11 @@ def truncation_bounds(rates: Program, method: Method, box: Box) -> dict[str, flo
     CertificateError
         If the method does not have its order.
     """
-    require_order(method)
+    defects = require_order(method)
+    if any(defects):
+        _require_polynomial(rates)
     states = [name for name, *_ in rates.signature.argument("y").components]
-    problem = _problem(rates, method, states, box)
+    problem = replace(_problem(rates, method, states, box), defects=defects)
     with _precision():
         parts = [(problem.bounds(box), dict(box))]
         divided = not problem.leading or inf in parts[0][0]  # exact polynomials gain little from smaller parts
@@ -402,6 +445,16 @@ def _problem(rates: Program, method: Method, states: Sequence[str], box: Box) ->
     return _Problem(bare, method, states, leading)
 
 
+def _require_polynomial(rates: Program) -> None:
+    """Raise InputError unless the rates are polynomials without the time, as a step of rounded coefficients needs."""
+    formulas = [node for _, node in (*rates.temporaries, *rates.outputs)]
+    if not all(map(_is_polynomial, formulas)) or any("t" in names(node) for node in formulas):
+        raise InputError(
+            f"{rates.signature.name}: expected rates that are polynomials in the states, without the time, for the "
+            "truncation error of a step with rounded coefficients; take the step rk4 or taylor"
+        )
+
+
 def _is_polynomial(node: Node) -> bool:
     """Return whether a formula contains no functions, no negative powers, and no divisions except by numbers."""
     if node[0] in ("number", "symbol"):
@@ -452,13 +505,14 @@ class _Problem:
     """The rates, the method and the states of a step whose truncation is bounded.
 
     ``leading`` holds the first coefficients of the difference between motion and method, for each order and state; it
-    is empty if the rates are no polynomials.
+    is empty if the rates are no polynomials. ``defects`` are those of the order conditions, from :func:`require_order`.
     """
 
     rates: Program
     method: Method
     states: Sequence[str]
     leading: tuple[list[Terms], ...]
+    defects: tuple[Fraction, ...] = ()
 
     def bounds(self, box: Box) -> list[float]:
         """Return a bound of the truncation error for each state, valid for all motions that start in ``box``.
@@ -481,9 +535,32 @@ class _Problem:
             for order, polynomials in enumerate(self.leading, start=first):
                 for i, terms in enumerate(polynomials):
                     errors[i] = errors[i] + abs(_range_of(terms, values)) * size**order
+            if any(self.defects):
+                errors = [error + more for error, more in zip(errors, self._defective(values, size), strict=True)]
             return [_upper(error) for error in errors]
         except ZeroDivisionError:
             return [inf] * len(self.states)
+
+    def _defective(self, values: Mapping[str, Any], size: Any) -> list[Any]:
+        """Return a bound of the terms of the orders that only defects of the order conditions keep from vanishing.
+
+        There is one bound for each state; it holds for all states in the box ``values`` and all sizes up to ``size``.
+        """
+        count = len(self.defects) + 1
+        largest = {name: _Majorant.of(iv.mpf(abs(value).b), count) for name, value in values.items()}
+        series = [_Majorant.of(0, count) for _ in self.states]
+        for _ in self.defects:  # each repetition of Z = h f(start + Z) gives one more coefficient
+            moved = {name: largest[name] + each for name, each in zip(self.states, series, strict=True)}
+            rates = self.rates.evaluate(
+                largest | moved, {}, lambda value: _Majorant.of(_number(abs(value)), count)
+            ).values()
+            series = [_Majorant((0, *_Majorant.of(rate, count).terms[:-1])) for rate in rates]
+        return [
+            sum(
+                (_number(defect) * each.terms[k] * size**k for k, defect in enumerate(self.defects, start=1)), iv.mpf(0)
+            )
+            for each in series
+        ]
 
     def _enclosure(self, values: Mapping[str, Any], span: Any) -> dict[str, Any] | None:
         """Return ranges that no motion from the box leaves during the step; None if none are found.

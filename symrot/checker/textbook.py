@@ -1,9 +1,9 @@
 """Verdicts on the claims of a document, with allowance for characters that the extraction of its text lost.
 
 Each claim has the formula that the document prints on the left, and the right result on the right. A false claim is an
-error of the document, or its formula lost characters when the text was extracted. It counts as a loss under two rules.
-First, lost characters may be put back on the left side only. Second, the printed and the true formula must differ in
-nothing but characters of the kinds that were lost at this place.
+error of the document, or its formula lost characters when the text was extracted. Lost characters are accepted as the
+reason if the claim is true after they are put back on the left side, and if all of them are of the kinds (such as minus
+signs) that the extraction is known to have lost at this place.
 """
 
 from collections import Counter
@@ -17,10 +17,11 @@ from symrot.checker.claim.source.file import read_claims
 from symrot.checker.claim.tree import Node, is_derivative, product, sum_of, text, walk
 from symrot.checker.claim_verdict import check_readings
 from symrot.checker.decide.decision import decide_equation
+from symrot.checker.repair.derived_part import derived_part
 from symrot.checker.rounding import rounded_value
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
-from symrot.textbook import Condition, Document, conditions, errata
+from symrot.textbook import Condition, Document, PrintedFormula, conditions, errata
 
 __all__ = ["LOSSES", "OUTCOMES", "Finding", "differs_by_lost_characters", "finding_of", "findings"]
 
@@ -55,8 +56,9 @@ class Finding:
         The right formula, or the right digits of a worked number, if the claim is not true.
     parts, corrected : mapping of str to Node
         The trees of the claim by place (side or name of a definition), and the corrected trees.
-    is_proposed : bool
-        Whether the corrected formula was proposed by a person, and not found by the search for repairs.
+    origin : str
+        What the corrected formula comes from: the ``"search"`` for repairs, a ``"derivation"`` from the reference, or
+        the ``"proposal"`` of a person.
     conditions : tuple of str
         Conditions that the document does not state, and that quantities with their usual signs may violate. A true
         formula (verdict "true") needs all of them; one with the verdict "conditional" needs any one of them.
@@ -71,7 +73,7 @@ class Finding:
     right: str = ""
     parts: Mapping[str, Node] = field(default_factory=dict)
     corrected: Mapping[str, Node] = field(default_factory=dict)
-    is_proposed: bool = False
+    origin: str = "search"
     conditions: tuple[str, ...] = ()
     words: str = ""
 
@@ -92,22 +94,21 @@ def findings(
 
     ``progress`` is called with a line of text before each claim.
     """
-    proposals = {formula.claim: formula.proposal for erratum in errata() for formula in erratum.formulas}
+    formulas = {formula.claim: formula for erratum in errata() for formula in erratum.formulas}
     unstated = {condition.claim: condition for condition in conditions()}
     for claim in read_claims(document.path):
         progress(f"checking {claim.id} ..")
-        proposal, condition = proposals.get(claim.id, {}), unstated.get(claim.id)
-        yield finding_of(document.claims[claim.id], claim, repair, proposal, condition)
+        yield finding_of(document.claims[claim.id], claim, repair, formulas.get(claim.id), unstated.get(claim.id))
 
 
 def finding_of(
-    data: dict[str, Any], claim: Claim, repair: bool, proposal: Mapping[str, str], condition: Condition | None = None
+    data: dict[str, Any], claim: Claim, repair: bool, formula: PrintedFormula | None, condition: Condition | None = None
 ) -> Finding:
     """Return the result of checking one claim, whose record in the document's file is ``data``.
 
-    ``proposal`` gives corrected formulas by place, {"left": "m*g*l"} for example, where a place is "left", "right" or
-    the name of a definition; it may be empty. A claim that is false, but true under the proposed ``condition``, is
-    conditional. So is a true claim that divides by a number which the ``condition`` says may be zero.
+    ``formula`` is its entry in the errata, which may propose a correction or ask to derive it; None for a claim without
+    an entry. A claim that is false, but true under the proposed ``condition``, is conditional. So is a true claim that
+    divides by a number which the ``condition`` says may be zero.
     """
     if "editable" not in data:
         claim = replace(claim, editable=("left",))  # the left side is what the document prints
@@ -130,13 +131,13 @@ def finding_of(
         _prove(claim, condition)
         return Finding(data, verdict, "conditional", conditions=listed, words=words)
     parts = {"left": claim.relation[1], "right": claim.relation[2], **dict(claim.define)}
-    corrected = _correction(claim, verdict, proposal)
+    origin, corrected = _correction(claim, verdict, formula)
     is_loss = corrected and all(
         differs_by_lost_characters(parts[place], tree, lost) for place, tree in corrected.items()
     )
     right = " with ".join(f"{text(tree)}" if place in ("left", "right") else f"{place} = {text(tree)}"
                           for place, tree in corrected.items())  # fmt: skip
-    return Finding(data, verdict, "fails or lost" if is_loss else "fails", "", right, parts, corrected, bool(proposal))
+    return Finding(data, verdict, "fails or lost" if is_loss else "fails", "", right, parts, corrected, origin)
 
 
 def _may_be_broken(condition: str) -> bool:
@@ -164,28 +165,35 @@ def _prove(claim: Claim, condition: Condition) -> None:
         raise InputError(f"{claim.id}: condition: expected one under which the claim is true, got {texts!r}")
 
 
-def _correction(claim: Claim, verdict: Verdict, proposal: Mapping[str, str]) -> dict[str, Node]:
-    """Return the corrected parts of a false claim, by place: a side, or the name of a definition.
+def _correction(claim: Claim, verdict: Verdict, formula: PrintedFormula | None) -> tuple[str, dict[str, Node]]:
+    """Return what the correction of a false claim comes from, and the corrected parts by place.
 
-    They are those of the ``proposal`` or, without one, of the nearest repair in ``verdict``; there may be none.
+    A place is a side, or the name of a definition. The correction is the one that the errata propose or ask to derive;
+    otherwise it is the nearest repair in ``verdict``. There may be none.
 
     Raises
     ------
     InputError
-        For a proposal that changes a part which is not printed, or that the exact engine does not prove.
+        For a correction of a part that is not printed, or one that the exact engine does not prove.
     """
-    changes = proposal or (verdict.repairs[0].edited if verdict.repairs else {})
+    origin = "search"
+    changes: Mapping[str, str] = verdict.repairs[0].edited if verdict.repairs else {}
+    if formula is not None and formula.derived:
+        origin = "derivation"
+        tree = derived_part(claim, formula.derived)
+        changes = {} if tree is None else {formula.derived: text(tree)}
+    elif formula is not None and formula.proposal:
+        origin, changes = "proposal", formula.proposal
     names = {*claim.symbols, *(name for name, _ in claim.define)}
     trees = {}
     for place, source in changes.items():
         if place not in claim.editable:
-            raise InputError(f"{claim.id}: proposal: expected one of {', '.join(claim.editable)}, got {place!r}")
+            raise InputError(f"{claim.id}: {origin}: expected one of {', '.join(claim.editable)}, got {place!r}")
         trees[place] = read_expression(source, f"{claim.id}: {place}", Declared(names, claim.functions))
-    if proposal and decide_equation(claim.with_parts(trees).equation).verdict != "true":
-        raise InputError(
-            f"{claim.id}: proposal: expected a formula that is true, got {' and '.join(proposal.values())!r}"
-        )
-    return trees
+    if origin != "search" and decide_equation(claim.with_parts(trees).equation).verdict != "true":
+        got = " and ".join(changes.values()) or "none"
+        raise InputError(f"{claim.id}: {origin}: expected a formula that is true, got {got!r}")
+    return origin, trees
 
 
 # -- characters that the extraction lost -------------------------------------------------------------------------------
@@ -253,7 +261,11 @@ def differs_by_lost_characters(printed: Node, right: Node, lost: Collection[str]
 
 
 def _extracted(node: Node, lost: Collection[str]) -> Node:
-    """Return a formula without the characters of the kinds ``lost``: ``a + b`` for ``a - b`` without minus signs."""
+    """Return a formula as it looks after the extraction of text lost all characters of the kinds ``lost``.
+
+    Without "minus signs", ``a - b`` becomes ``a + b``: its tree is the sum of a and -b, and of b once the sign is lost.
+    The other kinds are the keys of LOSSES, such as "dots" and "primes".
+    """
     node = replace(node, args=tuple(_extracted(child, lost) for child in node.args))
     for loss in lost:
         node = LOSSES[loss](node) if loss in LOSSES else node

@@ -22,7 +22,7 @@ from symrot.kernels.jacobian import jacobian_argument
 
 __all__ = [
     "RK4", "SIZE", "Method", "RungeKutta", "TaylorSeries", "WithDerivatives", "derivative_inputs", "step_program",
-    "step_signature", "stepped",
+    "step_signature", "stepped", "without_factors",
 ]  # fmt: skip
 
 STATE, SIZE, NEXT = "x", "dt", "next"
@@ -34,6 +34,7 @@ class RungeKutta:
 
     Stage i is at the time ``t + nodes[i] dt``; its state is the initial state plus ``stages[i][j] dt`` times the rates
     at each earlier stage j. The step adds ``weights[j] dt`` times the rates at each stage j to the initial state.
+    ``rounded`` says that the coefficients are rounded decimals, which fulfil the conditions of the order to 25 digits.
     """
 
     name: str
@@ -41,6 +42,7 @@ class RungeKutta:
     nodes: tuple[Fraction, ...]
     stages: tuple[Mapping[int, Fraction], ...]
     weights: Mapping[int, Fraction]
+    rounded: bool = False
 
     @property
     def formula(self) -> str:
@@ -74,12 +76,18 @@ class WithDerivatives:
 
     @property
     def name(self) -> str:
-        """The name of the method of time steps, such as ``rk4``; it does not mention the derivatives."""
+        """The name of the method of time steps, such as ``rk4``.
+
+        It is the name of the same step without the derivatives of the new state by the old one.
+        """
         return self.plain.name
 
     @property
     def order(self) -> int:
-        """The order of the method of time steps; the derivatives of the new state do not change it."""
+        """The order of the method of time steps, such as 4 for ``rk4``.
+
+        It is that of the same step without the derivatives of the new state by the old one.
+        """
         return self.plain.order
 
     @property
@@ -129,7 +137,7 @@ def stepped(
         series = coefficients(recurrences(rates), method.order, values, functions, number)
         return [_polynomial(each, dt) for each in series]
 
-    bare, factors = _without_factors(rates)
+    bare, factors = without_factors(rates)
 
     def moved(weights: Mapping[int, Fraction]) -> list[Any]:
         stages = [
@@ -153,11 +161,11 @@ def stepped(
     return moved(method.weights)
 
 
-def _without_factors(rates: Program) -> tuple[Program, list[Fraction]]:
+def without_factors(rates: Program) -> tuple[Program, list[Fraction]]:
     """Return the rates without the numbers that multiply whole formulas, and these numbers, one per rate.
 
-    From ``dq0 = 1/2*(..)`` the number 1/2 is removed. A step multiplies its weights by these numbers once, instead of
-    each rate at each stage.
+    From ``dq0 = 1/2*(..)`` the number 1/2 is removed. A step adds weighted rates to the state at each of its stages; it
+    multiplies the weights by these numbers once, which replaces a multiplication of each rate at each stage.
     """
     outputs, factors = [], []
     for name, node in rates.outputs:

@@ -2,7 +2,7 @@
 
 For each claim the data give its place, its printed text, and the formula as symrot reads it. They contain no verdicts;
 :mod:`symrot.checker.textbook` computes these. The file ``errata.toml`` groups the claims that show the same error, and
-says how the formula is typeset. A correction in it is a proposal that is printed only if it is proven.
+says how the formula is typeset. A correction in it is a proposal, which is printed only if it is proven.
 """
 
 import tomllib
@@ -52,8 +52,9 @@ class PrintedFormula(NamedTuple):
     """How a claim's printed formula and its correction are typeset.
 
     ``template`` is LaTeX with holes ``@left@``, ``@right@`` or ``@name@`` for the parts of the claim, ``corrected``
-    is the same for the correction, and ``letters`` gives the LaTeX of names. ``proposal`` contains the corrected
-    parts, if the search for repairs does not find them.
+    is the same for the correction, and ``letters`` gives the LaTeX of names. If the search for repairs does not find
+    the correction, ``derived`` is the part that is to be derived from the rest of the claim, or ``proposal`` contains
+    the corrected parts.
     """
 
     claim: str
@@ -61,6 +62,7 @@ class PrintedFormula(NamedTuple):
     corrected: str
     letters: dict[str, str]
     proposal: dict[str, str]
+    derived: str = ""
 
 
 class Erratum(NamedTuple):
@@ -140,5 +142,6 @@ def _content(file: str) -> dict[str, Any]:
 def _printed_formula(entry: dict[str, Any]) -> PrintedFormula:
     template = entry.get("print", "")
     return PrintedFormula(
-        entry["claim"], template, entry.get("corrected", template), entry.get("letters", {}), entry.get("proposal", {})
-    )
+        entry["claim"], template, entry.get("corrected", template), entry.get("letters", {}), entry.get("proposal", {}),
+        entry.get("derived", ""),
+    )  # fmt: skip

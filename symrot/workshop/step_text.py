@@ -49,7 +49,7 @@ def _dop853(order: int) -> RungeKutta:
     return RungeKutta(
         "dop853", 8, tuple(Fraction(NODES[i]) for i in stages),
         tuple({j - 1: Fraction(a) for j, a in STAGE_WEIGHTS.get(i, {}).items()} for i in stages),
-        {j - 1: Fraction(b) for j, b in WEIGHTS.items()},
+        {j - 1: Fraction(b) for j, b in WEIGHTS.items()}, rounded=True,
     )  # fmt: skip
 
 

@@ -239,6 +239,13 @@ def test_equations_that_only_move_terms_have_the_same_terms(first, second, same)
     assert not terms_of_equation(*read_relation("x*x*y == y*x**2")[1:], lambda tree: False)
 
 
+def test_a_vector_of_zeros_is_a_result_like_zero():
+    """The corrected product is zero as it stands: a repair that makes it so is one, as for a number."""
+    verdict = symrot.check("cross((w, r*w/L, 0), (L, -r, 0)) == Matrix([0, 0, 0])")
+    assert verdict.diagnosis.code == "sign_of_term"
+    assert verdict.repairs[0].text == "cross((w, r*w/L, 0), (L, r, 0)) == Matrix([0, 0, 0])"
+
+
 @pytest.mark.parametrize(("claim", "repair"), [
     ("R**2*g*m*sin(a)/(C + R**2*m) == -g*sin(a)/(C/(R**2*m))", "R**2*g*m*sin(a)/C == g*sin(a)/(C/(R**2*m))"),
     ("sin(x + y) == -sin(x)*cos(y)", "sin(x + y) == sin(x)*cos(y) + cos(x)*sin(y)"),

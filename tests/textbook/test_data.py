@@ -73,6 +73,7 @@ def formulas(claim):
 CLAIMS = [(document, claim) for document in DOCUMENTS for claim in load(document)["claim"]]
 
 PROPOSALS = {formula.claim: formula.proposal for erratum in errata() for formula in erratum.formulas}
+LETTERS = {formula.claim: formula.letters for erratum in errata() for formula in erratum.formulas}
 
 
 def each_claim(law):
@@ -154,6 +155,7 @@ def test_names_are_declared_once_and_none_hides_a_built_in(claim):
     assert not set(declared) & BUILT_IN
     used = set().union(*(read_names(text) for _, text, _ in formulas(claim)))
     used |= set().union(*(read_names(text) for text in PROPOSALS.get(claim["id"], {}).values()))
+    used |= set(LETTERS.get(claim["id"], {}))  # letters of the document, which a correction may use
     assert set(declared) <= used
 
 

@@ -1,6 +1,7 @@
 """The verdicts on the four documents: each as reviewed by hand, and the page of errata as printed."""
 
 import tomllib
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,7 @@ from symrot.errors import InputError
 from symrot.report import errata
 from symrot.report.errata.entries import condition_words, entries
 from symrot.report.errata.page import html, page
-from symrot.textbook import DOCUMENTS, Condition, conditions, document
+from symrot.textbook import DOCUMENTS, Condition, PrintedFormula, conditions, document
 from symrot.textbook import errata as errata_of_documents
 
 TESTS = Path(__file__).parents[1]
@@ -73,9 +74,26 @@ def test_a_proposal_that_is_not_proven_is_refused():
     claim = next(claim for claim in read_claims(source.path) if claim.id == "chen-parameters-start-list")
     data = source.claims[claim.id]
     with pytest.raises(InputError, match="expected a formula that is true"):
-        finding_of(data, claim, True, {"left": "Matrix([[phi], [theta], [theta]])"})
+        finding_of(data, claim, True, _entry(left="Matrix([[phi], [theta], [theta]])"))
     with pytest.raises(InputError, match="expected one of left, got 'right'"):
-        finding_of(data, claim, True, {"right": "Matrix([[phi], [theta], [phi]])"})
+        finding_of(data, claim, True, _entry(right="Matrix([[phi], [theta], [phi]])"))
+
+
+def _entry(derived="", **proposal):
+    return PrintedFormula("", "", "", {}, proposal, derived)
+
+
+def test_a_correction_is_derived_where_the_search_finds_none():
+    source = document("chen")
+    claim = next(claim for claim in read_claims(source.path) if claim.id == "chen-rates-inverse-body")
+    item = finding_of(source.claims[claim.id], claim, False, _entry("J"))
+    assert item.origin == "derivation"
+    assert item.right.startswith("J = Matrix([[sin(psi(t))*csc(theta(t)), cos(psi(t))*csc(theta(t)), 0],")
+
+
+def test_few_corrections_are_proposals(survey):
+    origins = Counter(item.origin for _, items in survey for item in items if item.corrected)
+    assert origins["proposal"] <= 5 < origins["derivation"] < origins["search"]
 
 
 @pytest.mark.parametrize(
@@ -124,7 +142,7 @@ def test_a_condition_under_which_a_claim_is_not_proven_is_refused():
     source = document("brown")
     claim = next(claim for claim in read_claims(source.path) if claim.id == "brown-prism-equation-axes")
     with pytest.raises(InputError, match="expected one under which the claim is true, got 'cos"):
-        finding_of(source.claims[claim.id], claim, True, {}, Condition(claim.id, ("cos(f) == 0",), ""))
+        finding_of(source.claims[claim.id], claim, True, None, Condition(claim.id, ("cos(f) == 0",), ""))
 
 
 @pytest.mark.parametrize("suffix", ["md", "html"])

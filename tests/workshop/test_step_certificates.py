@@ -13,6 +13,7 @@ from symrot.certificates import truncation
 from symrot.certificates.certificate import certificate_json, seal
 from symrot.certificates.step_certificate import rates_of
 from symrot.certificates.truncation import _OF_SERIES, _number, _Power, _trees, require_order, truncation_bounds
+from symrot.cli.main import main
 from symrot.codegen.steps import RK4, TaylorSeries, stepped
 from symrot.errors import CertificateError, InputError
 from symrot.formula.tree import FUNCTIONS
@@ -107,6 +108,53 @@ def test_a_wrong_step_is_refuted():
     assert max(errors(rates, wrong, parameters, box, 3)) > max(truncation_bounds(rates, method, box).values())
 
 
+def rounded(method, digits):
+    """Return a Runge-Kutta method whose coefficients are decimals, rounded down."""
+
+    def near(value):
+        return Fraction(int(value * 10**digits), 10**digits)
+
+    stages = tuple({j: near(a) for j, a in stage.items()} for stage in method.stages)
+    return replace(method, stages=stages, weights={j: near(b) for j, b in method.weights.items()}, rounded=True)
+
+
+def test_defects_of_rounded_coefficients_are_in_the_bound(monkeypatch):
+    """With weights of 5 digits, the defects of the order conditions are the larger part of the error."""
+    monkeypatch.setattr(truncation, "DEFECT", Fraction(1, 10**4))
+    rates, method, parameters, box = problem("tumbling_prism", "rk4", (Fraction(0), Fraction(1, 1000)))
+    near = rounded(method, 5)
+    bounds, measured = truncation_bounds(rates, near, box), errors(rates, near, parameters, box, 4)
+    assert all(error <= bound for bound, error in zip(bounds.values(), measured, strict=True))
+    assert max(bounds.values()) < 20 * max(measured)
+    assert max(measured) > 1000 * max(errors(rates, method, parameters, box, 4))
+
+
+def test_coefficients_of_dop853_fulfil_the_conditions_to_25_digits():
+    """One digit of a weight changed in the twentieth place is refused, and so are rates that no polynomial gives."""
+    method = step_text("tumbling_prism", "dop853").method
+    assert 0 < max(require_order(method)) < truncation.DEFECT
+    wrong = replace(method, weights=dict(method.weights) | {0: method.weights[0] + Fraction(1, 10**20)})
+    with pytest.raises(CertificateError, match="violates the order condition of a tree with 1 nodes"):
+        require_order(wrong)
+    text = step_text("damped_disk", "dop853")
+    (first, _), *others = text._rates_program.outputs
+    driven = replace(text._rates_program, outputs=((first, ("symbol", "t")), *others))
+    with pytest.raises(InputError, match="polynomials in the states, without the time"):
+        truncation_bounds(driven, method, {})
+
+
+@pytest.mark.campaign
+def test_a_certificate_of_dop853_bounds_the_errors_of_one_step(tmp_path):
+    """The constants of the C text stand for the decimals; the bound holds at random starts, and the audit repeats it."""
+    certificate = symrot.certify("tumbling_prism", BOX | {"dt": (0, "1/1000")}, directory=tmp_path, step="dop853")
+    bounds = {name: float.fromhex(value) for name, value in certificate.data["bounds"]["truncation"].items()}
+    rates, method, parameters, box = problem("tumbling_prism", "dop853", (Fraction(0), Fraction(1, 1000)))
+    measured = errors(rates, method, parameters, box, 2)
+    assert all(error <= bound < 1e-15 for bound, error in zip(bounds.values(), measured, strict=True))
+    (path,) = tmp_path.glob("*.cert.json")
+    assert "bounds of rounding and truncation were computed again and agree" in symrot.audit(path).statements[str(path)]
+
+
 def test_order_conditions_of_all_trees():
     """There are 1, 1, 2, 4, 9 and 20 rooted trees of 1 to 6 nodes; RK4 fulfils those up to 4 and no more."""
     assert [len(_trees(size)) for size in range(1, 7)] == [1, 1, 2, 4, 9, 20]
@@ -148,6 +196,17 @@ def test_a_certificate_bounds_the_errors_of_one_step(certified):
     statements = symrot.audit(path).statements[str(path)]
     assert "rates, parameters and files are those that symrot derives for the scene tumbling_prism" in statements
     assert "bounds of rounding and truncation were computed again and agree" in statements
+
+
+def test_emitting_a_step_again_keeps_the_bounds_in_its_certificate(certified, tmp_path, capsys):
+    """The build files for CMake are printed after the certificate, into the same folder."""
+    folder, _ = certified
+    for path in folder.iterdir():
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    step = ["tumbling_prism", "--step", "taylor", "--order", "3"]
+    assert main(["emit", *step, "--cmake", "-o", str(tmp_path)]) == 0
+    (path,) = tmp_path.glob("*.cert.json")
+    assert path.read_text() == next(folder.glob("*.cert.json")).read_text() and (tmp_path / "CMakeLists.txt").exists()
 
 
 def forged(certified, folder, change):
@@ -208,7 +267,7 @@ def test_the_rates_in_a_certificate_are_those_of_the_scene():
 
 @pytest.mark.parametrize(("options", "message"), [
     ({"step": "rk4", "box": {"omega_1": (-1, 1)}}, "expected --box omega_2=LOW:HIGH .* --box dt=LOW:HIGH"),
-    ({"step": "dop853", "box": BOX}, "expected 'rk4' or 'taylor' for bounds on a box"),
+    ({"step": "exact", "box": BOX}, "exact steps have a test and no certificate"),
     ({"step": "rk4", "objects": True}, "no objects and no rounding=False"), ({"order": 3}, "expected a step as well"),
     ({"step": "rk4", "box": BOX | {"weight": (1, 2)}}, "an input of the kernel or a constant"),
 ])  # fmt: skip

@@ -130,6 +130,14 @@ def _with_text(template: str, texts: Mapping[str, str]) -> str:
     return template
 
 
+ORIGINS = {
+    "search": "found by a search near the printed formula",
+    "derivation": "derived from the reference",
+    "proposal": "proposed by a person",
+}
+"""Origin of a correction -> the words for it."""
+
+
 def _proof(item: Finding, letters: Mapping[str, str]) -> str:
     """Return one or two sentences that say how the formula of a finding was proven wrong.
 
@@ -142,10 +150,9 @@ def _proof(item: Finding, letters: Mapping[str, str]) -> str:
         return f"The value of the reference ({against}) is {value}, which rounds to {item.right}."
     if not item.corrected:
         return f"The printed formula differs from the reference ({against}){example}."
-    origin = "proposed by a person" if item.is_proposed else "found by a search near the printed formula"
     return (
-        f"The correction was {origin}. Its difference from the reference ({against}) is exactly zero; that of the "
-        f"printed formula is not{example}."
+        f"The correction was {ORIGINS[item.origin]}. Its difference from the reference ({against}) is exactly zero; "
+        f"that of the printed formula is not{example}."
     )
 
 

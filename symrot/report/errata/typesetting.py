@@ -157,7 +157,7 @@ class _Typesetter(Writer):
     def product(self, node: Node) -> str:
         r"""Return a product as LaTeX, each divisor as a fraction with the factors before it above:
 
-        ``a/b*c`` -> ``\frac{a}{b} c``.
+        ``a/b*c`` -> ``\frac{a}{b} c``. A vector or matrix is put behind the fraction.
         """
         pieces: list[str] = []
         above: list[Node] = []
@@ -168,9 +168,16 @@ class _Typesetter(Writer):
                 continue
             below = self.formula(inner.args[0])
             below = f"\\boxed{{{below}}}" if factor.kind == MARK else below
-            pieces.append(f"\\frac{{{self._row(above) or '1'}}}{{{below}}}")
-            above = []
+            scalars = [factor for factor in above if not self._is_array(factor)]
+            pieces.append(f"\\frac{{{self._row(scalars) or '1'}}}{{{below}}}")
+            above = [factor for factor in above if self._is_array(factor)]
         return " ".join([*pieces, *([self._row(above, alone=False)] if above else [])])
+
+    def _is_array(self, factor: Node) -> bool:
+        """Return whether a factor is a written-out matrix, or a vector or matrix by its letter."""
+        inner = factor.args[0] if factor.kind == MARK else factor
+        letter = self.letters.get(str(inner.value), "") if inner.kind == "name" else ""
+        return (inner.kind == "call" and inner.value in ("Matrix", "diag")) or letter.startswith(("\\vec", "\\mathbf"))
 
     def _row(self, factors: list[Node], alone: bool = True) -> str:
         """Return ``factors`` side by side as LaTeX; a single one gets no brackets if ``alone`` is true.

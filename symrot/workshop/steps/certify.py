@@ -50,11 +50,6 @@ def certify_step(
     printed = step_text(scene, step, order)
     if not isinstance(printed, StepText):
         raise InputError("step: expected rk4, taylor or dop853, got exact: exact steps have a test and no certificate")
-    if ranges and step == "dop853":
-        raise InputError(
-            "step: expected 'rk4' or 'taylor' for bounds on a box, got 'dop853', whose coefficients are rounded; leave "
-            "out the box to certify only the formula"
-        )
     progress("proving ..")
     text = printed.certificate()
     if ranges:
