@@ -21,7 +21,7 @@ from symrot.scene.body import Body
 from symrot.scene.content import Content, plain
 from symrot.scene.torque import Torque
 
-__all__ = ["Path", "changed", "path_of", "present_value", "replaces_shapes"]
+__all__ = ["Path", "changed", "number_path", "path_of", "present_value", "replaces_shapes"]
 
 Path = tuple[str | int, ...]
 
@@ -143,6 +143,25 @@ def present_value(
             )
         value = value[step]
     return value
+
+
+def number_path(content: Content, key: str, omega_b: Sequence[Fraction], body: Body, torques: Sequence[Torque]) -> Path:
+    """Return the path of the number in the content that a key names: ``linear`` -> ``("torque", 0, "linear")``.
+
+    The result is () if the key names no value, several values, a vector, or a number that the content does not give.
+    The arguments are those of :func:`changed`.
+    """
+    try:
+        place = _place(_Scene(content, omega_b, body, torques), key)
+    except InputError:
+        return ()
+    value: Any = content
+    try:
+        for step in place.path:
+            value = value[step]
+    except (KeyError, IndexError, TypeError):
+        return ()
+    return () if isinstance(value, bool | dict | list | tuple) or place.component is not None else place.path
 
 
 def replaces_shapes(key: str) -> bool:

@@ -14,7 +14,7 @@ from symrot.dynamics.torque_kinds import TABLE_KIND, TORQUE_KINDS
 from symrot.ensemble.variation import FIXED, PLACES, constant_places
 from symrot.errors import InputError, nearest
 from symrot.formula.exact_numbers import read, show
-from symrot.scene.changes import Path, path_of
+from symrot.scene.changes import Path, number_path, path_of
 from symrot.scene.scene import Scene
 
 __all__ = ["OMEGA", "Content", "Path", "Target", "constants_of", "read_target"]
@@ -41,7 +41,8 @@ def read_target(name: str, scene: Scene, content: Content | None) -> Target:
     Parameters
     ----------
     name : str
-        ``omega_1`` to ``omega_3``, a constant of the scene, or a path in the scene file.
+        ``omega_1`` to ``omega_3``, a constant of the scene, a path in the scene file, or a short name of a number in
+        it, as for :meth:`symrot.Scene.with_`: ``linear`` for ``torque[0].linear``.
     scene : Scene
         The scene.
     content : mapping or None
@@ -59,6 +60,9 @@ def read_target(name: str, scene: Scene, content: Content | None) -> Target:
         _require_variable(places[name].field, name)
         return Target(name, _unit_of_constant(scene, name))
     path = _path(name)
+    if not path and content is not None:
+        short = number_path(dict(content), name, scene.initial.omega_b, scene.body, scene.torques)
+        path = short if short and short[0] in VARIED_TABLES else ()
     if path and content is None:
         raise InputError(f"{name}: expected the scene as a file or a dict, to vary a number in it, got a Scene object")
     known = [*OMEGA, *(key for key, place in places.items() if place.field not in FIXED)]

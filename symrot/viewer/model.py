@@ -109,6 +109,7 @@ def page_model(scene: Scene, trajectory: Trajectory | None = None) -> PageModel:
         data
         | {
             "constants": {name: float(value) for name, value in plan.constants.items()},
+            "orbit": data["orbit"] and data["orbit"] | {"constant": _orbit_constant(plan)},
             "sliders": [slider._asdict() for slider in _sliders(scene, plan)],
             "outputs": outputs,
             "conserved": [
@@ -196,10 +197,30 @@ def _facts(scene: Scene, is_driven: bool) -> dict[str, Any]:
         "free": not scene.torques and scene.table is None and not is_driven,
         "fixedPoint": body.about == "fixed_point",
         "center": None if body.center_of_mass is None else [float(value) for value in body.center_of_mass],
+        "mass": None if body.mass is None else float(body.mass),
+        "orbit": _orbit(scene),
         "down": None if down is None else [float(value) for value in down],
         "size": size,
         "patches": [_patch(patch, size) for patch in surface],
     }
+
+
+def _orbit(scene: Scene) -> dict[str, Any] | None:
+    """Return the mean motion (rad/s) of a satellite and its long axis, in body axes, for the angles to the vertical.
+
+    The long axis is that of the least moment. The result is None unless one torque is a gravity gradient.
+    """
+    torques = [torque for torque in scene.torques if torque.kind == "gravity_gradient"]
+    if len(torques) != 1:
+        return None
+    principal = scene.body.principal
+    least = min(range(3), key=lambda k: principal.moments[k])
+    return {"rate": float(torques[0].number("mean_motion")), "axis": [float(row[least]) for row in principal.axes]}
+
+
+def _orbit_constant(plan: Plan) -> str:
+    """Return the name of the constant of a plan that is the mean motion of the satellite's orbit."""
+    return next(f"{item.prefix}mean_motion" for item in plan.structure.torques if item.kind == "gravity_gradient")
 
 
 def _rest(value: Fraction) -> float:

@@ -14,7 +14,7 @@ from symrot.viewer.model import page_model
 __all__ = ["page"]
 
 FOLDER = Path(__file__).with_name("assets")
-SCRIPTS = ("motion.js", "drawing.js", "panels.js", "page.js")
+SCRIPTS = ("motion.js", "model.js", "drawing.js", "panels.js", "page.js")
 STYLES = ("uplot.css", "page.css")
 LIBRARIES = "libraries.js"
 

@@ -10,10 +10,11 @@ from typing import Any
 
 from symrot.certificates import recheck
 from symrot.certificates.audit import LARGEST
-from symrot.certificates.certificate import with_sections
+from symrot.certificates.certificate import certificate_json, with_sections
 from symrot.certificates.readback.readback import read_kernel
 from symrot.certificates.rounding.bounds import check_bounds, check_section
 from symrot.certificates.selftest import selftest_files
+from symrot.certificates.step_certificate import is_step, with_bounds
 from symrot.codegen.printing.build_files import build_files
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
@@ -81,14 +82,20 @@ def certificate_files(
 ) -> dict[str, str]:  # fmt: skip
     """Return the certificate file of a kernel, as a map from file name to text; empty for a step without a certificate.
 
-    Verdicts on object code are copied from the certificate in ``directory`` if they still hold. Bounds of rounding
-    errors are on the kernel's own box; for a scene, they are ``bounds``.
+    Verdicts on object code, and the bounds of a step's errors, are copied from the certificate in ``directory`` if they
+    still hold. Bounds of rounding errors are on the kernel's own box; for a scene, they are ``bounds``.
     """
     if not kernel.has_certificate:
         return {}
     name, certificate = f"{kernel.name}.cert.json", kernel.certificate(bounds)
-    own = json.loads(certificate).get("rounding")
-    return {name: with_sections(certificate, _slots(directory / name) | {"rounding": own})}
+    data, present = json.loads(certificate), _slots(directory / name)
+    if is_step(data):
+        same = "bounds" in present and all(
+            present.get(section) == own for section, own in data.items() if section not in ("trusted", "seal")
+        )
+        return {name: certificate_json(with_bounds(data, present["bounds"])) if same else certificate}
+    own = data.get("rounding")
+    return {name: with_sections(certificate, present | {"rounding": own})}
 
 
 def stored_bounds(kernel: KernelText, directory: Path | None) -> Mapping[str, Any] | None:

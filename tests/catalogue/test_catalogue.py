@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from importlib import import_module
@@ -242,6 +243,16 @@ def test_all_is_printed_as_latex_with_balanced_braces(derived):
         assert text.count(r"\left") - text.count(r"\leftarrow") == text.count(r"\right") - text.count(r"\rightarrow"), (
             name
         )
+
+
+@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="needs pdflatex")
+def test_tables_of_long_formulas_compile(tmp_path):
+    names = ("euler_singularities", "intermediate_axis")
+    pages = {"First": [catalogue.derivation(name) for name in names]}
+    (tmp_path / "book.tex").write_text(latex_book("Bodies", "About.", pages), encoding="utf-8")
+    command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "book.tex"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0 and "Overfull" not in done.stdout, done.stdout[-2000:]
 
 
 def test_all_pages_can_be_written_as_html(derived, tmp_path, capsys):

@@ -61,6 +61,18 @@ def test_a_mass_changes_inertia_and_weight():
     assert np.allclose(result["energy@end"] / result["input_body.mass"], result["energy@end"][1] / 0.5, rtol=1e-12)
 
 
+def test_a_number_has_the_short_names_of_scenes():
+    """``linear``, one number in the file for three constants, and ``mass``."""
+    for scene, name, path in ((DAMPED_TOP, "linear", "torque[1].linear"), ("heavy_top_loops", "mass", "body.mass")):
+        results = [
+            symrot.sweep(scene, {key: [0.02, 0.05]}, outputs="omega_1@end", t=[0, 0.2], workers=1)
+            for key in (name, path)
+        ]
+        assert np.array_equal(*(result.array("omega_1@end") for result in results))
+    with pytest.raises(InputError, match="expected something that can vary"):
+        symrot.sweep(DAMPED_TOP, {"samples": [3, 4]})
+
+
 def test_a_number_in_the_scene_file_gives_the_motion_of_that_file():
     result = symrot.sweep(
         DAMPED_TOP,

@@ -12,6 +12,7 @@ import pytest
 import symrot
 from symrot.viewer import page as page_module
 from symrot.viewer.model import page_model
+from tests.viewer.test_page import scene_of
 
 pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="needs Node.js")
 
@@ -24,19 +25,19 @@ WITHIN_A_PAGE = [
 
 def in_node(model, script, folder):
     """Run a script in Node.js beside the model of a page, without the picture; return what it prints, from JSON."""
-    source = (ASSETS / "page.js").read_text(encoding="utf-8")
-    begin = source.index("const computed"), source.index("class Page")
-    start = re.search(r"^function unpack", source, re.MULTILINE).start()
-    end = source.index("/* --- the page ")
     text = "\n".join([
-        "const window = {}; const element = () => null;",
-        (ASSETS / "motion.js").read_text(encoding="utf-8").replace("export ", ""),
-        f"const data = {json.dumps(model.data)};",
-        source[begin[0] : source.index("\n", begin[0])],
-        model.kernel,
-        source[start:end],
-        script,
+        _asset("motion.js"), f"const data = {json.dumps(model.data)}, computed = !data.played;", model.kernel,
+        _asset("model.js"), script,
     ])  # fmt: skip
+    return run(text, folder)
+
+
+def _asset(name):
+    return re.sub(r"^export ", "", (ASSETS / name).read_text(encoding="utf-8"), flags=re.MULTILINE)
+
+
+def run(text, folder):
+    """Run a module in Node.js; return what it prints, from JSON."""
     (folder / "motion.mjs").write_text(text, encoding="utf-8")
     done = subprocess.run(["node", "motion.mjs"], cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[-2000:]
@@ -84,3 +85,62 @@ def test_a_free_body_keeps_energy_and_momentum_to_more_digits_than_a_double(tmp_
     model = page_model(symrot.load_scene("t_handle"))
     forgetful = AGREEMENT.replace("model.motion.reach", "model.motion.invariants = null; model.motion.reach")
     assert in_node(model, forgetful, tmp_path)["agreement"] > 1e-11
+
+
+def test_a_stretched_body_has_the_moments_of_the_sliders(tmp_path):
+    """The second moments of the drawn box, such as (B + C - A)/2, become those of the new moments."""
+    script = """
+    const model = new Model({...data, constants: {...data.constants, A: 2.5, B: 3, C: 3.5}});
+    console.log(JSON.stringify(model.stretch));
+    """
+    body = {"shape": "box", "a": 1, "b": 2, "c": 3, "mass": 12}
+    stretch = in_node(page_model(scene_of(body)), script, tmp_path)
+    a, b, c = (side * factor for side, factor in zip((1, 2, 3), stretch["factors"], strict=True))
+    assert [b**2 + c**2, a**2 + c**2, a**2 + b**2] == pytest.approx([2.5, 3, 3.5])
+    assert "has these moments" in stretch["note"]
+
+
+def test_a_top_is_stretched_about_its_center_of_mass(tmp_path):
+    """A cylinder with its centre at height h has A = m (3 r^2 + l^2)/12 + m h^2; r and l change, h stays."""
+    script = """
+    const {A, C} = data.constants;
+    const model = new Model({...data, constants: {...data.constants, A: 1.01*A, B: 1.01*A, C: 1.05*C}});
+    console.log(JSON.stringify([data.constants, data.mass, model.stretch]));
+    """
+    old, mass, stretch = in_node(page_model(symrot.load_scene("heavy_top_loops")), script, tmp_path)
+    height = old["center_of_mass_3"]
+    radius_squared = 2 * old["C"] / mass * stretch["factors"][0] ** 2
+    length_squared = (12 * (old["A"] / mass - height**2) - 6 * old["C"] / mass) * stretch["factors"][2] ** 2
+    assert stretch["from"] == stretch["to"] == [0, 0, height]
+    assert mass * radius_squared / 2 == pytest.approx(1.05 * old["C"])
+    assert mass * ((3 * radius_squared + length_squared) / 12 + height**2) == pytest.approx(1.01 * old["A"])
+
+
+def in_panels(script, folder):
+    return run(f"{_asset('panels.js')}\nconsole.log(JSON.stringify({script}));", folder)
+
+
+def test_an_angle_that_passes_the_end_of_its_range_leaves_a_gap(tmp_path):
+    """The curve is drawn to 180, interrupted, and goes on at -180; every sample stays."""
+    result = in_panels("withGaps([0, 1, 2, 3], [[100, 160, -160, -100], [0, 10, 20, 30]], 360)", tmp_path)
+    assert result["times"] == [0, 1, 1.5, 1.5, 1.5, 2, 3]
+    assert result["series"] == [[100, 160, 180, None, -180, -160, -100], [0, 10, 15, 15, 15, 20, 30]]
+
+
+def test_ticks_are_round_numbers(tmp_path):
+    script = "[ticks(-184, 184, 5, [1, 2, 5, 10, 15, 30, 45, 90, 180]), ticks(0, 12, 7), ticks(0, 694.4, 7), ticks(-7.2, 7.2, 3), ticks(3, 3, 5)]"
+    angles, seconds, days, rates, point = (ticks["values"] for ticks in in_panels(script, tmp_path))
+    assert angles == [-180, -90, 0, 90, 180]
+    assert seconds == [0, 2, 4, 6, 8, 10, 12]
+    assert days == [0, 100, 200, 300, 400, 500, 600]
+    assert rates == [-5, 0, 5]
+    assert point == [3]
+
+
+def test_a_curve_with_more_periods_than_pixels_is_a_band(tmp_path):
+    wave = "Array.from({length: 8000}, (_, k) => Math.sin(k))"
+    script = f"[band([...Array(8000).keys()], {wave}, 300, 0.01), band([...Array(8000).keys()], {wave}, 8000, 0.01)]"
+    pieces, line = in_panels(script, tmp_path)
+    assert line is None
+    assert 100 < len(pieces) <= 301
+    assert all(low < -0.9 and high > 0.9 for _, low, high in pieces)

@@ -13,6 +13,7 @@ from symrot.certificates import truncation
 from symrot.certificates.certificate import certificate_json, seal
 from symrot.certificates.step_certificate import rates_of
 from symrot.certificates.truncation import _OF_SERIES, _number, _Power, _trees, require_order, truncation_bounds
+from symrot.cli.main import main
 from symrot.codegen.steps import RK4, TaylorSeries, stepped
 from symrot.errors import CertificateError, InputError
 from symrot.formula.tree import FUNCTIONS
@@ -195,6 +196,17 @@ def test_a_certificate_bounds_the_errors_of_one_step(certified):
     statements = symrot.audit(path).statements[str(path)]
     assert "rates, parameters and files are those that symrot derives for the scene tumbling_prism" in statements
     assert "bounds of rounding and truncation were computed again and agree" in statements
+
+
+def test_emitting_a_step_again_keeps_the_bounds_in_its_certificate(certified, tmp_path, capsys):
+    """The build files for CMake are printed after the certificate, into the same folder."""
+    folder, _ = certified
+    for path in folder.iterdir():
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    step = ["tumbling_prism", "--step", "taylor", "--order", "3"]
+    assert main(["emit", *step, "--cmake", "-o", str(tmp_path)]) == 0
+    (path,) = tmp_path.glob("*.cert.json")
+    assert path.read_text() == next(folder.glob("*.cert.json")).read_text() and (tmp_path / "CMakeLists.txt").exists()
 
 
 def forged(certified, folder, change):

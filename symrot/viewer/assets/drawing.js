@@ -8,7 +8,8 @@ const ARROWS = {
 const LONGEST = 1.5;      // length of the longest ω, L or M, relative to the body
 const TIP = 1.3;          // distance of the tip of the body's axis from the point of rotation
 const TRAIL = 2000;       // fewest points of a path
-const MOST = 40000;       // most points of a path
+const MOST = 20000;       // most points of a path
+const APART = 17;         // pixels between the middles of two labels
 
 export class Drawing {
     constructor(canvas, labels, data, colours) {
@@ -16,7 +17,8 @@ export class Drawing {
         this.data = data;
         this.canvas = canvas;
         this.labels = labels;
-        this.renderer = new WebGLRenderer({canvas, antialias: true, alpha: true});
+        this.isSoftware = Drawing.#isSoftware();
+        this.renderer = new WebGLRenderer({canvas, antialias: !this.isSoftware, alpha: true});
         this.scene = new Scene();
         this.camera = new PerspectiveCamera(35, 1, 0.05, 100);
         this.camera.up.set(0, 0, 1);
@@ -33,7 +35,9 @@ export class Drawing {
         this.body = new Group();       // everything in body axes
         this.world.add(this.body);
         this.scene.add(this.world);
-        this.follow = false;
+        this.follow = "space";         // what stands still in the picture: space, the body, or the vertical of an orbit
+        this.tinted = [];              // materials and labels with the names of their colours
+        this.isStale = true;           // whether anything has changed since the last frame was drawn
         this.pins = [];                // text labels and the points to which they belong
         this.parts = {};
         this.colours = colours;
@@ -43,23 +47,47 @@ export class Drawing {
         this.#addPaths();
         this.#addGround();
         this.#addGravity();
+        this.#addVertical();
+    }
+
+    /** Return whether WebGL runs on the processor: moving pictures are then drawn without smooth edges, still ones in twice the size. */
+    static #isSoftware() {
+        const gl = document.createElement("canvas").getContext("webgl2"), info = gl?.getExtension("WEBGL_debug_renderer_info");
+        const name = String(gl?.getParameter(info?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER));
+        gl?.getExtension("WEBGL_lose_context")?.loseContext();
+        return /SwiftShader|llvmpipe|softpipe|Software|Basic Render/i.test(name);
+    }
+
+    /** Give a material a colour of the palette by its name, and keep both, so that the palette can change. */
+    #tint(material, name) {
+        material.color.setHex(this.colours[name]);
+        this.tinted.push((colours) => material.color.setHex(colours[name]));
+        return material;
+    }
+
+    /** Draw everything in the colours of another palette. */
+    recolour(colours) {
+        this.colours = colours;
+        for (const tint of this.tinted) tint(colours);
+        this.isStale = true;
     }
 
     #addBody() {
         const {Mesh, MeshStandardMaterial, DoubleSide, BufferGeometry, BufferAttribute, SphereGeometry, TubeGeometry,
             CatmullRomCurve3, Vector3, EdgesGeometry, LineSegments, LineBasicMaterial, Group} = libraries;
         const shape = new Group();
-        this.solid = new MeshStandardMaterial({
-            color: this.colours.body, side: DoubleSide, roughness: 0.55, metalness: 0.15, vertexColors: true,
+        this.solid = this.#tint(new MeshStandardMaterial({
+            side: DoubleSide, roughness: 0.55, metalness: 0.15, vertexColors: true,
             transparent: true, opacity: 1,
-        });
+        }), "body");
         this.hasHoles = this.data.patches.some((patch) => patch.hole);
         this.solid.opacity = this.#opacity(false);
         const hole = new MeshStandardMaterial({
             color: 0x101820, side: DoubleSide, transparent: true, opacity: 0.45, polygonOffset: true,
             polygonOffsetFactor: -2, polygonOffsetUnits: -2,
         });
-        const edge = new LineBasicMaterial({color: this.colours.edge});
+        const edge = this.#tint(new LineBasicMaterial(), "edge");
+        const surfaces = [false, true].map((isHole) => ({isHole, points: [], shade: [], index: []}));      // each is drawn at once
         this.data.patches.forEach((patch, number) => {
             const points = Float32Array.from(patch.points), count = points.length/3;
             if (patch.columns === 0) {
@@ -81,14 +109,15 @@ export class Drawing {
                 shape.add(new Mesh(tube, this.solid));
                 return;
             }
-            const geometry = new BufferGeometry(), index = [], shade = [];
+            const {points: all, index, shade} = surfaces[patch.hole ? 1 : 0], before = all.length/3;
+            for (let k = 0; k < points.length; ++k) all.push(points[k]);
             for (let i = 0; patch.mesh && i < count; ++i) {
                 const first = 9*Math.floor(i/3);                        // the quadrant of the triangle's centre
                 const x = points[first] + points[first + 3] + points[first + 6];
                 const y = points[first + 1] + points[first + 4] + points[first + 7];
                 const tone = x*y < 0 ? 0.72 : 1;
                 shade.push(tone, tone, tone);
-                index.push(i);
+                index.push(before + i);
             }
             for (let i = 0; !patch.mesh && i < patch.rows; ++i) {
                 for (let j = 0; j < patch.columns; ++j) {
@@ -96,19 +125,41 @@ export class Drawing {
                     const tone = Math.floor(4*turning + 1e-9) % 2 ? 0.72 : 1;    // quarters, so that a spin can be seen
                     shade.push(tone, tone, tone);
                     if (i + 1 === patch.rows || j + 1 === patch.columns) continue;
-                    const a = i*patch.columns + j, b = a + 1, c = a + patch.columns, d = c + 1;
+                    const a = before + i*patch.columns + j, b = a + 1, c = a + patch.columns, d = c + 1;
                     index.push(a, b, c, b, d, c);
                 }
             }
-            geometry.setAttribute("position", new BufferAttribute(points, 3));
+        });
+        for (const {isHole, points, shade, index} of surfaces) {
+            if (!index.length) continue;
+            const geometry = new BufferGeometry();
+            geometry.setAttribute("position", new BufferAttribute(Float32Array.from(points), 3));
             geometry.setAttribute("color", new BufferAttribute(Float32Array.from(shade), 3));
             geometry.setIndex(index);
             geometry.computeVertexNormals();
-            shape.add(new Mesh(geometry, patch.hole ? hole : this.solid));
+            shape.add(new Mesh(geometry, isHole ? hole : this.solid));
             shape.add(new LineSegments(new EdgesGeometry(geometry, 30), edge));
-        });
+        }
+        shape.matrixAutoUpdate = false;
         this.body.add(shape);
         this.parts.body = [shape];
+        this.shape = shape;
+        this.corners = this.data.patches.flatMap(({points}) => points);
+    }
+
+    /** Stretch the drawn body, see Model.stretch; a body that grows much is drawn smaller. */
+    stretch({factors, from, to}) {
+        const {size} = this.data, offset = to.map((value, k) => (value - factors[k]*from[k])/size);
+        let largest = 0;
+        for (let k = 0; k < this.corners.length; k += 3) {
+            largest = Math.max(largest, Math.hypot(...[0, 1, 2].map((i) => factors[i]*this.corners[k + i] + offset[i])));
+        }
+        const zoom = Math.min(1, 1.4/(largest || 1)), [a, b, c] = factors.map((factor) => zoom*factor);
+        const [x, y, z] = offset.map((value) => zoom*value);
+        this.shape.matrix.set(a, 0, 0, x, 0, b, 0, y, 0, 0, c, z, 0, 0, 0, 1);
+        this.shape.matrixWorldNeedsUpdate = true;
+        if (this.stem) this.stem.geometry.setFromPoints([new libraries.Vector3(), new libraries.Vector3(...to).multiplyScalar(zoom/size)]);
+        this.isStale = true;
     }
 
     /** A body is translucent if it has holes, or if Poinsot's ellipsoid is drawn around it. */
@@ -117,30 +168,32 @@ export class Drawing {
     }
 
     #addAxes() {
-        const space = this.#axes(1.9, this.colours.space, ["x", "y", "z"], this.world);
-        const axes = this.#axes(1.55, this.colours.axes, ["1", "2", "3"], this.body);
+        const space = this.#axes(1.9, "space", ["x", "y", "z"], this.world);
+        const axes = this.#axes(1.55, "axes", ["1", "2", "3"], this.body);
         this.parts.space = [space];
         this.parts.axes = [axes];
     }
 
     #axes(length, colour, names, parent) {
-        const {Group, Line, BufferGeometry, LineBasicMaterial, Vector3} = libraries;
-        const group = new Group();
+        const {Group, LineSegments, BufferGeometry, LineBasicMaterial, Vector3} = libraries;
+        const group = new Group(), points = [];
         names.forEach((name, k) => {
             const end = new Vector3().setComponent(k, length);
-            const geometry = new BufferGeometry().setFromPoints([new Vector3(), end]);
-            group.add(new Line(geometry, new LineBasicMaterial({color: colour})));
+            points.push(new Vector3(), end);
             this.#pin(name, colour, () => group.visible ? group.localToWorld(end.clone().multiplyScalar(1.06)) : null);
         });
+        group.add(new LineSegments(new BufferGeometry().setFromPoints(points), this.#tint(new LineBasicMaterial(), colour)));
         parent.add(group);
         return group;
     }
 
-    /** Add a label whose place is computed for each picture; it is hidden where the place is null. */
+    /** Add a label in a colour of the palette; its place is computed for each picture, and null where it is hidden. */
     #pin(text, colour, place) {
         const element = document.createElement("span");
         element.textContent = text;
-        element.style.color = `#${colour.toString(16).padStart(6, "0")}`;
+        const tint = (colours) => { element.style.color = `#${colours[colour].toString(16).padStart(6, "0")}`; };
+        tint(this.colours);
+        this.tinted.push(tint);
         this.labels.append(element);
         this.pins.push({element, place});
     }
@@ -150,12 +203,14 @@ export class Drawing {
         this.arrows = {};
         for (const [name, {label}] of Object.entries(ARROWS)) {
             const arrow = new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 1, this.colours[name], 0.16, 0.09);
+            this.#tint(arrow.line.material, name);
+            this.#tint(arrow.cone.material, name);
             const group = new Group();
             group.add(arrow);
             this.world.add(group);
             this.arrows[name] = {arrow, group, vector: new Vector3(), size: 1};
             this.parts[name] = [group];
-            this.#pin(label, this.colours[name], () => {
+            this.#pin(label, name, () => {
                 const {vector} = this.arrows[name];
                 return group.visible && arrow.visible ? group.localToWorld(vector.clone().multiplyScalar(1.08)) : null;
             });
@@ -167,7 +222,7 @@ export class Drawing {
         const line = (colour, parent, name, opacity = 1) => {
             const geometry = new BufferGeometry();
             geometry.setAttribute("position", new BufferAttribute(new Float32Array(3*MOST), 3));
-            const path = new Line(geometry, new LineBasicMaterial({color: colour, opacity, transparent: opacity < 1}));
+            const path = new Line(geometry, this.#tint(new LineBasicMaterial({opacity, transparent: opacity < 1}), colour));
             path.frustumCulled = false;
             const group = new Group();
             group.add(path);
@@ -176,10 +231,10 @@ export class Drawing {
             return path;
         };
         this.paths = {
-            whole: line(this.colours.trail, this.world, "trail", 0.35),
-            trail: line(this.colours.trail, this.world, "trail"),
-            herpolhode: line(this.colours.omega, this.world, "herpolhode"),
-            polhode: line(this.colours.polhode, this.body, "polhode"),
+            whole: line("trail", this.world, "trail", 0.35),
+            trail: line("trail", this.world, "trail"),
+            herpolhode: line("omega", this.world, "herpolhode"),
+            polhode: line("polhode", this.body, "polhode"),
         };
     }
 
@@ -192,16 +247,16 @@ export class Drawing {
         const grid = new GridHelper(6, 12, this.colours.space, this.colours.grid);
         grid.rotation.x = Math.PI/2;
         grid.position.z = -0.6;
-        const stand = new Mesh(new ConeGeometry(0.18, 0.6, 40), new MeshStandardMaterial({color: this.colours.grid}));
+        const stand = new Mesh(new ConeGeometry(0.18, 0.6, 40), this.#tint(new MeshStandardMaterial(), "grid"));
         stand.rotation.x = Math.PI/2;
         stand.position.z = -0.3;
-        ground.add(grid, stand, new Mesh(new SphereGeometry(0.035), new MeshStandardMaterial({color: this.colours.edge})));
+        ground.add(grid, stand, new Mesh(new SphereGeometry(0.035), this.#tint(new MeshStandardMaterial(), "edge")));
         this.world.add(ground);
         const {center, size} = this.data;
         if (center && !this.data.drawn.includes("proportions")) {
             const ends = [new Vector3(), new Vector3(...center).divideScalar(size)];
-            const stem = new Line(new BufferGeometry().setFromPoints(ends), new LineBasicMaterial({color: this.colours.edge}));
-            this.body.add(stem);
+            this.stem = new Line(new BufferGeometry().setFromPoints(ends), this.#tint(new LineBasicMaterial(), "edge"));
+            this.body.add(this.stem);
         }
     }
 
@@ -209,11 +264,30 @@ export class Drawing {
         if (!this.data.down) return;
         const {ArrowHelper, Vector3, Group} = libraries, down = new Vector3(...this.data.down), group = new Group();
         const start = down.clone().multiplyScalar(-0.5).add(new Vector3(-1.6, 0.6, 0));
-        group.add(new ArrowHelper(down, start, 0.8, this.colours.space, 0.14, 0.08));
+        const arrow = new ArrowHelper(down, start, 0.8, this.colours.space, 0.14, 0.08);
+        this.#tint(arrow.line.material, "space");
+        this.#tint(arrow.cone.material, "space");
+        group.add(arrow);
         this.world.add(group);
         this.parts.gravity = [group];
         const end = start.clone().addScaledVector(down, 0.9);
-        this.#pin("g", this.colours.space, () => group.visible ? group.localToWorld(end.clone()) : null);
+        this.#pin("g", "space", () => group.visible ? group.localToWorld(end.clone()) : null);
+    }
+
+    /** Add the line from the planet through a satellite, with an arrow that points to the planet. */
+    #addVertical() {
+        if (!this.data.orbit) return;
+        const {ArrowHelper, Vector3, Group} = libraries, group = new Group();
+        const arrow = new ArrowHelper(new Vector3(-1, 0, 0), new Vector3(1.9, 0, 0), 3.8, this.colours.space, 0.14, 0.08);
+        this.#tint(arrow.line.material, "space");
+        this.#tint(arrow.cone.material, "space");
+        group.add(arrow);
+        this.vertical = new Group();
+        this.vertical.add(group);
+        this.world.add(this.vertical);
+        this.parts.vertical = [group];
+        const end = new Vector3(-2, 0, 0);
+        this.#pin("planet", "space", () => group.visible ? this.vertical.localToWorld(end.clone()) : null);
     }
 
     /** Show Poinsot's ellipsoid and plane, and the cones, of a free body with this state. */
@@ -279,6 +353,7 @@ export class Drawing {
     }
 
     show(name, visible) {
+        this.isStale = true;
         this.wished = {...this.wished, [name]: visible};
         for (const group of this.parts[name] ?? []) group.visible = visible;
         if (name === "poinsot") this.solid.opacity = this.#opacity(visible && this.parts.poinsot?.length > 0);
@@ -288,13 +363,12 @@ export class Drawing {
         return this.parts[name]?.[0]?.visible ?? false;
     }
 
-    /** Set the points of a path; `points` are triples in the units of the path. */
+    /** Set the points of a path; `points` are coordinates x, y, z of one point after the other. */
     path(name, points, scale) {
+        this.isStale = true;
         const line = this.paths[name], array = line.geometry.attributes.position.array;
-        const count = Math.min(points.length, MOST);
-        for (let k = 0; k < count; ++k) {
-            for (let i = 0; i < 3; ++i) array[3*k + i] = scale*points[k][i];
-        }
+        const count = Math.min(points.length/3, MOST);
+        for (let k = 0; k < 3*count; ++k) array[k] = scale*points[k];
         line.geometry.attributes.position.needsUpdate = true;
         line.geometry.setDrawRange(0, count);
         return count;
@@ -305,7 +379,8 @@ export class Drawing {
         this.paths.trail.geometry.setDrawRange(0, Math.max(1, Math.ceil(fraction*count)));
     }
 
-    pose({quaternion: [w, x, y, z], omega, momentum, torque}) {
+    pose({quaternion: [w, x, y, z], omega, momentum, torque, vertical}) {
+        this.isStale = true;
         this.body.quaternion.set(x, y, z, w);
         for (const [name, value] of Object.entries({omega, momentum, torque})) {
             const {arrow, vector, size} = this.arrows[name], length = value ? Math.hypot(...value)/size*LONGEST : 0;
@@ -315,32 +390,80 @@ export class Drawing {
             arrow.setDirection(vector.clone().normalize());
             arrow.setLength(length, Math.min(0.16, 0.4*length), Math.min(0.09, 0.25*length));
         }
-        if (this.follow) this.world.quaternion.copy(this.body.quaternion).invert();
+        this.vertical?.quaternion.set(0, 0, 0, 1).setFromAxisAngle(new libraries.Vector3(0, 0, 1), Math.atan2(vertical[1], vertical[0]));
+        if (this.follow === "body") this.world.quaternion.copy(this.body.quaternion).invert();
+        else if (this.follow === "vertical") this.world.quaternion.copy(this.vertical.quaternion).invert();
         else this.world.quaternion.identity();
+    }
+
+    /** Rotate the camera about the vertical and up or down, rad, and move it away by a factor. */
+    turn(about, up, away) {
+        const {position} = this.camera, {target} = this.controls, arm = position.clone().sub(target);
+        const distance = Math.min(Math.max(arm.length()*away, this.controls.minDistance), this.controls.maxDistance);
+        const azimuth = Math.atan2(arm.y, arm.x) + about;
+        const height = Math.min(Math.max(Math.asin(arm.z/arm.length()) + up, -1.5), 1.5);
+        position.set(Math.cos(height)*Math.cos(azimuth), Math.cos(height)*Math.sin(azimuth), Math.sin(height)).multiplyScalar(distance).add(target);
+        this.isStale = true;
     }
 
     resize() {
         const {clientWidth: width, clientHeight: height} = this.canvas.parentElement;
-        this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+        this.width = width;
+        this.height = height;
+        this.renderer.setPixelRatio(this.#pixels(true));
         this.renderer.setSize(width, height, false);
         this.camera.aspect = width/Math.max(height, 1);
         this.camera.fov = this.camera.aspect < 1 ? 48 : 35;
         this.camera.updateProjectionMatrix();
-        this.width = width;
-        this.height = height;
+        this.isStale = true;
     }
 
-    render() {
-        this.controls.update();
-        this.scene.updateMatrixWorld();
+    /** Return how many pixels of the picture a pixel of the page has. */
+    #pixels(isMoving) {
+        return this.isSoftware ? isMoving ? 1 : 2 : Math.min(window.devicePixelRatio, 2);
+    }
+
+    /** Draw a frame if anything has changed since the last one; `isMoving` if the next frame will be another one. */
+    render(isMoving = false) {
+        const isDragged = this.controls.update(), pixels = this.#pixels(isMoving || isDragged);
+        if (pixels !== this.renderer.getPixelRatio()) {
+            this.renderer.setPixelRatio(pixels);
+            this.isStale = true;
+        }
+        if (!isDragged && !this.isStale) return;
+        this.isStale = false;
         this.renderer.render(this.scene, this.camera);
+        const places = [];      // of the labels so far: a label that would cover another one moves aside
         for (const {element, place} of this.pins) {
             const point = place()?.project(this.camera);
             const hidden = !point || Math.abs(point.z) > 1;
             element.style.visibility = hidden ? "hidden" : "visible";
             if (hidden) continue;
-            element.style.transform = `translate(-50%, -50%) translate(${(point.x + 1)/2*this.width}px, ${(1 - point.y)/2*this.height}px)`;
+            let x = (point.x + 1)/2*this.width;
+            const y = (1 - point.y)/2*this.height;
+            Object.assign(element.style, {left: "0", top: "0"});
+            const width = APART*(1 + element.textContent.length)/2;
+            while (places.some(([a, b, other]) => Math.abs(a - x) < (width + other)/2 && Math.abs(b - y) < APART)) x += APART/2;
+            places.push([x, y, width]);
+            element.style.transform = `translate(-50%, -50%) translate(${x}px, ${y}px)`;
         }
+    }
+
+    /** Put the labels where they stay in place when the picture changes its size, as on paper. */
+    pinInPercent() {
+        for (const {element} of this.pins) {
+            const [x, y] = element.style.transform.match(/[-\d.]+(?=px)/g) ?? [0, 0];
+            Object.assign(element.style, {left: `${100*x/this.width}%`, top: `${100*y/this.height}%`, transform: "translate(-50%, -50%)"});
+        }
+    }
+
+    get ratio() {
+        return this.width/this.height;
+    }
+
+    /** How many objects the last frame was drawn with. */
+    get calls() {
+        return this.renderer.info.render.calls;
     }
 
     static TIP = TIP;

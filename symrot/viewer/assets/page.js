@@ -1,202 +1,74 @@
 /* The page: it computes the motion, lets people play and change it, and says how far it can be trusted. */
 
-const KEYS = "space: play or pause; left, right: step; home: start; up, down: faster, slower; b: view from the body; f: full screen";
+const KEYS = "space: play or pause; left, right: step; home, end: start, end; up, down: faster, slower; b: view from the body;"
+    + " shift with arrows: rotate the view; +, -: zoom; f: full screen";
 const REDUCED = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
-const PANEL_COLOURS = {light: ["#0072B2", "#D55E00", "#009E73", "#9b4f8a"], dark: ["#56B4E9", "#ff9b54", "#3ddbA5", "#e39ccb"]};
+const DARK = window.matchMedia("(prefers-color-scheme: dark)");
+const SLICE = 10, FIRST_SLICE = 100;     // ms: how long a motion is computed before the next frame; the first motion
+const STEPS_AT_ONCE = 16, SAMPLES_AT_ONCE = 64;
+const LONGEST_RUN = 500;          // ms: a computation that has run longer is given up when the reader asks for another motion
+const TURN = Math.PI/24;          // rad: rotation of the view by a key
 
 const data = JSON.parse(document.getElementById("data").textContent);
 const computed = !data.played;      // whether the page computes the motion, or plays samples of it
 const element = (id) => document.getElementById(id);
-const dark = window.matchMedia("(prefers-color-scheme: dark)").matches;
 
-const colours = {
-    body: dark ? 0x8fb3d9 : 0x7fa6cf, edge: dark ? 0xdde6f0 : 0x24364a, space: dark ? 0x9aa4b0 : 0x6b7684,
-    grid: dark ? 0x4a5462 : 0xc3cbd6, axes: dark ? 0xd8dee6 : 0x1d2a38, omega: 0xd55e00, momentum: dark ? 0x4da3ff : 0x0060b0,
-    torque: 0xcc2f6f, trail: dark ? 0x3ddba5 : 0x008a63, polhode: dark ? 0xe3b341 : 0xb07a00,
+const PALETTES = {
+    light: {
+        drawing: {body: 0x7fa6cf, edge: 0x24364a, space: 0x6b7684, grid: 0xc3cbd6, axes: 0x1d2a38, omega: 0xc24f00, momentum: 0x0060b0, torque: 0xb81f62, trail: 0x008a63, polhode: 0xb07a00},
+        plots: {text: "#39424e", line: "#e3e7ec", series: ["#0072B2", "#c24f00", "#008a63", "#9b4f8a"]},
+    },
+    dark: {
+        drawing: {body: 0x8fb3d9, edge: 0xdde6f0, space: 0x9aa4b0, grid: 0x4a5462, axes: 0xd8dee6, omega: 0xff9b54, momentum: 0x4da3ff, torque: 0xff7ab0, trail: 0x3ddba5, polhode: 0xe3b341},
+        plots: {text: "#c9d1d9", line: "#30363d", series: ["#56B4E9", "#ff9b54", "#3ddba5", "#e39ccb"]},
+    },
 };
-const plotColours = {
-    text: dark ? "#c9d1d9" : "#39424e", line: dark ? "#30363d" : "#e3e7ec", series: PANEL_COLOURS[dark ? "dark" : "light"],
-};
-
-function unpack(text, columns) {
-    const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-    const view = new DataView(bytes.buffer), rows = [];
-    for (let k = 0; k < bytes.length/8; k += columns) {
-        rows.push(Float64Array.from({length: columns}, (_, i) => view.getFloat64(8*(k + i), true)));
-    }
-    return rows;
-}
+const palette = () => PALETTES[DARK.matches && !window.matchMedia("print").matches ? "dark" : "light"];
+const plotColours = {...palette().plots};
 
 const number = (value, digits = 4) => value === 0 ? "0" : Math.abs(value) < 1e-3 || Math.abs(value) >= 1e5
     ? Number(value.toPrecision(digits)).toExponential().replace("e+", "e") : String(Number(value.toPrecision(digits)));
 
-const [CLOCK, CLOCK_UNIT] = [[86400, "days"], [3600, "h"], [1, "s"]].find(([size]) => data.stop - data.start >= (size > 1 ? 4*size : 0));
-const PLACES = Math.min(Math.max(4, 4 + Math.ceil(Math.log10(Math.abs(data.stop)/(data.stop - data.start)))), 15);
-const moment = (t) => `${number(t/CLOCK, PLACES)} ${CLOCK_UNIT}`;      // a time as text
-
-const dot = (a, b) => a.reduce((sum, value, i) => sum + value*b[i], 0);
-const cross = (a, b) => [a[1]*b[2] - a[2]*b[1], a[2]*b[0] - a[0]*b[2], a[0]*b[1] - a[1]*b[0]];
-const times = (matrix, vector) => matrix.map((row) => dot(row, vector));
-
-function rotate([w, x, y, z], v) {
-    const u = [x, y, z], first = cross(u, v).map((value) => 2*value), second = cross(u, first);
-    return v.map((value, i) => value + w*first[i] + second[i]);
-}
-
-/* --- the motion --------------------------------------------------------------------------------------------------- */
-
-const MOMENTS = ["A", "B", "C"];
-
-/** The scene with its present constants and initial values; `motion` is computed from them. */
-class Model {
-    constructor() {
-        this.constants = {...data.constants};
-        this.omega = [...data.omega];
-        this.quaternion = [...data.quaternion];
-        this.table = computed && readTableau(data.tableau);
-        this.restart();
-    }
-
-    restart() {
-        if (!computed) {
-            this.motion = new SampledMotion(data.start, data.stop, unpack(data.samples, 7));
-            return;
-        }
-        const values = Float64Array.from([...kernel.names.map((name) => this.constants[name]), Math.PI]);
-        const fill = (name) => {
-            const out = new Float64Array(kernel.sizes[name]);
-            if (out.length) kernel[name](values, out);
-            return out;
-        };
-        this.p = fill("rate_parameters");
-        this.quantityParameters = fill("quantity_parameters");
-        const {rates, takesParameters} = kernel;
-        this.rates = takesParameters.rates ? rates : (t, y, p, dy) => rates(t, y, dy);
-        this.out = new Float64Array(kernel.sizes.quantities);
-        this.motion = new Motion({
-            rates: this.rates, table: this.table, parameters: this.p, start: data.start, stop: data.stop,
-            state: [...this.omega, ...this.quaternion], blocks: [[0, 3, 0], [3, 7, 1]], tolerance: data.tolerance,
-            rest: this.omega.map((rate, k) => this.#rest(rate, data.omega[k], data.omegaRest[k])),
-            invariants: data.free && this.constants.A !== undefined ? this.#invariants() : null,
-        });
-    }
-
-    /** Return what a double lacks of the exact number of the scene; zero if a reader has changed it. */
-    #rest(value, original, rest) {
-        return value === original ? rest : 0;
-    }
-
-    #invariants() {
-        const {constants} = this;
-        const moments = MOMENTS.map((name, k) => [constants[name], this.#rest(constants[name], data.constants[name], data.momentsRest[k])]);
-        return new FreeBody(moments, this.omega.map((rate, k) => [rate, this.#rest(rate, data.omega[k], data.omegaRest[k])]));
-    }
-
-    get inertia() {
-        const c = this.constants ?? {};
-        if (!computed || c.A === undefined) return data.inertia;
-        return [[c.A, 0, 0], [0, c.B, 0], [0, 0, c.C]];
-    }
-
-    /** Return the index of the axis of a body with two equal moments, or -1; the three moments of a sphere count as none. */
-    get symmetryAxis() {
-        const m = this.moments, same = (a, b) => Math.abs(a - b) <= 1e-12*Math.max(a, b);
-        const axes = [0, 1, 2].filter((k) => same(m[(k + 1) % 3], m[(k + 2) % 3]));
-        return axes.length === 1 ? axes[0] : -1;
-    }
-
-    get moments() {
-        const c = this.constants ?? {};
-        return c.A === undefined ? data.principal : [c.A, c.B, c.C];
-    }
-
-    /** Return the values of the kernel's quantities for a state. */
-    quantities(t, y) {
-        const {quantities, takesParameters} = kernel;
-        if (takesParameters.quantities) quantities(t, y, this.quantityParameters, this.out);
-        else quantities(t, y, this.out);
-        return this.out;
-    }
-
-    /** Return everything that is drawn at a time. */
-    at(t) {
-        const y = this.motion.at(t);
-        const length = Math.hypot(y[3], y[4], y[5], y[6]);
-        const quaternion = [y[3]/length, y[4]/length, y[5]/length, y[6]/length], omega = [y[0], y[1], y[2]];
-        const state = {t, y, quaternion, omegaBody: omega, omega: rotate(quaternion, omega)};
-        state.axis = rotate(quaternion, data.axis);
-        const ownMomentum = times(this.inertia, omega);
-        if (!computed) {
-            state.momentum = rotate(quaternion, ownMomentum.map((value, i) => value + data.rotor[i]));
-            state.torque = null;
-            state.energy = dot(ownMomentum, omega)/2;
-            return state;
-        }
-        const out = this.quantities(t, y), places = data.outputs;
-        const momentum = [1, 2, 3].map((k) => out[places[`momentum_${k}`]]);
-        state.kinetic = out[places.kinetic_energy];
-        state.energy = out[places.energy];
-        state.conserved = data.conserved.map(({output}) => out[output]);
-        state.momentum = rotate(quaternion, momentum);
-        const dy = this.dy ??= new Float64Array(7);
-        this.rates(t, y, this.p, dy);
-        const change = cross(omega, momentum);
-        state.torque = rotate(quaternion, times(this.inertia, [dy[0], dy[1], dy[2]]).map((value, i) => value + change[i]));
-        const floor = 1e-9*Math.hypot(...momentum)*Math.hypot(...omega);     // what rounding leaves of a torque of zero
-        if (Math.hypot(...state.torque) <= floor) state.torque = null;
-        return state;
-    }
-
-    /** Return the largest difference from symrot's own motion: of ω relative to its size, and of the quaternion. */
-    agreement() {
-        const at = unpack(data.reference.t, 1), states = unpack(data.reference.y, 7);
-        const largest = Math.max(...states.map((y) => Math.hypot(y[0], y[1], y[2]))) || 1;
-        let worst = 0;
-        states.forEach((expected, k) => {
-            if (at[k][0] > this.motion.t) return;
-            const y = this.motion.at(at[k][0]);
-            const sign = y[3]*expected[3] + y[4]*expected[4] + y[5]*expected[5] + y[6]*expected[6] < 0 ? -1 : 1;
-            for (let i = 0; i < 7; ++i) {
-                const difference = i < 3 ? (y[i] - expected[i])/largest : sign*y[i] - expected[i];
-                worst = Math.max(worst, Math.abs(difference));
-            }
-        });
-        return worst;
-    }
-
-    get isOriginal() {
-        const same = (a, b) => a.every((value, i) => value === b[i]);
-        return !computed || same(this.omega, data.omega) && same(this.quaternion, data.quaternion)
-            && Object.entries(data.constants).every(([name, value]) => this.constants[name] === value);
-    }
-}
+const SPAN = data.stop - data.start;
+const CLOCKS = [[86400, "days", 4*86400], [3600, "h", 4*3600], [1, "s", 0.05], [1e-3, "ms", 5e-5], [1e-6, "µs", 0]];      // size, s; name; least span
+const CLOCK = CLOCKS.find(([, , least]) => SPAN >= least);
+const PLACES = Math.min(Math.max(0, Math.ceil(-Math.log10(SPAN/CLOCK[0]/2000))), 15);
+const moment = (t) => `${(t/CLOCK[0]).toFixed(PLACES)} ${CLOCK[1]}`;      // a time as text
 
 /* --- the page ----------------------------------------------------------------------------------------------------- */
 
 class Page {
     constructor() {
         this.model = new Model();
+        this.wish = this.model;          // the motion that the reader has asked for; it is shown when it is computed
         this.drawing = this.#picture();
         this.t = data.start;
         this.playing = !REDUCED;
-        this.stop = data.stop;
+        this.stop = data.start;          // how far the motion is computed
         this.fastest = Math.hypot(...data.omega);
         this.frames = 0;
-        element("title").textContent = data.title;
         element("source").textContent = [data.source, data.drawn].filter(Boolean).join(". ");
         element("keys").textContent = KEYS;
         this.#layers();
         this.#controls();
         this.#sliders();
         this.#panels();
-        this.recompute();
         this.setSpeed(this.#usualSpeed());
+        this.recompute();
+        this.#advance(FIRST_SLICE);
+        this.#pose();
         const resize = () => {
             this.drawing.resize();
             for (const {panel} of this.panels) panel.resize();
         };
         new ResizeObserver(resize).observe(element("stage"));
         window.addEventListener("resize", resize);
+        for (const media of [DARK, window.matchMedia("print")]) media.addEventListener("change", () => this.#recolour());
+        window.addEventListener("beforeprint", () => this.#print());
+        window.addEventListener("afterprint", () => {
+            this.#recolour();
+            this.drawing.resize();
+        });
         resize();
         requestAnimationFrame((now) => this.#frame(now));
     }
@@ -209,11 +81,23 @@ class Page {
     /** Return the picture; where the browser has no WebGL, a sentence takes its place, and plots and sliders still work. */
     #picture() {
         try {
-            return new Drawing(element("canvas"), element("labels"), data, colours);
+            return new Drawing(element("canvas"), element("labels"), data, palette().drawing);
         } catch (error) {
             element("canvas").hidden = true;
             element("labels").textContent = "This browser has no WebGL, so the body is not drawn; the plots below show the motion.";
             return new Proxy({}, {get: () => () => undefined});
+        }
+    }
+
+    /** Use the colours of light or dark, or those of paper. */
+    #recolour() {
+        Object.assign(plotColours, palette().plots);
+        this.drawing.recolour(palette().drawing);
+        this.#construct();
+        this.drawing.render();
+        for (const {panel} of this.panels) {
+            panel.resize();
+            panel.redraw();
         }
     }
 
@@ -222,11 +106,12 @@ class Page {
             ["space", "space axes x, y, z", true], ["axes", "body axes 1, 2, 3", true], ["omega", Drawing.ARROWS.omega.title, true],
             ["momentum", Drawing.ARROWS.momentum.title, true],
             ...(computed && data.hasTorque ? [["torque", Drawing.ARROWS.torque.title, true]] : []),
-            ["trail", "path of the body's axis", true], ["polhode", "polhode (ω in the body)", data.free && !data.symmetric],
+            ["trail", `path of the ${data.axisName}`, true], ["polhode", "polhode (ω in the body)", data.free && !data.symmetric],
             ["herpolhode", "herpolhode (ω in space)", false],
         ];
         if (data.free) layers.push(["poinsot", "Poinsot's ellipsoid on its plane", false]);
         if (data.free && (data.symmetric || data.constants?.A !== undefined)) layers.push(["cones", "body and space cone, if two moments are equal", data.symmetric]);
+        if (data.orbit) layers.push(["vertical", "local vertical, toward the planet", true]);
         if (data.down) layers.push(["gravity", "direction of gravity g", true]);
         this.layers = layers;
         for (const [name, title, shown] of layers) {
@@ -247,18 +132,30 @@ class Page {
         element("restart").addEventListener("click", () => this.seek(data.start));
         element("scrub").addEventListener("input", (event) => this.seek(data.start + event.target.value/1000*(data.stop - data.start)));
         element("speed").addEventListener("input", (event) => this.setSpeed(this.#usualSpeed()*2**Number(event.target.value)));
-        element("view").addEventListener("change", (event) => { this.drawing.follow = event.target.value === "body"; });
+        element("view").addEventListener("change", (event) => {
+            this.drawing.follow = event.target.value;
+            this.#pose();
+        });
+        if (data.orbit) {
+            const option = document.createElement("option");
+            option.value = "vertical";
+            option.textContent = "with the local vertical";
+            element("view").append(option);
+        }
         document.addEventListener("keydown", (event) => {
             if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest?.("input[type=number], select")) return;
             if (event.key === " " && event.target.closest?.("button, summary, input[type=checkbox]")) return;
-            const step = (data.stop - data.start)/200, speed = element("speed");
-            const actions = {
+            const step = (data.stop - data.start)/200, speed = element("speed"), turn = (...by) => () => this.drawing.turn(...by);
+            const actions = event.shiftKey && event.key.startsWith("Arrow") ? {
+                ArrowLeft: turn(-TURN, 0, 1), ArrowRight: turn(TURN, 0, 1), ArrowUp: turn(0, TURN, 1), ArrowDown: turn(0, -TURN, 1),
+            } : {
+                "+": turn(0, 0, 1/1.1), "=": turn(0, 0, 1/1.1), "-": turn(0, 0, 1.1), End: () => this.seek(this.stop),
                 " ": () => this.toggle(), ArrowLeft: () => this.seek(this.t - step), ArrowRight: () => this.seek(this.t + step),
                 Home: () => this.seek(data.start), b: () => this.#switchView(), f: () => document.documentElement.requestFullscreen?.(),
                 ArrowUp: () => { speed.value = Number(speed.value) + 1; speed.dispatchEvent(new Event("input")); },
                 ArrowDown: () => { speed.value = Number(speed.value) - 1; speed.dispatchEvent(new Event("input")); },
             };
-            if (!actions[event.key] || event.target.matches?.("input[type=range]") && event.key.startsWith("Arrow")) return;
+            if (!actions[event.key] || event.target.matches?.("input[type=range]") && /^(Arrow|Home|End)/.test(event.key)) return;
             event.preventDefault();
             actions[event.key]();
         });
@@ -274,6 +171,7 @@ class Page {
     setSpeed(speed) {
         this.speed = speed;
         element("speed-value").textContent = speed === 1 ? "as in reality" : speed > 1 ? `${number(speed, 3)} times faster` : `${number(1/speed, 3)} times slower`;
+        element("speed").setAttribute("aria-valuetext", element("speed-value").textContent);
     }
 
     toggle() {
@@ -319,6 +217,7 @@ class Page {
         for (const [{name, label, unit, value, low, high}, key] of [...rows.slice(0, 3), ...attitude, ...rows.slice(3)]) {
             const row = document.createElement("label");
             row.innerHTML = `<span></span><input type="range" min="0" max="1000" step="1"><input type="number" step="any">`;
+            row.classList.toggle("long", label.length > 12);
             const [range, typed] = row.querySelectorAll("input");
             row.querySelector("span").textContent = unit && unit !== "1" ? `${label}, ${unit.replace("^2", "²")}` : label;
             range.setAttribute("aria-label", label);
@@ -349,120 +248,188 @@ class Page {
         for (const [name, place] of Object.entries(this.inputs ?? {})) {
             const index = name.split("_")[1];
             const isAngle = /^angle_[0-2]$/.test(name), isRate = /^omega_[1-3]$/.test(name);
-            place(isAngle ? this.angles[index]*180/Math.PI : isRate ? this.model.omega[index - 1] : this.model.constants[name]);
+            place(isAngle ? this.angles[index]*180/Math.PI : isRate ? this.wish.omega[index - 1] : this.wish.constants[name]);
         }
     }
 
     reset() {
-        Object.assign(this.model, {constants: {...data.constants}, omega: [...data.omega], quaternion: [...data.quaternion]});
         const angles = new Float64Array(3);
         kernel.angles_of_quaternion(Float64Array.from(data.quaternion), angles);
         this.angles = [...angles];
+        this.wish = new Model();
         this.recompute();
     }
 
     /** Give a constant or an initial value another number, and compute the motion again. */
     change(name, value) {
-        const {model} = this, index = name.split("_")[1];
-        if (/^omega_[1-3]$/.test(name)) model.omega[index - 1] = value;
+        const index = name.split("_")[1], numbers = {constants: {...this.wish.constants}, omega: [...this.wish.omega], quaternion: this.wish.quaternion};
+        let remark = "";
+        if (/^omega_[1-3]$/.test(name)) numbers.omega[index - 1] = value;
         else if (/^angle_[0-2]$/.test(name)) {
             this.angles[index] = value*Math.PI/180;
             const q = new Float64Array(4);
             kernel.quaternion_of_angles(Float64Array.from(this.angles), q);
-            model.quaternion = [...q];
-        } else {
-            const pair = MOMENTS.includes(name) ? MOMENTS.filter((other) => other !== name && data.constants[other] === data.constants[name]) : [];
-            const moments = {...model.constants, [name]: value};
-            if (pair.length === 1) moments[pair[0]] = value;      // the body of the scene is symmetric, and stays so
-            const sorted = [moments.A, moments.B, moments.C].sort((a, b) => a - b);
-            if (MOMENTS.includes(name) && !(sorted[0] > 0 && sorted[0] + sorted[1] >= sorted[2]*(1 - 1e-12))) {
-                this.#place();
-                element("warning").textContent = "No body has these moments: each must be positive, and none larger than the sum of the others.";
-                return;
-            }
-            Object.assign(model.constants, moments);
-        }
-        this.recompute();
+            numbers.quaternion = [...q];
+        } else if (MOMENTS.includes(name)) {
+            const others = MOMENTS.filter((other) => other !== name), {constants} = numbers;
+            const pair = others.filter((other) => data.constants[other] === data.constants[name]);      // a symmetric body stays so
+            const [a, b] = others.map((other) => constants[other]), third = constants[others.find((other) => !pair.includes(other))];
+            const low = pair.length === 2 ? 0 : pair.length === 1 ? third/2 : Math.abs(a - b), high = pair.length ? Infinity : a + b;
+            const possible = Math.min(Math.max(value, low), high);
+            if (!(possible > 0)) remark = `${name}: expected a positive moment of inertia.`;
+            else if (possible !== value) remark = `${name} = ${number(possible, 5)} kg m²: no moment of a body is larger than the sum of the other two.`;
+            for (const other of possible > 0 ? [name, ...pair] : []) constants[other] = possible;
+        } else numbers.constants[name] = value;
+        this.wish = new Model(numbers);
+        this.recompute(remark);
     }
 
     #panels() {
-        const angleNames = ["φ", "θ", "ψ"];
+        const isIntrinsic = data.sequence === data.sequence.toUpperCase();
+        const angleNames = ["φ", "θ", "ψ"].map((letter, k) => `${letter} about ${data.sequence[k]}`);
         const up = data.down?.map((value) => -value);
         const about = up ? "the vertical" : data.free ? "the angular momentum" : "the z axis of space";
         const definitions = [
-            {title: "Angular velocity in the body", unit: "rad/s", names: ["ω₁", "ω₂", "ω₃"], value: (state) => state.omegaBody},
+            {title: "Angular velocity in the body,", unit: "rad/s", names: ["ω₁", "ω₂", "ω₃"], value: (state) => state.omegaBody},
         ];
         const angles = new Float64Array(3);
-        definitions.push({title: `Euler angles ${data.sequence}`, unit: "deg", names: angleNames, value: (state) => {
+        definitions.push({title: `Euler angles ${data.sequence}, ${isIntrinsic ? "intrinsic" : "extrinsic"},`, unit: "deg", kind: "angle", names: angleNames, value: (state) => {
             kernel.angles_of_quaternion(Float64Array.from(state.quaternion), angles);
             return Array.from(angles, (angle) => angle*180/Math.PI);
         }});
-        definitions.push({title: `Angle of the ${data.axisName} to ${about}`, unit: "deg", names: ["angle"], value: (state) => {
+        if (data.orbit) {
+            definitions.push({title: "Long axis from the local vertical,", unit: "deg", kind: "angle", names: ["in the orbit plane", "out of it", "in all"], value: (state) => this.#libration(state)});
+        } else definitions.push({title: `Angle of the ${data.axisName} to ${about},`, unit: "deg", kind: "angle", names: ["angle"], value: (state) => {
             const reference = up ?? (data.free ? state.momentum : [0, 0, 1]), size = Math.hypot(...reference) || 1;
             const sine = Math.hypot(...cross(state.axis, reference))/size;
             return [Math.atan2(sine, dot(state.axis, reference)/size)*180/Math.PI];
         }});
         if (computed && data.conserved.length) {
-            definitions.push({title: "Drift of conserved quantities, relative", unit: "", names: data.conserved.map(({name}) => name), value: (state) => this.drift(state)});
+            definitions.push({title: "Largest drift of conserved quantities so far, relative", unit: "", kind: "drift", names: data.conserved.map(({name}) => name), value: (state, start) => this.#drift(state, start)});
         } else {
-            definitions.push({title: "Kinetic energy", unit: "J", names: ["energy"], value: (state) => [state.kinetic ?? state.energy]});
+            definitions.push({title: "Kinetic energy,", unit: "J", names: ["energy"], value: (state) => [state.kinetic ?? state.energy]});
         }
         this.panels = definitions.map((definition) => ({
-            ...definition, panel: new Panel(element("panels"), definition, plotColours, moment, (t) => this.seek(t)),
+            ...definition, panel: new Panel(element("panels"), definition, plotColours, CLOCK, (t) => this.seek(t)),
         }));
     }
 
-    /** Return the change of each conserved quantity since the start, relative to its scale. */
-    drift(state) {
-        return state.conserved.map((value, k) => (value - this.first.conserved[k])/this.scales[k]);
+    /** Return the angles of a satellite's long axis to the local vertical, deg: in the plane of the orbit, out of it, in all. */
+    #libration({quaternion, vertical}) {
+        const line = rotate(quaternion, data.orbit.axis).map((value) => value*this.longAxisSign);
+        const along = cross([0, 0, 1], vertical), ahead = dot(line, along), up = dot(line, vertical);
+        return [Math.atan2(ahead, up), Math.atan2(line[2], Math.hypot(ahead, up)), Math.atan2(Math.hypot(...cross(line, vertical)), up)]
+            .map((angle) => angle*180/Math.PI);
     }
 
-    recompute() {
-        const {model, drawing} = this;
-        const begun = performance.now();
-        model.restart();
-        model.motion.reach(data.stop);
-        this.seconds = (performance.now() - begun)/1000;
-        const reached = model.motion.t, span = reached - data.start;
-        this.stop = reached;
+    /** Return the change of each conserved quantity since the start, relative to its scale. */
+    #drift(state, {first, scales}) {
+        return state.conserved.map((value, k) => (value - first.conserved[k])/scales[k]);
+    }
+
+    /** Compute the wished motion, in slices between frames; until it is there, the page shows the last one. */
+    recompute(remark = "") {
+        this.remark = remark;
         this.#place();
-        element("warning").textContent = model.motion.failure ? `The motion ends early: ${model.motion.failure}.` : "";
-        this.first = model.at(data.start);
-        const momentum = Math.hypot(...this.first.momentum), energy = Math.max(Math.abs(this.first.energy), Math.abs(this.first.kinetic ?? 0));
-        this.scales = data.conserved.map(({unit, output}, k) => (unit === "J" ? energy : unit === "kg m^2/s" ? momentum : 0) || Math.abs(this.first.conserved[k]) || 1);
-        const points = [], count = Math.min(Math.max(Drawing.TRAIL, 4*model.motion.detail), Drawing.MOST), largest = {omega: 0, momentum: 0, torque: 0};
+        if (this.job && performance.now() - this.job.begun < LONGEST_RUN) return;      // its end begins the next one
+        this.#begin();
+    }
+
+    #begin() {
+        const model = this.wish;
+        this.job = {model, begun: performance.now(), seconds: 0, work: this.#work(model)};
+    }
+
+    /** Work on the wished motion for a while, ms. */
+    #advance(budget) {
+        const {job} = this, begun = performance.now();
+        if (!job) return;
+        let step;
+        do step = job.work.next();
+        while (!step.done && performance.now() - begun < budget);
+        job.seconds += (performance.now() - begun)/1000;
+        const part = step.value;
+        element("progress").textContent = !step.done && performance.now() - job.begun > 300 ? `Computing the motion: ${Math.round(100*part)} %` : "";
+        if (!step.done) return;
+        this.job = null;
+        if (job.model !== this.wish) this.#begin();
+        this.#showResult(job, step.value);
+    }
+
+    /** Prepare the page for a printer: compute what is left of the motion, and put a still picture in place of the moving one. */
+    #print() {
+        while (this.job) this.#advance(Infinity);
+        this.drawing.recolour(PALETTES.light.drawing);
+        this.#construct();
+        this.drawing.render();
+        const still = element("still");
+        still.src = element("canvas").toDataURL();
+        element("stage").style.setProperty("--ratio", this.drawing.ratio);
+        this.drawing.pinInPercent();
+    }
+
+    /** Compute a motion and all that is drawn of it, in pieces; yields the part that is done, 0 to 1. */
+    *#work(model) {
+        const begun = performance.now(), {motion} = model, whole = data.stop - data.start;
+        while (motion.t < data.stop && !motion.failure) {
+            motion.reach(data.stop, STEPS_AT_ONCE);
+            yield 0.5*(motion.t - data.start)/whole;
+        }
+        const reached = motion.t, first = model.at(data.start);
+        const momentum = Math.hypot(...first.momentum), energy = Math.max(Math.abs(first.energy), Math.abs(first.kinetic ?? 0));
+        const scales = data.conserved.map(({unit}, k) => (unit === "J" ? energy : unit === "kg m^2/s" ? momentum : 0) || Math.abs(first.conserved[k]) || 1);
+        if (data.orbit) this.longAxisSign = dot(rotate(first.quaternion, data.orbit.axis), first.vertical) < 0 ? -1 : 1;
+        const count = Math.min(Math.max(Drawing.TRAIL, motion.detail), Drawing.MOST), largest = {omega: 0, momentum: 0, torque: 0};
+        const paths = {axis: new Float32Array(3*count), omega: new Float32Array(3*count), omegaBody: new Float32Array(3*count)};
         for (let k = 0; k < count; ++k) {
-            const state = model.at(data.start + span*k/(count - 1));
+            const state = model.at(data.start + (reached - data.start)*k/(count - 1));
             for (const name of ["omega", "momentum", "torque"]) {
                 largest[name] = Math.max(largest[name], state[name] ? Math.hypot(...state[name]) : 0);
             }
-            points.push(state);
+            for (const name of ["axis", "omega", "omegaBody"]) paths[name].set(state[name], 3*k);
+            if (k % SAMPLES_AT_ONCE === 0) yield 0.5 + 0.25*k/count;
         }
+        const times = sampleTimes(data.start, reached, motion.detail);
+        const columns = this.panels.map(({names}) => names.map(() => new Float64Array(times.length)));
+        for (let k = 0; k < times.length; ++k) {
+            const state = model.at(times[k]);
+            this.panels.forEach(({value}, i) => value(state, {first, scales}).forEach((entry, j) => { columns[i][j][k] = entry; }));
+            if (k % SAMPLES_AT_ONCE === 0) yield 0.75 + 0.25*k/times.length;
+        }
+        return {first, largest, paths, times, columns, reached};
+    }
+
+    #showResult({model, seconds}, {first, largest, paths, times, columns, reached}) {
+        const {drawing} = this, unit = Drawing.LONGEST/(largest.omega || 1);
+        Object.assign(this, {model, first, seconds, stop: reached, trailCount: times.length ? paths.axis.length/3 : 0, fastest: largest.omega});
+        const ending = model.motion.failure ? `The motion ends early: ${model.motion.failure}.` : "";
+        element("warning").textContent = [this.remark, ending].filter(Boolean).join(" ");
         drawing.scales(largest);
-        for (const name of ["whole", "trail"]) drawing.path(name, points.map(({axis}) => axis), Drawing.TIP);
-        drawing.path("herpolhode", points.map(({omega}) => omega), Drawing.LONGEST/(largest.omega || 1));
-        drawing.path("polhode", points.map(({omegaBody}) => omegaBody), Drawing.LONGEST/(largest.omega || 1));
-        this.trailCount = points.length;
-        this.fastest = largest.omega;
-        if (data.free) {
-            drawing.construction(momentum > 0 && {
-                omega: this.first.omegaBody, momentum: this.first.momentum, energy: this.first.kinetic ?? this.first.energy,
-                inertia: model.moments, axes: model.constants?.A === undefined ? data.axes : [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
-                quaternion: this.first.quaternion, symmetryAxis: model.symmetryAxis,
-            });
-            for (const [name] of this.layers) if (["poinsot", "cones"].includes(name)) {
-                const box = element("layers").querySelectorAll("input")[this.layers.findIndex(([other]) => other === name)];
-                drawing.show(name, box.checked);
-            }
-        }
-        for (const {panel, value} of this.panels) {
-            panel.fill(sampled((t) => value(model.at(t)), data.start, reached, model.motion.detail));
-        }
-        const reshaped = computed && Object.keys(data.constants).some(
-            (name) => /^([ABC]|center_of_mass_\d)$/.test(name) && model.constants[name] !== data.constants[name]);
-        element("kept").textContent = reshaped ? "The picture keeps the body of the scene." : "";
+        for (const name of ["whole", "trail"]) drawing.path(name, paths.axis, Drawing.TIP);
+        drawing.path("herpolhode", paths.omega, unit);
+        drawing.path("polhode", paths.omegaBody, unit);
+        this.#construct();
+        const stretch = model.stretch;
+        drawing.stretch(stretch);
+        element("kept").textContent = stretch.note;
+        this.panels.forEach(({panel}, i) => panel.fill(times, columns[i]));
         this.#trust();
         this.seek(Math.min(this.t, reached));
+    }
+
+    /** Draw Poinsot's ellipsoid and the cones of the present motion. */
+    #construct() {
+        const {model, drawing, first} = this;
+        if (!data.free || !first) return;
+        drawing.construction(Math.hypot(...first.momentum) > 0 && {
+            omega: first.omegaBody, momentum: first.momentum, energy: first.kinetic ?? first.energy,
+            inertia: model.moments, axes: model.constants?.A === undefined ? data.axes : [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+            quaternion: first.quaternion, symmetryAxis: model.symmetryAxis,
+        });
+        for (const [name] of this.layers) if (["poinsot", "cones"].includes(name)) {
+            const box = element("layers").querySelectorAll("input")[this.layers.findIndex(([other]) => other === name)];
+            drawing.show(name, box.checked);
+        }
     }
 
     /** Say how the motion was computed, how much the conserved quantities drift, and how it agrees with symrot. */
@@ -485,8 +452,10 @@ class Page {
         this.state = state;
         this.drawing.pose(state);
         this.drawing.trailUpTo((this.t - data.start)/((this.stop - data.start) || 1), this.trailCount);
-        element("time").textContent = `t = ${moment(this.t)}`;
+        const time = `t = ${moment(this.t)}`;
+        if (element("time").textContent !== time) element("time").textContent = time;
         element("scrub").value = 1000*(this.t - data.start)/(data.stop - data.start);
+        if (!this.playing) element("scrub").setAttribute("aria-valuetext", time);
         for (const {panel} of this.panels) panel.cursor(this.t);
     }
 
@@ -501,7 +470,8 @@ class Page {
     #frame(now) {
         const elapsed = Math.min((now - (this.before ?? now))/1000, 0.1);
         this.before = now;
-        if (this.playing) {
+        this.#advance(this.first ? SLICE : FIRST_SLICE);
+        if (this.playing && this.first) {
             this.t += elapsed*this.speed;
             if (this.t >= this.stop) {
                 this.t = this.stop;
@@ -510,10 +480,11 @@ class Page {
             }
             this.#pose();
         }
-        this.drawing.render();
+        this.drawing.render(this.playing);
         this.frames += 1;
         requestAnimationFrame((next) => this.#frame(next));
     }
 }
 
-window.symrot = new Page();
+// the text of the page is painted first
+requestAnimationFrame(() => setTimeout(() => { window.symrot = new Page(); }));
