@@ -182,6 +182,10 @@ def _quaternion_names(
             inner = _bare(node.args[0].args[0])  # the norm of q, of which the text has the conjugate
             if f"{inner.value}_bar" in used:
                 add(inner)
+        elif node.kind == "call" and node.value == "abs":  # |q|, of which the text has the conjugate
+            inner = node.args[0]
+            if inner.value in (*RATES, "p") and f"{inner.value}_bar" in used:
+                add(inner)
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         if (rotating := _rotating(side, other)) is not None:
             add(rotating)
