@@ -12,6 +12,9 @@ __all__ = ["latex_book", "latex_document"]
 WIDTH = 62  # letters per line of a displayed formula
 LONGEST_INLINE = 120  # letters of LaTeX; a longer formula in a sentence is displayed on a line of its own
 
+SHARE_OF_WIDE = 0.75
+"""The share of a line that the columns of a table with long formulas have together."""
+
 PACKAGES = r"""\usepackage[T1]{fontenc}
 \usepackage[utf8]{inputenc}
 \IfFileExists{lmodern.sty}{\usepackage{lmodern}}{}
@@ -27,6 +30,10 @@ PACKAGES = r"""\usepackage[T1]{fontenc}
 % a display that is wider than the page is scaled to it
 \newcommand{\fitted}[1]{\sbox{\displayed}{$\displaystyle #1$}\[\ifdim\wd\displayed>\linewidth
   \resizebox{\linewidth}{!}{\usebox{\displayed}}\else\usebox{\displayed}\fi\]}
+% a formula in a table that is wider than its share of the line is scaled to it
+\newcommand{\fittedcell}[2]{\sbox{\displayed}{$#2$}\ifdim\wd\displayed>#1\linewidth
+  \sbox{\displayed}{\resizebox{#1\linewidth}{!}{\usebox{\displayed}}}\fi
+  \rule[-\dimexpr\dp\displayed+2pt]{0pt}{\dimexpr\ht\displayed+\dp\displayed+4pt}\usebox{\displayed}}
 """
 
 DOCUMENT = (
@@ -41,6 +48,9 @@ BOOK = (
     "\\documentclass[a4paper,oneside]{book}\n"
     + PACKAGES
     + r"""\usepackage[hidelinks]{hyperref}
+% the header of a page is the title of its chapter
+\renewcommand{\chaptermark}[1]{\markboth{\small #1}{}}
+\renewcommand{\sectionmark}[1]{}
 % a link to another page of the book; the title alone if the book does not have that page
 \newcommand{\pagelink}[2]{\ifcsname r@#1\endcsname\hyperref[#1]{#2}\else#2\fi}
 """
@@ -61,7 +71,7 @@ def latex_book(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) -
     Parameters
     ----------
     title, about : str
-        The title of the book, and a paragraph for the page of contents.
+        The title of the book, and a paragraph below it.
     chapters : mapping of str to sequence of Page
         Title of a part of the book -> its pages, in reading order.
 
@@ -70,11 +80,9 @@ def latex_book(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) -
     >>> r"\chapter{Spin}\label{spin}" in latex_book("Mechanics", "All of it.", {"First": [Page("spin", "Spin")]})
     True
     """
-    parts = [
-        BOOK + rf"\title{{{_prose(title)}}}" + "\n\\date{}\n\\begin{document}\n\\maketitle",
-        _prose(about),
-        r"\tableofcontents",
-    ]
+    below = rf"\date{{\parbox{{0.8\linewidth}}{{\normalsize {_prose(about)}}}}}"
+    head = rf"\title{{{_prose(title)}}}" + f"\n{below}\n\\begin{{document}}\n\\maketitle"
+    parts = [BOOK + head, r"\tableofcontents"]
     for chapter, pages in chapters.items():
         parts.append(rf"\part{{{_prose(chapter)}}}")
         for page in pages:
@@ -122,7 +130,8 @@ def _figure(figure: Figure) -> str:
     The picture is the PDF file in ``figures``; it is left out if that file does not exist when LaTeX runs.
     """
     path = figure.file.removesuffix(".svg")
-    included = rf"\IfFileExists{{{path}.pdf}}{{\centerline{{\includegraphics[width=0.7\linewidth]{{{path}.pdf}}}}}}{{}}"
+    size = r"width=0.7\linewidth,height=0.35\textheight,keepaspectratio"
+    included = rf"\IfFileExists{{{path}.pdf}}{{\centerline{{\includegraphics[{size}]{{{path}.pdf}}}}}}{{}}"
     return f"{included}\n\n" + rf"\emph{{Figure:}} {_prose(figure.caption)}"
 
 
@@ -131,13 +140,22 @@ def _table(table: Table, number: int) -> str:
 
     ``number`` is the number of the last step before the table.
     """
-    head, *rows = (" & ".join(map(_prose, cells)) + r" \\[4pt]" for cells in table_rows(table, number))
-    columns = "l" * (head.count(" & ") + 1)
+    cells = [*table_rows(table, number)]
+    wide = sum(max(map(len, column)) > LONGEST_INLINE for column in zip(*cells, strict=True))
+    share = f"{SHARE_OF_WIDE / max(wide, 1):.2f}"
+    head, *rows = (" & ".join(_cell(cell, share) for cell in row) + r" \\[4pt]" for row in cells)
+    columns = "l" * len(cells[0])
     body = "\n".join(rows)
     return (
         "{\\footnotesize\\setlength{\\tabcolsep}{3pt}\\setlength{\\arraycolsep}{2pt}\n"
         f"\\begin{{longtable}}{{{columns}}}\n{head}\n\\hline\n\\endhead\n{body}\n\\end{{longtable}}}}"
     )
+
+
+def _cell(cell: str, share: str) -> str:
+    """Return a cell of a table in LaTeX; a long formula is scaled to the ``share`` of the line if it is wider."""
+    is_long = re.fullmatch(r"\$[^$]+\$", cell) and len(cell) > LONGEST_INLINE
+    return rf"\fittedcell{{{share}}}{{{cell.strip('$')}}}" if is_long else _prose(cell)
 
 
 def _passage(passage: Passage) -> str:
