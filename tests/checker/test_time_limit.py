@@ -95,4 +95,4 @@ def test_a_verdict_whose_repair_takes_too_long_is_kept(monkeypatch):
     monkeypatch.setattr(claim_verdict, "_diagnosed", lambda *_: compute(ENDLESS))
     verdict = symrot.check("sin(2*x) == sin(x)*cos(x)")
     assert verdict.verdict == "false"
-    assert any("ended after 0.5 s" in note for note in verdict.notes)
+    assert any("stopped after 0.5 s" in note for note in verdict.notes)
