@@ -208,7 +208,7 @@ class _Search:
         return not terms_of_equation(left, right, self.numeric.is_matrix)
 
     def gives_inverse(self, changes: Sequence[Change]) -> bool:
-        """Return whether the unchanged side is an inverse, q^(-1): a formula for it on the other side says something."""
+        """Return whether the unchanged side is an inverse, q^(-1): a formula for it is no tautology."""
         unchanged = {*SIDES} - {change.place for change in changes}
         sides = [self.numeric.tree_at(place) for place in unchanged]
         return len(sides) == 1 and inverse_of(sides[0], self.numeric.claim.text) is not None
