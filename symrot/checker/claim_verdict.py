@@ -164,8 +164,9 @@ def _on_name(
 def _on_rule(claim: Claim) -> tuple[None, Verdict] | None:
     """Return (None, verdict) for a rule of differentiation, such as ``(u v)' = u' v + u v'``; None for other claims.
 
-    The rule is decided for all functions u(t) and v(t). The None in the pair means that no decision on the claim as it
-    is written belongs to the verdict.
+    The rule is decided for all functions u(t) and v(t). The first element of the pair is where callers expect the
+    Decision on the claim's own equation. It is None here, because another equation was decided: the one with u(t) for
+    u.
     """
     if claim.relation is None or open_formula(claim) is None or (general := as_functions(claim)) is None:
         return None
@@ -205,6 +206,10 @@ def _on_motion(claim: Claim, verdict: Verdict) -> Verdict:
     if claim.hypotheses or claim.define or claim.context.obscure:
         return verdict
     from symrot.checker.context.relations.motion import by_motion
+    from symrot.checker.recognition.naming import AS_IT_STANDS
+
+    if any(note.startswith(AS_IT_STANDS) for note in verdict.notes):
+        return verdict
 
     return by_motion(claim, verdict)
 
@@ -224,9 +229,10 @@ def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
 
 
 def _on_determinant(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) for a claim about the determinant of a rate Jacobian; otherwise None.
+    """Return (None, verdict) for a claim about the determinant of a rate Jacobian; None for other claims.
 
-    The None in the pair means that no decision of the claim's own equation belongs to the verdict.
+    The first element of the pair is where callers expect the Decision on the claim's own equation. It is None here,
+    because the derived determinant was compared instead. ``repair`` asks for repairs of a false claim.
     """
     if claim.relation is None or claim.hypotheses:
         return None

@@ -16,10 +16,11 @@ __all__ = ["brought_back"]
 
 
 def brought_back(verdict: Verdict, original: Callable[[Relation], Relation], note: str) -> Verdict:
-    """Return the verdict on a claim from ``verdict``, that on an equivalent claim.
+    """Return the verdict on a claim, given the ``verdict`` on an equivalent claim that was decided in its place.
 
-    ``original`` changes an equation of the equivalent claim into one of the claim; it is applied to each repair. A
-    repair whose text is no single equation is left out. ``note`` tells the user about the equivalent claim.
+    ``original`` rewrites an equation between the names of the equivalent claim with the names of the claim itself; here
+    it rewrites each repair. A repair that is no single equation is left out. ``note`` is added to the verdict, to tell
+    the user which equivalent claim was decided.
     """
     repairs = [changed for repair in verdict.repairs if (changed := _brought_back(repair, original)) is not None]
     return replace(verdict, repairs=tuple(repairs), notes=(*verdict.notes, note))

@@ -68,16 +68,16 @@ def check(
     right : Expr or Matrix, optional
         The right side, if ``left`` is a SymPy value.
     assume : sequence
-        Hypotheses: texts ``"a == b"``, ``"x > 0"``, ``"x != 0"`` for a text; equations, or expressions that are zero,
-        for SymPy.
+        Hypotheses. If the claim is a text: texts ``"a == b"``, ``"x > 0"``, ``"x != 0"``. If it is a SymPy value:
+        equations ``Eq(a, b)``, or expressions; ``a - b`` means that a - b is zero.
     units : mapping of str to str, optional
         Units by the name of a symbol, ``{"x": "m"}``. Other names have conventional units (``I1``, ``omega_1``, ``g``,
         ``t``, ``phi``), those of the symbols of symrot, or inferred ones. Only ``.dimension`` depends on units.
     repair : bool
         Whether to diagnose a claim that is not true and to look for true formulas near it.
     where : sequence of str
-        The meanings of names, in words: ``"I = moment of inertia about the centre"``. With this context, a claim
-        that only names a quantity is decided.
+        The meanings of names, in words: ``"I = moment of inertia about the centre"``. Without such words, or those of
+        ``body``, a claim such as ``"I = m r^2/2"`` is at best "recognised" as a known formula; with them it is "true".
     body : str
         The body in words, ``"solid cylinder of radius r"``.
     frame : str

@@ -63,9 +63,10 @@ def _open(verdict: Verdict, reason: str) -> Verdict:
 
 
 def _values(claim: Claim, letter: Node, once: bool) -> str | None:
-    """Return the values of a letter for which an equation holds, as ``"x == 2"``; None if there are none, or all.
+    """Return the real values of ``letter`` for which the claim's equation holds, as ``"x == 2"``.
 
-    ``once`` tells whether the letter occurs only once; otherwise only polynomials are solved.
+    None is returned if no value was found, or if the equation holds for every value. If ``once``, the letter occurs
+    once in the equation, which is then solved by inverse functions; otherwise only polynomials are solved.
     """
     left, right = claim.equation.left, claim.equation.right
     symbol = claim.interpreter().read(letter)

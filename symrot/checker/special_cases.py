@@ -22,10 +22,11 @@ FACTOR, OTHER = "factor_", "other_"
 
 
 def for_complex_numbers(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict "conditional" for a claim on ``|z|`` that is true for real z and false for complex z.
+    """Return "conditional" for a claim on ``|z|`` that is true for real z and false for complex z, else ``verdict``.
 
-    Only z, w and zeta are usually complex numbers; the claim has no other letters. Any other claim keeps its
-    ``verdict``.
+    ``|z|^2 = z^2`` is an example; its condition is "z is real". The letters of the claim must all be z, w or zeta,
+    which usually mean complex numbers. A claim with another letter keeps its ``verdict``, in which all letters are
+    real.
     """
     if verdict.verdict != "true" or claim.relation is None or claim.define or claim.hypotheses or claim.has_parts:
         return verdict

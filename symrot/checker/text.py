@@ -168,9 +168,9 @@ def verdict_on_readings(
 
 
 def _is_false_by_context(verdict: Verdict, stated: Context) -> bool:
-    """Return whether a reading is false because the context ``stated`` says which known quantity is meant.
+    """Return whether a claim is false only because its context ``stated`` names a quantity with another formula.
 
-    The formula is then another one than that of the quantity.
+    The claim's formula is then a known formula for something else, which ``recognised_as`` names.
     """
     return bool(stated) and verdict.verdict == "false" and bool(verdict.recognised_as)
 
@@ -388,10 +388,10 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Ve
 
 
 def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict on ``L = T - V`` after lines in which L is a length, such as ``I = m L^2``.
+    """Return the verdict on a claim such as ``L = T - V`` if L meant something else on an earlier line, ``I = m L^2``.
 
-    L is then the name of two quantities: the verdict is that on the claim with another name for the length, with a
-    note. It is ``verdict`` for all other claims, and if the claim stays false.
+    The claim is decided with L_1 for the length in the earlier definitions. If it is not false then, this verdict is
+    returned, with a note on the two meanings of L. Otherwise, and for claims of other forms, ``verdict`` is returned.
     """
     assert claim.relation is not None
     _, left, right = claim.relation
@@ -464,7 +464,7 @@ def _with_plain_arrays(source: str) -> str:
 
 
 def _relation_of(source: str) -> Relation | None:
-    """Parse the text of a repair as an equation; return None if it is not one, but has words, for example."""
+    """Parse the text of a repair as an equation; return None if it is none, such as a repair in words."""
     try:
         return read_relation(source)
     except InputError:
@@ -477,10 +477,11 @@ def _is_odd(repair: Repair) -> bool:
 
 
 def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict "conditional" for a claim that is false for general matrices but true for rotation matrices.
+    """Return "conditional" for a claim that is false for general matrices but true for rotation matrices.
 
-    If one of several matrices suffices by being a rotation, each such matrix is an alternative condition; if none
-    does, all of them have to be rotations. Any other claim has its verdict unchanged.
+    First each matrix alone is assumed to be a rotation. Each one for which the claim is then true gives a condition, "R
+    is a rotation", and any one of these conditions suffices. If there is none, all matrices are assumed to be rotations
+    together. Any other claim keeps its ``verdict``.
     """
     names = matrices_of_entries(claim.define)
     groups = [(name,) for name in names] + ([tuple(names)] if len(names) > 1 else [])
@@ -583,8 +584,9 @@ def _with_fitting_line(
 def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], both_signs: bool) -> Verdict:
     """Return the verdict on several conditional equations, with the conditions of all of them.
 
-    ``conditions`` has the alternative requirements of each equation. With ``both_signs``, these are the two equations
-    that an equation with ± stands for, each with its own condition.
+    ``conditions`` has a sequence of texts for each equation; any one of these texts makes that equation true. So ``[["a
+    > 0", "b > 0"], ["c > 0"]]`` gives "a > 0 or b > 0 and c > 0". With ``both_signs``, the two equations are those with
+    the upper and the lower sign of ±, and each keeps its own condition.
     """
     texts = list(dict.fromkeys(" or ".join(alternatives) for alternatives in conditions))
     others = tuple(condition for condition in verdict.conditions if condition not in verdict.requires)
@@ -596,10 +598,12 @@ def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], 
 
 
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
-    """Return the verdicts on the equations of a chain ``name = a = b``, from ``verdicts`` on each one alone.
+    """Return the verdicts on the equations ``name = a`` and ``a = b`` of a chain ``name = a = b``.
 
-    The formulas a and b need not be identical if each has letters that the other lacks: the energies I*omega^2/2 and
-    L^2/(2*I) of one body are equal because of what L means. Then ``name = b`` is decided in place of ``a = b``.
+    ``verdicts`` has the verdict on each equation alone, in the order of ``line``. An equation ``a = b`` that is not
+    true, and in which a has letters that b lacks and b has letters that a lacks, gets the verdict on ``name = b``
+    instead. So ``E = I*omega^2/2 = L^2/(2*I)`` is no false identity: both formulas give the energy E. Where b is a
+    number, such an ``a = b`` becomes a definition. All other verdicts are returned unchanged.
     """
     named = named_formula(line[0]) if len(line) > 1 else None
     if named is None or line[0].relation is None or line[0].relation[1] != named.side:

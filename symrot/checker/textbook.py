@@ -1,9 +1,9 @@
 """Verdicts on the claims of a document, with allowance for characters that the extraction of its text lost.
 
 Each claim has the formula that the document prints on the left, and the right result on the right. A false claim is an
-error of the document, or its formula lost characters when the text was extracted. It counts as a loss under two rules.
-First, lost characters may be put back on the left side only. Second, the printed and the true formula must differ in
-nothing but characters of the kinds that were lost at this place.
+error of the document, or its formula lost characters when the text was extracted. Lost characters are accepted as the
+reason if the claim is true after they are put back on the left side, and if all of them are of the kinds (such as minus
+signs) that the extraction is known to have lost at this place.
 """
 
 from collections import Counter
@@ -261,7 +261,11 @@ def differs_by_lost_characters(printed: Node, right: Node, lost: Collection[str]
 
 
 def _extracted(node: Node, lost: Collection[str]) -> Node:
-    """Return a formula without the characters of the kinds ``lost``: ``a + b`` for ``a - b`` without minus signs."""
+    """Return a formula as it looks after the extraction of text lost all characters of the kinds ``lost``.
+
+    Without "minus signs", ``a - b`` becomes ``a + b``: its tree is the sum of a and -b, and of b once the sign is lost.
+    The other kinds are the keys of LOSSES, such as "dots" and "primes".
+    """
     node = replace(node, args=tuple(_extracted(child, lost) for child in node.args))
     for loss in lost:
         node = LOSSES[loss](node) if loss in LOSSES else node

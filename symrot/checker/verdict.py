@@ -87,7 +87,10 @@ class Repair:
 
     @property
     def note(self) -> str:
-        """The code of the fault in brackets, the matrix entry that differs, and the range in which the repair holds."""
+        """A text in square brackets: the fault's code, the wrong matrix entry, and the range where the repair holds.
+
+        An example is "[sign, entry (1, 2), if x > 0]"; entry and range are left out where there are none.
+        """
         entry = f", entry {self.entry}" if self.entry else ""
         return f"[{self.code}{entry}{f', if {self.requires}' * bool(self.requires)}]"
 

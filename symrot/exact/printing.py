@@ -23,9 +23,12 @@ class _Printer(StrPrinter):  # type: ignore[misc]
         return f"{self._print(node.lhs)} {node.rel_op} {self._print(node.rhs)}"
 
 
+_PRINTER = _Printer()
+
+
 def as_text(value: Any) -> str:
     """Return a SymPy value as text in the language of claims, which the reader of claims can read back.
 
     A derivative is written ``diff(phi(t), t)``.
     """
-    return str(_Printer().doprint(value))
+    return str(_PRINTER.doprint(value))

@@ -169,14 +169,14 @@ def test_a_wrong_engine_is_caught(monkeypatch, answer):
         return Verdict("true")
 
     monkeypatch.setattr(module, "check", wrong)
-    found = campaign(12, seed=1, real=True)
+    found = campaign(6, seed=1, real=True)
     assert len(found.wrong) >= 2
-    assert main(["--real", "--count", "12"]) == 1
+    assert main(["--real", "--count", "4"]) == 1
 
 
 def test_a_late_answer_fails_the_command(monkeypatch):
     monkeypatch.setattr("tests.campaigns.checker.run.LONGEST_SECONDS", 0.0)
-    assert main(["--real", "--count", "12"]) == 1
+    assert main(["--real", "--count", "2"]) == 1
     monkeypatch.undo()
     assert main(["--real", "--count", "2"]) == 0
 

@@ -159,7 +159,7 @@ REFUSED = (
     ("x/(sin(y)**2 + cos(y)**2 - 1) == 1", "zero everywhere"),
     ("inverse(Matrix([[1, 2], [2, 4]])) == eye(2)", "determinant"),
     ("sinn(x) == 0", "did you mean sin"),
-    ("acot(x) == 0", "instead of the inverse of cot"),
+    ("acot(x) == 0", "instead of the inverse function of cot"),
     ("f(x) == 0", "'f'"),
     ("x + eye(2) == 0", "a scalar"),
     ("eye(2)*eye(3) == 0", "3 x 3"),

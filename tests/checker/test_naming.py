@@ -265,6 +265,10 @@ def test_chains_in_latex_are_decided_link_by_link():
     ("ψ = atan2(2(q₀q₃ + q₁q₂), 1 − 2(q₂² + q₃²))", "yaw angle of a unit quaternion"),
     ("theta = acos((r11 + r22 + r33 - 1)/2)", "angle of a rotation matrix"), ("theta = 2 arccos(q_0)", "angle of rotation of a unit"),
     (r"I = \frac{2m}{5}\left(\frac{r_2^5-r_1^5}{r_2^3-r_1^3}\right)", "moment of inertia of a hollow sphere"),
+    ("τ = r × F", "torque of a force"), ("τ = dL/dt", "torque by the rate of the angular momentum"), ("K = L²/2I", "kinetic energy"),
+    (r"\dot L = M - \omega \times L", "rate of the angular momentum in the body"), ("Ω = τ/L", "rate of steady precession"),
+    ("L = m v r", "angular momentum of a point mass"), ("a_c = v²/r", "centripetal acceleration"), ("v = ω r", "speed of a point"),
+    ("W = F d cos θ", "work of a force"), ("θ = ½(ω + ω_0)t", "angle at constant angular acceleration"),
     ("k = √(2/5) r", "radius of gyration of a sphere"), ("I_x = Ī_x′ + m(ȳ² + z̄²)", "moment of inertia about a parallel axis"),
 ])  # fmt: skip
 def test_relations_and_formulas_that_books_name_are_recognised(claim, name):
@@ -287,7 +291,7 @@ def test_wrong_relations_and_formulas_are_not_recognised(claim):
 
 @pytest.mark.thinned(4)
 @pytest.mark.parametrize("claim", [
-    "e = mc^2", "x = m r^2", "ω₂ = I₁ω₁/I₂", "T = ω·L", "H = I α", "a = ω r", "I_G = I_O + m d²", "k_G² = k_O² + d²",
+    "e = mc^2", "x = m r^2", "ω₂ = I₁ω₁/I₂", "T = ω·L", "H = I α", "I_G = I_O + m d²", "k_G² = k_O² + d²",
     "R_11 = 1 - 2(q_1² + q_2²)", "φ̇ = (L_3 - L_z cos θ)/(I_1 sin²θ)", r"x^* = \bar x", r"\theta' = \omega",
     "I_1 ω̇_1 = (I_1 - I_3) ω_3 ω_2", "C ω̇_3 = 0",
     "T = 2π √((I_G + m d²)/(m g d))", "λ² = (I_2 - I_1)(I_3 - I_2) ω²/(I_1 I_3)", "M = (C - A) ω² sin β cos β", "I_G = I_O - m d²",

@@ -11,6 +11,10 @@ from tests.campaigns.checker.printed import names_fault, offers
 
 FAULTS = (
     ("T = ½ I ω", "exponent", "T = 1/2*I*ω^2"), ("H_G = I_G omega^2", "exponent", "H_G = I_G*omega"),
+    ("ω_p = M g l sin θ/(I₃ω₃)", "factor", "ω_p = M*g*l/(I₃*ω₃)"),
+    ("R_12 = q_1 q_2 - q_3 q_4", "factor", "R_12 = 2*(q_1*q_2 - q_3*q_4)"),
+    ("ψ̇ = (ω₂ sin φ + ω₁ cos φ)/cos θ", "wrong_symbol", "ψ' = (ω₂*sin(φ) + omega_3*cos(φ))/cos(θ)"),
+    ("τ = F × r", "sign_of_term", "τ = cross(r, F)"),
     ("I_zz = m/12 (a^2 + b)", "exponent", "I_zz = m*(a^2 + b^2)/12"),
     ("I_z = m/12 (a^2 - b^2)", "sign_of_term", "I_z = m*(a^2 + b^2)/12"),
     ("I = 2m/5 (R_2^5 - R_1^5)/(R_2^2 - R_1^2)", "exponent", "I = 2*m/5*(R_2^5 - R_1^5)/(R_2^3 - R_1^3)"),
@@ -40,8 +44,8 @@ def test_the_part_at_fault_is_named_and_repaired(claim, code, repaired):
 
 @pytest.mark.thinned(4)
 @pytest.mark.parametrize("claim", [
-    "I = 13/20 m r^2", "a = p_psi/I_1", "I_z = 9/16 m R^2", "P = 2 M omega", "Omega = a g b/(c d)", "T = I/k", "v = omega r",
-    "E = a x^2 + b y^2", "tau = F d cos(theta)", "omega_2^2 = (M^2 - 2EI_1)/I_3", "V = -m g l cos(theta)", "a = omega^2 r",
+    "I = 13/20 m r^2", "a = p_psi/I_1", "I_z = 9/16 m R^2", "P = 2 M omega", "Omega = a g b/(c d)", "T = I/k",
+    "E = a x^2 + b y^2", "tau = F d cos(theta)", "omega_2^2 = (M^2 - 2EI_1)/I_3", "V = -m g l cos(theta)",
     "I = 1/12 m L^2 + m d^2", "I = m (a^2 + 4 b^2)/12", "I = m (R^2 + 5 a^2/4)",
     "tau = -m g l sin(theta)", "E = 1/2 m v^2 + 1/2 k x^2", "F = mu m g cos(theta)",
 ])  # fmt: skip
@@ -193,3 +197,17 @@ def test_of_lines_that_do_not_fit_together_one_is_repaired(lines, repair):
     verdict = symrot.check("\n".join(lines))
     assert (verdict.verdict, verdict.diagnosis.code) == ("doubtful", "wrong_symbol")
     assert [each.text for each in verdict.repairs] == [repair]
+
+
+@pytest.mark.parametrize(("claim", "body", "repair"), [
+    (r"I_x = \bar I_{x'} + m(\bar x^2+\bar z^2)", "", r"I_x = \bar{I}_{x'} + m (\bar{y}^2 + \bar{z}^2)"),
+    ("I_z = I_x - I_y", "thin plate in the plane of x and y", "I_z = I_x + I_y"),
+])  # fmt: skip
+def test_a_wrong_axis_and_a_wrong_sign_of_moments_are_found(claim, body, repair):
+    verdict = symrot.check(claim, body=body)
+    assert (verdict.verdict, [each.text for each in verdict.repairs]) == ("doubtful", [repair])
+
+
+def test_a_difference_of_moments_is_open_without_the_plane_of_the_body():
+    """In the plane of y and z, I_x is the sum."""
+    assert symrot.check("I_z = I_x - I_y").verdict == "definition"

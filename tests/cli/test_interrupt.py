@@ -29,6 +29,14 @@ COMMANDS = {
 }
 
 
+@pytest.fixture(autouse=True)
+def interrupts_arrive():
+    """Let commands see SIGINT although the tests run in the background, where a shell makes processes ignore it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 def started(words, folder, **environment):
     """Start a command with its own cache, in its own group of processes."""
     cache = {"SYMROT_CACHE": str(folder / "cache"), "PYTHONPATH": str(ROOT)}

@@ -25,6 +25,8 @@ from symrot.scene.file import shipped_names
 from symrot.scene.scene import load_scene
 from symrot.workshop.derivation_pages import illustrated
 
+pytestmark = pytest.mark.first  # the lessons need the derivations that the tests of the catalogue have made
+
 
 def test_every_derivation_has_a_lesson():
     assert list(LESSONS) == list(names())
@@ -137,7 +139,7 @@ def test_a_lesson_does_not_depend_on_hashing():
         "import sys; from symrot.catalogue import derivation; from symrot.lessons.page import taught;"
         "sys.stdout.write(repr([taught(derivation(name)).closing for name in sys.argv[1:]]))"
     )
-    chosen = ["kinetic_energy", "rolling", "intermediate_axis", "gravity_gradient"]
+    chosen = ["kinetic_energy", "intermediate_axis"]
     environment = os.environ | {"PYTHONHASHSEED": "20"}
     command = [sys.executable, "-c", program, *chosen]
     text = subprocess.run(command, env=environment, capture_output=True, check=True, text=True).stdout

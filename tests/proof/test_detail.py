@@ -9,6 +9,8 @@ from symrot.proof.page import Section
 from symrot.proof.pages.parts import MANY, remarks, repetitions
 from symrot.symbols import omega_b, theta, x
 
+pytestmark = pytest.mark.first  # these tests need the derivations that the tests of the catalogue have made
+
 OMEGA = Matrix(omega_b)
 LONGEST = 33  # lines of LaTeX: a screen
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sympy import Expr, Matrix, Symbol
+from sympy import Add, Expr, Matrix, MatrixBase, Symbol
 
 from symrot import symbols
 from symrot.kinematics.quaternion import quaternion_rates
@@ -34,9 +34,9 @@ def attitude_rates() -> dict[Symbol, Expr]:
 
 def rate(quantity: Any, rates: Mapping[Symbol, Expr]) -> Any:
     """Return d/dt of an expression or matrix ``quantity`` by the chain rule, with the rate of each variable."""
-    terms = (quantity.diff(variable) * speed for variable, speed in rates.items())
-    first = next(terms)
-    return sum(terms, first)
+    if isinstance(quantity, MatrixBase):
+        return quantity.applyfunc(lambda entry: rate(entry, rates))
+    return Add(*(quantity.diff(variable) * speed for variable, speed in rates.items() if quantity.has(variable)))
 
 
 def squared(vector: Matrix) -> Expr:

@@ -25,9 +25,11 @@ def has_arrays(sides: Sequence[Node]) -> bool:
 
 
 def is_odd(sides: Sequence[Node]) -> bool:
-    """Return whether nobody would write the sides of a repair, so that it is not offered.
+    """Return whether a repair, given by its sides, has a part that no author writes; it is then not offered.
 
-    They contain ``i^T``, or a change inside only one part of a trace of Pauli's matrices (its real or imaginary one).
+    Such parts are ``i^T``, the transpose of the imaginary unit, and ``trace(-i M)``. The trace of a complex matrix M is
+    stored as a term for its real part and one for its imaginary part, which has ``trace(-i M)``. An edit of one term
+    alone leaves a ``trace(-i M)`` that cannot be written as ``trace(M)`` again.
     """
     nodes = [node for side in sides for _, node in walk(as_written(side))]
     return Node("transpose", None, (IMAGINARY,)) in nodes or any(map(_is_imaginary_trace, nodes))

@@ -284,7 +284,7 @@ class _Splitter:
         inner = [self.parts(child) for child in node.args]
         rule = self.rules.get(node.kind if node.kind != "call" else str(node.value))
         if rule is None:
-            raise self.fail(node, "a formula whose real and imaginary parts are known, such as exp, sin and powers,")
+            raise self.fail(node, "a formula whose real and imaginary parts are known (sum, product, power, exp, sin)")
         return rule(self, node, inner)
 
     def sum(self, node: Node, inner: Sequence[Parts]) -> Parts:

@@ -80,9 +80,11 @@ def component_of_cross(pair: Sequence[Node], index: str, used: str) -> Node | No
 
 
 def has_index_symbols(relation: Relation) -> bool:
-    """Return whether an equation has delta_ij or epsilon_ijk.
+    """Return whether an equation contains a symbol delta_ij or epsilon_ijk.
 
-    After :func:`written_out` only an equation that is no identity still has them, such as R_ik R_jk = delta_ij.
+    :func:`written_out` replaces these symbols by numbers in an equation that may be an identity. It leaves them in an
+    equation that determines its matrix: ``R_ik R_jk = delta_ij`` says that R is orthogonal, which most matrices are
+    not.
     """
     return any(_symbol(node) for side in relation[1:] for _, node in walk(side))
 

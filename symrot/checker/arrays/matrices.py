@@ -51,9 +51,10 @@ def as_rotations(definitions: Sequence[tuple[str, Node]], names: Collection[str]
 
 
 def _rotation(name: str, timed: bool) -> Node:
-    """Return the tree of a rotation for the matrix ``name``: rotations about z, x and z by any three angles.
+    """Return the tree ``Rz(a1)*Rx(a2)*Rz(a3)``, which stands for the matrix ``name`` if that is a rotation.
 
-    The angles depend on time if ``timed``.
+    The angles a1, a2 and a3 are free symbols. For R they are called R_angle1, R_angle2 and R_angle3; if ``timed``, they
+    are functions of time, such as R_angle1(t). Every rotation can be written so.
     """
     kind, args = ("call", (TIME,)) if timed else ("name", ())
     turns = [Node("call", f"R{axis}", (Node(kind, f"{name}_angle{n}", args),)) for n, axis in enumerate("zxz", 1)]
@@ -212,10 +213,11 @@ def _factors(node: Node) -> Iterator[str]:
 def with_lengths(
     relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]
 ) -> tuple[tuple[str, Node, Node], tuple[str, ...]]:
-    """Return a relation with lengths in place of vectors where only a scalar makes sense, and the names of the vectors.
+    """Return a relation with lengths of vectors where only a scalar makes sense, and the names of these vectors.
 
-    ``shapes`` tells which names are vectors. Only a scalar makes sense in a product of two columns, as ``a b sin(x)``,
-    and in a sum with a scalar.
+    In ``a b sin(x)`` both vectors are replaced, since two columns cannot be multiplied: the result is ``|a| |b|
+    sin(x)`` and the names are (a, b). A vector is also replaced in a sum with a scalar, and where it is a factor of one
+    side and the other side is a scalar. ``shapes`` maps each name to its shape; a vector has (3, 1).
     """
     lengths = _Lengths(shapes)
     sign, left, right = relation

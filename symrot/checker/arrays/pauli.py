@@ -82,9 +82,10 @@ def _is_product_of_matrices(node: Node) -> bool:
 
 
 def _is_square(left: Node, right: Node) -> bool:
-    """Return whether one side is a square of a sum with two Pauli matrices, and the other a number of its letters.
+    """Return whether an equation gives the square of a sum of Pauli matrices, as ``(a sigma_x + sigma_y)^2 = a^2 + 1``.
 
-    For numbers sigma_x and sigma_y, the other side would contain them.
+    One side has the square of a sum with two or more Pauli matrices; the other has none, and no letter that the first
+    side lacks. If sigma_x and sigma_y were numbers, both sides would contain them: so they must be matrices.
     """
     for side, other in ((left, right), (right, left)):
         bases = [node.args[0] for _, node in walk(side) if node.kind == "power" and node.args[1] == number(2)]
@@ -118,10 +119,11 @@ def _with_commutators(tree: Node) -> Node:
 
 
 def _with_traces(tree: Node) -> Node:
-    """Return a tree in which each trace, of a complex 2 x 2 matrix M, is a formula of the real 4 x 4 matrix R for M.
+    """Return a tree with each trace and determinant of a complex 2 x 2 matrix M as a formula of its real matrix R.
 
-    It is ``tr(R)/2 + i tr(-i R)/2``, since each real entry of M occurs twice in R. The determinant of M is
-    ``((tr M)^2 - tr(M M))/2``.
+    R is 4 x 4 and has the block ``[[a, -b], [b, a]]`` for each entry a + i b of M. So a stands twice on the diagonal of
+    R, and the trace of M is ``tr(R)/2 + i tr(-i R)/2``. In this formula -i inside the trace stands for the 4 x 4 matrix
+    of the number -i. The determinant of M is ``((tr M)^2 - tr(M M))/2``.
     """
     args = tuple(map(_with_traces, tree.args))
     if tree.kind == "call" and tree.value == "det":

@@ -47,9 +47,11 @@ class Quaternions:
 def used_quaternions(
     relation: tuple[str, Node, Node], vectors: Collection[str], shapes: Mapping[str, Shape], known: Collection[str]
 ) -> Quaternions:
-    """Find the quaternions in a relation that the claim does not define.
+    """Decide which names of a relation are quaternions, from the way in which they are used.
 
-    Return their definitions, notes on them, and the relation with quaternion products.
+    Names in ``known`` are left out. Each quaternion q that remains gets components as its definition, such as ``[q_0,
+    q_1, q_2, q_3]``. Return these definitions, sentences about the interpretation, and the relation with products of
+    quaternions in place of plain ones.
 
     Parameters
     ----------
@@ -106,7 +108,11 @@ def _has_units(sides: Sequence[Node], others: Collection[str]) -> bool:
 
 
 def _of_units(relation: tuple[str, Node, Node]) -> Quaternions:
-    """Return a relation between i, j and k in which these are quaternions."""
+    """Interpret i, j and k in ``relation`` as the units of quaternions, as in ``i j = k``.
+
+    Return ``relation`` with products of quaternions in place of plain ones, the definitions of the units in it (i is
+    the column [0, 1, 0, 0]), and a sentence about this interpretation.
+    """
     sign, left, right = relation
     reader = _Products(tuple(UNITS), set())
     sides = [reader.read(_without_squares(side)) for side in (left, right)]
@@ -176,6 +182,10 @@ def _quaternion_names(
             inner = _bare(node.args[0].args[0])  # the norm of q, of which the text has the conjugate
             if f"{inner.value}_bar" in used:
                 add(inner)
+        elif node.kind == "call" and node.value == "abs":  # |q|, of which the text has the conjugate
+            inner = node.args[0]
+            if inner.value in (*RATES, "p") and f"{inner.value}_bar" in used:
+                add(inner)
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         if (rotating := _rotating(side, other)) is not None:
             add(rotating)
@@ -188,10 +198,11 @@ def _quaternion_names(
 
 
 def _turned(sides: Sequence[Node]) -> Sequence[Node]:
-    """Return [q] for ``v' = q v q`` and for ``q' = 1/2 omega q``; an empty list for other equations.
+    """Return the name q as a list [q] if an equation shows by its form that q is a quaternion; else an empty sequence.
 
-    Only a quaternion q makes sense in such an equation: numbers would commute. So q is read as a quaternion. In ``q v
-    q`` the last factor was probably the conjugate of q, whose sign was lost when the text was copied.
+    Two forms show it: ``v' = q v q`` for a rotation of v, and ``q' = 1/2 omega q`` for the rate of q. If q were a
+    number, the first would be ``v' = q^2 v``, and nobody writes that as q v q. The author probably wrote the conjugate
+    of q for the last factor, and the star or bar was lost when the text was copied.
     """
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         factors = [_bare(factor) for factor in other.args if factor.kind != "number" and factor.kind != "inv"]

@@ -150,7 +150,11 @@ class Claim:
         return self.sources.get("claim") or relation_text(self.relation)
 
     def label(self, key: str) -> str:
-        """Return words that name one text of the claim in messages, by its ``key``: "claim" for the equation."""
+        """Return the place of an error for messages: the id of the claim and the key of its text, as in "C3: define R".
+
+        Keys are "claim" for the equation, "given" for hypotheses, "define NAME" for definitions, "value" and
+        "printed_value" for numbers. The result is "" if the claim has no id, as when a user typed it.
+        """
         return f"{self.id}: {key}" if self.id else ""
 
     def with_relation(self, relation: Relation, **changes: Any) -> "Claim":

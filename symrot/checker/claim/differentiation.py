@@ -71,9 +71,10 @@ def _on_letters(
 
 
 def is_rule(claim: Claim) -> bool:
-    """Return whether a claim is a rule of differentiation: both sides have derivatives, one of them of a whole formula.
+    """Return whether a claim is a rule of differentiation, such as ``diff(u*v, t) == u*diff(v, t) + v*diff(u, t)``.
 
-    Moreover, one side must have all letters of the other. ``diff(y, x) == y`` is an equation for y and no rule, and
+    Each side must have a derivative, and at least one derivative must be of a formula such as u*v, rather than of a
+    single name. One side must have all letters of the other. ``diff(y, x) == y`` is an equation for y and no rule, and
     so is ``diff(x, t) == diff(y, t)``.
     """
     assert claim.relation is not None

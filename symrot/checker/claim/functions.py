@@ -157,7 +157,7 @@ def _det(scope: Scope, node: Node) -> Expr:
 def _determinant(scope: Scope, matrix: ImmutableMatrix, node: Node, most_products: int) -> Expr:
     products = products_of_determinant(matrix)
     if products > most_products:
-        raise scope.fail(node, f"a matrix whose determinant has at most {most_products} products, not {products},")
+        raise scope.fail(node, f"a smaller matrix (its determinant has {products} products, at most {most_products})")
     return _by_cofactors(matrix) if pieces(matrix) > LARGE_MATRIX else matrix.det(method="berkowitz")
 
 
@@ -191,7 +191,7 @@ def _adjugate(scope: Scope, node: Node) -> ImmutableMatrix:
     products = products_of_determinant(matrix)
     if products > LARGEST_INVERSE:
         raise scope.fail(
-            node.args[0], f"a matrix whose determinant has at most {LARGEST_INVERSE} products, not {products},"
+            node.args[0], f"a smaller matrix (its determinant has {products} products, at most {LARGEST_INVERSE})"
         )
     return matrix.adjugate(method="berkowitz")
 
@@ -241,9 +241,10 @@ def _of_blocks(scope: Scope, node: Node, rows: Any) -> ImmutableMatrix:
 
 
 def _block(cell: Any, height: int, width: int) -> ImmutableMatrix | None:
-    """Return one cell as a matrix of the given size; None if the cell has another size.
+    """Return one cell of a block matrix ``[[A, b], [0, 1]]`` as a matrix with ``height`` rows and ``width`` columns.
 
-    A zero fits any size.
+    The cell is a matrix or a scalar. A scalar 0 becomes a zero matrix of that size; any other scalar is a 1 x 1 matrix.
+    Return None if the size differs.
     """
     if cell == 0 and not is_matrix(cell):
         return ImmutableMatrix.zeros(height, width)
@@ -360,7 +361,9 @@ def _integral_over_body(scope: Scope, node: Node) -> Any:
 def _sum_of_moments(scope: Scope, node: Node, value: Expr) -> Expr:
     coordinates = [symbol for symbol in sorted(value.free_symbols, key=str) if COORDINATES.fullmatch(str(symbol))]
     if not value.is_polynomial(*coordinates):
-        raise scope.fail(node.args[0], "a polynomial in the coordinates x, y, z under an integral over a body")
+        raise scope.fail(
+            node.args[0], "a polynomial in the coordinates x, y and z to integrate over a body (as x**2*y)"
+        )
     terms = sympy.Poly(value, *coordinates).terms() if coordinates else [((), value)]
     total = []
     for powers, factor in terms:

@@ -41,7 +41,12 @@ def definite_integral(integrand: Expr, variable: Symbol, lower: Expr, upper: Exp
 
 
 def _rewritten(integrand: Expr, variable: Symbol) -> Expr:
-    """Return the expanded integrand with complex exponentials in place of the sines and cosines of the variable."""
+    """Return the integrand as a sum of exponentials and powers, which can be integrated term by term.
+
+    Each sine and cosine whose argument contains ``variable``, also sin(2*x), is first replaced by complex exponentials:
+    cos(u) by (e^(iu) + e^(-iu))/2. Then all products are multiplied out. Raises InputError if the degree is above
+    LARGEST_DEGREE, or the sum has more than MOST_TERMS terms.
+    """
     angles = [node for node in integrand.atoms(sin, cos) if node.has(variable)]
     exponentials = {}
     for node in angles:

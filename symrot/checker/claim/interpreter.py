@@ -77,7 +77,7 @@ def _name(interpreter: Interpreter, node: Node) -> Any:
     if name in CONSTANTS:
         return CONSTANTS[name]
     if name in interpreter.functions:
-        raise interpreter.fail(node, f"{name}(t), since {name} is a function of t,")
+        raise interpreter.fail(node, f"{name}(t) instead of {name}, which is declared as a function of t")
     if name in BUILT_IN and not (name in ROTATIONS and "_" in name):
         raise interpreter.fail(node, f"brackets after the function {name}")
     if not interpreter.implied:
@@ -151,7 +151,9 @@ def _power(interpreter: Interpreter, node: Node) -> Any:
         raise interpreter.fail(node.args[1], "a number as an exponent")
     most = LARGEST_WHOLE_EXPONENT if exponent.q == 1 and not is_matrix(base) else LARGEST_EXPONENT
     if abs(exponent.p) > most or exponent.q > LARGEST_ROOT:
-        raise interpreter.fail(node.args[1], f"an exponent up to {most} (roots up to the {LARGEST_ROOT}th)")
+        raise interpreter.fail(
+            node.args[1], f"an exponent of at most {most} or a root of degree at most {LARGEST_ROOT}"
+        )
     if is_matrix(base):
         if base.rows != base.cols or exponent.q != 1:
             raise interpreter.fail(node, "a square matrix to a whole power")

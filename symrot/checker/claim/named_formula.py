@@ -68,9 +68,10 @@ def named_formula(claim: Claim) -> NamedFormula | None:
 
 
 def open_formula(claim: Claim) -> NamedFormula | None:
-    """Return both sides of a claim that differentiates a name without a definition; None for other claims.
+    """Return both sides of an equation that differentiates a name without a definition, such as ``diff(L, q) == 0``.
 
-    ``diff(L, q) == 0`` says that L does not depend on q. It would be an identity only if L were a constant.
+    The equation restricts the unknown function L; it is no identity, since it fails for most functions. So the caller
+    does not compare the two sides as they are. Return None for any other claim, also for one with hypotheses.
     """
     assert claim.relation is not None
     _, left, right = claim.relation
@@ -247,11 +248,12 @@ def _has_own_letters(letters: Sequence[set[tuple[str, bool]]]) -> bool:
 
 
 def _depends_on_own_letters(claim: Claim) -> bool:
-    """Return whether each side, after cancellation, depends on a symbol or rate on which the other side does not.
+    """Return whether each side has a letter that the other lacks, as m and k in ``m*a == k*x``.
 
-    There is one exception. In ``x*cos(a) == x*cos(b)`` each side depends on one such symbol, and the sides become equal
-    if b replaces a. One of the two letters is then probably a slip: the result is False, and the claim can be decided
-    as false.
+    Such an equation determines its letters; it is no identity, and is not refuted as one. Letters that cancel on their
+    side do not count. The result is False where one letter was probably mistyped: each side has one own letter, a on
+    the left and b on the right, and the sides are equal with a for b. ``x*cos(a) == x*cos(b)`` is then decided as a
+    false identity.
     """
     try:
         sides = [list(map(normal_form, flatten(side)[0])) for side in (claim.equation.left, claim.equation.right)]
@@ -280,9 +282,10 @@ def _is_condition_on_vectors(left: Node, right: Node, unit: bool) -> bool:
 
 
 def _is_condition_on_matrix(left: Node, right: Node, generic: Collection[str]) -> bool:
-    """Return whether an equation restricts the only matrix in it: ``R.T*R == eye(3)`` or ``det(R) == 1``.
+    """Return whether an equation only restricts one undefined matrix, as ``R.T*R == eye(3)`` and ``det(R) == 1`` do.
 
-    ``generic`` are the names of vectors and matrices without a definition.
+    Besides numbers, the equation must have one name only, R, and R must be in ``generic``, the vectors and matrices for
+    which the claim has no definition. Such an equation is a condition on R and no identity.
     """
     nodes = [node for side in (left, right) for _, node in walk(side)]
     names = {str(node.value) for node in nodes if node.kind == "name"}
@@ -308,9 +311,10 @@ def _has_own_angle(left: Node, right: Node, generic: Collection[str]) -> bool:
 
 
 def _has_open_derivative(left: Node, right: Node, known: Collection[str]) -> bool:
-    """Return whether a side has the derivative of a name that is not in ``known``, by another quantity than time.
+    """Return whether a side has ``diff(L, q)``, where the name L has no definition and q is not the time t.
 
-    ``known`` are the names with a definition; an example is ``diff(L, q)``.
+    ``known`` are the names with a definition. The value of such a derivative is unknown, so the equation is no
+    identity.
     """
     for side in (left, right):
         for _, node in walk(side):

@@ -23,10 +23,12 @@ USUAL_QUANTITIES = frozenset("mMgGhlLrRvFkTVUKJHNpqsabdcw")
 
 
 def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
-    """Return which of the letters I and E mean a quantity: I an inertia, E an energy.
+    """Return which of I and E are quantities: I a moment of inertia, E an energy, and not the numbers i and e of SymPy.
 
-    A letter is a quantity if another usual name of mechanics occurs. It is a number where only a number makes
-    sense: inside exp, log or a trigonometric function, or in a product with nothing but sines.
+    First, a letter that occurs only as a whole side is a quantity, if there are no other names: ``I = 0.5*2*0.1^2``.
+    Otherwise the formulas must have another usual name of mechanics, such as m or omega; if not, the result is empty.
+    Even then a letter is a number if it stands inside exp, log or a trigonometric function, or in a product with
+    nothing but sines, or, for E, as the base of a power such as E^(a t).
     """
     nodes = [node for tree in trees for _, node in walk(tree)]
     names = {

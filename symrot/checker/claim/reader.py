@@ -104,6 +104,7 @@ class Reading:
     Attributes
     ----------
     lines : tuple of Chain
+        The lines of the text, each as formulas with relation signs between them: ``a = b = c`` is one Chain.
     plain : bool
         Whether the text uses notation that is not SymPy syntax.
     doubts : tuple of Doubt
@@ -447,10 +448,11 @@ def _alone(tokens: Sequence[Token], vectors: Collection[str]) -> Iterator[str]:
 
 
 def _is_cross(before: Token | None, token: Token, after: Token, factor: Token, vectors: Collection[str]) -> bool:
-    """Return whether ``token`` is a letter x that is the sign of a cross product, as in ``r x m v``.
+    """Return whether ``token`` is a letter x that means a cross product, as in ``r x m v``.
 
-    It has blanks around it, and is between the names of vectors: ``before``, and ``factor`` after it. ``after`` is the
-    next token, which may be the mass m.
+    It does if blanks stand around the x, and the names before and after it are vectors. ``before`` is the token before
+    the x (r). ``after`` is the token directly after it (m), which must only have a blank before it. ``factor`` is the
+    first token after the x that is no mass (v). ``vectors`` are the names known as vectors.
     """
     if token.text != "x" or not token.spaced or not after.spaced or before is None:
         return False
@@ -527,9 +529,11 @@ def _marked(tokens: Sequence[Token]) -> Iterator[str]:
 
 
 def _by_angle(tokens: Sequence[Token]) -> Iterator[str]:
-    """Yield the names F and d of ``F·d = F d cos θ``: a product with the cosine shows that they are vectors.
+    """Yield the two letters of a scalar product that is equated to its lengths: F and d for ``F·d = F d cos θ``.
 
-    In ``F·d = F d`` they are vectors too, if books usually mean vectors by them: of numbers, nobody would say this.
+    With the cosine they must be vectors, since F d cos θ is the scalar product of vectors. In ``F·d = F d`` without
+    cosine, they count as vectors only if books usually mean vectors by both letters: for numbers the equation would say
+    F d = F d, and nobody writes that.
     """
     sides: list[list[str]] = [[]]
     for token in tokens:

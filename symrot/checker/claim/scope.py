@@ -129,7 +129,9 @@ class Scope(ABC):
     def bounded(self, value: Any, node: Node, most: int = MOST_PIECES) -> Any:
         """Return the value; raise InputError if it has more than ``most`` symbols, numbers and operations."""
         if pieces(value if is_matrix(value) else [value]) > most:
-            raise self.fail(node, f"a formula of at most {most} symbols, numbers and operations, written out,")
+            raise self.fail(
+                node, f"a shorter formula (at most {most} symbols, numbers and operations after evaluation)"
+            )
         return value
 
     def divide_by(self, value: Expr, node: Node) -> None:
@@ -149,7 +151,7 @@ class Scope(ABC):
     def factorable(self, value: Expr, node: Node) -> None:
         """Raise InputError for a number under a root that is too long to be factored."""
         if value.is_Rational and max(int(value.p).bit_length(), int(value.q).bit_length()) > MOST_BITS_FACTORED:
-            raise self.fail(node, f"a number of at most {MOST_BITS_FACTORED} bits under a root, since it is factored,")
+            raise self.fail(node, f"a smaller number under a root (at most {MOST_BITS_FACTORED} bits, to be factored)")
 
     def take_root(self, value: Expr, node: Node) -> None:
         """Record ``value`` as a formula under an even root; raise InputError if it is a negative number."""

@@ -69,9 +69,11 @@ def _shape_of_call(node: Node, inner: list[Shape], shapes: Mapping[str, Shape]) 
 
 
 def with_unit_matrices(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> tuple[str, Node, Node]:
-    """Return an equation with a unit matrix in place of a scalar I or 1 that is added or equal to a square matrix.
+    """Return an equation with ``eye(n)`` for a scalar I or 1 where only a matrix makes sense, as in ``R - I``.
 
-    ``I = [[a, b], [c, d]]`` stays unchanged, since there the letter I names the matrix.
+    That is so where the letter I or the number 1 is a term of a sum with an n x n matrix, or is one side of the
+    equation and the other side is an n x n matrix. ``I = [[a, b], [c, d]]`` stays unchanged, since there I is the name
+    of the matrix. ``shapes`` maps each name to its shape.
     """
     sign, *sides = relation
     if any(_is_name_of(*pair) for pair in (sides, sides[::-1])):
@@ -112,9 +114,10 @@ def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -
 
 
 def operand_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return the names in ``cross(a, b)``, ``dot(a, b)`` and ``skew(a)`` whose shape is not in ``shapes``.
+    """Return the names that must be vectors as arguments of cross, dot or skew, each mapped to the shape (3, 1).
 
-    They must be vectors: each is mapped to the shape (3, 1). So is v in ``cross(r, m*v)``.
+    For ``cross(r, m*v)`` these are r and v: a mass before a name is skipped. Names whose shape is in ``shapes`` are
+    left out.
     """
     calls = [node for side in relation[1:] for _, node in walk(side) if node.value in ("cross", "dot", "skew")]
     arguments = [argument for call in calls if call.kind == "call" and len(call.args) < 3 for argument in call.args]

@@ -161,10 +161,11 @@ def _is_along(name: str, line: str) -> bool:
 
 
 def _where_else(place: str, line: str, name: str) -> str:
-    """Return words for the axis of the formula named ``name``, which is not along ``line``: "about an end".
+    """Return words for the axis of the formula ``name``, such as "about an end", which is not along ``line``.
 
-    They are ``place``, the place of the axis in the name, unless the place is empty or the ``line`` of this body passes
-    through it too: then they are "about another axis".
+    ``line`` is a key of LINES, such as "about a diameter", and ``place`` the place of the axis in ``name``. The result
+    is ``place``. It is "about another axis" if ``place`` is empty, or if ``line`` passes through ``place`` too, so that
+    the place does not tell the two axes apart.
     """
     _, bodies = LINES[line]
     places = [own for body, (own, _) in bodies.items() if body in bodies_of_formula(name)]
@@ -321,7 +322,7 @@ def guesses(context: Context, name: str, stated: str) -> list[str]:
 
 
 def is_place(words: str) -> bool:
-    """Return whether ``words`` are the title of a place in PLACES, a place of an axis in a body: "about an end"."""
+    """Return whether ``words``, such as "about an end", are a title in PLACES, the list of places of axes."""
     return any(words == title for title, _, _ in PLACES)
 
 

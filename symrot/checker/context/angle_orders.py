@@ -32,9 +32,10 @@ PLACE_OF_ANGLE = {
 
 @dataclass(frozen=True)
 class Order:
-    """One assignment of letters to the angles of a sequence: ``places`` maps each letter to 0, 1 or 2.
+    """One assignment of letters to the angles of a sequence: ``places`` maps each letter to its position 0, 1 or 2.
 
-    ``guess`` says in words which part of the assignment nothing states; it is empty if all of it is stated.
+    ``guess`` tells the user which part of the assignment was guessed, because neither the claim nor its context states
+    it; it is empty if nothing was guessed.
     """
 
     places: dict[str, int]
@@ -124,10 +125,11 @@ def _guess(places: dict[str, int], sequence: str) -> str:
 
 
 def _first_order(family: tuple[str, str, str], sequence: str) -> tuple[str, ...]:
-    """Return the three letters of ``family`` in the order in which books use them for the angles of ``sequence``.
+    """Return the letters of ``family`` in the order in which most books give them to the first, second and third angle.
 
-    This is ``family`` itself, such as (phi, theta, psi); but (psi, theta, phi) in ZYX, where psi is the yaw. It holds
-    unless the words of the context say otherwise.
+    ``sequence`` is that of the three angles. The result is ``family`` itself, such as (phi, theta, psi); only in ZYX
+    these three letters are reversed to (psi, theta, phi), since psi is the yaw there. The caller uses this order if the
+    context states no other one.
     """
     return family[::-1] if family == FAMILIES[0] and sequence == "ZYX" else family
 

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import cached_property
+from functools import cache, cached_property
 
 from symrot.checker.context.quantities import place_of_words, plain_words, unused_words
 from symrot.inertia.shapes import SHAPES, Dimension
@@ -50,7 +50,8 @@ class Body:
     ----------
     kind : Kind
     motion : str
-        ``"rolls"``, ``"rolls down a slope"``, ``"rolls from a height"``, ``"general"``; otherwise empty.
+        ``"rolls"``, ``"rolls down a slope"``, ``"rolls from a height"``, or ``"general"`` if the words say "in general
+        motion", without a fixed axis; empty if the words state no motion.
     letters : mapping
         Symbol in the derived formulas -> letter in the claim, such as ``{"R": "r"}`` for "of radius r".
     place : str
@@ -246,15 +247,17 @@ _ALONG = re.compile(
 """Words for the axis of symmetry of a body, "with axis x"."""
 
 
-def bodies_of_formula(name: str) -> set[str]:
+@cache
+def bodies_of_formula(name: str) -> frozenset[str]:
     """Return the bodies that the ``name`` of a derived formula mentions, as phrases such as "a hollow cylinder"."""
     phrases: set[str] = set()
     rest = re.sub(r"\ban\b", "a", name)
     for phrase in _FORMULA_PHRASES:
-        if re.search(rf"\b{re.escape(phrase)}\b", rest):
-            phrases.add(phrase)
-            rest = re.sub(rf"\b{re.escape(phrase)}\b", " ", rest)
-    return phrases
+        if phrase in rest:
+            without = re.sub(rf"\b{re.escape(phrase)}\b", " ", rest)
+            phrases |= {phrase} if without != rest else set()
+            rest = without
+    return frozenset(phrases)
 
 
 def body_of_words(words: str) -> Body | None:

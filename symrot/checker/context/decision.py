@@ -104,9 +104,9 @@ USUAL: tuple[tuple[str, str], ...] = (
 class Meant:
     """A known formula that a claim may mean: ``value`` is the formula in the letters of the claim.
 
-    ``mapping`` gives the claim's letter for each renamed symbol. If ``open_place``, the formula is for an axis through
-    the centre of mass, or an end, and nothing in the claim says which. ``how`` says in which form the formula is meant,
-    such as "transposed"; it is empty for the formula as it is.
+    ``mapping`` gives the claim's letter for each renamed symbol. ``open_place`` is True if the formula is for an axis
+    through the centre of mass, or for one through an end of the body, and the claim does not say through which of the
+    two. ``how`` says in which form the formula is meant, such as "transposed"; it is empty for the formula as it is.
     """
 
     known: Known
@@ -191,7 +191,12 @@ def _with_order(context: Context, verdict: Verdict, letters: Sequence[str]) -> V
 
 
 def _with_sides(verdict: Verdict) -> Verdict:
-    """Replace "true" by "recognised" if the verdict had to guess which of a, b and c is the side along which axis."""
+    """Return "recognised" for "true" if it was guessed along which axis the claim's letters a, b and c lie.
+
+    The known formulas call the sides of a box, or the semi-axes of an ellipsoid, along x, y and z by the letters a, b
+    and c. If one formula in ``recognised_as`` fits without renaming these, nothing was guessed: the verdict stays
+    "true" with such formulas only.
+    """
     readings = [known for known in verdict.recognised_as if not any(re.fullmatch(SIDES, old) for old in known.mapping)]
     if readings:
         return replace(verdict, recognised_as=tuple(readings))
@@ -215,9 +220,11 @@ def _with_tangent(context: Context, verdict: Verdict) -> Verdict:
 
 
 def _with_axes(context: Context, verdict: Verdict) -> Verdict:
-    """Replace "true" by "recognised" if I_1, for example, was taken for a moment about another axis than the first.
+    """Return "recognised" for "true" if it was guessed to which axis a letter with a number or axis belongs.
 
-    The verdict stays "true" if words about the letter, or about the moments of the body, say for which axis it stands.
+    Nothing is guessed if I_1 stands for the moment about the first axis, and so for each other index, or if words about
+    the letter or about the moments of the body state the axis: the verdict then stays "true". If I_1 has to be the
+    moment about the second axis for the claim to be right, that is a guess.
     """
     stated = set(context.body.letters.values()) if context.body else set()
     readings = [
@@ -285,10 +292,11 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
-    """Return the known formulas that a claim fits in another context, to tell the user which one it gives.
+    """Return the known formulas that a claim fits if its context is changed, so that the message can name them.
 
-    Three contexts are tried in turn: without the place ("about an end"), with the other frame, and none at all. The
-    formulas of the first that fits are returned.
+    A claim about an end, for example, may be the formula for the centre. Three changes are tried in turn: the place of
+    the axis left out, the other frame ("body" for "space"), and no context at all. The formulas of the first change
+    that gives any are returned; empty if none does.
     """
     context = claim.context
     if context.body and (context.place or context.body.axes):
@@ -305,11 +313,11 @@ def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification,
 
 
 def _with_guesses(context: Context, verdict: Verdict, stated: str) -> Verdict:
-    """Return ``verdict`` with its formulas sorted by how much had to be guessed, and a note on what was guessed.
+    """Return ``verdict`` with the formulas that need fewest guesses first, and with a note on the guesses of the first.
 
-    Guessed are the words in the name of a known formula that follow neither from the context nor from ``stated``. The
-    note lists those of the formula with the fewest. ``stated`` are the words that the name of the claim's quantity
-    implies, such as "moment of inertia z axis" for I_zz.
+    A guess is a word in a known formula's name that follows neither from the context nor from ``stated``. ``stated``
+    are the words that the name of the claim's quantity implies, such as "moment of inertia z axis" for I_zz. If "solid"
+    is not stated, the note says "guessed, not stated: solid". Without guesses, no note is added.
     """
     readings = sorted(verdict.recognised_as, key=lambda known: len(guesses(context, known.name, stated)))
     verdict, likeliest = replace(verdict, recognised_as=tuple(readings)), readings[0]
@@ -410,12 +418,12 @@ def _transposed(decisions: Sequence[tuple[Meant, Decision]]) -> Iterator[tuple[M
 
 
 def _without_letters(claim: Claim, named: NamedFormula, quantity: str, stated: str) -> Verdict | None:
-    """Return the verdict "doubtful" if a claim is the known formula of its context without a term or a factor.
+    """Return the verdict "doubtful" if the claim forgets a term or factor of the known formula; otherwise None.
 
-    This is the known formula whose name follows word by word from the context and from ``stated``; the term or factor
-    that the claim lacks has letters which the claim does not have. Otherwise return None. ``quantity`` is the name for
-    which the claim gives a formula, and ``stated`` are the words that this name implies, such as "moment of inertia z
-    axis" for I_zz.
+    The formula is the one that the context fixes: each word of its name follows from the context or from ``stated``,
+    the words that the name of the quantity implies ("moment of inertia z axis" for I_zz). The forgotten term or factor
+    must have letters that the claim does not use, as h in ``m*r^2/4`` for a cylinder. ``quantity`` is the name for
+    which the claim gives a formula.
     """
     context = claim.context
     own_meaning = context.meaning_of(quantity)
@@ -488,9 +496,10 @@ def _different(
 
 
 def _different_repairs(repairs: Sequence[tuple[Repair, ...]]) -> tuple[Repair, ...]:
-    """Merge the repairs towards several formulas, a tuple for each, best first; return at most three.
+    """Return at most three repairs with different texts, from ``repairs`` towards several known formulas.
 
-    The best repair towards each formula comes first, then the second-best ones.
+    ``repairs`` has one tuple for each formula, with its best repair first. The result has the best repair of each
+    formula, then the second-best ones; repairs with the same text count as one.
     """
     in_turn = [repair for rank in zip_longest(*repairs) for repair in rank if repair is not None]
     return tuple({repair.text: repair for repair in in_turn}.values())[:MOST_REPAIRS]
@@ -583,11 +592,11 @@ def _root(square: Expr) -> Expr:
 
 
 def _unused_rates(mapping: Mapping[Expr, Expr], own: set[Expr]) -> dict[Expr, Expr]:
-    """Return a map from each symbol of an angle rate that ``mapping`` leaves out, such as dphi, to ``diff(phi(t), t)``.
+    """Return ``{dphi: diff(phi(t), t)}`` for the symbols of angle rates that ``mapping`` does not replace.
 
-    ``mapping`` maps the symbols of a known formula to the letters of the claim. With the result substituted too, the
-    known formula can be compared with a claim that has derivatives. The result is empty if ``own``, the atoms of the
-    claim, contains no derivative.
+    ``mapping`` maps the symbols of a known formula to the letters of a claim. A claim that writes derivatives has no
+    letters for dphi, so ``mapping`` leaves this symbol unused. The caller substitutes both maps into the known formula,
+    to compare it with the claim. The result is empty if ``own``, the atoms of the claim, contains no derivative.
     """
     if not any(atom.is_Derivative for atom in own):
         return {}

@@ -272,9 +272,9 @@ def plain_words(text: str) -> str:
 def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str]:
     """Return the place of an axis in words, such as "about an end", and the words without it.
 
-    The place is an empty text if the words name none. Lines of a body, such as "about a diameter", are places too. If
-    ``formulas`` is empty, all lines are tried. Otherwise only the lines of certain bodies are: those for which
-    ``formulas`` has the phrase that stands for the body in names of formulas, such as "a disk".
+    The place is empty if the words name none. Besides points of a body, the axes in LINES count as places, such as
+    "about a diameter". ``formulas`` are names of bodies, such as "a disk": with them, only axes of these bodies count
+    (a rod has no diameter); without them, all do.
 
     Examples
     --------

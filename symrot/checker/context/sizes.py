@@ -23,7 +23,8 @@ class Size:
     """Dimensions of a body that authors use in place of symrot's, such as the diameter d for the radius R.
 
     ``letters`` maps the author's letters to symrot's, {"d": "R"}; ``factor`` is symrot's dimension divided by the
-    author's, 1/2. ``bodies`` are the bodies for which the dimensions are used, and ``note`` tells the user of them.
+    author's, 1/2. ``bodies`` are the bodies for which authors do so. ``note`` tells the user what the author's letters
+    mean, "d is the diameter".
     """
 
     letters: dict[str, str]

@@ -40,11 +40,11 @@ def requirements(
     ----------
     ring : FormulaRing
     numerators : sequence of PolyElement
-        The reduced numerators of the residuals (left - right) that are not zero.
+        The numerators, in lowest terms, of left - right for those entries of the claim where that is not zero.
     sides : sequence of (Expr, Expr)
-        Left and right side of the entry that each residual belongs to.
+        The left and the right side of the entry to which each numerator belongs.
     entries : int
-        The number of entries of the claim.
+        The number of all entries of the claim. If there is one, a condition that only repeats the claim is left out.
     """
     conditions = []
     for factor in _shared_factors(ring, numerators):
@@ -75,9 +75,10 @@ def _shared_factors(ring: FormulaRing, numerators: Sequence[PolyElement]) -> lis
 def _left_out(requirement: Requirement, sides: Sequence[tuple[Expr, Expr]], hypotheses: Sequence[Expr]) -> bool:
     """Return whether the author of a false claim may have assumed a condition, such as ``A = B``, without stating it.
 
-    An author who silently assumes ``A = B`` writes only one of the two letters on a side. A text with both, such as
-    ``(A - B) w`` against ``(B - A) w``, is wrong in another way, and so is a text that has both on one side and
-    neither on the other. If a hypothesis relates a symbol to the symbols of a side, the side counts as having it.
+    ``requirement`` is that condition. The result is True if one side of each pair lacks A or B: who takes them as equal
+    writes only one of the two. It is False if both sides have both, as ``(A - B) w`` against ``(B - A) w``, or if one
+    side has both and the other neither: such claims are wrong in another way. A side that has x counts as having A too
+    if one of the ``hypotheses`` relates x to A.
     """
     (formula,) = requirement.zeros
     symbols = formula.free_symbols

@@ -248,9 +248,10 @@ class _ClaimCase(Case):
 
     @cached_property
     def hypotheses(self) -> Hypotheses:
-        """The hypotheses, with the conditions under which both sides are real numbers.
+        """The claim's hypotheses, together with the conditions under which both sides are real numbers.
 
-        They include the divisors that were read into the ring before this property is first used.
+        These conditions also say that the divisors of the two sides are not zero. The result is computed once and
+        stored, so use it only after both sides have been read into ``ring``: later divisors are not in it.
         """
         return Hypotheses(self.ring, _needs(self))
 
@@ -571,9 +572,10 @@ MOST_PIECES = 60
 
 
 def _shorter(first: Expr, second: Expr) -> Expr:
-    """Return the shorter one of two formulas for the same divisor, for a condition that people can read.
+    """Return that one of two formulas for the same divisor which is easier to read in a printed condition.
 
-    It is the one with the shorter text; but if one has far fewer symbols and operations, it is that one.
+    If one has more than MUCH_LARGER times as many symbols and operations as the other, the other one is returned,
+    without writing both as text. Otherwise it is the one with the shorter text.
     """
     few, many = sorted((first, second), key=_pieces)
     if _pieces(many) > MUCH_LARGER * _pieces(few):

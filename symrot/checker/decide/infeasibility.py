@@ -3,9 +3,9 @@
 A product that must vanish is split into factors (a case for each), a sum of squares into these squares; a Groebner
 basis then replaces the polynomials. A case is impossible if 1 = 0 follows, or if a polynomial is nowhere zero: by its
 form, by the ranges of its unknowns, or because it has no real roots. A formula f vanishes on the constraints if adding
-``z f = 1`` makes all cases impossible (Rabinowitsch). This proves more than linear combinations of the constraints do:
-f = x vanishes if the constraint is x^2 = 0, where only a power of f is such a combination; if it is x^2 + y^2 = 0,
-where x must vanish for real x and y only; or if it is x*y = 0 with a positive symbol y.
+``z f = 1`` makes all cases impossible (Rabinowitsch). For example, f = x vanishes under each of these constraints:
+x^2 = 0; x^2 + y^2 = 0, for real x and y; x*y = 0, for a positive symbol y. In none of them f itself is a combination
+of the constraints.
 """
 
 from collections.abc import Sequence

@@ -95,11 +95,10 @@ def _degree(node: Expr, known: dict[Expr, int], bases: Mapping[Expr, Fraction]) 
 
 
 def _multiple(argument: Expr, bases: Mapping[Expr, Fraction]) -> int:
-    """Estimate the degree of the sine of an angle, in the sines and cosines of its symbols: 5 for 3*x + y/2.
+    """Estimate the degree of the sine of an angle as a polynomial in sines and cosines of its symbols: 5 for 3*x + y/2.
 
-    Each term (p/q)*x of the angle adds p*q: 3 for 3*x, and 2 for y/2. If the ring already expresses sin(y) by the sine
-    of a smaller angle, ``bases`` has the ratio (1/2 for y/2); then the term adds its coefficient divided by this ratio:
-    1.
+    A term (p/q)*x adds p*q: 3 for 3*x and 2 for y/2. ``bases`` maps y to 1/2 if the polynomials already use sin(y/2) in
+    place of sin(y). Then the term c*y adds c divided by that number: 1 for y/2, and 2 for y.
     """
     total = 0
     for term in argument.as_ordered_terms() if argument.is_Add else [argument]:

@@ -459,11 +459,11 @@ class _Conditions:
         return outside and bool(((bound.root - pair[0].root) * (bound.root - pair[1].root)).is_negative)
 
     def grants(self, quantity: Expr, own: _Range) -> bool:
-        """Return whether the range ``own`` of ``quantity`` need not be printed, since it holds anyway.
+        """Return whether the condition that ``quantity`` lies in the range ``own`` need not be printed, as it holds.
 
-        That is so for -1 <= cos(u) <= 1. The range cos(u) > -1 need not be printed if the stored conditions say that
-        cos(u/2) is nonzero, nor cos(u) < 1 if they say that sin(u/2) is. For quantities other than cosines the result
-        is False.
+        Only cosines qualify; for other quantities the result is False. -1 <= cos(u) <= 1 always holds. cos(u) > -1
+        holds if the stored conditions say that cos(u/2) is not zero, and cos(u) < 1 holds if they say that sin(u/2) is
+        not zero.
         """
         if not isinstance(quantity, cos):
             return False

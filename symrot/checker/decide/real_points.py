@@ -277,7 +277,11 @@ class _Drawing:
         return False
 
     def guess(self) -> bool:
-        """Give a simple value to an unknown of one of the equations; always return True."""
+        """Set one unknown to a simple random number, to reduce the number of unknowns; return True.
+
+        The equation is chosen at random from ``self.zeros``, and the unknown from those that occur in it. True tells
+        the caller that a step was made; a guess is always possible.
+        """
         poly = self.source.choice(self.zeros)
         place = self.source.choice(sorted(occurring([poly])))
         self.put({place: self.field.convert(self.drawn(place), QQ)})

@@ -147,9 +147,10 @@ def _size(formula: Expr) -> Expr | None:
 def _by_absolute_values(formula: Expr) -> bool:
     """Return whether absolute values make a formula nonnegative, as |x| + |y| - |x + y| is by the triangle inequality.
 
-    If the only negative term is -c|u|, and the sum v of the other terms is nonnegative, the formula is nonnegative
-    where v^2 - c^2 u^2 is, and this is examined instead. Then each positive term c|e| is replaced by c*e or -c*e, which
-    are at most as large: if one of the results is nonnegative, so is the formula.
+    Two methods are tried. If the only negative term is -c|u| and the other terms have a nonnegative sum v, the formula
+    is nonnegative where v^2 - c^2 u^2 is, so this difference of squares is examined in place of the formula. Second,
+    each term c|e| in the formula or the difference is replaced by c*e or by -c*e, which are not larger. If one of the
+    results is nonnegative, the answer is True.
     """
     terms = Add.make_args(formula)
     negative = [term for term in terms if term.could_extract_minus_sign()]

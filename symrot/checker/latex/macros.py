@@ -129,7 +129,11 @@ def _touches(letter: Token, after: Token) -> bool:
 
 
 def _is_argument(after: Sequence[Token], function: str) -> bool:
-    """Return whether tokens begin with an argument, or the power, of a ``function``: of a trace, with a matrix."""
+    r"""Return whether the tokens after a function's name begin with its argument or a power; if not, it is a word.
+
+    ``after`` are these tokens. After ``function`` sin they may begin with "(", "^", a letter or a number. After tr, Tr
+    or trace they must begin with a matrix, perhaps in brackets: a capital letter or a mark such as ``\mathbf``.
+    """
     first, *rest = after
     if SPELLED[function] != f"\\{function}":
         inside = rest[0] if first.text == "(" and rest else first

@@ -174,9 +174,10 @@ class NamesPart(SumsPart):
                 raise self.fail("letters and digits in a subscript", place)
 
     def resolved(self, name: str, subscript: str, others: tuple[str, ...] = ()) -> str:
-        """Return a name with its subscript as it is declared, ``I_1`` or ``I1``; if neither is declared, ``I_1``.
+        """Return a name with its subscript in the form that the claim declares: ``I_1`` or else ``I1``.
 
-        ``others`` are further names that count if they are declared.
+        ``others`` are further forms, tried after these two: ``xp`` for ``x_prime``, for example. The first declared
+        form is returned; if none is declared, ``I_1``.
         """
         forms = [f"{name}_{subscript}", f"{name}{subscript}"] if subscript else [name]
         return next((form for form in [*forms, *others] if form in self.names), forms[0])
@@ -225,7 +226,7 @@ class NamesPart(SumsPart):
         name = str(node.value)
         if name not in self.names.matrices:
             if not self.names.implied or name in self.names:
-                raise self.fail(f"{name} to be declared as a vector or matrix, since it is marked as one,", mark)
+                raise self.fail(f"{name} to be declared as a vector or matrix (it has a mark of one)", mark)
             node = self.vector(name)
         if mark.text == "\\hat" and (bare := str(node.value).removesuffix(MARK)) in self.vectors:
             self.vectors[bare] = True
@@ -294,7 +295,11 @@ class NamesPart(SumsPart):
         return self.named(item.text.removeprefix("\\") + ending, item)
 
     def spelled(self, font: tree.Font) -> Node:
-        r"""Parse ``\operatorname{tr}(..)`` or ``\mathrm{abc}``; return a call, or a name of several letters."""
+        r"""Parse upright text and return its node: a call for a function's name, otherwise a name.
+
+        ``\operatorname{tr}(R)`` gives the call ``trace(R)``, and ``\mathrm{abc}`` the name abc of three letters.
+        ``font`` is the command with the text in its braces.
+        """
         node = self.under(font, lambda: self.word(font))
         if node.kind == "call":
             return self.called(str(node.value))

@@ -321,10 +321,11 @@ class _Interpreter(CalculusPart):
 
 
 def _rows(table: tree.Table) -> Iterator[tuple[tuple[tree.Node, ...], bool]]:
-    """Yield the items of each line of an environment, and whether it continues the equation of the line before it.
+    """Yield (items, continues) for each line of an environment: its items, and whether it continues the line before it.
 
-    It continues it if it starts with a plus or minus sign and has no relation sign, or starts with an empty cell before
-    the sign, as in ``& + b``. Spaces, and commas and full stops at the end of a line, are left out.
+    A line continues the equation before it in two cases: it starts with a plus or minus sign and has no relation sign,
+    as ``+ b``; or it has such a sign after an empty cell, as ``& + b = c``. Spaces, and commas and full stops at the
+    end of a line, are left out of the items.
     """
     for line in table.lines:
         items = [item for cell in line for item in cell.items if item.kind != "space"]

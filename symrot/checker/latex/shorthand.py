@@ -93,11 +93,12 @@ def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int
 
 
 def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) -> dict[int, Shorthand]:
-    """Return the short forms with numbers, such as ``c_1`` and ``s_{12}``, with their angles, by their positions.
+    """Return the meaning of each short form with a number, by its position: cos(theta_1) for ``c_1``.
 
-    ``numbered`` has (function, number) by position: ("cos", "1") for c_1. The result is {} unless the text has two
-    different cosines and two different sines of this kind: otherwise c_1 may be a name. Beside the rate of theta_1, one
-    of each is enough.
+    ``numbered`` has (function, number) by position: ("cos", "1") for c_1, and ("sin", "12") for s_{12}, which means
+    sin(theta_1 + theta_2). The result is {} unless the text has at least two different cosines and two different sines
+    of this kind, since c_1 alone may be a name. If the text has the rate of theta_1 too, one cosine and one sine
+    suffice.
     """
     digits = {digit for _, number in numbered.values() for digit in number}
     # next to the rate of theta_1, c_2 and s_3 are functions of theta_2 and theta_3
@@ -172,8 +173,9 @@ def _subscript(pieces: Sequence[Token], place: int) -> str:
 def _numbered_angle(pieces: Sequence[Token], digits: Collection[str]) -> str:
     r"""Return the letter of the angles that short forms such as c_1 mean: "theta" if the text has ``\theta_1``.
 
-    Candidates are Greek letters and q, with one of the ``digits`` as a subscript. If there are none or several, the
-    result is "", but it is "theta" for a text with neither a Greek letter nor a q with a subscript.
+    Candidates are the Greek letters for angles, and q, that have one of the ``digits`` as a subscript somewhere in the
+    text. A single candidate is returned, and "" for several. Without a candidate, the result is "theta" if the text has
+    no Greek angle and no q with a subscript at all; otherwise "".
     """
     numbered: dict[str, set[str]] = {}
     for place, piece in enumerate(pieces[:-2]):

@@ -105,7 +105,7 @@ class SumsPart(Cursor):
             if operator.text == "*" or not any(kinds) or (operator.text == "\\cdot" and not all(kinds)):
                 left = product([left, right])
             elif not all(kinds):
-                raise self.fail("two vectors or two scalars around \\times", operator)
+                raise self.fail("a vector on both sides of \\times, or on neither side", operator)
             elif crossed and not (operator.text == "\\cdot" and self.is_row(left)):
                 raise self.fail("brackets that say which product of vectors comes first", operator)
             elif operator.text == "\\cdot":
@@ -165,9 +165,10 @@ class SumsPart(Cursor):
         return product([left if self.is_tensor(left) else Node("transpose", None, (left,)), right])
 
     def is_tensor(self, node: Node) -> bool:
-        """Return whether a tree is a name in bold for a tensor, such as I for inertia, and not for a vector.
+        """Return whether a tree is the name of a tensor in bold, such as I for inertia.
 
-        Only vectors are listed as columns in the names of the claim.
+        A bold name is a vector if the claim lists it among its columns, which are vectors; every other bold name is a
+        tensor.
         """
         return node.kind == "name" and str(node.value).endswith(MARK) and not self.names.is_column(node)
 
@@ -363,14 +364,15 @@ class SumsPart(Cursor):
         pair = commutator(first, self.expression(), sign)
         if pair is None:
             raise self.fail(
-                "a closing bracket (a commutator other than of Pauli's matrices is written A B - B A)", comma
+                "a closing bracket (write a commutator as A B - B A, unless A and B have Pauli matrices)", comma
             )
         return pair
 
     def framed(self, mark: tree.Script) -> Node:
-        r"""Parse a name after the mark of its frame, ``{}^A R_B``; return its node.
+        r"""Parse a name with the mark of its frame before it, as ``{}^A R_B``, and return the node of the name.
 
-        The frame becomes part of the name if the text has several frames.
+        ``mark`` is the script ``^A``. If the text has this frame only, the mark is dropped: the name is R_B. If it has
+        several frames, the mark becomes part of the name, R_B_A, so that ``{}^A v`` and ``{}^B v`` differ.
         """
         frame = tree.alone(mark.inside)
         while isinstance(frame, tree.Font):

@@ -49,10 +49,11 @@ def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
 
 
 def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> list[ArrayFault]:
-    """Return the formulas that one edit makes of ``formula``, each with its values at the test points.
+    """Return formulas that are one edit away from ``formula``, each with its values at the test points.
 
-    They are sorted by the sum of the entries of the edited formula's first value, for a look-up by values. If the
-    formula has no arrays, only brackets are added: other faults of scalar formulas are found part by part
+    A fault in a claim is later looked up by value, so the list is sorted by a number: the sum of the entries of the
+    value at the first test point. There are at most MOST_EDITS edits. If ``formula`` has no vectors or matrices, the
+    only edits are added brackets: other faults of scalar formulas are found part by part
     (:mod:`symrot.checker.recognition.parts`).
     """
     edits = _edits(formula, numeric, letters) if has_arrays(formula, numeric) else _brackets(formula)

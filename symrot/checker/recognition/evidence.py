@@ -29,7 +29,9 @@ __all__ = [
     "has_terms",
     "has_word",
     "is_evident",
+    "is_in_usual_sequence",
     "is_of_body",
+    "is_unusual",
     "keeps_places",
     "misfit_of",
     "names_in",
@@ -78,11 +80,14 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
      ("kinetic energy", "torque", "rotation matrix", "period", "energy of", "Jacobian")),
     (r"d(T|E|K|KE|W)", ("power",)), (r"sigma(_?[1-3i])?", ("modified Rodrigues",)),
     (r"(V|U)_?eff", ("effective potential",)),
+    (r"W", ("work", "potential", "energy")),
     (r"V|U|E_?p|PE", ("potential", "work")),
+    (r"d[LHh](_?([xyzOGCPAB0-3]|cm))?", ("rate of the angular momentum",)),
     (r"[Hh](_?([xyzOGCPAB0-3]|cm))?", ("angular momentum",)),
     (r"L(_?([xyzOGCPAB0-3]|cm))?", ("angular momentum", "Lagrangian", "torque")),
     (r"p_?(phi|theta|psi|varphi)|P_?(phi|theta|psi)", ("momentum of",)),
-    (r"M", ("torque", "angular momentum of")), (r"(M|N|tau|Gamma|Q)(_?[a-zA-Z1-3]+)?", ("torque",)),
+    (r"M", ("torque", "angular momentum of", "gyroscopic couple")),
+    (r"(M|N|tau|Gamma|Q)(_?[a-zA-Z1-3]+)?", ("torque", "gyroscopic couple")),
     (r"P(_?rot)?", ("power",)), (r"e", ("angle", "energy")),
     (r"[kK](_?[a-zA-Z0-3]+)?", ("radius of gyration", "kinetic energy")),
     (r"dq_?[0-4swxyz]?|d(e|eta|epsilon)_?[0-3]?", ("quaternion",)),
@@ -209,7 +214,11 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     is_alike = bool(neighbours(near.letter, letters))  # such as I_1 in I_1 + I_3
     if near.code == "extra_term" and (is_general or not is_alike or len(letters) < LEAST_SYMBOLS_EDITED):
         return False  # the formula may be a more general one
-    if is_general and not (near.code == "wrong_symbol" and count >= MANY_LETTERS):
+    angles = _only_in_sines(named.formula) - names_in(near.tree)  # as theta in the factor sin(theta)
+    has_own_angle = near.code == "factor" and words is not None and letters <= names_in(near.tree) | angles
+    is_of_axis = near.code == "wrong_symbol" and _is_of_axis(named, near) and count > LEAST_SYMBOLS_EDITED
+    is_long = (near.code == "wrong_symbol" or has_own_angle) and count >= MANY_LETTERS
+    if is_general and not is_long and not is_of_axis:
         return False
     entries = [node for _, node in walk(named.formula) if node.kind in ("call", "name") and node.value in letters]
     is_matrix_given = any(node.value == "Matrix" for _, node in walk(named.formula))
@@ -221,6 +230,8 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     if is_rotation and re.fullmatch(r"[RCAQ](_\w+)?", named.name):
         return True
     if _is_stated(claim, named, near) or _is_component_of_quaternion(named, near) or _is_entry_of_matrix(named, near):
+        return True
+    if near.code == "sign_of_term" and _is_of_stated_flat_body(claim, near):
         return True
     if near.code in SURE_IF_STATED and _are_letters_stated(claim, letters):
         return True
@@ -252,6 +263,18 @@ def _is_of_stated_body(claim: Claim, near: Near) -> bool:
     return body is not None and body.kind.title in near.known.name
 
 
+def _is_of_axis(named: NamedFormula, near: Near) -> bool:
+    """Return whether the name of a quantity states an axis, as I_x does, and ``near`` is the formula for this axis."""
+    axis, own = re.search(r", ([xyz]) axis$", near.known.name), re.search("[xyz]+$", quantity_name(named))
+    return axis is not None and own is not None and {*own[0]} == {axis[1]}
+
+
+def _is_of_stated_flat_body(claim: Claim, near: Near) -> bool:
+    """Return whether the context of a claim states a flat body, and ``near`` is the sum of its moments in its plane."""
+    body = claim.context.body
+    return body is not None and "a flat body" in body.formulas and "of a flat body about the axis" in near.known.name
+
+
 def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
     """Return whether a component of a quaternion has a wrong angle or function, as in beta_1 = e_1 sin(phi).
 
@@ -274,6 +297,19 @@ def _is_entry_of_matrix(named: NamedFormula, near: Near) -> bool:
     """
     own, entry = re.fullmatch(ENTRY, named.name), re.match(r"entry ([1-3]{2}) of the rotation matrix", near.known.name)
     return own is not None and entry is not None and own[1] == entry[1] and has_terms(named.formula)
+
+
+def _only_in_sines(formula: Node) -> set[str]:
+    """Return the letters that a formula has only inside sines and cosines."""
+    inside = {name for _, node in walk(formula) if node.kind == "call" and node.value in ("sin", "cos")
+              for name in names_in(node)}  # fmt: skip
+    return inside - _outside_of_sines(formula)
+
+
+def _outside_of_sines(node: Node) -> set[str]:
+    if node.kind == "call" and node.value in ("sin", "cos"):
+        return set()
+    return names_in(node) if not node.args else {name for child in node.args for name in _outside_of_sines(child)}
 
 
 def has_terms(formula: Node) -> bool:
@@ -299,8 +335,9 @@ def names_in(formula: Node) -> set[str]:
 def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> bool:
     """Return whether a claim may mean a known formula, judged by the quantity's name and the units of the symbols.
 
-    ``matrix`` tells whether the claim's formula is a vector or matrix. Then it may also be the transpose of ``known``,
-    for example; a scalar formula must be equal to ``known`` as it is.
+    ``known.how`` says how the claim's formula differs from the known one. A scalar must be equal to it as it is. A
+    vector or matrix (``matrix`` is True) may also be its transpose or inverse, for example, but not the same with
+    another sign; a multiple is excluded only if the quantity's name has a known meaning.
     """
     words = words_of(named)
     if words is None and "inertia" in known.name and named.name[:1].islower():
@@ -328,6 +365,17 @@ def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
     places = {letter: ANGLES.index(old_names.get(letter, letter)) for letter in letters
               if old_names.get(letter, letter) in ANGLES}  # fmt: skip
     return not are_roll_pitch_yaw(sequence[1], places)
+
+
+def is_unusual(known: Identification) -> bool:
+    """Return whether a claim is a known formula only if components such as omega_1 or p are in the space frame.
+
+    Books number the components in the body, or call them p, q and r there.
+    """
+    components = [new for old, new in known.mapping.items() if old in COMPONENTS_OF_OMEGA]
+    return "space frame" in known.name and any(
+        re.fullmatch(r"(omega|w)_?[1-3]|[pqr]", plain_name(new)) for new in components
+    )
 
 
 def keeps_places(named: NamedFormula, known: Identification) -> bool:
@@ -448,10 +496,15 @@ def strangeness_of(named: NamedFormula, known: Identification) -> tuple[int, int
 def rarity_of(known: Identification) -> tuple[bool, int]:
     """Return a sort key of a known formula, smaller for those that a claim more probably means.
 
-    Formulas that match without a change, such as a transpose, come first, and among these the formulas in Euler
-    sequences that many books use.
+    Formulas that are equal to the claim's come first, before those that have to be transposed or multiplied to match.
+    Among each of these, the formulas in Euler sequences that many books use come first.
     """
     return bool(known.how), _rank_of_sequence(known.name)
+
+
+def is_in_usual_sequence(known: str) -> bool:
+    """Return whether a known formula's name has no Euler sequence, or one that books use often."""
+    return _rank_of_sequence(known) < len(USUAL_SEQUENCES)
 
 
 def _rank_of_sequence(known: str) -> int:

@@ -162,9 +162,11 @@ class Fingerprint:
     idle: tuple[Expr, ...] = ()  # atoms in the formula that do not change its value
 
     def rows(self, order: Sequence[int]) -> list[Values]:
-        """Return the signatures for the given order of the entries, scaled so that a constant factor cancels.
+        """Return the signature of each atom as a row that is the same for the formula and all its multiples.
 
-        So a formula and any multiple of it have the same rows.
+        ``order`` lists the numbers of the formula's entries; the values in each signature (see the class) are put in
+        this order. All are divided by the sum of the signatures' values for one entry: the first in ``order`` with a
+        nonzero sum. A constant factor of the formula cancels in this quotient.
         """
         total = [sum(column) % PRIME for column in zip(*self.signatures, strict=True)]
         below = _inverse(next((total[n] for n in order if total[n]), 1))
@@ -179,9 +181,12 @@ class Fingerprint:
 
 
 def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
-    """Return the fingerprint of a formula: its atoms, each with its signature as in :class:`Fingerprint`.
+    """Return the fingerprint of a formula: its atoms (symbols, functions, derivatives), each with its signature.
 
-    The two numbers of the signatures are the first ones in ``DRAWS`` for which the formula has a value.
+    The signature of an atom x holds the values of ``entries`` where x has one number as its value and all other atoms
+    have a second number. ``DRAWS`` lists pairs of such numbers; the first pair at which the formula has a value for
+    each x is used. For a formula such as x/(A - B) there is none: its signatures are sums over several points. Values
+    are taken modulo ``PRIME``.
 
     Raises
     ------
@@ -211,10 +216,12 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
 
 
 def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | None:
-    """Return the fingerprint of a formula from its values where all atoms but one are equal.
+    """Return the fingerprint of a formula if it is defined at all points of the first pair in DRAWS; otherwise None.
 
-    ``entries`` are the entries of the formula, ``written`` its atoms. The result is None if the formula has no value at
-    one of these points, as ``1/(x - y)``, or does not depend on one of its atoms.
+    ``entries`` are the entries of the formula, ``written`` its atoms (symbols, functions, derivatives). There is one
+    point for each atom: this atom has the first number of the pair as its value, all others have the second. The
+    formula must also have a value where all atoms have the second number, which ``1/(x - y)`` lacks. The result is also
+    None if the value at one of the points is the same as there.
     """
     raised, others = DRAWS[0]
     point = dict.fromkeys(written, others)
@@ -231,12 +238,11 @@ def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | No
 
 
 def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], written: Sequence[Expr]) -> Values:
-    """Return the signature of ``atom`` in a formula such as x/(A - B), which has no value where A and B are equal.
+    """Return the signature of ``atom`` in a formula such as x/(A - B), which has no value where two symbols are equal.
 
-    At each point the atom has one number as its value, one of the other ``atoms`` has a second number, and all other
-    symbols have a third. The signature is the sum of the formula's values over all choices of the second atom, without
-    those where the formula has no value. ``written`` has all symbols of the formula, ``atoms`` those that change its
-    value.
+    The formula is evaluated at one point for each other atom b in ``atoms``: ``atom`` has a first number as its value,
+    b a second, and all other symbols of the formula (``written``) a third. The signature is the sum of these values.
+    Points where the formula has no value are left out. ``atoms`` are the symbols that change the formula's value.
     """
     raised, others = DRAWS[0]
     second, _ = DRAWS[1]

@@ -64,6 +64,7 @@ LAST_FIRST = (3, 0, 1, 2)
 LETTERS = {
     "kg m^2": r"[ABCIJ]\w*|lambda_?[1-3]", "kg": r"[mM]\w*", "N": r"[WPFG]\w*", "m": r"[a-hlrsxyzLRD]\w*|ell",
     "kg m^2/s": r"[LHGhpM]\w*",
+    "kg m/s": r"[pP]\w*", "N m, of momentum": r"d[LHhM]\w*",
     "N m": r"(M|N|T|Q|tau|Gamma)(_\w+)?|K_?[1-3xyz]",
     "rad/s": r"(omega|w|Omega|n|nu|p|q|r|s|lambda)(_?\w+)?|d(phi|theta|psi|alpha|beta|gamma)(_?[1-3])?",
     "rad/s^2": r"alpha\w*|d(omega|w)\w*|dd\w+|d[pqr]", "m/s": r"[vuV]\w*", "m/s^2": r"[ga]\w*",
@@ -146,9 +147,11 @@ def _value(formula: Any) -> Any:
 
 
 def _in_new_names(tree: Node, source: str, define: Sequence[tuple[str, Node]] = ()) -> Any:
-    """Return the SymPy value of a tree; its names become symbols or functions of time, as their use tells.
+    """Return the SymPy value of a tree: each name is a symbol, a function of time, or the value of its definition.
 
-    ``define`` are the names with a definition, such as vectors with their components, and ``source`` is the text.
+    Names without a definition become real symbols, or functions of time if the tree has their rates. ``define`` has
+    (name, formula) for the others, such as a vector with its components; they are replaced by the values of these
+    formulas. ``source`` is the text of the tree, for messages.
     """
     tree = with_natural_base(tree) if has_natural_base([tree]) else tree
     quantities: dict[str, Any] = {letter: Symbol(letter, real=True) for letter in letters_of_quantities([tree])}
@@ -463,10 +466,11 @@ def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, 
 def _likeliest(
     atoms: Sequence[Expr], others: Sequence[Expr], known: Mapping[Expr, tuple[str, str | None]]
 ) -> list[Expr]:
-    """Return the symbols ``others`` in the order in which units, axes and first letters best fit those of ``atoms``.
+    """Return ``others`` reordered so that each symbol fits the one at the same position in ``atoms``.
 
-    This order is tried first, as many symbols have more orders than can be tried. ``known`` has the text and the unit
-    of each symbol.
+    For each atom in turn, the best of the remaining symbols is chosen: with the same unit, the same name, the same
+    first letter, the same axis. ``known`` has the text and the unit of each symbol. The caller compares the two lists
+    in this order first, since for many symbols it cannot try all orders.
     """
     rest, ordered = list(others), []
     names = {plain_name(known[atom][0]) for atom in atoms}

@@ -18,6 +18,7 @@ from symrot.checker.recognition.fingerprint import NotInField, fingerprint
 from symrot.checker.recognition.formulas.bodies import bodies
 from symrot.checker.recognition.formulas.kinematics import GYROSCOPE, along_axes, rotations, vectors
 from symrot.checker.recognition.formulas.mechanics import one_axis, tops
+from symrot.checker.recognition.formulas.points import ANY_VECTORS, GENERAL, points
 from symrot.checker.recognition.relations import primitive, relations, solved
 from symrot.conventions import SEQUENCES
 from symrot.dynamics.equations import euler_equations
@@ -43,11 +44,12 @@ FRAMES = ("body", "space")
 
 @dataclass(frozen=True)
 class Known:
-    """A formula that symrot derives, with its name, its source and its text.
+    """A formula that symrot derives: ``name`` says for what, ``source`` is its derivation page, ``text`` the formula.
 
-    ``scaled``: a multiple of the formula has the same name. ``only_named``: the formula is a product of few
-    symbols, such as ``C*omega_3``, or a sum of any vectors; it is recognised only in a claim that names the
-    quantity, with the letters that books use. ``is_relation``: it is the difference of the sides of an equation.
+    ``scaled``: a claim with a multiple of the formula gets the same name. ``only_named``: the formula says too little
+    by itself, as the product C*omega_3 or the scalar product a . b of two vectors; it is recognised only in a claim
+    that names the quantity and uses the letters of books. ``is_relation``: the formula is the left minus the right side
+    of an equation.
     """
 
     name: str
@@ -273,6 +275,7 @@ def stated() -> Iterator[Named]:
         tops,
         _solved,
         vectors,
+        points,
         along_axes,
         rotations,
         bodies,
@@ -330,8 +333,8 @@ def _selected(
     They have at least ``least`` symbols, so that they can be recognised, and at most ``longest`` characters. The flag
     ``is_relation`` is stored with them: they are then differences that are zero, and are looked up for equations only.
     """
-    of_letters = {*(name for name, *_ in along_axes()), GYROSCOPE, *SCALAR_PRODUCTS}
-    seen, few = set(), {name for name, *_ in (*tops(), *one_axis(), *_solved(), *rotations(), *bodies())}
+    of_letters = {*(name for name, *_ in along_axes()), GYROSCOPE, *SCALAR_PRODUCTS, *ANY_VECTORS, *GENERAL}
+    seen, few = set(), {name for name, *_ in (*tops(), *one_axis(), *_solved(), *rotations(), *bodies(), *points())}
     for name, source, value in formulas:
         entries, shape = flatten(value)
         if sum(entry.count_ops() for entry in entries) > longest // 3:
@@ -341,7 +344,7 @@ def _selected(
             own = fingerprint(entries)
         except NotInField:
             continue
-        is_general = _is_general(entries) and not ending_of(name)
+        is_general = _is_general(entries) and not ending_of(name) and name not in GENERAL
         if is_general or len(own.atoms) < least or len(text) > longest or (name, text) in seen:
             continue
         seen.add((name, text))
@@ -352,10 +355,11 @@ def _selected(
 
 
 def ending_of(name: str) -> str:
-    """Return the end of a known formula's name that says of which function of the quantity the formula is; "" if none.
+    """Return ", squared" or ", acos" at the end of a known formula's name; "" if the name has no such end.
 
-    The name "spin .., squared" has the end ", squared" and a formula for the square of the spin; "nutation .., acos"
-    has ", acos" and a formula for the cosine of the angle.
+    The formula then gives a function of the quantity instead of the quantity: "spin .., squared" the square of the
+    spin, "nutation .., acos" the cosine of the angle, and ".., 2 acos" the cosine of half the angle. With ", asin" it
+    gives the sine, with ", atan2" the two arguments of atan2.
     """
     ending = re.search(r", (squared|(\S+ )?(acos|asin|atan2))$", name)
     return ending[0] if ending else ""

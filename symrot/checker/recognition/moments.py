@@ -20,13 +20,12 @@ FIRST_EQUAL = (("A", "B"), ("I_xx", "I_yy"))
 
 
 def is_symmetric_body(absent: str, letter: str, renaming: dict[str, str | None], times: int) -> bool:
-    """Return whether a claim may mean a body with two equal moments of inertia, for which it has a single letter.
+    """Return whether a claim may mean a body with two equal moments of inertia, and have one letter for both.
 
-    ``absent`` is the moment that the claim lacks, ``letter`` the candidate for the common letter, and ``times`` counts
-    how often this letter occurs. Books give equal moments the letter of the first: I_1 if I_1 = I_2, and I_2 if I_2 =
-    I_3. If the letter occurs once, the last two moments may be equal as well as the first two: ``A p^2 + B (q^2 +
-    r^2)`` is clearly meant for B = C. If it occurs more than once, only the first two may be, as the third axis is the
-    usual one of symmetry.
+    ``absent`` is the moment of the known formula that the claim lacks, ``letter`` the claim's letter that may stand for
+    it too, and ``times`` counts how often this letter occurs. ``renaming`` maps known moments to letters of the claim.
+    If A = B, books write A for both. If B = C, they write B: this is allowed only if the letter occurs once, as in ``A
+    p^2 + B (q^2 + r^2)``, which clearly means B = C. Otherwise the third axis is that of symmetry.
     """
     equal = EQUAL_MOMENTS if times == 1 else FIRST_EQUAL
     return any(absent == later and renaming.get(earlier) == letter for earlier, later in equal)
@@ -63,10 +62,11 @@ def _share(added: Sequence[float], mass: Values, length: Values) -> Fraction | N
 
 
 def _shares(added: Sequence[float], mass: Values, lengths: Sequence[Values]) -> list[Fraction | None]:
-    """Return the rational numbers [k, l] for which m (k a^2 + l b^2) is what is ``added`` to a moment of inertia.
+    """Return simple fractions [k, l] for which m (k a^2 + l b^2) was ``added`` to a moment of inertia.
 
-    ``added``, ``mass`` (m) and ``lengths`` (a and b) are values at the test points. If there are no such numbers, the
-    result is [None], or has None for a number that is no simple fraction.
+    ``added``, ``mass`` (m) and ``lengths`` (a and b) are values at the test points. [None] is returned if no numbers k
+    and l fit the values at all points. If numbers fit and one of them is no simple fraction, None stands in its place:
+    [1/4, None].
     """
     (first, second, *_), rows = [value / m for value, m in zip(added, mass, strict=True)], [
         (a * a, b * b) for a, b in zip(*lengths, strict=True)

@@ -7,7 +7,7 @@ it equal to one, and "definition" otherwise.
 """
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations, islice
 from typing import Any
@@ -33,7 +33,9 @@ from symrot.checker.recognition.evidence import (
     has_terms,
     has_word,
     is_evident,
+    is_in_usual_sequence,
     is_of_body,
+    is_unusual,
     keeps_places,
     misfit_of,
     names_in,
@@ -59,7 +61,9 @@ from symrot.exact.decide import decide
 from symrot.exact.printing import as_text
 from symrot.exact.ring.ratio import TooLarge
 
-__all__ = ["SQUARED", "recognised_edits", "verdict_near_relation", "verdict_on_name", "verdict_on_relation"]
+__all__ = [
+    "AS_IT_STANDS", "SQUARED", "recognised_edits", "verdict_near_relation", "verdict_on_name", "verdict_on_relation",
+]  # fmt: skip
 
 
 MOST_EDITS = 400
@@ -81,6 +85,12 @@ MOST_SOLVED = 4
 
 PER_NAME, PER_PLACE = 0.1, 0.3
 """The costs of a symbol with a new name, and of a component or an axis that the name of the quantity does not say."""
+
+AS_IT_STANDS = "as it stands, it is the"
+"""The beginning of a note on the unusual convention in which a doubtful claim is right."""
+
+EXCHANGES = ("wrong_symbol", "sin_cos_swap")
+"""The faults that turn a formula in one convention into a formula in another."""
 
 AS_NEAR = 0.15
 """The most by which the cost of a moment of inertia, about a parallel axis, may exceed the cost of the nearest one."""
@@ -119,7 +129,9 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     readings = _readings(claim, named, named.formula, LEAST_SYMBOLS)
     readings = readings or _with_other_products(claim, named, named.formula)
     if readings:
-        return Verdict("recognised", recognised_as=readings, notes=_on_signs_of_products(claim, named, readings))
+        usual = _near_usual(claim, named, readings) if repair else None
+        recognised = Verdict("recognised", recognised_as=readings, notes=_on_signs_of_products(claim, named, readings))
+        return recognised if usual is None else usual
     nearest = _nearest(claim, named) if repair else None
     if nearest is not None:
         return nearest
@@ -137,6 +149,32 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
             "it may be a definition"
         )
     return Verdict("definition", reason=reason)
+
+
+def _near_usual(claim: Claim, named: NamedFormula, readings: Sequence[Identification]) -> Verdict | None:
+    """Return the verdict "doubtful" on a claim that is known in an unusual convention and nearly known in a usual one.
+
+    ``readings`` are the known formulas that the claim is equal to. For ``psi' = (omega_2 sin phi + omega_1 cos
+    phi)/cos theta`` these are in the space frame, while omega_1 and omega_2 usually are components in the body: there
+    omega_1 should be omega_3. Return None if the convention is usual, or if the context of the claim states one.
+    """
+    if claim.context or claim.hypotheses or not all(is_unusual(known) for known in readings):
+        return None
+    words, quantity = words_of(named), quantity_name(named)
+    nearby = [near for near in near_formulas(claim, named, lambda known: has_word(known.name, words))
+              if near.code in EXCHANGES and is_in_usual_sequence(near.known.name)]  # fmt: skip
+    nearby.sort(key=lambda near: near.cost + PER_NAME * near.renamed + PER_PLACE * misfit_of(quantity, near.known.name))
+    for near in nearby[:MOST_PROOFS]:
+        usual = tuple(known for known in _readings(claim, named, near.tree, 1) if not is_unusual(known))
+        if usual:
+            return Verdict(
+                "doubtful",
+                diagnosis=Diagnosis(near.code, FAULT_DESCRIPTIONS[near.code]),
+                repairs=(Repair(f"{text(named.side)} == {text(near.tree)}", near.code, near.cost),),
+                recognised_as=usual,
+                notes=(f"{AS_IT_STANDS} {readings[0]}",),
+            )
+    return None
 
 
 def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | None:
@@ -240,7 +278,8 @@ def verdict_near_relation(claim: Claim) -> Verdict | None:
 def _near_relation(claim: Claim, left: Node, right: Node) -> Verdict | None:
     """Return the verdict "doubtful" if one change makes ``left == right`` a known relation; otherwise None.
 
-    The equation is solved for each of its letters in turn, since faults are searched in formulas for one quantity.
+    The search for faults needs an equation with a single quantity on the left. So the equation is solved for each of
+    its letters in turn (rates first), and each result, such as ``T == I*alpha``, is searched until one gives a verdict.
     """
     if len(names_in(left) | names_in(right)) < LEAST_SYMBOLS_RELATED:
         return None
@@ -264,10 +303,11 @@ def _in_claim(repair: Repair, left: Node, right: Node, named: NamedFormula) -> R
 
 
 def _are_usable(claim: Claim) -> bool:
-    """Return whether a claim under these hypotheses may be compared with known formulas at points that obey them.
+    """Return whether the claim's hypotheses allow a search for faults: a comparison with known formulas at test points.
 
-    Allowed are hypotheses that give a name to a formula, and that say that a vector or quaternion has length one. Under
-    others, such as A = B for two moments, a formula may be the special case of a known one, and seem to have a fault.
+    They do if each one gives a name to a formula, or says that a vector or quaternion has length one. Under another
+    hypothesis, such as A = B for two moments, a right formula may be shorter than the known one: the search would then
+    report that a term is missing.
     """
     short = claim.defining
     return all(
@@ -327,11 +367,11 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 
 def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identification, ...]:
-    """Return, in a tuple, the known formula of ``near`` if it equals the claim's formula for letters of certain signs.
+    """Return (known formula,) if the formula of ``near`` equals its known formula for some signs of the letters.
 
-    The look-up by fingerprint misses such formulas: ``a*sqrt(1 - x/a^2)`` is ``sqrt(a^2 - x)`` for positive a only.
-    ``near`` has the known formula with its renaming, and the corrected formula that is compared. Otherwise () is
-    returned.
+    ``near.tree`` is the claim's formula, or the claim's after one correction; ``near.known`` is the known formula with
+    the letters in ``near.renaming``. ``a*sqrt(1 - x/a^2)`` equals ``sqrt(a^2 - x)`` for positive a only: the look-up of
+    known formulas, which compares for all values, misses it. The result is () if the two are not equal so.
     """
     ending = ending_of(near.known.name)
     if named.solve is None or ending not in ("", SQUARED):
@@ -478,8 +518,9 @@ def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:
 def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int) -> tuple[Identification, ...]:
     """Return the known formulas that are equal to ``tree`` and whose symbols fit the names in the claim.
 
-    The likeliest formula comes first. Formulas with fewer than ``least_symbols`` symbols are not looked up, with the
-    exception in :func:`_readings_of_formula`.
+    The likeliest comes first. Formulas with fewer than ``least_symbols`` symbols are not looked up. Only if
+    ``least_symbols`` is LEAST_SYMBOLS and books use the quantity's name for one thing, as I_zz for a moment of inertia,
+    one symbol suffices.
     """
     solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
     is_open = (words_of(named) is None or _is_stated(claim, named)) and least_symbols == LEAST_SYMBOLS
@@ -529,9 +570,10 @@ def _readings_of_formula(
 ) -> tuple[Identification, ...]:
     """Return the known formulas for the claim's quantity that are equal to ``formula``, the likeliest first.
 
-    Formulas with fewer than ``least_symbols`` symbols are not looked up, and the result is empty. But one symbol
-    suffices if the name of the claim's quantity (``named.name``) tells what it is, and ``least_symbols`` is
-    ``LEAST_SYMBOLS``.
+    Formulas with fewer than ``least_symbols`` symbols are not looked up, and the result is (). For the claim's own
+    formula, callers give LEAST_SYMBOLS; one symbol suffices then if books use ``named.name`` for one thing, as I_zz for
+    a moment of inertia. For edited formulas they give larger numbers, without this exception, since a short edited
+    formula may be equal to a known one by chance.
     """
     try:
         value = claim.with_definitions(claim.interpreter().read(formula))

@@ -60,15 +60,15 @@ SQUARED = ", squared"
 
 
 class Near(NamedTuple):
-    """A candidate for a repair: the formula ``tree`` is one change away from the claim's, and may be a known formula.
+    """A candidate for a repair: ``tree``, the claim's formula after one change, has the values of ``known``.
 
-    ``code`` and ``cost`` are those of the fault that the change corrects. ``known`` is the known formula, and
-    ``renamed`` the number of its symbols with new names. ``has_other_unit``: the claim's formula has another unit than
-    ``known``. ``is_shifted``: the claim's formula is the known moment of inertia plus m d^2, like one about a parallel
-    axis. ``is_symmetric``: the claim's formula is ``known`` for a body with two equal moments of inertia. ``letter`` is
-    the changed part, if that is a symbol. ``array_letters`` counts the letters of a formula with vectors or matrices,
-    each component as one letter; it is 0 for other formulas. ``renaming`` gives the letters of the claim for the
-    symbols of the known formula.
+    The values agree at the test points; equality is not yet proven. ``code`` and ``cost`` are those of the fault that
+    the change corrects. ``renaming`` gives the claim's letter for each symbol of ``known``, and ``renamed`` counts the
+    symbols of ``known`` whose letter in the claim is another one. ``has_other_unit``: the claim's formula has another
+    unit than ``known``. ``is_shifted``: the claim's formula is the known moment of inertia plus m d^2, like one about a
+    parallel axis. ``is_symmetric``: the claim's formula is ``known`` for a body with two equal moments of inertia.
+    ``letter`` is the changed part of the claim, if that is a symbol. ``array_letters`` counts the letters of a formula
+    with vectors or matrices, each component as one letter; it is 0 for other formulas.
     """
 
     cost: float
@@ -108,7 +108,10 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
     for mine, known in chain((("", known) for known in _known_formulas() if fits(known)), _relations(quantity)):
         is_wrong_kind = _is_column(known) != is_matrix(scale[0])
         is_of_body = claim.context.body is not None and claim.context.body.kind.title in known.name
-        is_other = _has_angles(known) != bool(letters.angles) and len(_names(known)) > FEW
+        has_one_angle = (
+            len(letters.angles) == 1 and len(_names(known)) == len(letters.atoms) - 1
+        )  # in a factor too many
+        is_other = _has_angles(known) != bool(letters.angles) and len(_names(known)) > FEW and not has_one_angle
         is_wrong_kind = is_wrong_kind or (is_other and not is_of_body)
         if is_wrong_kind or abs(len(_names(known)) - len(letters.atoms)) > 1:
             continue
@@ -245,10 +248,11 @@ def _search(claim: Claim, named: NamedFormula, letters: Letters, values: Values)
 
 
 def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near] | None:
-    """Return the formulas that one change makes of the claim's formula and that have the values of ``known``.
+    """Return the candidates for a repair: the claim's formula after one change, if it then has the values of ``known``.
 
-    ``renaming`` gives the claim's name for each known symbol, or None for a symbol that the claim lacks. The list is
-    empty if no single change gives these values. None is returned if the claim's formula has them without a change.
+    ``renaming`` gives the claim's name for each symbol of ``known``, or None for a symbol that the claim lacks. The
+    list is empty if no single change gives these values. None is returned if the claim's formula has these values as it
+    is: then it needs no repair.
     """
     named, letters = search.named, search.letters
     atoms = {text_of(atom): atom for atom in letters.atoms}
@@ -462,11 +466,12 @@ def _renamed(tree: Node, nodes: dict[str, Node]) -> Node:
 
 
 def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters) -> Values | None:
-    """Return the values that the claim's formula should have if ``target`` are the values of the formula ``known``.
+    """Return the values that the claim's formula should have if its quantity is the one of the formula ``known``.
 
-    They are those of ``named.side``, which may be a multiple or power of the claim's quantity, as in 2*omega; ``known``
-    may be a formula for the square or the cosine of the quantity. Return None if these values do not give those of the
-    side, for example if the quantity would be the root of a negative value.
+    ``target`` are the values of ``known`` at the test points. From each, the value of the quantity follows: the root
+    for a known square, the angle for a known cosine. It is inserted into ``named.side``, the side that the claim
+    equates to its formula: for the side 2*omega, twice the value is returned. None is returned if a value does not
+    exist, as the root of a negative number.
     """
     function = _FUNCTIONS_OF_ENDINGS.get(ending_of(known.name))
     if function is None:

@@ -75,10 +75,11 @@ def _rank(renaming: dict[str, str | None]) -> tuple[int, int, bool, int]:
 
 
 def renaming_of_product(own: Sequence[str]) -> dict[str, str | None] | None:
-    """Return the renaming of the components of a quaternion product whose factors are numbered: q0 to a1, p0 to a2, ..
+    """Return the claim's name for each component q0, .., q3, p0, .., p3 of a product q p of two numbered quaternions.
 
-    ``own`` are the names in the claim: a1, b1, c1, d1 for the first factor q, and a2, .., d2 for the second one, p. One
-    of them may be missing, and its value is then None. The result is None if the names do not have this form.
+    ``own`` are the names in the claim: a1, b1, c1, d1 for the first factor q, and a2, b2, c2, d2 for the second factor
+    p. So q0 is mapped to a1 and p0 to a2. If the claim lacks one of the eight names, its component is mapped to None.
+    The whole result is None if the names do not have this form.
     """
     places = {(match[1], match[2]): name for name in own if (match := NUMBERED.fullmatch(name))}
     letters, numbers = sorted({letter for letter, _ in places}), sorted({number for _, number in places})
@@ -92,10 +93,11 @@ def renaming_of_product(own: Sequence[str]) -> dict[str, str | None] | None:
 
 
 def _absent_of_product(known: str, renaming: dict[str, str | None]) -> str | None:
-    """Return the claim's name for the component ``known`` of a quaternion product, if the claim lacks it.
+    """Return the name that a component of a quaternion product would have in the claim, which does not contain it.
 
-    It follows from the other names in ``renaming``. If the factors are (a1, b1, c1, d1) and (a2, b2, d2), the component
-    that is absent is c2. Return None if the claim's names have no such numbers.
+    ``known`` is the component, such as p2, and ``renaming`` maps the others to names of the claim. If these are a1, b1,
+    c1, d1 for q and a2, b2, d2 for p, the result for p2 is c2: the letter of q2 with the number of the other names of
+    p. Return None if ``known`` is no such component, or the claim's names are not letters with a number.
     """
     if re.fullmatch("[qp][0-3]", known) is None:
         return None
@@ -108,6 +110,13 @@ def _absent_of_product(known: str, renaming: dict[str, str | None]) -> str | Non
 
 NUMBERED = re.compile("([a-z])_?([1-9])")
 """A component of a factor of a product; its groups are the letter of the component and the number of the factor."""
+
+
+def _without_mark(name: str) -> tuple[str, str]:
+    """Return a name without the bar or prime over it, and this mark: z and _bar for ``z_bar``."""
+    mark = re.search("(_bar|_prime)*$", name)
+    assert mark is not None
+    return name[: mark.start()], mark[0]
 
 
 def _numbered_angle(known: str, mine: str, other: str) -> str:
@@ -198,7 +207,8 @@ def is_fitting(known: str, own: str, is_angle: bool) -> bool:
     if re.match("[A-Z]{2}", name):
         return False  # two letters without a sign between them
     is_rate = own.startswith("diff(") or own.endswith("dot")
-    if is_rate != known.startswith("d") and (is_rate or unit not in ("rad/s", "rad/s^2")):
+    is_known_rate = known.startswith("d") and not known.startswith("d_")  # d_x is a distance
+    if is_rate != is_known_rate and (is_rate or unit not in ("rad/s", "rad/s^2")):
         return False
     if known in COORDINATES and re.fullmatch(r"[a-zA-Z]_[xyz1-3]", name):
         return True  # a component of any vector, such as a rotated velocity
@@ -228,7 +238,7 @@ def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]
     axis = axes_of(known)
     unit = UNIT_OF_NAME.get(known)
     for mine, other in renaming.items():
-        name = plain_name(other or "")
+        name, mark = _without_mark(plain_name(other or ""))
         index = INDEX.search(name)
         if other is None or index is None or UNIT_OF_NAME.get(mine) != unit or len(axes_of(mine)) != len(axis):
             continue
@@ -236,5 +246,5 @@ def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]
         if axis and own == new:
             letters = "0xyz" if index[0].isalpha() else "0123"
             new_index = "".join(letters[place] for place in sorted(axis))
-            return name[: index.start()] + new_index * (len(index[0]) if len(axis) == 1 else 1), True
+            return name[: index.start()] + new_index * (len(index[0]) if len(axis) == 1 else 1) + mark, True
     return USUAL.get(known, known), False

@@ -59,7 +59,12 @@ Values = tuple[Any, ...]
 
 
 class Part(NamedTuple):
-    """A part of a formula with its values, and with the values that it should have."""
+    """A part of a claim's formula, with its actual and its needed values at the test points.
+
+    ``path`` is its place in the formula and ``node`` its tree; ``parent`` is the kind of the node above it, such as
+    "sum". ``needed`` are the values with which the whole formula would get its intended values, such as those of a
+    known formula, if only this part is wrong.
+    """
 
     path: Path
     node: Node
@@ -174,7 +179,11 @@ def _children(
 
 
 def _wrong_row(values: Values, needed: Values) -> int | None:
-    """Return the only row of a column in which ``values`` differ from ``needed``; None if it is not just one."""
+    """Return the index of the row in which a column differs from the needed one; None unless exactly one row differs.
+
+    ``values`` are the values of the column at the test points, ``needed`` the values that it should have there. For a
+    matrix with several columns, the result is None.
+    """
     pairs = [(entries_of(value), entries_of(other)) for value, other in zip(values, needed, strict=True)]
     wrong = [n for n in range(len(pairs[0][0])) if not all(near(a[n], b[n]) for a, b in pairs)]
     return wrong[0] if len(wrong) == 1 and (shape_of(values[0]) or (0, 0))[1] == 1 else None
@@ -183,11 +192,11 @@ def _wrong_row(values: Values, needed: Values) -> int | None:
 def _row_of_matrix(
     tree: Node, points: Sequence[Point], values: Values, needed: Values, row: int
 ) -> Iterator[tuple[Path, Node, Values | None]]:
-    """Yield (path, entry, its needed values) for each entry in one row of a matrix that multiplies a column.
+    """Yield (path in ``tree``, entry, needed values) for each entry of a row in a matrix that multiplies a column.
 
-    In ``tree``, the product, entry ``row`` is wrong: it has the values ``values`` and should have ``needed``. One entry
-    in this row of the matrix may be the cause. For each entry, the values are those which it must have if only it is
-    wrong.
+    ``tree`` is the product. Its entry ``row`` is wrong: at the test points, the product has ``values`` and should have
+    ``needed``. A wrong entry of the matrix in this row explains that. The yielded values are those with which the
+    product is right, if only this entry changes.
     """
     place, matrix = next(((n, part) for n, part in enumerate(tree.args) if matrix_entries(part)), (0, tree))
     others = [part for n, part in enumerate(tree.args) if n != place]
@@ -261,7 +270,11 @@ _INWARD: dict[tuple[str, str | None], Callable[[Sequence[Any], int, Any], Any]] 
 
 
 def is_absent(part: Part) -> bool:
-    """Return whether a part should be left out: a term that should be zero, or a factor that should be one."""
+    """Return whether a claim would be right without a part: the part's needed values are 0 in a sum, or 1 in a product.
+
+    ``part.needed`` are the values at the test points with which the claim would be right. Numbers, and parts whose
+    needed values are matrices, never count.
+    """
     neutral = {"sum": 0.0, "product": 1.0}.get(part.parent)
     if neutral is None or any(map(is_matrix, part.needed)) or part.node.kind == "number":
         return False

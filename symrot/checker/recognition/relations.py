@@ -40,7 +40,16 @@ from symrot.inertia.solids import solid
 from symrot.kinematics import quaternion, rotation_vector
 from symrot.kinematics.euler import rate_jacobian
 
-__all__ = ["OTHERS", "Relation", "primitive", "relations", "solved", "terms_expanded", "without_common_powers"]
+__all__ = [
+    "OTHERS",
+    "Relation",
+    "new_symbol",
+    "primitive",
+    "relations",
+    "solved",
+    "terms_expanded",
+    "without_common_powers",
+]
 
 PHI, THETA, PSI = symbols.angles
 DPHI, DTHETA, DPSI = symbols.angle_rates
@@ -55,7 +64,7 @@ HEAVY, FREE, ROLLING, PLANE, WHEEL, PENDULUM, EULER, AXIS = (
 )  # fmt: skip
 
 
-def _new(name: str, unit: str) -> Symbol:
+def new_symbol(name: str, unit: str) -> Symbol:
     """Create a symbol that :mod:`symrot.symbols` does not have, record its unit, and return it."""
     symbol = Symbol(name, real=True)
     OTHERS[symbol] = unit
@@ -65,22 +74,23 @@ def _new(name: str, unit: str) -> Symbol:
 OTHERS: dict[Symbol, str] = {}
 """The symbols of relations that are not in :mod:`symrot.symbols`, with their units."""
 
-ENERGY, STIFFNESS, SPEED = _new("E_k", "J"), _new("k_t", "N m/rad"), _new("v", "m/s")
-BEFORE, AFTER = _new("omega_i", "rad/s"), _new("omega_f", "rad/s")
-START, END, TIME = _new("theta_i", "rad"), _new("theta_f", "rad"), _new("t", "s")
-ALPHA, FALL, SLOPE = _new("alpha_a", "rad/s^2"), _new("a_l", "m/s^2"), _new("beta", "rad")
-TORQUE, PERIOD, LENGTH = _new("M", "N m"), _new("T_p", "s"), _new("q_d", "m")
-GYRATION = _new("k_O", "m, of gyration")
-TILT = _new("gamma", "rad")
-WHEEL_MOMENTUM = _new("h_w", "kg m^2/s")
-WORK = _new("W_k", "J")
+ENERGY, STIFFNESS, SPEED = new_symbol("E_k", "J"), new_symbol("k_t", "N m/rad"), new_symbol("v", "m/s")
+BEFORE, AFTER = new_symbol("omega_i", "rad/s"), new_symbol("omega_f", "rad/s")
+START, END, TIME = new_symbol("theta_i", "rad"), new_symbol("theta_f", "rad"), new_symbol("t", "s")
+ALPHA, FALL, SLOPE = new_symbol("alpha_a", "rad/s^2"), new_symbol("a_l", "m/s^2"), new_symbol("beta", "rad")
+TORQUE, PERIOD, LENGTH = new_symbol("M", "N m"), new_symbol("T_p", "s"), new_symbol("q_d", "m")
+GYRATION = new_symbol("k_O", "m, of gyration")
+TILT = new_symbol("gamma", "rad")
+WHEEL_MOMENTUM = new_symbol("h_w", "kg m^2/s")
+WORK = new_symbol("W_k", "J")
 
 
 class Relation(NamedTuple):
-    """A relation of mechanics as a difference that is zero, with its title and the derivation that it comes from.
+    """A relation of mechanics: ``difference``, left minus right side, is zero; ``source`` is its derivation page.
 
-    ``words`` has the symbols for which the relation is solved, each with the words that the name of the solved formula
-    has before the title: "energy of" and the title "a heavy top" give "energy of a heavy top".
+    ``words`` maps each symbol for which the relation can be solved to the beginning of the solved formula's name;
+    ``title`` is the rest. With the words "energy of" for E and the title "a heavy top", the formula for E is called
+    "energy of a heavy top".
     """
 
     title: str
@@ -193,20 +203,31 @@ def _one_axis() -> Iterator[Relation]:
     (moment,) = solve(energy.diff(SPIN) - symbols.H, C)
     by_momentum = ENERGY - energy.subs(C, moment)
     yield Relation("rotation about one axis by its angular momentum", PLANE, by_momentum, {ENERGY: "kinetic energy of"})
+    (spin,) = solve(energy.diff(SPIN) - symbols.H, SPIN)
+    without_spin = ENERGY - energy.subs(SPIN, spin)
+    yield Relation(
+        "rotation about one axis by its angular momentum", PLANE, without_spin, {ENERGY: "kinetic energy of"}
+    )
     gain = energy.subs(SPIN, AFTER) - energy.subs(SPIN, BEFORE)
     yield Relation("work and kinetic energy of rotation", PLANE, WORK - gain, {WORK: "work by"})
     yield Relation("impulse and angular momentum about one axis", PLANE, C * BEFORE + TORQUE * TIME - C * AFTER,
                    {AFTER: "angular velocity by"})  # fmt: skip
     work = TORQUE * (END - START)
     yield Relation("work of a constant torque", PLANE, WORK - work, {WORK: "work by the"})
+    from_zero = work.subs({START: 0, END: THETA})
+    yield Relation("work of a constant torque", PLANE, WORK - from_zero, {WORK: "work by the"})
     later = BEFORE + ALPHA * TIME
     turned = START + later.integrate((TIME, 0, TIME))
     (time,) = solve(later - AFTER, TIME)
     squared = expand(2 * ALPHA * (turned.subs(TIME, time) - END))
     motion = "constant angular acceleration"
-    yield Relation(motion, PLANE, AFTER - later, {AFTER: "angular velocity at"})
-    yield Relation(motion, PLANE, END - turned, {END: "angle at"})
-    yield Relation(motion, PLANE, squared, {AFTER: "angular velocity at"})
+    (constant,) = solve(later - AFTER, ALPHA)
+    mean = cancel(turned.subs(ALPHA, constant))
+    yield Relation(motion, PLANE, AFTER - later, {AFTER: "angular velocity at", ALPHA: "angular acceleration at"})
+    for start in ({}, {START: 0}):
+        yield Relation(motion, PLANE, END - turned.subs(start), {END: "angle at"})
+        yield Relation(motion, PLANE, squared.subs(start), {AFTER: "angular velocity at"})
+        yield Relation(motion, PLANE, END - mean.subs(start), {END: "angle at"})
     twist = (STIFFNESS * THETA).integrate((THETA, 0, THETA))
     yield Relation("a torsional spring", PENDULUM, ENERGY - twist, {ENERGY: "potential energy of"})
     yield Relation("a torsional pendulum", PENDULUM, STIFFNESS * PERIOD**2 - (2 * pi) ** 2 * A, {PERIOD: "period of"})
@@ -325,7 +346,10 @@ def _steady() -> Iterator[Relation]:
         yield Relation("gravity on a top", HEAVY, TORQUE - gravity, {TORQUE: "torque of"})
     level = C * SPIN * DPHI
     assert cancel(_by_spin(along).subs(THETA, pi / 2) + level) == 0
-    yield Relation("steady precession with a level axle", WHEEL, TORQUE - level, {TORQUE: "torque of"})
+    title, words = "steady precession with a level axle", {TORQUE: "torque of", DPHI: "rate of"}
+    yield Relation(title, WHEEL, TORQUE - level, words)
+    words |= {TORQUE: "gyroscopic couple of"}  # T = omega L is no torque, but twice a kinetic energy
+    yield Relation(title, WHEEL, TORQUE - level.subs(C, symbols.H / SPIN), words)
     yield Relation("fast nutation of a top", HEAVY, A * symbols.n - C * SPIN, {symbols.n: "frequency of"})
 
 

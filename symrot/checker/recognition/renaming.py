@@ -35,9 +35,11 @@ MIDDLE, OUTER = ("theta",), ("phi", "psi", "varphi")
 
 
 def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> bool:
-    """Return whether a renaming, pairs (known name, new name), keeps the axes together and each angle with its rate.
+    """Return whether pairs (known name, new name) make one sensible renaming.
 
-    If ``fixed``, each axis keeps its number; otherwise the axes may be exchanged in a cycle.
+    It must rename axes in one way: if omega_1 becomes omega_x, then I_1 must not become I_y. An angle and its rate must
+    get the letters of one angle and its rate. If ``fixed``, axis 1 must become axis 1 or x, and so for 2 and 3;
+    otherwise the axes may be exchanged in a cycle, 1 to y, 2 to z and 3 to x.
     """
     rates = [(quantity_of(known), quantity_of(new)) for known, new in renaming]
     pairs = [pair if pair[1] != own[1] else own for pair, own in zip(rates, renaming, strict=True)]
@@ -67,11 +69,11 @@ def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
 
 
 def component(known: str, quantity: str) -> list[tuple[str, str]]:
-    """Return [(component_n, quantity)] if a known formula is for component n of a vector, else [].
+    """Return [("component_1", quantity)] if a known formula is for the first component of a vector, and so on; else [].
 
-    For the known name "first component of .." and ``quantity`` omega_x, the pair is (component_1, omega_x). In a
-    renaming, it requires that axis 1 becomes axis x for the other symbols too. The list is also empty if ``quantity``
-    has no axis.
+    ``known`` is the name of the formula, "first component of ..", and ``quantity`` the claim's left side, such as
+    omega_x. The caller adds the pair to a renaming of symbols. :func:`is_consistent` then demands that axis 1 becomes x
+    in the other pairs too. The list is also empty if ``quantity`` has no axis.
     """
     parallel = re.search(r"\(parallel-axis theorem\), ([xyz]) axis", known)
     if parallel and axes_of(quantity):

@@ -70,10 +70,11 @@ def solved_claims(left: Node, right: Node, atoms: Sequence[Node]) -> Iterator[Na
 
 
 def put_back(left: Node, right: Node, named: NamedFormula, tree: Node) -> tuple[Node, Node] | None:
-    """Return the sides of ``left == right`` after the change that turned the formula of ``named`` into ``tree``.
+    """Return the sides of the claim ``left == right`` with the repair that was found in the claim solved for a letter.
 
-    ``named`` is this equation solved for a letter, by :func:`solved_claims`. The result is None if more than one term
-    changed.
+    ``named`` is the solved claim, from :func:`solved_claims`, and ``tree`` its repaired formula. The term in which
+    ``tree`` differs from ``named.formula`` is replaced in ``left`` and ``right`` too. The result is None unless the two
+    differ in exactly one term.
     """
     before, after = _terms(named.formula), _terms(tree)
     changed = [(old, new) for old, new in zip(before, after, strict=False) if old != new]

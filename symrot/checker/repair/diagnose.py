@@ -152,9 +152,11 @@ class _Search:
         return tuple(canonical(tree, self.numeric.is_matrix) for tree in self.trees(changes))
 
     def equation_form(self, changes: Sequence[Change]) -> Any:
-        """Return the collected terms of left - right after ``changes``, and the definitions in canonical form.
+        """Return a key of the equation after ``changes``, which is equal for repairs that mean the same equation.
 
-        The result is equal for repairs that differ only by moving terms between the sides.
+        The key has the terms of left - right with equal terms added up, and the definitions in a fixed order of factors
+        and terms. So moving a term to the other side, as ``a == b`` to ``a - b == 0``, does not change it. The search
+        leaves out repairs whose key it has had before.
         """
         left, right, *definitions = self.trees(changes)
         canonical_definitions = tuple(canonical(tree, self.numeric.is_matrix) for tree in definitions)
@@ -265,8 +267,8 @@ class _Search:
 def _ranges(decision: Decision) -> str:
     """Return the condition on signs or angles under which a formula holds, such as ``"0 <= x <= pi"``.
 
-    The text is empty if the verdict of ``decision`` is not "conditional", or if its condition is not only one on signs,
-    as ``A == B`` is not.
+    The text is "" if ``decision`` is not "conditional". It is also "" if the condition demands that a formula is zero,
+    as ``A == B`` does, even beside a sign.
     """
     needed = decision.requires[:1]
     is_range = decision.verdict == "conditional" and all(need.signs and not need.zeros for need in needed)

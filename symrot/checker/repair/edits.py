@@ -159,7 +159,8 @@ def single_edits(
     matrices : function
         Tells whether a node is a matrix.
     moving : bool
-        Whether the claim contains a derivative: an exchanged order of factors then means exchanged frames.
+        Whether the claim contains a derivative. Exchanged factors, as in ``diff(R, t) == R*W`` for ``W*R``, then count
+        as a confusion of the body frame with the space frame; otherwise as a wrong order of factors.
     opened : function
         Tells whether an edit may change the part at a path; by default it may change every part.
     """
@@ -191,10 +192,10 @@ def _admits_squares(node: Node) -> bool:
 
 
 def _is_scalar(node: Node, matrices: Callable[[Node], bool]) -> bool:
-    """Return whether a part is a single name or call with a scalar value, so that a lost square may have stood on it.
+    """Return whether a part is a single scalar name or call, such as r or sin(x), that may have lost a square.
 
-    Names and calls of functions are meant, and among the calls with vectors or matrices only dot, det and trace. A sum
-    such as a + b is not. ``matrices`` tells whether a node is a matrix.
+    Then r^2 is tried for r. The name pi, sums such as a + b, derivatives and integrals do not count; of the calls with
+    vectors or matrices, only dot, det and trace do. ``matrices`` tells whether a node is a matrix.
     """
     if node.kind not in ("name", "call") or node == Node("name", "pi") or node.value in ("Matrix", "diff", "integrate"):
         return False

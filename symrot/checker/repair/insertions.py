@@ -149,9 +149,10 @@ def missing_matrices(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs of a side that put the name of one definition in place of another one.
+    """Yield repairs of a side that replace the name of one definition by the name of another: ``b`` for ``a``.
 
-    All make the claim true at the test points.
+    ``a`` and ``b`` both have a definition in the claim. Only repairs that make the claim true at the test points are
+    yielded.
     """
     used = [name for name in numeric.definitions if name not in numeric.symbols]
     for place in numeric.sides_to_edit:

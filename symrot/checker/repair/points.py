@@ -120,7 +120,10 @@ class Point:
         return value
 
     def redefined(self, name: str, node: Node) -> "Point":
-        """Return a copy of the point in which one definition is replaced."""
+        """Return a copy of the point that evaluates ``name`` by the formula ``node`` instead of its definition.
+
+        A point stores the claim's definitions beside the values of the symbols, to evaluate names that are defined.
+        """
         return Point(self.symbols, self.functions, {**self.definitions, name: node}, spent=self.spent)
 
     def raised(self, variable: Node) -> "Point":
@@ -137,7 +140,7 @@ class Point:
         name = inner.value
         key = (name, order)
         if self.weight > HEAVIEST:
-            raise UndefinedValue("expected fewer derivatives inside each other")
+            raise UndefinedValue("expected fewer derivatives inside each other, as in diff(diff(f, x), y)")
         if key not in self.lifted:
             in_time = name == "t" and not order
             if not in_time and name not in self.symbols and name not in self.functions:
@@ -385,7 +388,11 @@ def points(
 
 
 def _onto_hypotheses(point: Point, hypotheses: Sequence[tuple[Node, Node]]) -> Point | None:
-    """Move a point until the hypotheses hold, by Newton's method (least-squares steps); return None if that fails."""
+    """Return a point near ``point`` at which the hypotheses hold; None if none is found.
+
+    Each hypothesis is a pair of sides. A new point is computed by Newton's method with least-squares steps; without
+    hypotheses, ``point`` itself is returned.
+    """
     if not hypotheses:
         return point
     import numpy as np

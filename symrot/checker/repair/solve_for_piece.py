@@ -56,9 +56,11 @@ class Entry:
 
 
 class Vocabulary:
-    """Short formulas from which repairs are built, sorted by their value at the first test point, then at the second.
+    """Short formulas made of a claim's parts, which can be looked up by their values to repair the claim.
 
-    They are products of a claim's symbols, functions, sines, cosines and brackets, and the products that the claim has.
+    They are products of these factors: the symbols, functions, sines and cosines of the claim, and its sums in
+    brackets. The products and powers that the claim has are in it too. The list is sorted by the value at the first
+    test point; where these are equal, by the value at the second.
     """
 
     def __init__(self, numeric: NumericFilter) -> None:
@@ -344,10 +346,12 @@ def _readings(
 
 
 def _is_there(vocabulary: Vocabulary, piece: Node, lacking: Values) -> bool:
-    """Return whether the values ``lacking`` are a rational multiple of ``piece``, or of one of its terms.
+    """Return whether a rational multiple of a term that ``piece`` already has would give ``piece`` its needed value.
 
-    ``lacking`` are the differences, at the test points, between the value that ``piece`` should have and its own. In
-    ``a + 2*b`` for ``a + 3*b`` they are those of b: the term b has a wrong coefficient, and no term is missing.
+    ``lacking`` is the needed value minus the actual value of ``piece``, at the test points. If ``piece`` is ``a + 2*b``
+    and ``a + 3*b`` is needed, ``lacking`` is the value of b. Then the coefficient of b is wrong, and no term is
+    missing: the result is True, and the caller looks for no missing term. A ``piece`` that is no sum counts as its only
+    term.
     """
     for node in piece.args if piece.kind == "sum" else (piece,):
         values = vocabulary.values(node)

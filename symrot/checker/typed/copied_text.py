@@ -76,7 +76,11 @@ def _blank(match: re.Match[str]) -> str:
 
 
 def _clauses(text: str) -> tuple[str, list[str]]:
-    """Return the text after ``where`` with blanks in place of clauses without an equation, and a list of these."""
+    """Return (equations, left out): ``text`` with blanks for all clauses without an equation, and a list of these.
+
+    ``text`` is what follows the word ``where`` in a copied formula. "m is the mass and I = m r^2" becomes blanks and "I
+    = m r^2", with ["m is the mass"] left out. Blanks keep the positions of all other characters.
+    """
     left_out: list[str] = []
 
     def equation_or_blank(match: re.Match[str]) -> str:

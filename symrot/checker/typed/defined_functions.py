@@ -55,8 +55,9 @@ DISPUTED_NAMES = {f"{prefix}{name}": name for name in DISPUTED for prefix in ("a
 
 
 def instead(name: str) -> str:
-    """Return words for the middle of an error message: what to write instead of the inverse of ``name``, and why.
+    """Return the words after "expected" in an error message: what to write for the inverse function of ``name``.
 
-    ``name`` is cot, sec or csc.
+    ``name`` is cot, sec or csc. The inverse functions, such as arccot, are refused: for x < 0, books define them
+    differently.
     """
-    return f"{DISPUTED[name]} instead of the inverse of {name}, whose values for x < 0 differ from book to book,"
+    return f"{DISPUTED[name]} instead of the inverse function of {name} (books differ on it for x < 0)"

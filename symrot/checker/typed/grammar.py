@@ -29,7 +29,11 @@ def _is_matrix_name(node: Node) -> bool:
 
 
 def _from_matrix(factors: Sequence[Node]) -> int:
-    """Return where in ``factors`` the left side of a cross product starts: at R for ``R a × b``, else at the last."""
+    """Return the index in ``factors`` at which the left operand of a cross product after them starts.
+
+    Usually this is the last factor. In ``R a × b`` the factor before it is a matrix, and the index is that of R: the
+    product is (R a) × b, the rotated a times b.
+    """
     return len(factors) - (2 if len(factors) > 1 and _is_matrix_name(factors[-2]) else 1)
 
 

@@ -37,7 +37,7 @@ class OpenFunctionsPart(Cursor):
             raised = self.next()
             self.plain = True
             if not re.fullmatch(r"[+-]?\d+", raised.text, re.ASCII):
-                raise self.fail("a whole number as the power of a function", raised.start)
+                raise self.fail("a whole number as the power of a function, as in sin²(x)", raised.start)
             return number(int(raised.text))
         if self.peek() not in ("^", "**"):
             return None
@@ -179,7 +179,11 @@ class OpenFunctionsPart(Cursor):
         return self.derivative_by(token)
 
     def continues(self, ahead: int) -> bool:
-        """Return whether an exponent follows the token that is ``ahead`` tokens after the cursor."""
+        """Return whether a power sign stands after the token ``ahead``, which is then the base of a power.
+
+        ``ahead`` counts tokens from the cursor; for 0, ``x^2`` at the cursor gives True. The power signs are ^, ** and
+        superscripts.
+        """
         after = self.token(ahead + 1)
         return after.text in ("^", "**") or after.kind == "power"
 
@@ -226,7 +230,7 @@ class OpenFunctionsPart(Cursor):
         operand = self.factor()
         self.depth -= 1
         if self.peek() == "" and self.starts_factor():
-            raise self.fail(f"brackets around the formula after d/d{variable}")
+            raise self.fail(f"brackets around the formula after d/d{variable}, as in d/d{variable} (a*b)")
         return Node("call", "diff", (operand, *variables), self.span(token.start))
 
     def end_of_bracket(self) -> int | None:
@@ -242,7 +246,8 @@ class OpenFunctionsPart(Cursor):
     def derivative_of_bracket(self, token: Token, end: int) -> Node:
         """Parse ``(x^2)/dx`` after a d, as in ``d(x^2)/dx``, and return the derivative.
 
-        The cursor is before the bracket, which has ``end`` tokens; ``token`` is the d.
+        The cursor is before the bracket. ``token`` is the d, and ``end`` the number of tokens in the bracket with its
+        two signs.
         """
         variable, after = self.differential(end + 1)
         length = after - end
@@ -291,7 +296,7 @@ class OpenFunctionsPart(Cursor):
         self.depth -= 1
         self.varies(operand)
         if self.peek() == "" and self.starts_factor():
-            raise self.fail("brackets around the formula after d/dt")
+            raise self.fail("brackets around the formula after d/dt, as in d/dt (a*b)")
         return Node("call", "diff", (operand, TIME), self.span(token.start))
 
     def varies(self, operand: Node) -> None:

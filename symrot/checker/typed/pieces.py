@@ -112,9 +112,9 @@ class PiecesPart(OpenFunctionsPart):
     def is_conjugate_before_factor(self) -> bool:
         """Return whether the star at the cursor marks a conjugate, as in ``q* v q``, and is no product sign.
 
-        No blank may be before the star, and a blank and a name must be after it. One more sign of a conjugate is
-        necessary: the name before the star comes again after the next name (``q* v q``), or some star of the text has
-        no factor after it (``(p q)* = q* p*``).
+        The star must stand directly after a name, and have a blank and another name after it. The text must also show
+        elsewhere that stars are conjugates: by the same name again, as q in ``q* v q``, or by a star with no factor
+        after it, as the first one in ``(p q)* = q* p*``.
         """
         if self.token().spaced or not self.token(1).spaced or self.token(1).kind != "name":
             return False
@@ -316,7 +316,7 @@ class PiecesPart(OpenFunctionsPart):
         self.bars = bars
         span = self.span(token.start)
         if all(len(row) == 1 for row in rows) and all(self.has_blanks(row[0]) for row in rows):
-            raise self.fail("commas between the entries of a matrix, or * in a product,", token.start)
+            raise self.fail("[a, b] with commas between the entries of a matrix (or [a*b] for a product)", token.start)
         if len(rows) == 1:
             return Node("list", ("[", "]"), tuple(rows[0]), span)
         return Node("list", ("[", "]"), tuple(Node("list", ("[", "]"), tuple(row), span) for row in rows), span)

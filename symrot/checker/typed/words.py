@@ -145,7 +145,10 @@ class Shorthand(NamedTuple):
     angle: str
 
     def tokens(self, first: Token, last: Token) -> tuple[Token, ...]:
-        """Return the tokens of cos(theta), to replace those of ``cθ`` from ``first`` to ``last`` at their places."""
+        """Return the tokens ``cos ( theta )`` that replace the tokens of ``cθ``, from ``first`` to ``last``.
+
+        They get the positions of the replaced tokens, so that messages point to the right place of the text.
+        """
         mark = Token("mark", "(", first.start, first.start)
         start = last.start if self.length == 2 else first.start + 2
         return (

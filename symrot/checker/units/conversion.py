@@ -307,11 +307,12 @@ def unit_beside_letters(source: str) -> str:
 
 
 def _only_units(text: str, names: Sequence[str], units: Mapping[str, UnitProduct], has_long: bool) -> bool:
-    """Return whether a text consists of numbers with ``units``, perhaps with one name for the result on the left.
+    """Return whether a text is a conversion such as ``1 hp = 745.7 W``: numbers with units, and at most one other name.
 
-    ``names`` are the names in it that are no units; at most one is allowed, as in ``T = 2 N m``. If no unit has several
-    letters (``has_long``), the letters may be quantities. Then the units must be plausible if there is a name; without
-    a name, there must be several sides, each with a unit, and no weight ``m g``.
+    That name may stand alone on the left, as T in ``T = 2 N m``. ``names`` are the names in the text that are no units,
+    ``units`` the units. If ``has_long``, a unit has several letters, as rpm has: then it is surely a unit. Otherwise
+    each letter may be a quantity too, as m and N. Then, with a name, all units must be plausible ones; without a name,
+    the text must have several sides with a unit on each, and no ``m g``, which is a weight.
     """
     left = re.match(r"\s*([^\W\d_]\w*)\s*==?", text)
     if names and (left is None or names != [left[1]]):

@@ -154,10 +154,11 @@ class UnitInference:
         return bool(self.units) or any(unit not in (None, "rad") for unit in units)
 
     def values_of(self, rows: Rows, node: Node) -> Rows:
-        """Return the dimensions of the entries of a matrix of numbers, whose units may have been left out.
+        """Return the dimensions of the entries of a matrix of numbers, whose units the author may have left out.
 
-        A matrix of zeros and ones only, the tree ``node``, consists of pure numbers: ``rows``, its dimensions without
-        any units, are returned. In other matrices each nonzero entry gets an unknown dimension.
+        ``node`` is the matrix. ``rows`` are its dimensions if its numbers are pure numbers; they are returned if all
+        entries are zeros and ones, as in a unit matrix. In other matrices each nonzero entry gets a new unknown
+        dimension, since 2 may be 2 kg.
         """
         if _is_unit(node):
             return rows

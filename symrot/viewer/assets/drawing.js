@@ -9,6 +9,8 @@ const LONGEST = 1.5;      // length of the longest ω, L or M, relative to the b
 const TIP = 1.3;          // distance of the tip of the body's axis from the point of rotation
 const TRAIL = 2000;       // fewest points of a path
 const MOST = 20000;       // most points of a path
+const THIN = 1.3, THICK = 2;      // pixels: lines of axes and of the path to come; of paths
+const SHAFT = 0.012;      // radius of an arrow's shaft
 const APART = 17;         // pixels between the middles of two labels
 
 export class Drawing {
@@ -175,14 +177,14 @@ export class Drawing {
     }
 
     #axes(length, colour, names, parent) {
-        const {Group, LineSegments, BufferGeometry, LineBasicMaterial, Vector3} = libraries;
+        const {Group, LineSegments2, LineSegmentsGeometry, LineMaterial, Vector3} = libraries;
         const group = new Group(), points = [];
         names.forEach((name, k) => {
             const end = new Vector3().setComponent(k, length);
-            points.push(new Vector3(), end);
+            points.push(0, 0, 0, ...end.toArray());
             this.#pin(name, colour, () => group.visible ? group.localToWorld(end.clone().multiplyScalar(1.06)) : null);
         });
-        group.add(new LineSegments(new BufferGeometry().setFromPoints(points), this.#tint(new LineBasicMaterial(), colour)));
+        group.add(new LineSegments2(new LineSegmentsGeometry().setPositions(points), this.#tint(new LineMaterial({linewidth: THIN}), colour)));
         parent.add(group);
         return group;
     }
@@ -198,13 +200,29 @@ export class Drawing {
         this.pins.push({element, place});
     }
 
+    /** Return an arrow of length 1 along its own y axis: a group with the shaft and the head. */
+    #arrow(colour) {
+        const {Group, Mesh, CylinderGeometry, ConeGeometry, MeshBasicMaterial} = libraries, arrow = new Group();
+        const material = this.#tint(new MeshBasicMaterial(), colour);
+        arrow.add(new Mesh(new CylinderGeometry(SHAFT, SHAFT, 1, 12), material), new Mesh(new ConeGeometry(1, 1, 24), material));
+        return arrow;
+    }
+
+    /** Let an arrow point along a vector, with its length. */
+    static #aim(arrow, vector) {
+        const length = vector.length(), head = Math.min(0.17, 0.4*length), [shaft, cone] = arrow.children;
+        arrow.quaternion.setFromUnitVectors(new libraries.Vector3(0, 1, 0), vector.clone().normalize());
+        shaft.scale.set(1, length - head, 1);
+        shaft.position.y = (length - head)/2;
+        cone.scale.set(0.3*head, head, 0.3*head);
+        cone.position.y = length - head/2;
+    }
+
     #addArrows() {
-        const {ArrowHelper, Vector3, Group} = libraries;
+        const {Vector3, Group} = libraries;
         this.arrows = {};
         for (const [name, {label}] of Object.entries(ARROWS)) {
-            const arrow = new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 1, this.colours[name], 0.16, 0.09);
-            this.#tint(arrow.line.material, name);
-            this.#tint(arrow.cone.material, name);
+            const arrow = this.#arrow(name);
             const group = new Group();
             group.add(arrow);
             this.world.add(group);
@@ -218,12 +236,13 @@ export class Drawing {
     }
 
     #addPaths() {
-        const {Line, BufferGeometry, BufferAttribute, LineBasicMaterial, Group} = libraries;
+        const {Line, Line2, LineMaterial, LineBasicMaterial, Group} = libraries;
         const line = (colour, parent, name, opacity = 1) => {
-            const geometry = new BufferGeometry();
-            geometry.setAttribute("position", new BufferAttribute(new Float32Array(3*MOST), 3));
-            const path = new Line(geometry, this.#tint(new LineBasicMaterial({opacity, transparent: opacity < 1}), colour));
+            const look = {opacity, transparent: opacity < 1};      // a processor draws thick lines too slowly
+            const path = this.isSoftware ? new Line(undefined, this.#tint(new LineBasicMaterial(look), colour))
+                : new Line2(undefined, this.#tint(new LineMaterial({linewidth: opacity < 1 ? THIN : THICK, ...look}), colour));
             path.frustumCulled = false;
+            path.visible = false;      // until it has points
             const group = new Group();
             group.add(path);
             parent.add(group);
@@ -231,7 +250,7 @@ export class Drawing {
             return path;
         };
         this.paths = {
-            whole: line("trail", this.world, "trail", 0.35),
+            whole: line("trail", this.world, "trail", this.isSoftware ? 0.6 : 0.35),
             trail: line("trail", this.world, "trail"),
             herpolhode: line("omega", this.world, "herpolhode"),
             polhode: line("polhode", this.body, "polhode"),
@@ -262,11 +281,11 @@ export class Drawing {
 
     #addGravity() {
         if (!this.data.down) return;
-        const {ArrowHelper, Vector3, Group} = libraries, down = new Vector3(...this.data.down), group = new Group();
+        const {Vector3, Group} = libraries, down = new Vector3(...this.data.down), group = new Group();
         const start = down.clone().multiplyScalar(-0.5).add(new Vector3(-1.6, 0.6, 0));
-        const arrow = new ArrowHelper(down, start, 0.8, this.colours.space, 0.14, 0.08);
-        this.#tint(arrow.line.material, "space");
-        this.#tint(arrow.cone.material, "space");
+        const arrow = this.#arrow("space");
+        arrow.position.copy(start);
+        Drawing.#aim(arrow, down.clone().multiplyScalar(0.8));
         group.add(arrow);
         this.world.add(group);
         this.parts.gravity = [group];
@@ -277,10 +296,10 @@ export class Drawing {
     /** Add the line from the planet through a satellite, with an arrow that points to the planet. */
     #addVertical() {
         if (!this.data.orbit) return;
-        const {ArrowHelper, Vector3, Group} = libraries, group = new Group();
-        const arrow = new ArrowHelper(new Vector3(-1, 0, 0), new Vector3(1.9, 0, 0), 3.8, this.colours.space, 0.14, 0.08);
-        this.#tint(arrow.line.material, "space");
-        this.#tint(arrow.cone.material, "space");
+        const {Vector3, Group} = libraries, group = new Group();
+        const arrow = this.#arrow("space");
+        arrow.position.set(1.9, 0, 0);
+        Drawing.#aim(arrow, new Vector3(-3.8, 0, 0));
         group.add(arrow);
         this.vertical = new Group();
         this.vertical.add(group);
@@ -366,17 +385,20 @@ export class Drawing {
     /** Set the points of a path; `points` are coordinates x, y, z of one point after the other. */
     path(name, points, scale) {
         this.isStale = true;
-        const line = this.paths[name], array = line.geometry.attributes.position.array;
-        const count = Math.min(points.length/3, MOST);
-        for (let k = 0; k < 3*count; ++k) array[k] = scale*points[k];
-        line.geometry.attributes.position.needsUpdate = true;
-        line.geometry.setDrawRange(0, count);
+        const line = this.paths[name], count = Math.min(points.length/3, MOST);
+        const places = points.subarray(0, 3*count).map((value) => scale*value), {BufferGeometry, BufferAttribute, LineGeometry} = libraries;
+        line.geometry.dispose();
+        line.geometry = this.isSoftware ? new BufferGeometry().setAttribute("position", new BufferAttribute(places, 3))
+            : new LineGeometry().setPositions(places);
+        line.visible = true;
         return count;
     }
 
     /** Show the part of the trail up to a fraction of its points. */
     trailUpTo(fraction, count) {
-        this.paths.trail.geometry.setDrawRange(0, Math.max(1, Math.ceil(fraction*count)));
+        const segments = Math.max(1, Math.ceil(fraction*(count - 1))), {geometry} = this.paths.trail;
+        if (this.isSoftware) geometry.setDrawRange(0, segments + 1);
+        else geometry.instanceCount = segments;
     }
 
     pose({quaternion: [w, x, y, z], omega, momentum, torque, vertical}) {
@@ -387,8 +409,7 @@ export class Drawing {
             arrow.visible = length > 0.02;
             if (!arrow.visible) continue;
             vector.set(...value).multiplyScalar(LONGEST/size);
-            arrow.setDirection(vector.clone().normalize());
-            arrow.setLength(length, Math.min(0.16, 0.4*length), Math.min(0.09, 0.25*length));
+            Drawing.#aim(arrow, vector);
         }
         this.vertical?.quaternion.set(0, 0, 0, 1).setFromAxisAngle(new libraries.Vector3(0, 0, 1), Math.atan2(vertical[1], vertical[0]));
         if (this.follow === "body") this.world.quaternion.copy(this.body.quaternion).invert();

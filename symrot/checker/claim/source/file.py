@@ -1,4 +1,4 @@
-"""Reading claims from a TOML file. The file does not say which claims are true."""
+"""Reading claims from a TOML file, which holds equations and definitions for ``check``, but no verdicts on them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -169,7 +169,11 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
 
 
 def _names_for_latex(claim: Claim) -> Names:
-    """Return the names that a claim declares for the LaTeX reader, which treats matrices and columns separately."""
+    """Return the names that a claim declares, sorted by kind, for the reader of LaTeX.
+
+    That reader needs the kind of each name: symbols, functions of time, matrices, those matrices that have one column
+    (vectors), and scalars with a definition.
+    """
     values = claim.definitions.values
     defined = [name for name, _ in claim.define]
     matrices = {name for name in defined if is_matrix(values[name])}

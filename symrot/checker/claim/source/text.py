@@ -205,12 +205,12 @@ def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> I
 def _with_vectors(
     relation: Relation, vectors: list[Vector], define: Sequence[tuple[str, Node]]
 ) -> tuple[Relation, list[Vector], bool]:
-    """Return a relation, the vectors in it, and whether it contains unit matrices.
+    """Return a relation, a list of the vectors and tensors in it, and whether it contains unit matrices.
 
-    In the relation that is returned, each unit matrix is written as ``eye(n)``. The vectors are ``vectors``, those
-    known so far, and each name that must be a vector or tensor because it is added to one: a name added to a vector is
-    a vector, and the name of an inertia added to a matrix is a tensor. ``define`` has the definitions of the claim, as
-    pairs of a name and a formula; the names in it are left out.
+    The list that is returned is a new one: the known ``vectors`` first, then each name that must be a vector or tensor.
+    A name must be a vector if it is added to a vector or is an argument of a cross product; the name of an inertia must
+    be a tensor if it is added to a matrix. ``define`` has the definitions of the claim, pairs of a name and a formula;
+    these names are not added. In the relation, each unit matrix is written ``eye(n)``.
     """
     named = {name for name, _ in define} | {vector.name for vector in vectors}
     vectors = [*vectors, *map(Vector, dict.fromkeys(n for n in gyroscopic_tensors(relation[1:]) if n not in named))]

@@ -1,1 +1,1 @@
-"""Relations that hold for rates of angles, tops and integrals over a body, and verdicts on claims by them."""
+"""Relations for rates of angles, tops and integrals over a body, and functions that decide claims with them."""

@@ -35,10 +35,12 @@ def is_stated(context: Context) -> bool:
 
 
 def substitutions_of_axis_angles(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the ways to read a claim as ``tan(theta) = A/C tan(gamma)``, the relation of the two angles to the axis.
+    """Yield the substitutions that may turn a claim into ``tan(theta) = A/C tan(gamma)``, for a free symmetric top.
 
-    theta is the angle of the angular momentum, gamma that of the angular velocity. There is none if the claim has other
-    letters than two angles and two moments of inertia. ``sides`` are those of the claim.
+    theta is the angle from the axis to the angular momentum, gamma that to the angular velocity. Each Substitution maps
+    the claim's two angles to theta and to gamma as a formula of theta, and its two moments of inertia to A and C; one
+    is yielded for each assignment of the letters. ``sides`` are those of the claim. Nothing is yielded if the claim has
+    other letters, or if the context names another body.
     """
     if context.body is not None and "free symmetric" not in context.body.kind.title:
         return

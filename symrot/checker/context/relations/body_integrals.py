@@ -60,9 +60,10 @@ def substitutions_of_integrals(context: Context, sides: Sequence[Expr]) -> Itera
 
 
 def is_tensor_of_integrals(sides: Sequence[Any]) -> bool:
-    """Return whether a claim equates the inertia tensor, as I or J, to its matrix of integrals over a body.
+    """Return whether a claim equates the letter I or J to the inertia tensor, in integrals over a body.
 
-    ``sides`` are those of the claim, in any order.
+    The letter may have a subscript, as I_O. The other side must be a 3 x 3 matrix with the right integral in each
+    entry. ``sides`` are in any order.
     """
     matrices = [side for side in sides if is_matrix(side) and side.shape == (3, 3)]
     names = [side for side in sides if not is_matrix(side) and re.fullmatch("[IJ](_[A-Za-z])?", as_text(side))]

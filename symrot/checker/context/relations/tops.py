@@ -84,10 +84,11 @@ def _substitution(names: Mapping[Expr, str], values: dict[Expr, Expr], own: Sequ
 
 
 def _is_fitting(names: Mapping[Expr, str], values: Mapping[Expr, Expr], own: Sequence[str], has_body: bool) -> bool:
-    """Return whether a reading of a claim's letters makes sense: no two mean the same, and a top is clearly meant.
+    """Return whether an interpretation of a claim's letters makes sense: no two mean the same, and a top is meant.
 
-    ``names`` are the claim's letters, ``values`` the quantity that each means, ``own`` the titles of the derived
-    quantities among these. ``has_body`` says that the context names a top.
+    ``names`` gives the text of each letter, ``values`` the quantity that it stands for. ``own`` are the titles of those
+    quantities that are derived, such as "momentum of spin". That a top is meant follows if the context names one
+    (``has_body``), from a letter such as p_theta, or from certain titles in ``own``.
     """
     letters: dict[Expr, str] = {}
     same = all(letters.setdefault(value, names[atom]) == names[atom] for atom, value in values.items())
