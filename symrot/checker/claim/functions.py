@@ -100,6 +100,13 @@ def _log(scope: Scope, node: Node) -> Expr:
     return sympy.log(value)
 
 
+def _extreme(scope: Scope, node: Node) -> Expr:
+    """Return the value of ``max(x, y)`` or ``min(x, y)``: the mean of x and y, plus or minus half their distance."""
+    first, second = (scope.scalar(part, f"as an argument of {node.value}") for part in node.args)
+    distance = sympy.Abs(first - second)
+    return (first + second + (distance if node.value == "max" else -distance)) / 2
+
+
 def _part(scope: Scope, node: Node) -> Expr:
     """Return the value of ``Re(x)`` or ``Im(x)`` of a real formula x: the formula itself, or zero."""
     value = scope.scalar(node.args[0], f"as the argument of {node.value}")
@@ -388,6 +395,8 @@ BUILT_IN: Mapping[str, tuple[int, int, Callable[[Scope, Node], Any]]] = {
     "cosh": (1, 1, _of_scalar(sympy.cosh)),
     "tanh": (1, 1, _of_scalar(sympy.tanh)),
     "abs": (1, 1, _abs),
+    "max": (2, 2, _extreme),
+    "min": (2, 2, _extreme),
     "real_part": (1, 1, _part),
     "imaginary_part": (1, 1, _part),
     "diff": (2, 9, _diff),

@@ -14,6 +14,7 @@ from symrot.latex import tree
 __all__ = ["NAME_MARKS", "OPERATORS", "VECTOR_MARKS", "NamesPart", "appended"]
 
 OPERATORS = {
+    "\\max": "max", "\\min": "min",
     "\\arg": "arg", "\\det": "det", "\\tr": "trace", "\\diag": "diag", "\\Re": "real_part", "\\Im": "imaginary_part",
 }  # fmt: skip
 SPELLED = {
