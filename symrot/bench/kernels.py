@@ -461,7 +461,9 @@ def _missed(name: str, contestants: Sequence[Contestant]) -> list[str]:
 def counts(name: str) -> tuple[dict[str, Counter[str]], list[str]]:
     """Return the operations of a kernel as a map from tool to operations by kind, and the names of the missing tools.
 
-    For derivatives, CasADi also starts from symrot's own program of the values instead of the textbook's formulas.
+    Tools are symrot, the tools that print C code, and CasADi. For a kernel of derivatives the map has a further entry,
+    named OWN_START: CasADi's operations if it differentiates symrot's own program for the values. The entry "CasADi"
+    starts from the textbook's formulas.
     """
     operations, missing = {"symrot": counted(_emitted(name).source, name)}, []
     for tool, make in PEERS_IN_C.items():

@@ -50,9 +50,10 @@ Progress = Callable[[str], object]
 
 
 def rungs() -> dict[str, tuple[str, Scene]]:
-    """Return the motions for which a general and a special kernel are compared, the most general motion first.
+    """Return the motions for which a general and a specialised kernel are compared, the most general motion first.
 
-    The map has (description, scene) for each name.
+    The result maps the name of a motion to (description, scene), as read from the file ``LADDER``. A specialised kernel
+    omits what is zero or constant in its scene, such as products of inertia along principal axes.
     """
     scenes = {}
     for name, entry in read_toml(LADDER, LADDER.name).items():
@@ -72,10 +73,11 @@ def _nothing(kind: str) -> Torque:
 
 
 def general_plan(scene: Scene) -> Plan:
-    """Return the plan of a scene that assumes nothing about it, with zero torques of all kinds that the scene lacks.
+    """Return a plan for ``scene`` without simplifications, with every kind of torque; absent kinds have zero torques.
 
-    A plan says which equations are computed. The kernel of this one is compared with the kernel of the scene's own
-    plan.
+    A plan lists the equations of motion to compute. This one uses a full inertia tensor and no symmetry of the body. To
+    the torques of the scene it adds a zero torque of each kind that the scene lacks. The kernel of this plan is
+    compared with that of the scene's own plan, to measure what the simplifications save.
     """
     kinds = {torque.kind for torque in scene.torques}
     left_out = ABOUT_POINT if kinds & set(ABOUT_CENTRE) else ABOUT_CENTRE

@@ -11,8 +11,9 @@ a new attitude, or both. The columns are:
   stepper);
 - the motion itself, in C, in a call with both a new angular velocity and a new attitude;
 - a whole call for 101 times: with a new angular velocity, with a new attitude, and with both;
-- the overhead, which is the time of a call minus the time of its motion: first the larger one of the calls with one new
-  value, then that of the call with both;
+- the overhead, which is the time of a call minus the time of its motion, in two columns: in the first, the larger of
+  the overheads of the call with a new angular velocity and of the call with a new attitude; in the second, the overhead
+  of the call with both;
 - the most expensive call of a stepper while C does no work. On a loaded machine Python is slower after a long motion;
   this column is free of that effect.
 
@@ -173,9 +174,11 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
         return one.exact if motion.choice.method == "exact" else one.stepping
 
     def whole(start: dict[str, Any]) -> tuple[float, float, float]:
-        """Return three times in microseconds: of a whole call, of the motion in it, and of the rest of the call.
+        """Return three times in microseconds for a call of the scene's propagator: of call, motion and rest.
 
-        ``start`` has the new initial state as keyword arguments of the propagator: ``omega``, ``quaternion`` or both.
+        The motion is the part of the call in C: the steps or the closed form, from the start on. The rest is everything
+        else in the call, such as reading the initial state. ``start`` has the new initial state as keyword arguments of
+        the propagator: ``omega``, ``quaternion`` or both.
         """
         initial = read_start(scene, start.get("omega"), start.get("quaternion"))
         own = propagate.motion_from(initial)

@@ -443,7 +443,11 @@ def _directories() -> list[Path]:
 
 
 def _read(path: Path) -> bytes | None:
-    """Return the content of a file, or None if the file is missing, cannot be read or cannot be trusted."""
+    """Return the content of the file ``path``, or None if it is missing, unreadable, or not to be trusted.
+
+    A file is not trusted if it belongs to another user, is a symbolic link, or is no regular file (:func:`_foreign`):
+    another user could have put foreign machine code into the cache.
+    """
     try:
         return None if _foreign(path) else path.read_bytes()
     except OSError:

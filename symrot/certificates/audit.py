@@ -90,7 +90,8 @@ def load_certificate(path: Path) -> Data:
 def _unique(pairs: list[tuple[str, Any]]) -> Data:
     data = dict(pairs)
     if len(data) != len(pairs):
-        raise ValueError("expected each name at most once in a JSON object, got a name twice")
+        twice = next(name for number, (name, _) in enumerate(pairs) if name in dict(pairs[:number]))
+        raise ValueError(f"expected each name at most once in a JSON object, got {twice!r} twice")
     return data
 
 

@@ -144,10 +144,11 @@ _FILE = re.compile(r"[^@].*\.(?:c|cc|cpp|cxx|h|o|a|so|s|S|d|i|ii|obj|exe|lib|dll
 
 @dataclass(frozen=True)
 class FlagRemark:
-    """A remark about one compiler flag that is set or missing.
+    """A remark about one compiler flag that is set, or missing, in a compiler command.
 
-    ``effect`` says what still holds because of it: "bits", "bounds" or "nothing", as in :class:`FlagEffect`. ``reason``
-    says why.
+    ``effect`` says what is still proven for the compiled code in spite of this flag. "bits": results are the same, bit
+    for bit, as those of the C text. "bounds": results may differ in bits, but the proven error bounds hold. "nothing":
+    neither is proven. ``reason`` says why.
     """
 
     flag: str
@@ -167,7 +168,10 @@ class FlagEffect:
 
     @property
     def accepted(self) -> bool:
-        """Whether the error bounds hold for code compiled with these flags; the bits of the C text may not."""
+        """Whether the proven error bounds hold for code that is compiled with these flags.
+
+        Results may still differ in single bits from those of the C text (``holds`` is then "bounds").
+        """
         return self.holds != NOTHING
 
     def sentence(self) -> str:

@@ -642,7 +642,12 @@ class Body(NamedTuple):
 
 
 class Kernel(NamedTuple):
-    """A C function that writes arrays: its parameters, and a body for each of its loops or for one sample."""
+    """A C function that writes arrays: its parameters, and its statements.
+
+    ``bodies`` holds lists of statements: one list for a function that computes one sample, and one for each loop of a
+    function that computes many. ``shape`` tells these apart: "one sample"; "each sample", with one loop over all
+    samples; "spans" or "blocks", with two loops over a run of samples at a time (see ``loops``).
+    """
 
     parameters: list
     shape: str  # "one sample", "each sample", "spans" or "blocks"
@@ -1106,7 +1111,12 @@ class Specification:
         return FormulaReader(text, place, self.functions).whole()
 
     def set_values(self, names):
-        """Store intermediate quantities and outputs in ``names``; return a map from place (``q[2]``) to input."""
+        """Compute all quantities at the point that ``names`` holds, and return the values of the inputs.
+
+        ``names`` maps symbols to their values at one point. The named intermediate quantities and the outputs are
+        computed from them and added to ``names``. The result maps an input of the C function, such as ``q[2]``, to its
+        value.
+        """
         inputs = {place: expression.value(names.numbers, names) for place, expression in self.inputs}
         for symbol, expression in self.named:
             names.define(symbol, expression.value(names.numbers, names))
@@ -1139,9 +1149,10 @@ def draw_hypothesis(members, names):
 def check_law(law, specification, points):
     """Raise ValueError if an expression of a law, which must be zero, is not zero to 60 digits at random points.
 
-    At each point the hypotheses of the law hold and the outputs have the values of their formulas. An expression counts
-    as zero if it is at most 1e-40, and small compared with its size at another point, where all symbols are random. The
-    probability that an analytic expression which is not identically zero is so small at a random point is negligible.
+    There are ``points`` random points. At each, the hypotheses of the law hold, and the outputs have the values of
+    their formulas. The expression must be at most 1e-40 there, and at most 1e-60 of the value that it has if all
+    symbols are random and unrelated. An analytic expression that is not identically zero passes this test at a random
+    point with negligible probability.
     """
     place = f"the law {quoted(law['law'])}"
     need(law["vanishing"], f"{place} does not follow: expected an expression that vanishes, got none")
@@ -1300,9 +1311,10 @@ def exact_point(specification):
 def check_formulas(name, kernel, data, point):
     """Raise ValueError if the outputs of a C function differ from the formulas at a random point of exact fractions.
 
-    Functions and conditionals have random values at ``point``, so that equality there means equality as expressions. In
-    a batch function of shape "spans", two loops compute different outputs, each output once. In the other shapes, each
-    loop must compute all outputs.
+    Functions and conditionals have random values at ``point``, so that equality there means equality as expressions.
+    The function ``kernel`` has one loop or two (see ``loops``). In the shape "spans", two loops compute different
+    outputs, so that each output must occur in exactly one loop. In the other shapes, each loop must compute all
+    outputs.
     """
     need(
         kernel.parameters == expected_parameters(data, kernel.shape != "one sample"),

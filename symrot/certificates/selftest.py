@@ -91,7 +91,10 @@ def _sides(random: Random, digits: int) -> Iterator[tuple[float, float]]:
 
 
 def _radicands(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Yield pairs (0, x) that test the square root: x is random, positive, and has ``digits`` binary digits."""
+    """Yield pairs (0, x) that test the square root, with x random, positive, and of ``digits`` binary digits.
+
+    Every test takes a pair of arguments, as for atan2; the square root ignores the first.
+    """
     from mpmath import mpf
 
     for _ in range(POINTS):

@@ -41,8 +41,8 @@ def _bound(options: Namespace) -> int:
     if options.target is None:
         if options.variable:
             raise InputError(
-                "--variable: expected --target X as well: only the search for a box, which --target "
-                "starts, changes ranges"
+                "--variable: expected --target X as well, because --variable names the inputs whose ranges the search "
+                "for the largest box changes, and --target starts this search"
             )
         report = symrot.bound(options.kernel, options.box, options.precision)
     else:
@@ -110,8 +110,8 @@ def _selftest_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--bounds",
         action="store_true",
-        help="test only what the error bounds assume of the compiler and the processor; the compiler may then compute "
-        "a*b + c with one rounding instead of two",
+        help="test what the error bounds assume of the compiler and the processor, and not what equal bits require: "
+        "a compiler that computes a*b + c with one rounding instead of two then passes",
     )
     json_option(parser)
 

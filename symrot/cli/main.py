@@ -292,7 +292,9 @@ def _check(options: Namespace) -> int:
     if (options.claim is None) == (options.textbook is None):
         raise InputError("check: expected a CLAIM, a FILE or --textbook NAME (see `symrot check --help`)")
     if options.all and options.textbook != "all":
-        raise InputError("--all: expected --textbook all as well, since the page contains every document")
+        raise InputError(
+            "--all: expected --textbook all as well, since --all writes pages of errata that contain every document"
+        )
     if options.textbook:
         return _check_textbook(options)
     stated = {key: getattr(options, key) for key in ("where", "body", "frame", "sequence")}
@@ -476,8 +478,8 @@ def _check_arguments(parser: ArgumentParser) -> None:
 
     parser.formatter_class = RawDescriptionHelpFormatter
     parser.epilog = help_text()
-    parser.add_argument("--textbook", metavar="NAME", help="check the claims of a document: chen, sahakian, brown, "
-                        "beer-johnston, or all")  # fmt: skip
+    parser.add_argument("--textbook", metavar="NAME", help="check the formulas of a published text, listed in symrot: "
+                        "chen, sahakian, brown or beer-johnston (named by their authors), or all")  # fmt: skip
     parser.add_argument("--all", action="store_true", help="with --textbook all: write the pages of errata")
     parser.add_argument(
         "-o", "--output", metavar="DIR", default="generated", help="folder that --all writes to (default: ./generated)"

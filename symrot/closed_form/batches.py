@@ -75,9 +75,8 @@ def _unit(quaternion: Floats) -> Sequence[Fraction]:
 def _units(quaternions: Floats) -> dd.Pair:
     """Return quaternions, shape (n, 4), divided by their norms, as double-double numbers.
 
-    The low parts of the result are later rounded to the multiples of GRID times the last bit of the high part
-    (:func:`_on_grid`). The error of each component is less than ``_DOUBT/4`` of such a multiple; this bound is part of
-    the one by which :func:`_on_grid` decides whether the rounding is certain.
+    The error of each component is less than ``_DOUBT/4`` grid steps. A grid step is GRID times the last bit of the high
+    part; :func:`_on_grid` rounds the low part to a multiple of it, and its constant ``_DOUBT`` includes this error.
     """
     scaled = np.ldexp(quaternions, -np.frexp(abs(quaternions).max(axis=1))[1][:, None])
     square = dd.two_product(scaled, scaled)
@@ -121,9 +120,10 @@ def _product(constant: Sequence[Fraction], before: bool, q: dd.Pair) -> dd.Pair:
 def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], Sequence[float]]) -> Floats:
     """Return double-double numbers rounded as :func:`symrot.closed_form.arithmetic.pairs.on_grid` rounds exact numbers.
 
-    Each low part is rounded to a multiple of GRID times the last bit of the high part. ``high + low`` may differ from
-    the exact numbers by ``error``, plus ``_DOUBT/4`` of this multiple. If with such an error row i could round to
-    another multiple, the row is replaced by ``exactly(i)``, which is computed from the exact numbers.
+    Each low part is rounded to a multiple of a grid step, which is GRID times the last bit of the high part. The sum
+    ``high + low`` is an approximation: it may differ from the exact number by ``error`` plus ``_DOUBT/4`` grid steps.
+    Where an error of this size could change the multiple, in row i, the row is replaced by ``exactly(i)``, which is
+    computed from the exact numbers.
     """
     last = np.where(abs(high) > _SPREAD, np.spacing(abs(high)), 1.0)
     part, steps = abs(low) / last, low / (last * GRID)

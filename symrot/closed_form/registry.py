@@ -197,11 +197,11 @@ def _axial(scene: Scene) -> Starts:
 
 
 def _field_axis(name: str) -> Callable[[Scene], int | None]:
-    """Return a function from a scene to the index of the body axis to which a vector of its only torque is parallel.
+    """Return a function from a scene to the index of the body axis to which a vector of its torque is parallel.
 
     ``name`` is the name of the vector: ``"center_of_mass"`` of a gravity torque, or ``"angular_momentum"`` of a rotor.
-    The function returns None if the vector is not parallel to a body axis. It is the value of ``axis`` in the
-    ClosedForm of heavy tops and of gyrostats.
+    The scene must have one torque. The index is 0, 1 or 2, or None if the vector is not parallel to a body axis. Such a
+    function is the field ``axis`` in the entries for heavy tops and for gyrostats in the table of closed forms.
     """
     return lambda scene: _only_axis(scene.torques[0].vector(name))
 

@@ -35,9 +35,11 @@ def kernel_program(name: str) -> Program:
 
 
 def _ways(name: str, kernel: Definition) -> Iterable[Formulas]:
-    """Return the formulas of a kernel, once for each way to compute them; without derivatives there is one way only.
+    """Return one or more sets of formulas that compute the kernel ``name``; the caller uses the cheapest.
 
-    See :func:`symrot.codegen.derivatives.ways`.
+    A kernel of values has one set. A kernel of derivatives, such as ``quaternion_dcm_by_q``, has several, which are
+    equal in exact arithmetic: the formulas by the chain rule, and those that differentiate the program for the values
+    step by step. See :func:`symrot.codegen.derivatives.ways`.
     """
     formulas = Formulas(kernel.formulas, kernel.named)
     base, *variables = name.split(BY)

@@ -76,9 +76,10 @@ class Recorder:
 
 
 class Recorded:
-    """A number without a value: an operation with it adds an entry to its ``recorder`` and returns the entry's number.
+    """A symbolic number: an operation with it, such as ``a + b``, is not computed but recorded by ``recorder``.
 
-    ``index`` is the place of its own entry in the record.
+    Each operation appends an entry to the record and returns a new Recorded that stands for its result. ``index`` is
+    the position of the entry that computes this number.
     """
 
     def __init__(self, recorder: Recorder, index: int) -> None:

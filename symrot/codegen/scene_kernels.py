@@ -101,8 +101,8 @@ def rate_derivatives(equations: Equations, variables: Sequence[str]) -> tuple[Fo
     every = [symbol for symbols_ in chosen.values() for symbol in symbols_]
     if len(set(every)) < len(every) or len(chosen) < len(variables):
         raise InputError(
-            f"expected no state or constant twice in the derivatives by {', '.join(variables)}; y includes all states, "
-            "omega and q their components"
+            f"expected each state and constant at most once among the variables {', '.join(variables)} by which to "
+            "differentiate; y stands for all states, omega and q for their components"
         )
     rates, target = _rates(equations), _rates_argument(equations)
     slopes, outputs, arguments = Derivatives(rates.named), list(rates.outputs), [target]

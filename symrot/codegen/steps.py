@@ -76,12 +76,18 @@ class WithDerivatives:
 
     @property
     def name(self) -> str:
-        """The name of the method of time steps, such as ``rk4``; it does not mention the derivatives."""
+        """The name of the method of time steps, such as ``rk4``.
+
+        It is the name of the same step without the derivatives of the new state by the old one.
+        """
         return self.plain.name
 
     @property
     def order(self) -> int:
-        """The order of the method of time steps; the derivatives of the new state do not change it."""
+        """The order of the method of time steps, such as 4 for ``rk4``.
+
+        It is that of the same step without the derivatives of the new state by the old one.
+        """
         return self.plain.order
 
     @property
@@ -158,8 +164,8 @@ def stepped(
 def without_factors(rates: Program) -> tuple[Program, list[Fraction]]:
     """Return the rates without the numbers that multiply whole formulas, and these numbers, one per rate.
 
-    From ``dq0 = 1/2*(..)`` the number 1/2 is removed. A step multiplies its weights by these numbers once, instead of
-    each rate at each stage.
+    From ``dq0 = 1/2*(..)`` the number 1/2 is removed. A step adds weighted rates to the state at each of its stages; it
+    multiplies the weights by these numbers once, which replaces a multiplication of each rate at each stage.
     """
     outputs, factors = [], []
     for name, node in rates.outputs:

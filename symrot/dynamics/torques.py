@@ -1,6 +1,7 @@
 """The torques of :mod:`symrot.dynamics.torque_kinds` as formulas: a table with one function for each kind.
 
-The function of a kind returns a torque law: the formula of the torque, its potential and its angular momentum.
+The function of a kind returns a torque law: the formula of the torque, the potential energy that the torque contributes
+(None if it has none), and the angular momentum that its device, such as a rotor, adds to that of the body.
 """
 
 from collections.abc import Callable, Mapping

@@ -104,7 +104,11 @@ class EnsembleMember(MotionSamples):
 
     @property
     def sensitivities(self) -> Sensitivities | None:
-        """Derivatives by initial values and constants, shape (m, .., k), if the ensemble was computed with them."""
+        """The derivatives of this motion by the k variables that were requested, or None if none were.
+
+        Their arrays have the shape (m, .., k) for m sample times: (m, 3, k) for the angular velocity and (m, 4, k) for
+        the quaternion. See :class:`~symrot.propagation.sensitivities.result.Sensitivities`.
+        """
         every = self._ensemble.sensitivities
         return None if every is None else every.of(self._number)
 

@@ -103,9 +103,10 @@ ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
 class Solved(NamedTuple):
     """Trajectories to compute by one closed form: their indices ``rows``, and their constants as arrays.
 
-    ``batch`` is None if the trajectories are computed one by one. ``usual`` says for which rows (or, as one value,
-    whether for all) the arrays give the same bits as a single motion; trajectories with unusual numbers are computed as
-    such.
+    ``batch`` holds the arrays, or is None if the trajectories are computed one by one. Computation in arrays must give
+    the same bits as that of a single motion. ``usual`` tells for which rows it does (or, as one value, whether for
+    all): not for numbers so large or small that intermediate results would lose digits. The other rows are computed as
+    single motions.
     """
 
     form: ClosedForm

@@ -31,7 +31,10 @@ def _function(name: str) -> Any:
 
 
 def heyoka_code(name: str) -> tuple[Any, Any, Any]:
-    """Return the addresses of heyoka's functions for a kernel: one sample, and 1 or ``LANES`` samples of a batch.
+    """Return the addresses of three C functions that heyoka compiles for a kernel, as numbers.
+
+    The first computes one sample from plain arrays. The other two compute samples of a batch, whose arrays hold all
+    samples of one component side by side: the second one sample per call, the third ``LANES`` samples per call.
 
     heyoka's object code is linked without change; its sines come from the library that heyoka has loaded.
 

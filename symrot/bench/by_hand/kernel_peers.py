@@ -1,7 +1,8 @@
 """Kernels for comparison, generated from textbook formulas by SymPy, SymForce, CasADi and heyoka, or written by hand.
 
-Each tool gets the formulas as textbooks print them, without the named quantities of symrot's own definitions. It
-differentiates them itself, if the kernel has derivatives. C code is compiled with the flags of symrot's kernels. A tool
+Each tool gets the formulas as textbooks print them. It does not get the intermediate quantities by which symrot's own
+definitions abbreviate repeated subexpressions, because finding these is part of the tool's work. If the kernel has
+derivatives, each tool differentiates the formulas itself. C code is compiled with the flags of symrot's kernels. A tool
 that is not installed is skipped, and the report names it.
 """
 
@@ -199,8 +200,10 @@ def counted(text: str, name: str) -> Counter[str]:
 def casadi_function(name: str, program: Callable[[str], Program] = textbook_program) -> tuple[Any, Counter[str]]:
     """Return CasADi's function of one vector for a kernel, and its number of operations by kind.
 
-    The components of the vector are all inputs of the kernel. CasADi differentiates forward, backward and by its own
-    choice; the way with the fewest operations counts. Common subexpressions are computed once.
+    The components of the vector are all inputs of the kernel. The function returns the values and, if ``name`` is a
+    kernel with derivatives, the same derivatives as the kernel. Three functions are made, in which CasADi
+    differentiates in forward mode, in reverse mode, and in the mode that it chooses; the one with the fewest
+    operations is returned. Common subexpressions are computed once.
 
     Parameters
     ----------

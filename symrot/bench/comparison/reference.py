@@ -8,12 +8,13 @@ reference                    equations              method                      
                              tensor, no shortcut    halved until nothing changes  double, where it is longer
 ``closed form``              (no equations)         theta functions               double-double, double
 ``extrapolated midpoints``   the scene's own        Gragg's rule, order 16,       long double
-                                                    steps halved likewise
+                                                    steps halved as above
 ===========================  =====================  ============================  ==========================
 
 No reference steps over a narrow pulse of a torque. Enclosures (intervals that contain all values of the torque within a
-step) limit the steps of the series; fixed steps are short at the times at which the scene's stepper, which is limited
-in the same way, takes short steps.
+step) limit the steps of the Taylor series. They also limit the steps of the stepper with which the scene is normally
+computed. The methods with fixed steps end a step at each time at which that stepper does, so they resolve the same
+pulses.
 
 The first available reference is used, and the others are compared with it. If references contradict each other, an
 error is raised; errors of methods below the difference between references are meaningless. The last reference is
@@ -300,8 +301,9 @@ def _fixed_steps(
     """Return a function that takes a number of steps and returns the integrated states at the times of comparison.
 
     The states, of the problem ``general``, are computed by the method ``name`` in the C ``files``. A step ends at each
-    time in ``grid``. Intervals between these times get steps in proportion to their lengths, but each gets at least one
-    if the total is ``fewest``, the smallest number of steps, and accordingly more if the total is larger.
+    time in ``grid``. The intervals between these times get steps in proportion to their lengths, but at least
+    ``steps/fewest`` each, rounded up. ``fewest`` is the number of steps with which the caller begins: then each
+    interval gets at least one step, and each time the caller doubles the number, at least twice as many.
     """
     parts = [
         general.kernel.source,

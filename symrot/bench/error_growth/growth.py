@@ -71,10 +71,10 @@ class Track:
         return non_smooth_torque(propagator(scene, "scipy").plan)
 
     def trajectory(self, states: Floats, motion: Motion | None = None) -> Trajectory:
-        """Return the states that a method computed, from the start on, as a trajectory with the track's times.
+        """Return the computed ``states`` as a trajectory, at the first ``len(states)`` of the times in ``self.times``.
 
-        If the method stopped early, there are fewer states than times. ``motion`` is needed if the states are those of
-        another motion than the track's own.
+        There are fewer states than times if a method stopped early. ``motion`` is the motion that the states belong to;
+        without it, it is ``self.motion``, the motion of the scene from which this track was made.
         """
         return Trajectory(motion or self.motion, self.times[: len(states)], states, "", Stats(0, 0, 0, 0.0), "")
 

@@ -23,7 +23,13 @@ Floats = NDArray[np.float64]
 
 
 class Carried(NamedTuple):
-    """The change of a body whose points are moved in steps of ``h`` by one scheme, ``tangent`` or ``secant``."""
+    """How much a body grows and deforms if its points are moved in steps of ``h`` by one of four schemes.
+
+    ``scheme`` is the name of the scheme. "tangent" moves a point r to ``r + h omega x r``, along the tangent of its
+    circle, which enlarges the body; "tangent, rescaled" then restores the length of r. "secant (midpoint)" moves r to
+    ``r' = r + h omega x (r + r')/2``, along a chord of the circle, which preserves its length. "rotation" rotates r
+    exactly.
+    """
 
     scheme: str
     h: float  # s

@@ -13,7 +13,7 @@ from symrot.proof.derivation import Derivation, Step
 THETA = symbols.theta
 SCALE = Symbol("lambda", real=True)
 EXAMPLE = "ZYX"
-"""The sequence for which the page prints the whole argument; the others are rows of tables."""
+"""The sequence whose proof the page prints step by step; tables have the results for the other sequences."""
 
 
 def derive() -> Derivation:

@@ -58,7 +58,11 @@ def _transposition(d: Derivation) -> None:
 
 
 def _one_sequence(d: Derivation, sequence: str, claim: str) -> Step:
-    """Add the step, with the text ``claim``, that gives Lagrange's operator on mu . omega for one Euler sequence."""
+    """Add one step: E[mu . omega] = B^T (omega x mu) for the Euler sequence ``sequence``; ``claim`` is the step's text.
+
+    E is Lagrange's operator ``d/dt d/d(dq) - d/dq``, mu is a constant vector with three symbols as body components, and
+    B gives the angular velocity: omega = B dq.
+    """
     body = rate_jacobian(sequence)
     omega = body * RATES
     d.notation({"B": body.as_immutable(), r"\omega": omega, r"\mu": MOMENTUM})

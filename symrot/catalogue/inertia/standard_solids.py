@@ -142,9 +142,10 @@ def _tensor(d: Derivation, body: Solid, moments: Moments) -> None:
 
 
 def _stages(body: Solid, axes: Sequence[int]) -> tuple[Expr, tuple[Stage, ...]]:
-    """Return a constant factor and the integrations, one by one, of a product of x, y, z over a solid.
+    """Return (constant, stages): the integral of a product of coordinates over the solid ``body``, ready to be printed.
 
-    ``axes`` contains the numbers of the factors: 0 for x, 1 for y, 2 for z.
+    ``axes`` lists the factors of the product: 0 for x, 1 for y, 2 for z; (0, 0) stands for x^2. ``constant`` is a
+    factor before the integral. ``stages`` has one :class:`Stage` for each integration, the innermost first.
     """
     coordinates = [variable for variable, _, _ in body.limits]
     constant, weight = body.jacobian.as_independent(*coordinates, as_Add=False)

@@ -58,7 +58,9 @@ def antiderivative(integrand: Expr, variable: Symbol) -> Expr:
         for (power,), coefficient in Poly(integrand, variable).terms():
             total += coefficient * variable ** (power + 1) / (power + 1)
     if not is_zero(total.diff(variable) - integrand):
-        raise ProofError(f"expected an antiderivative of {integrand} in {variable}, got {total}")
+        raise ProofError(
+            f"expected an integrand that is a polynomial in {variable}, or in its sine and cosine, got {integrand}"
+        )
     return total
 
 

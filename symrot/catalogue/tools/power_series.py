@@ -13,16 +13,17 @@ def indexed(name: str, index: Symbol, shift: int = 0) -> Symbol:
 
 
 def coefficient(terms: Mapping[str, Mapping[int, Expr]], variable: Symbol, index: Symbol) -> Expr:
-    """Return the coefficient of ``variable^index`` in a sum of power series, or their derivatives, times polynomials.
+    """Return the coefficient of ``variable^index`` in a sum of terms, each a polynomial times a series' derivative.
 
     It is an expression in the unknown coefficients of the series, ``a[index]``, ``a[index + 1]`` and so on for a series
-    called ``a``.
+    called ``a``. For ``terms = {"a": {0: 1, 2: x}}``, the sum is ``a(x) + x a''(x)``, and the coefficient of x^k is
+    ``a[k] + (k + 1) k a[k + 1]``.
 
     Parameters
     ----------
     terms : mapping
-        A map from the name of a series to a map from the order of a derivative to the polynomial that multiplies this
-        derivative.
+        A map from the name of a series to a map from an order of differentiation (0 for the series itself) to the
+        polynomial in ``variable`` that multiplies this derivative.
 
     Notes
     -----

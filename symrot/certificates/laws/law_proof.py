@@ -65,7 +65,8 @@ class CaseProof:
         ("square", x, y, factor, cofactors)       sqrt(x) is y: (x - y^2)*factor is the sum of the cofactors times the
                                                   relations; y is never negative
 
-    ``relations`` are polynomials that are zero, and ``entries`` prove the law's expressions to be zero.
+    ``relations`` are polynomials that are zero. ``entries`` has one :class:`EntryProof` for each expression that the
+    law states to be zero: it writes the expression as a sum of multiples of the relations.
     """
 
     case: tuple[Choice, ...]
@@ -82,9 +83,11 @@ class UndecidedChoice(Exception):
 
 
 class BaseAngleTooLarge(Exception):
-    """Raised for an angle, such as x/2, that is no integer multiple of its base angle, x, whose sine is a variable.
+    """Raised for an angle such as x/2 if the proof expresses it by sin(x) and cos(x): x/2 is no integer multiple of x.
 
-    The arguments are the monomial (here x) and the coefficient (here 1/2) of a smaller base angle that would do.
+    The proof writes every angle that is proportional to x as a multiple of one base angle, here x, and has the sine and
+    cosine of the base angle as variables. The arguments are the monomial (here x) and the coefficient (here 1/2) of a
+    smaller base angle, x/2, of which both angles are integer multiples. The prover then starts again with it.
     """
 
 

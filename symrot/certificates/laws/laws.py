@@ -170,9 +170,11 @@ def _inputs(law: Law, formulas: Mapping[str, Expr]) -> list[str]:
 
 
 def _pool(size: int) -> list[str]:
-    """Return names for the generators of a proof in the order of the ring's variables: ``g2_``, ``g1_``, ``g0_`` for 3.
+    """Return ``size`` names of generators in the order of the ring's variables: ``g2_``, ``g1_``, ``g0_`` for 3.
 
-    A proof uses ``g0_`` first. So a generator comes before all older ones, and in its relation, such as ``r^2 = P``
-    with older generators in P, ``r^2`` is the leading term.
+    A generator is a variable of the polynomial ring that stands for a function value, such as a root. A proof
+    introduces ``g0_`` first, then ``g1_`` and so on. In the reversed order here, a later generator is a higher
+    variable. For a root r = sqrt(P) with earlier generators in P, the leading term of ``r^2 - P`` is then ``r^2``, and
+    division replaces r^2 by P.
     """
     return [f"g{k}_" for k in reversed(range(size))]

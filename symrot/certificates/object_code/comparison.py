@@ -66,7 +66,11 @@ class ObjectVerdict:
 
     @property
     def accepted(self) -> bool:
-        """Whether the verdict accepts the function: its bits, or at least its error bounds, agree with the C text."""
+        """Whether the object code of the function may replace its C text in a proof: the verdict is one of two.
+
+        IDENTICAL: it computes the same results, bit for bit. CONTRACTED: it differs only in that ``a*b + c`` may be
+        rounded once instead of twice; the proven error bounds allow this.
+        """
         return self.verdict in (IDENTICAL, CONTRACTED)
 
     def sentence(self) -> str:

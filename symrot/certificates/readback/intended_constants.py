@@ -26,7 +26,10 @@ class IntendedConstant:
     times_pi: bool
 
     def rounds(self, precision: str) -> bool:
-        """Return whether the exact number, rounded to a precision, is the written constant."""
+        """Return whether this object's exact number, rounded to ``precision``, is the C text's constant ``written``.
+
+        The exact number is ``fraction``, or ``fraction*pi`` if ``times_pi`` is true.
+        """
         return rounds_to(self.fraction * PI if self.times_pi else self.fraction, precision) == self.written
 
 

@@ -35,7 +35,8 @@ DEEPEST = 200  # limit on the nesting of an expression
 class _Scope:
     """The names known inside one C function: numbers, arrays, and the output elements that have been assigned.
 
-    ``loop`` is the variable of the loop over samples, and ``count`` the number of samples, in a function for many.
+    A function for a batch computes many samples in a loop: ``loop`` is the name of the loop's variable, and ``count``
+    that of the number of samples. Both are empty in a function for one sample.
     """
 
     values: dict[str, int] = field(default_factory=dict)
@@ -142,7 +143,7 @@ class _BodyReader:
         """Read an expression, which is ``a < b ? x : y`` or a sum; return its node."""
         self.depth += 1
         if self.depth > DEEPEST:
-            raise cursor.fail(f"an expression of at most {DEEPEST} nested levels", "a deeper expression")
+            raise cursor.fail(f"an expression with at most {DEEPEST} levels of brackets", "an expression with more")
         value = self.sum(cursor, scope)
         relation = cursor.peek()
         if relation in RELATIONS:
@@ -444,7 +445,8 @@ def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
     range_test.expect(";")
     if range_test.peek() or not reader.vectorised_angles <= tested:
         raise range_test.fail(
-            f"{far}(..) of each angle of a sine or cosine in the sum of beyond, and then the end of the loop"
+            f"a statement that adds {far}(x) to the variable `beyond` for each argument x of a sine or cosine, and "
+            "after it the end of the loop"
         )
     reader.vectorised_angles = None
     cursor.expect(*["const", "size_t", "again", "=", "beyond", "==", "0", "?", "start", ":", "end", ";"])

@@ -323,8 +323,8 @@ def _choice(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[A
 def _truncation_error(precision: str) -> float:
     """Return a bound of the relative error of a Taylor series that the C text computes near zero, as for sinc(x).
 
-    It is a quarter of a unit roundoff of ``precision``, for every such series: the proof that the C text computes its
-    formulas accepts only series that leave out less.
+    It is a quarter of the unit roundoff of ``precision``, for every such series. The proof that the C text computes its
+    formulas checks this: it accepts a series only if the terms after its last one sum to less than this bound.
     """
     return 2.0 ** -(DIGITS[precision] + 2) * (1 + 2.0**-20)
 
@@ -484,9 +484,10 @@ def evaluate(
 def _forward_pass(state: _ErrorPass, computed: _ErrorPass, node: Node) -> Array | None:
     """Append a node's intervals to ``state.values`` and ``computed.values``; return a bound of its rounding error.
 
-    The interval in ``state.values`` contains exact and computed values. That in ``computed.values`` contains computed
-    values only, and may be narrower: the branches that a box assumes restrict computed values. If ``computed`` is
-    ``state``, the graph has no branches, and one interval is appended.
+    The interval in ``state.values`` contains the exact and the computed value of the node. That in ``computed.values``
+    contains the computed value alone. It may be narrower, because a box assumes which branches the computed values
+    take, and exact values close to a border may lie on its other side. In a graph without branches both are equal: the
+    caller passes one object as ``state`` and ``computed``, and one interval is appended.
     """
     value, error = FORWARD[node[0]](state, node, [state.values[i] for i in operand_places(node)])
     state.values.append(value)

@@ -383,7 +383,10 @@ def check_section(
             f"expected a section of rounding bounds with all its parts, got a section with a fault ({error})"
         ) from None
     if precisions != list(kernels):
-        raise CertificateError(f"expected bounds for {' and '.join(kernels)}, got {' and '.join(precisions) or 'none'}")
+        raise CertificateError(
+            f"expected bounds of rounding errors for the kernel in {' and '.join(kernels)} precision, "
+            f"got bounds for {' and '.join(precisions) or 'no precision'}"
+        )
     head = _section_head(box, region, budget, libm_ulp)
     if not _alike({name: value for name, value in section.items() if name != "precisions"}, head):
         raise CertificateError("expected box and assumptions in the form in which symrot prints them, got another form")

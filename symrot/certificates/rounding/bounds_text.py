@@ -34,7 +34,10 @@ def _sections(name: str, double: Operations, single: Operations) -> Section | st
 
 
 def library_section(name: str, source: str) -> Section | str:
-    """Return the ``rounding`` section of a library kernel on its own box, or a text that says why there is no bound.
+    """Return the section ``rounding`` of a library kernel's certificate, or a text that says why there is no bound.
+
+    The section holds bounds of the rounding errors of all outputs, for inputs in the box that comes with symrot for
+    this kernel: a range for each input.
 
     Parameters
     ----------
@@ -45,7 +48,8 @@ def library_section(name: str, source: str) -> Section | str:
 
     Notes
     -----
-    Derivatives are bounded on request only: they have many outputs, and the search takes minutes for some of them.
+    A kernel of derivatives, such as ``quaternion_dcm_by_q``, gives a text: it has many outputs, and the search takes
+    minutes for some of them, so that its bounds are computed on request only.
     """
     if BY in name:
         return f"{name}: errors of derivatives are bounded on request, by `symrot certify {name} --box NAME=LOW:HIGH`"

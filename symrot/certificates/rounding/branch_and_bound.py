@@ -177,9 +177,12 @@ class _BoundSearch:
         return np.concatenate(boxes, axis=2), np.concatenate(decided, axis=1)
 
     def cut(self, parts: _Parts, branch: int) -> Array:
-        """Return the boxes of parts, restricted to the branch ``branch`` (1 or 0) of each part's undecided condition.
+        """Return the boxes of ``parts``, restricted to points where the undecided condition has the branch ``branch``.
 
-        A box is cut only if the condition compares an input with a constant: at that constant.
+        Parts are sub-boxes of the searched box, each with one undecided condition. ``branch`` is 1 if the condition
+        shall hold, 0 if not. A box becomes smaller only if its condition compares an input with a constant: for ``x <
+        2`` and branch 1, the range of x ends at 2. For any other condition, such as ``x*y < z``, the box is returned
+        unchanged.
         """
         boxes = parts.boxes.copy()
         for number, (relation, i, j) in enumerate(self.graph.conditions):
@@ -319,10 +322,10 @@ def _narrow(run: _BoundSearch, parts: _Parts) -> NDArray[np.bool_]:
 
 
 def _spread(run: _BoundSearch, parts: _Parts) -> Array:
-    """Return, for each part, how narrow it is: the largest width among the inputs on which its obstacle depends.
+    """Return, for each part (sub-box), its largest relative width among those inputs on which its obstacle depends.
 
-    The obstacle is the node that prevents a finite bound. A width is divided by the width of the same input in the
-    whole box.
+    The obstacle of a part is the operation that prevents a finite bound of the error there, such as a division by an
+    interval that contains zero. The relative width is the part's width in an input divided by that of the whole box.
     """
     width = np.where(run.width > 0, run.width, 1.0)
     relative = (parts.boxes[1] - parts.boxes[0]) / width[:, None]

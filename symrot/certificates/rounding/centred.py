@@ -1,9 +1,9 @@
 """Intervals that contain a polynomial on a box, from its value at the middle and its derivatives (mean value form).
 
 Plain interval arithmetic for ``x*y - x*z`` ignores that both factors x are the same number. The mean value form ``f(c)
-+ sum of f_k'(box)*(x_k - c_k)``, with c the middle of the box, accounts for this to first order in the width. The
-intervals contain exact and computed values: the values of the polynomial, widened by the rounding errors of the
-operations so far.
++ sum of f_k'(box)*(x_k - c_k)``, with c the middle of the box, accounts for this to first order in the width. Each
+interval is then widened by the bounds of the rounding errors made so far, so that it contains the computed value of the
+polynomial as well as the exact one.
 """
 
 from collections.abc import Sequence

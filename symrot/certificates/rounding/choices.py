@@ -36,9 +36,11 @@ def decide_branches(
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Write the branch of a condition into ``decision`` for all boxes on which only one branch is possible.
 
-    ``a`` and ``b`` are intervals of the two compared numbers. ``decision`` holds 1 if the relation holds on a box, 0 if
-    not, -1 if that is open; only -1 is replaced. Return two Boolean arrays: on which boxes the branch in ``decision``
-    was chosen before this call but is impossible, and on which boxes both branches are possible.
+    ``a`` and ``b`` are intervals, one per box, of the two numbers that the condition ``a relation b`` compares.
+    ``decision`` holds 1 for a box on which the condition is assumed to hold, 0 if it is assumed not to hold, -1 if
+    nothing is assumed; only -1 is replaced. Return two Boolean arrays. The first is true for a box that contradicts its
+    assumption: the decision was 1 or 0 before this call, and the intervals exclude it. The second is true for a box on
+    which both branches are possible and nothing was assumed.
     """
     holds, fails = _POSSIBLE[relation](a, b)
     outside = ((decision == 1) & ~holds) | ((decision == 0) & ~fails)
@@ -49,7 +51,12 @@ def decide_branches(
 
 
 def narrow_to_branch(graph: OutputGraph, number: int, decision: NDArray[np.int8], computed: list[Array]) -> None:
-    """Shrink the ranges in ``computed``, in place, to the values that are possible in a condition's chosen branch."""
+    """Shrink ranges in ``computed``, in place, to the values that are possible in the decided branch of a condition.
+
+    ``number`` is the index of the condition in ``graph.conditions``, and ``computed`` holds an interval per node and
+    box. ``decision`` holds, for each box, 1 if the condition holds there, 0 if not, -1 if it is undecided. If ``x < y``
+    holds, for example, the range of x is cut at the largest y, and that of y at the smallest x.
+    """
     relation, i, j = graph.conditions[number]
     larger, smaller = _NOT_LESS[relation]
     _narrow_ordered(graph.nodes, i, j, decision == larger, computed)

@@ -1,13 +1,14 @@
 """Interval arithmetic for rounding bounds: float64 arrays of shape (2, n), the lower and upper ends of n intervals.
 
-Results are rounded outward, but an end is moved only if the operation was inexact. So 1*1 stays 1, which matters
-because the size of a rounding error jumps at powers of two. TwoSum decides whether a sum is exact; Veltkamp's split
-decides whether a product is exact. A step outward is Rump's: ``c + (phi |c| + eta)`` is never less than the next
-number. Overflow and division by zero give ends that are not finite. Only ``+ - * / sqrt`` are used, so that results are
-the same on every machine.
+Results are rounded outward, but an end is moved only if the operation was inexact. So the upper end of 1*1 stays 1.
+This matters because a number just above 1 has twice the rounding error of a number just below 1, and likewise at every
+power of two. TwoSum decides whether a sum is exact; Veltkamp's split decides whether a product is exact. An end c is
+moved outward by Rump's method, to ``c + (phi |c| + eta)`` with phi a little above 2^-53 and eta the smallest positive
+double; this is never less than the next double. Overflow and division by zero give ends that are not finite. Only ``+ -
+* / sqrt`` are used, so that results are the same on every machine.
 
-Source: Ogita, Rump, Oishi, SIAM J. Sci. Comput. 26 (2005) 1955 (TwoSum, Split); Rump, Zimmermann, Boldo, Melquiond,
-BIT 49 (2009) 419 (successor in rounding to nearest).
+Source: Ogita, Rump, Oishi, SIAM J. Sci. Comput. 26 (2005) 1955 (TwoSum, Split); Rump, Zimmermann, Boldo, Melquiond, BIT
+49 (2009) 419 (successor in rounding to nearest).
 """
 
 from typing import TypeAlias
@@ -136,7 +137,12 @@ def binade(size: Array) -> Array:
 
 
 def half_ulp(size: Array, precision: str) -> Array:
-    """Return a bound of the rounding error of numbers up to ``size``: half a unit in the last place below ``size``."""
+    """Return a bound of the error of rounding to ``precision`` any number whose absolute value is at most ``size``.
+
+    It is half the distance of adjacent floating-point numbers just below ``size``. At a power of two this distance is
+    half of that just above, which need not count, because no number above ``size`` occurs. For 1.0 and "double" the
+    bound is 2^-54, for 1.5 it is 2^-53.
+    """
     below = ((size.view(np.int64) - 1) & _EXPONENT).view(np.float64)
     unit = np.maximum(below * 2.0 ** -DIGITS[precision], _LEAST[precision])
     return np.where(size > 0, unit, 0.0)

@@ -147,9 +147,9 @@ def largest_box(
 ) -> tuple[float, dict[str, tuple[Fraction, Fraction]]]:  # fmt: skip
     """Return (size, box): the largest multiple of ``box`` on which every rounding error is at most ``target``.
 
-    The size multiplies the widths of the ranges in ``box``, of all inputs or of the inputs ``places`` only, about their
-    middles. It is found by doubling and 12 steps of bisection. The other arguments are those of
-    :func:`symrot.certificates.rounding.bounds.bound_outputs`.
+    Each range in ``box`` is made ``size`` times as wide and keeps its middle: the range 1 to 3 becomes 0 to 4 for size
+    2. If ``places`` names inputs, only their ranges change. The size is computed by doubling and 12 steps of bisection.
+    The other arguments are those of :func:`symrot.certificates.rounding.bounds.bound_outputs`.
 
     Raises
     ------
@@ -186,6 +186,7 @@ def largest_box(
         low, high = (middle, high) if holds(middle) else (low, middle)
     if not low:
         raise InputError(
-            f"{operations.name}: expected a target error that is met on a box of some size, got {target:g}"
+            f"{operations.name}: expected a target error that the bounds meet on a small box about the middle, "
+            f"got {target:g}; choose a larger target"
         )
     return low, resized(box, low, chosen)

@@ -97,9 +97,10 @@ class OutputGraph:
 
     @cached_property
     def exact(self) -> tuple[bool, ...]:
-        """For each node, whether it has no rounding error: an input, its sign or size, or a constant such as 1/2.
+        """For each node, whether its computed value has no rounding error.
 
-        A constant is exact if :func:`is_short` finds few significant bits.
+        This is so for an input, for a constant such as 1/2 that has few significant bits (:func:`is_short`), and for
+        the negative, the absolute value or a change of sign (copysign) of such a node.
         """
         flags: list[bool] = []
         for node in self.nodes:
@@ -170,10 +171,10 @@ def is_short(value: Fraction) -> bool:
 
 
 def _modulo_two_pi(graph: OutputGraph, index: int, sign: int = 1) -> tuple[int, int]:
-    """Return (index of a node, its sign) such that the two products below are equal modulo 2 pi.
+    """Return (i, s), a node and a sign, such that ``s`` times node i equals ``sign`` times node ``index`` modulo 2 pi.
 
-    They are that sign times that node, and the argument ``sign`` times the node ``index``. Constants near 2 pi are
-    dropped from sums: for the node ``2*pi - x`` and ``sign`` 1, the result is (index of x, -1).
+    Constants near 2 pi are dropped from sums: for the node ``2*pi - x`` and ``sign`` 1, the result is (index of x, -1).
+    A sine or cosine of the simpler node replaces that of the sum.
     """
     node = graph.nodes[index]
     if node[0] == "neg":
@@ -251,8 +252,10 @@ class _GraphReader:
     def squares(self, index: int, depth: int = 0) -> list[tuple[int, int]] | None:
         """Return pairs (x, roundings) for the terms of a sum of squares x^2, or None if the operation is no such sum.
 
-        x is the index of an operation; ``roundings`` counts the square and the additions in which the term takes part.
-        ``depth`` is the number of additions so far.
+        ``index`` is the operation, and x the index of an operation that is squared. ``roundings`` counts the roundings
+        of its term: one in the square, and one in each addition on the way to the operation for which the search began.
+        ``depth`` is the number of these additions between that operation and ``index``, 0 in the first call. For a^2 +
+        (b^2 + c^2) the result is [(a, 2), (b, 3), (c, 3)].
         """
         node = self.source[index]
         if node[0] == "mul" and node[1] == node[2]:
@@ -306,7 +309,11 @@ _GAPS = {"sine_gap": Fraction(1, 6), "tangent_gap": Fraction(1, 3)}  # function 
 
 
 def _at_origin(reader: _GraphReader, index: int, square: int) -> Fraction | None:
-    """Return the value at 0 of a polynomial in the node ``square``, or None if the node is no such polynomial."""
+    """Return the value that the operation ``index`` has if the operation ``square`` is 0, as a fraction.
+
+    This is the constant term of a polynomial in ``square``: 1/6 for ``1/6 - square*(1/120)``. Return None if the
+    operation contains anything besides ``square``, constants, sums and products.
+    """
     node = reader.source[index]
     if index == square:
         return Fraction(0)
@@ -321,10 +328,11 @@ def _at_origin(reader: _GraphReader, index: int, square: int) -> Fraction | None
 
 
 def _gap(reader: _GraphReader, node: Node) -> int | None:
-    """Return the index of a node ``gap`` if the operation ``node`` computes such a function, otherwise None.
+    """Return the index of a new node of the kind ``gap`` if the operation ``node`` computes a gap function, else None.
 
-    A gap function is (x - sin x)/x^3 or (sin x - x cos x)/x^3. The C text computes it as ``x*x < c ? series :
-    formula``; its value at x = 0 tells which of the two it is.
+    The gap functions are (x - sin x)/x^3 and (sin x - x cos x)/x^3, whose formulas lose all digits near 0. The C text
+    computes one as ``x*x < c ? series : formula``. Its series has the value 1/6 or 1/3 at x = 0, which tells which of
+    the two functions it is.
     """
     if node[0] != "select" or node[1] != "<" or reader.source[node[2]][0] != "mul":
         return None

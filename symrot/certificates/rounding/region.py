@@ -74,10 +74,10 @@ def narrowed(boxes: Array, region: Region, places: Sequence[str]) -> Array:
 
 
 def _left_by(others: Sequence[Array], count: int) -> tuple[Array, Array]:
-    """Return the least and the largest |x| for which x^2 and the squares of ``others`` sum to 1, within UNIT_NORM.
+    """Return (least, largest) values of |x| for which x^2 and the squares of ``others`` sum to 1.
 
-    ``others`` are intervals, each on ``count`` boxes, so that there is a range of x. Both numbers are 0 where the other
-    squares already exceed 1.
+    The sum may differ from 1 by the tolerance UNIT_NORM. ``others`` are arrays with an interval on each of ``count``
+    boxes; the results are arrays with a number for each box. Both numbers are 0 where the other squares exceed 1.
     """
     rest = intervals.point(1.0, count) + np.array([[-UNIT_NORM], [UNIT_NORM]])
     for other in others:

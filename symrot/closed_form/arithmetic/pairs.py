@@ -76,9 +76,13 @@ def attitude(values: Sequence[Number]) -> list[float]:
 
 
 def on_grid(values: Sequence[tuple[int, int]]) -> list[float]:
-    """Return ratios of integers as one list of pairs hi, lo, hi, lo, ..; each sum hi + lo approximates a ratio.
+    """Return ratios of integers as one list of pairs hi, lo, hi, lo, ..
 
-    lo is rounded to a multiple of GRID times the last bit of hi, so that other algorithms can compute the same doubles.
+    of doubles; each sum hi + lo approximates a ratio.
+
+    lo is rounded to a multiple of GRID times the last bit of hi. This is coarser than the doubles near lo, so that a
+    less exact method, double-double arithmetic for many ratios at once (:mod:`symrot.closed_form.batches`), can round
+    to the same multiple and so give the same two doubles.
     """
     result: list[float] = []
     for top, bottom in values:

@@ -96,7 +96,11 @@ class Turning:
 
     @np.errstate(over="ignore")  # only upper bounds overflow; such angles are computed in integers
     def __call__(self, t: Floats) -> Floats:
-        """Return ``share`` times the angle of rotation at each time t, s, in revolutions, reduced to -1/2 to 1/2."""
+        """Return ``share`` times the angle of rotation at each time of ``t``, s, in revolutions from -1/2 to 1/2.
+
+        ``share`` is the number passed to the constructor, such as 1/2 for the half angle of a quaternion. The product
+        is reduced by whole revolutions.
+        """
         if len(t) > _BLOCK:
             return np.concatenate([self(t[k : k + _BLOCK]) for k in range(0, len(t), _BLOCK)])
         x = self._decay[0] * t
@@ -138,11 +142,12 @@ class Turning:
         return _less_whole_turns(dd.add(dd.multiply(dd.multiply(time, self._rate), first), pushed))
 
     def _far(self, t: Floats) -> Floats:
-        """Return the angle at the times t, modulo one revolution, for ``|decay t|`` above dd.NEAR.
+        """Return ``share`` times the angle of rotation, modulo one revolution, for ``|decay t|`` above dd.NEAR.
 
-        The angle is the sum of a part that grows steadily, at the final angular velocity, and of a transient part with
-        ``1 - exp(-decay t)``. They are computed in double-double numbers; for small ``decay t`` digits would cancel. As
-        everywhere in this class, the angle is that of the rotation times the factor ``share``.
+        ``t`` are the times, and ``share`` is the factor passed to the constructor. The angle is the sum of two parts,
+        both computed in double-double numbers: one grows steadily, at the final angular velocity; the other is
+        transient, a multiple of ``1 - exp(-decay t)``. At smaller ``|decay t|`` the two parts would cancel, and another
+        method is used (``_near``).
         """
         time = t, np.zeros_like(t)
         high, low = dd.exponential(dd.multiply(time, self._decay))

@@ -170,12 +170,12 @@ class Constants:
         ]  # fmt: skip
 
     def _turning(self, turned: bool) -> tuple[int, int, list[float]]:
-        """Return the factor from the angle of rotation, rad, to `half` or `lag`, revolutions, and constants for C.
+        """Return (turn, bits, fixed), the constants of one of two angles that the C function computes.
 
-        If ``turned``, it is the factor of `lag` (axial.h), the angle by which the transverse angular velocity rotates
-        in the body; otherwise that of `half`, half the angle of rotation. The factor is the first result divided by 2
-        to the power of the second one, both integers. The third result lists those constants of the angle that do not
-        depend on the initial state.
+        These angles, in revolutions, are multiples of the angle of rotation about the driven axis, in rad; the multiple
+        is ``turn/2**bits``. If ``turned`` is false, the angle is `half`, half the angle of rotation. If it is true, the
+        angle is `lag` (see axial.h), by which the transverse angular velocity rotates in the body. ``fixed`` lists
+        those constants of the angle that do not depend on the initial state, as doubles for C.
         """
         turn, bits = _HALF
         if turned:
@@ -190,14 +190,15 @@ class Constants:
         return self._turns[turned]
 
     def __call__(self, rates: Sequence[Fraction], attitude: tuple[list[float], list[float]]) -> Loops:
-        """Return the motion from one initial state, as the compiled loop for its samples together with its constants.
+        """Return the motion from one initial state: a :class:`Loops`, the compiled C loop with this motion's constants.
 
         Parameters
         ----------
         rates : 3 Fractions
             Angular velocity at the start, rad/s.
         attitude : 2 lists of 4 floats
-            Quaternions P and Q: the attitude is P cos(angle/2) + Q sin(angle/2).
+            Quaternions P and Q, the attitude at the start and the attitude half a revolution later: after a rotation by
+            ``angle`` about the driven axis the attitude is P cos(angle/2) + Q sin(angle/2).
         """
         evaluate, record = functions()
         one, other = rates[self.axis - 2], rates[self.axis - 1]

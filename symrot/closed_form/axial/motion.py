@@ -71,7 +71,8 @@ class AxialMotion:
         """
         if quaternion and not self.has_attitude:
             raise InputError(
-                "quaternion: expected False for a body that does not rotate about the driven axis alone, got True; use "
+                "quaternion: expected False, because this body also rotates about an axis other than the driven one "
+                "and this closed form then has no attitude, got True; for the attitude use "
                 "symrot.closed_form.spin_up.motion, or numerical integration if the body is damped"
             )
         times = times_of(t)

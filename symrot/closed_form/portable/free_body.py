@@ -234,9 +234,10 @@ def _differences(inertia: list[float], omega: list[float], w: list[Any]) -> tupl
     """Return two results: the list I2 - I3, I3 - I1, I1 - I2, and the defect |L|^2 - 2 T I_mid of a motion.
 
     Both are computed from exact fractions: ``inertia`` and ``omega`` are lists hi, lo, hi, lo, .. of doubles, whose
-    sums are the principal moments and the angular velocity along the principal axes. Rates that are zero in ``w``, the
-    same angular velocity after rounding, are left out. L is the angular momentum, T the kinetic energy and I_mid the
-    middle moment of inertia; the sign of the defect tells around which axis the motion goes.
+    sums are the principal moments and the angular velocity along the principal axes. L is the angular momentum, T the
+    kinetic energy and I_mid the middle moment of inertia. The defect is the sum of ``I (I - I_mid) omega_k^2`` over the
+    axes; its sign tells around which axis the motion goes. ``w`` holds the components of the angular velocity that the
+    rest of the code uses, in which tiny ones were set to zero: an axis with a zero in ``w`` is left out of the sum.
     """
     moments = [Fraction(high) + Fraction(low) for high, low in zip(inertia[::2], inertia[1::2], strict=True)]
     rates = [Fraction(high) + Fraction(low) for high, low in zip(omega[::2], omega[1::2], strict=True)]

@@ -160,12 +160,13 @@ class PortableHeavyTop:
         return numerators, kappas, leads, speed, v, below
 
     def _functions(self, i: int, place: Any) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
-        """Return the terms of a theta series at the argument ``place`` (an angle v or z in rad), and their derivatives.
+        """Return the terms of a theta series at the angle ``place``, rad, and the derivatives of the terms.
 
         The Cayley-Klein parameters alpha and beta of the attitude are quotients of theta series; the series is that of
-        alpha if i = 0, that of beta if i = 1. Its terms are sin(n z) and cos(n z) in the "circular" regime, otherwise
-        sinh(n v) and cosh(n v) times a power of the nome. There are four lists, with one value for each term: of the
-        real part, of the imaginary part, and of their derivatives.
+        alpha if i = 0, that of beta if i = 1. In the "circular" regime, ``place`` is an angle z and the terms are sin(n
+        z) and cos(n z). Otherwise, with z = i v, ``place`` is v and the terms are sinh(n v) and cosh(n v), each times a
+        weight (``_weights``), a power of the nome. The four lists have one value for each n: of the real part, of the
+        imaginary part, and of the derivatives of both.
         """
         odd = (
             [2 * n + 1 for n in range(TERMS)] if self.regime == "circular" or i == 0 else [2 * n for n in range(TERMS)]

@@ -109,8 +109,10 @@ class PortableSpinUp:
     def _far(self, side: Any, t: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
         """Return q0 + i q3 and q1 + i q2 of the attitude relative to the rotating axes, at times far from resonance.
 
-        The module :mod:`symrot.closed_form.spin_up.motion` explains these words. ``side`` holds the constants of the
-        motion before or after resonance, and ``omega`` the axial rate Omega at the times ``t``.
+        The rotating axes are attached to the body's axis and to the transverse angular velocity, its part normal to
+        that axis. Resonance is the time at which the axial rate Omega is zero. ``side`` holds the constants of the
+        motion before or after resonance, and ``omega`` the axial rate at the times ``t``.
+        :mod:`symrot.closed_form.spin_up.motion` has the formulas.
         """
         time, start, delta, _ = side
         square = dd.multiply(self._across, self._across)

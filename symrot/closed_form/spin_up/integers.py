@@ -45,7 +45,11 @@ _LARGEST = Fraction(10) ** 300
 
 
 def _scale(*values: Fraction) -> Fraction:
-    """Return a power of two near the largest of the values, in which rates are measured; one value must not be zero."""
+    """Return a power of two near the largest absolute value of ``values``, between half of it and twice it.
+
+    It is the unit in which the caller measures angular velocities, so that scaled numbers are near 1. One of the values
+    must not be zero. Outside 2^-900 to 2^900, the nearer end of this range is returned.
+    """
     largest = max(map(abs, values))
     size = largest.numerator.bit_length() - largest.denominator.bit_length()
     return Fraction(2) ** max(-900, min(900, size))

@@ -96,9 +96,10 @@ class Sweep:
         self.unit = self._square + (0 if series.wide else Fraction(NEAR) ** 2 * s)
 
     def speed(self, omega: Fraction) -> Fraction:
-        """Return S = sqrt(Omega^2 + W^2), rad/s, at the axial rate Omega = ``omega``.
+        """Return S = sqrt(Omega^2 + W^2), rad/s, at the axial angular velocity Omega = ``omega``.
 
-        S is the rate of rotation in the axes that rotate with the transverse angular velocity.
+        W is the constant length of the transverse angular velocity, the part normal to the axis. S is the rate at which
+        the body rotates relative to axes that rotate with the transverse angular velocity.
         """
         return number.sqrt(rounded(omega * omega + self._square))
 

@@ -46,11 +46,15 @@ _TERMS = 32  # powers of kappa^2 v that are used where kappa^2 v <= _SMALL
 
 
 class Series(NamedTuple):
-    """The functions v^2 g, v c and e of the module's text for one motion, as polynomials in ``y = radius2/r^2``.
+    """Three series, as polynomials in y, for the rotation of a body that is driven about its symmetry axis.
 
-    ``r^2 = x^2 + kappa^2`` is the squared angular velocity in the scaled time x, so that 0 <= y <= 1. If kappa is large
-    (``wide``), the series is accurate at every time x, and ``radius2`` is kappa^2. Otherwise it is accurate for x above
-    NEAR, and ``radius2`` is NEAR^2 + kappa^2. The coefficients begin with the lowest power.
+    x is the scaled time and kappa the transverse angular velocity, so that ``r^2 = x^2 + kappa^2`` is the squared
+    angular velocity; ``v = 1/r^2``. A certain vector n at rest in space has, perpendicular to the angular velocity, the
+    two small components ``(kappa/r) (x/r) v^2 g`` and ``(kappa/r) v c``, and the body rotates about it by the integral
+    of r plus ``(x/r) e``, rad. The fields are the polynomials ``v^2 g``, ``v c`` and ``e``, lowest power first. The
+    variable ``y = radius2/r^2`` lies between 0 and 1. If kappa is large (``wide``), the series are accurate at every
+    time x, and ``radius2`` is kappa^2. Otherwise they are accurate for x above NEAR, and ``radius2`` is NEAR^2 +
+    kappa^2.
     """
 
     wide: bool
@@ -67,11 +71,11 @@ def _nodes() -> tuple[Floats, Floats]:
 
 
 def _first(share: float, v: float) -> Floats:
-    """Return the coefficients of the function a as a polynomial in y, lowest power first.
+    """Return the coefficients of a(v) as a polynomial in ``y = radius2 v``, lowest power first.
 
-    a(v) is the part ``n1 = (kappa/r) a(v)`` of a vector at rest in space; the module's text defines it, with ``v =
-    1/r^2``. y is ``radius2 v`` for a fixed radius2 (see :class:`Series`); ``share`` is kappa^2/radius2, and the
-    argument ``v`` is 1/radius2, the value of v at y = 1.
+    ``(kappa/r) a(v)`` is the first component of a vector that is at rest in space, in axes in which the body rotates at
+    ``(kappa, 0, x)``; x is the scaled time, ``r^2 = x^2 + kappa^2`` and ``v = 1/r^2``. ``radius2`` is a constant (see
+    :class:`Series`). ``share`` is kappa^2/radius2, and the argument ``v`` is 1/radius2, the value of v at y = 1.
     """
     order, total = {0: 1.0}, [0.0] * (3 * _ORDERS + 1)
     total[0] = 1.0
@@ -89,11 +93,11 @@ def _first(share: float, v: float) -> Floats:
 
 
 def _angle(share: float, v: float, h: Floats) -> Floats:
-    """Return the values of the function e at the Chebyshev points; ``(x/r) e`` is the angle delta of the module's text.
+    """Return the values of the function e at the Chebyshev points of y; ``(x/r) e`` is an angle delta, in rad.
 
-    ``h`` holds the coefficients, as a polynomial in y, of the function h in the derivative ``delta' = kappa^2 v^(5/2)
-    h`` by x, with ``v = 1/r^2``. The arguments ``share`` and ``v`` are kappa^2/radius2 and 1/radius2 (see
-    :class:`Series`).
+    x is the scaled time, ``r^2 = x^2 + kappa^2`` with a constant kappa, ``v = 1/r^2`` and ``y = radius2 v``. delta
+    solves the equation ``d delta/dx = kappa^2 v^(5/2) h``, where h is a polynomial in y: ``h`` lists its coefficients,
+    lowest power first. ``share`` is kappa^2/radius2, and the argument ``v`` is 1/radius2, the value of v at y = 1.
     """
     powers = _nodes()[1]
     if share >= _SMALL:  # from x = 0
@@ -109,10 +113,11 @@ def _angle(share: float, v: float, h: Floats) -> Floats:
 
 
 def series(kappa2: float, inverse: float) -> Series:
-    """Return the asymptotic series of the rotation of a driven body with kappa^2 = ``kappa2``, in inverse powers of r.
+    """Return the series for the rotation of a driven body with kappa^2 = ``kappa2``, in powers of 1/r.
 
-    kappa is the transverse angular velocity in the scaled time (see the module's text). ``inverse`` is 1/kappa^2; it is
-    passed too because one of the two may be too small for a double, and is then 0.
+    r = sqrt(x^2 + kappa^2) is the angular velocity in units in which its axial part equals the time x; kappa is the
+    constant transverse part in these units. ``inverse`` is 1/kappa^2; it is passed too because one of the two may be
+    too small for a double, and is then 0.
     """
     wide = kappa2 >= WIDE * WIDE
     radius2 = kappa2 if wide else NEAR * NEAR + kappa2

@@ -1,8 +1,9 @@
 """Selection of the terms of a right-hand side that must be bounded (enclosed), because a step may miss a pulse in them.
 
-A stepper evaluates a right-hand side only at some points. A pulse, a switch or a pole between two of these points has
-no effect there, but an evaluation of the formula over complex discs (:file:`propagation/enclosures/disc.h`) shows it:
-the resulting disc bounds all Taylor coefficients that a step omits.
+A stepper evaluates a right-hand side only at some points. It does not notice a pulse, a switch or a pole between two of
+these points. Bounds notice it: the formula is evaluated over complex discs (:file:`propagation/enclosures/disc.h`),
+sets that contain all times and states near a step. The result is a disc that contains all values of the formula there,
+and its radius bounds all Taylor coefficients that a step omits.
 
 Polynomials of low degree in the states, in time and in sine and cosine of ``a*t + b`` need no bounds: from their
 coefficients follows how fast they can vary. Therefore each rate is split into its terms, and only the terms that are

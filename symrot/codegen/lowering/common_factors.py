@@ -93,10 +93,12 @@ class Share:
         return pair[0] == "add" or not any(self.nodes[i][0] == "num" for part in pair[1:] for i in part)
 
     def _replace(self, kind: str, pair: tuple[Any, ...], swap: Callable[..., tuple[Any, ...]]) -> None:
-        """Replace a pair of factors (``kind`` is ``"mul"``) or terms (``"add"``) in every node by the node of the pair.
+        """Make a pair of factors (``kind`` is ``"mul"``) or terms (``"add"``) a node, used wherever it occurs.
 
-        ``swap`` returns a node with the pair replaced, or unchanged if the node does not contain it. The node of the
-        pair is appended if it does not exist.
+        ``pair`` is the new node, for example the product of two other nodes; it is appended to ``self.nodes`` if it is
+        not there. Then each other node of the kind is replaced by ``swap(node, pair, new)``, where ``new`` is the index
+        of the pair. ``swap`` returns the node with ``new`` in place of the pair, or the node unchanged if it does not
+        contain the pair: x*y*z becomes new*z for the pair x*y.
         """
         if pair not in self.nodes:
             self.nodes.append(pair)

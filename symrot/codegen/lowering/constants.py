@@ -95,7 +95,11 @@ class Gather:
         return S.One, ("call", name, tuple(self.whole(argument) for argument in expr.args))
 
     def whole(self, expr: Expr) -> Tree:
-        """Return the formula tree of a whole expression, the constant factor included."""
+        """Return the formula tree of the expression ``expr``.
+
+        The parts of a sum or product are handled as a constant factor and the rest (``split``), so that constants can
+        be computed once, outside the kernel; here both are multiplied again into one tree.
+        """
         sign, tree = self.scaled(*self.split(expr))
         return tree if sign > 0 else ("add", ((-1, tree),))
 
@@ -141,7 +145,9 @@ class Gather:
     def _power(self, expr: Expr) -> tuple[Expr, Tree]:
         base, power = expr.as_base_exp()
         if not (2 * power).is_Integer:
-            raise InputError(f"expected whole and half powers in a kernel, got {expr}; use sqrt for roots")
+            raise InputError(
+                f"expected powers in a kernel to be multiples of 1/2, such as x**2 or sqrt(x)**3, got {expr}"
+            )
         if power.is_Integer:
             constant, core = self.split(base)
         else:

@@ -165,9 +165,10 @@ def _lowered(
 ) -> tuple[Lowered, list[str]]:  # fmt: skip
     """Return (lowered, names): the program with the formulas of its parameters, and its temporaries that need names.
 
-    The arguments are those of :func:`lower`. If ``flat`` is true, a sum inside a sum is merged with it before parts
-    that occur repeatedly are computed once. :func:`lower` tries both values and keeps the program with fewer
-    operations. The names are preliminary ones, which :func:`lower` replaces by descriptive names.
+    The arguments are those of :func:`lower`. If ``flat`` is true, a sum inside a sum, such as a + (b + c), becomes one
+    sum a + b + c; only after that are repeated parts given a name and computed once. :func:`lower` tries ``flat`` true
+    and false and returns the program with fewer operations. The names here are preliminary; :func:`lower` replaces them
+    by descriptive names.
     """
     inputs = [name for a in signature.arguments if a.role == "in" for name, *_ in a.components]
     held = {symbol for _, expr in [*outputs, *definitions] for symbol in expr.free_symbols}

@@ -162,9 +162,10 @@ def _body(
     """Return the statements of a function; each value is computed just before the first output that needs it.
 
     This order keeps few values in use at a time, so that they fit into registers. ``index_of`` returns the C index of a
-    component in its array. With ``near``, functions such as sin are called in their versions without branches. With
-    ``late`` (:func:`_stores_last`), results are computed in the order of :func:`_computed_in_turn`, and stored after
-    all of them are computed.
+    component in its array. If ``near`` is true, functions such as sin are called in versions without branches, for
+    arguments in a limited range. If ``late`` is false, each value is assigned to its output element as soon as it is
+    computed. If ``late`` is true (see :func:`_stores_last`), the outputs are computed in the order of
+    :func:`_computed_in_turn`, each value is held in a variable, and all are assigned at the end.
     """
     results = dict(program.outputs)
     lines: list[str] = []

@@ -27,9 +27,11 @@ ONE: Node = ("number", Fraction(1))
 
 
 class _Open(Exception):
-    """Raised if no auxiliary states can be used: their rates contain too many new quantities or lack the required form.
+    """Raised if no auxiliary states can be used for a system, which :func:`with_companions` then returns unchanged.
 
-    :func:`with_companions` then returns the system unchanged.
+    The time derivative of an auxiliary state must be a sum of terms (constant) * (state or 1) * (auxiliary state). This
+    fails if a term has two states, such as omega_1*omega_2*q0*q1, or if the derivatives of auxiliary states need more
+    and more auxiliary states, above a limit.
     """
 
 
@@ -136,9 +138,11 @@ class _Closure:
         return self.polynomials[i]
 
     def sum(self, s: Series, only: Iterable[int] | None = None) -> Polynomial | None:
-        """Return a series of the rule ``sum`` as a polynomial, or the part with the operands ``only``.
+        """Return a sum of series as a polynomial in states, constants and functions of time.
 
-        Return None if an operand is not a polynomial.
+        ``s`` is a series with the rule "sum": a weighted sum of other series plus a constant. With ``only``, a set of
+        indices of series in this sum, the result is the sum of their terms, without the constant. The result is None if
+        one of the terms is no polynomial.
         """
         *weights, constant = s.weights
         total = self.constant(constant) if constant is not None and only is None else Polynomial({})
@@ -196,10 +200,12 @@ class _Closure:
         return sum(power for variable, power in monomial if variable in self.attitude)
 
     def split(self, form: Polynomial) -> list[tuple[Node, int | None, Polynomial]]:
-        """Return a polynomial as a sum of products (constant, state, polynomial in the attitude and functions of t).
+        """Return a polynomial as a sum of products (constant, state, inner polynomial), by grouping its terms.
 
-        The state is an index, or None for a term without a state such as omega_1. Each polynomial becomes an auxiliary
-        state.
+        The inner polynomials contain only components of the attitude and functions of time; the caller makes each of
+        them an auxiliary state. The state is an index, or None for a product without a state such as omega_1. For
+        example, ``I omega_1 q0 q1 + I omega_1 q2 q3`` gives one product: I, the index of omega_1, and ``q0 q1 + q2
+        q3``. _Open is raised if a term contains two states, or a power of one.
         """
         groups: dict[Monomial, dict[Monomial, Fraction]] = {}
         for monomial, x in form.terms.items():
@@ -224,12 +230,13 @@ class _Closure:
     def adjoin(self, inner: Polynomial) -> tuple[int | None, Fraction, Fraction]:
         """Return (index, factor, number) with ``inner = factor*state + number`` for the auxiliary state ``index``.
 
-        The state is added if it is new; the index is None if ``inner`` is a number. Polynomials that differ only by the
-        identity q0^2 + q1^2 + q2^2 + q3^2 = 1 must give the same state. So each term is multiplied by powers of the
-        squared norm until all terms have the same degree: ``q0^2 + 1`` becomes ``2 q0^2 + q1^2 + q2^2 + q3^2``. From a
-        sum of squares of components, the multiple of the squared norm with the average coefficient is then subtracted,
-        and added to ``number``. _Open is raised if the degrees differ by an odd number, or if there are too many
-        states.
+        The state is added if it is new; the index is None if ``inner`` is a number. Two polynomials that differ only by
+        the identity q0^2 + q1^2 + q2^2 + q3^2 = 1 must give the same state. So they are brought to one form, in two
+        steps. First, each term is multiplied by powers of the squared norm until all terms have the same degree: ``q0^2
+        + 1`` becomes ``2 q0^2 + q1^2 + q2^2 + q3^2``. Second, if the degree is 2, a multiple of the squared norm is
+        subtracted, so that the coefficients of the four squares sum to zero, and the multiple becomes ``number``: in
+        the example 5/4, which leaves ``3/4 q0^2 - 1/4 (q1^2 + q2^2 + q3^2)``. _Open is raised if the degrees differ by
+        an odd number, or if there are too many states.
         """
         degrees = {self.degree(monomial) for monomial in inner.terms}
         top = max(degrees)
@@ -282,11 +289,11 @@ class _Closure:
                 self.seek(operand)
 
     def seek_in(self, s: Series) -> None:
-        """Replace the polynomials of the attitude in the sum ``s`` of series by auxiliary states; nothing is returned.
+        """Replace polynomials in components of the attitude that occur in ``s``, a sum of series, by auxiliary states.
 
-        Operands that are products of states of the attitude, as in ``q1 q3 + q0 q2``, are replaced together:
-        ``self.parts`` maps the sum to these operands and the terms that replace them. The other operands are searched
-        by :meth:`seek`.
+        The terms of the sum that are products of components of the attitude are replaced together: in ``q1 q3 + q0 q2 +
+        t``, the first two. ``self.parts[s]`` then holds the indices of these terms, and the terms with auxiliary states
+        that replace them. In the other terms of the sum, :meth:`seek` searches for such polynomials.
         """
         alone = {
             i for i in s.operands if self.series[i].rule == "product" and self.of_attitude(self.polynomial(i))
@@ -314,9 +321,10 @@ class _Closure:
         return _rebuilt(self, rates)
 
     def seed(self, form: Polynomial) -> Node:
-        """Return the formula of states and t from which a step computes an auxiliary state, given as a polynomial.
+        """Return the formula that computes an auxiliary state, the polynomial ``form``, at the start of each step.
 
-        Terms with the same functions of time are put in one bracket.
+        The formula contains states and t: an auxiliary state ``q0 q1 + q2 q3`` is not carried over from step to step,
+        but computed from the states again. Terms with the same functions of time are put in one bracket.
         """
         groups: dict[Monomial, dict[Fraction, list[Node]]] = {}
         for monomial, x in sorted(form.terms.items()):
@@ -360,7 +368,10 @@ def _total(terms: list[Node]) -> Node:
 def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     """Return the system with the auxiliary states as further states, and without the series that they replace.
 
-    Such a series is, for example, ``q1 q3 + q0 q2``, half a component of R(q): as a state it needs no convolution.
+    An auxiliary state is a polynomial in the components of the attitude, such as ``q1 q3 + q0 q2``, half a component of
+    the rotation matrix R(q). As a series computed from q0 to q3 it takes two convolutions (sums of products of Taylor
+    coefficients) per coefficient. As a state, its coefficients follow from its time derivative, without a convolution
+    of its own. ``rates`` holds the time derivatives of the auxiliary states.
     """
     system, old = closure.system, closure.series
     count = len(system.states)

@@ -181,9 +181,10 @@ class _Jet:
         """Return the C expression for coefficient n of slot ``number``, which is a sum of convolutions.
 
         A convolution is ``sum(u[k] v[n-k], k = 0..n)``. For the stage ``later``, the variable with the letter ``sums``
-        and the slot's number, such as ``a3``, holds the sum over k = 1..n-1; the terms k = 0 and k = n are added. They
-        use coefficients n, which have just been computed. The result is the sum of two independent chains of
-        operations, so that a part of it need not wait for the last of them. ``stage`` depends on n: see the class.
+        and the slot's number, such as ``a3``, holds the part of the sum with k = 1..n-1; the terms k = 0 and k = n are
+        added here. These use coefficients n, which have just been computed. They are added in two separate sums, one
+        with u[n] and one with v[n], and the two are added last, so that the processor can compute one while it still
+        waits for a coefficient in the other. ``stage`` depends on n: see the class.
         """
         older = f"{sums}{number}" if stage == "later" else ""
         newer = ""
@@ -386,7 +387,9 @@ class _Jet:
     def _load(self, group: Sequence[int]) -> int:
         """Return the number of registers that a C loop over the slots ``group`` needs.
 
-        It needs two for the sums of each slot, and one for each factor.
+        A slot is a sum of convolutions ``sum(u[k] v[n-k])``. The loop over k (:meth:`_products`) takes two values of k
+        at a time and holds two partial sums of each slot, the values of each series u for both, and one value of each
+        series v.
         """
         terms = [c for i in group for _, c in self.slots[i].terms]
         return 2 * len(group) + 2 * len({c.a for c in terms}) + len({c.b for c in terms})
@@ -414,8 +417,10 @@ class _Jet:
     ) -> list[str]:
         """Return the C loop over k that adds products u[k] v[n-k] to the sums of slots, two values of k at a time.
 
-        The sums are the variables ``a{i}`` and ``b{i}``. ``terms`` holds (slot i, sign, convolution). ``left`` and
-        ``right`` are the indices of the series u and of the series v that occur in the convolutions, each once.
+        A slot is a sum of convolutions, of which the product u v of two series is one. Slot i has two partial sums, the
+        variables ``a{i}`` and ``b{i}``, one for each of the two values of k. ``terms`` holds (slot i, sign,
+        convolution). ``left`` and ``right`` are the indices of the series u and of the series v that occur in the
+        convolutions, each once.
         """
         lines = ["{", *(f"    symrot_v f{i} = {self.at(i, '1')};" for i in left)]
         lines.append("    for (int64_t k = 1; k < n - 1; k += 2) {")

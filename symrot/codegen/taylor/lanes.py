@@ -1,10 +1,11 @@
 """Arrangement of the Taylor series of one motion in SIMD vectors of four elements, called lanes.
 
 A row is a vector of up to four series that have the same recurrence rule and are computed together; states have rows of
-their own. A pack is a vector of any four series. A column is the convolution of two packs, lane by lane. A slot is a
-sum of columns, multiplied by one constant per lane; in a row with the rule ``sum``, a slot adds up the products that
-have the same constant. A pack whose four lanes hold the same series is read as one number for all lanes (broadcast) and
-needs no storage. For example, ``dq/dt = 1/2 q*(0, omega)`` is computed as three broadcasts times a permuted quaternion.
+their own. A pack is a vector of any four series. A column is the convolution of two packs, lane by lane: four products
+of two series. A slot is a sum of columns times one vector of four constants, one per lane. In a row of sums such as
+``a*(u v + w x) + b*y z``, the products with the constant a form one slot, and the product with b another. A pack whose
+four lanes hold the same series is read as one number for all lanes (broadcast) and needs no storage. For example,
+``dq/dt = 1/2 q*(0, omega)`` is computed as three broadcasts times a permuted quaternion.
 """
 
 from collections.abc import Iterable, Sequence
@@ -85,10 +86,12 @@ class Row(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """The series of a system in rows of four, in order of computation: states, auxiliary states, other series.
+    """The series of a system, and their arrangement in rows: vectors of up to four series that are computed together.
 
-    :mod:`symrot.codegen.taylor.auxiliary_states` explains auxiliary states. ``rates`` holds the time derivatives of the
-    rows of states and auxiliary states, and ``seeds`` the formulas for coefficient 0 of the auxiliary states.
+    Four is the number of doubles in a SIMD vector. ``rows`` are in order of computation: first states, then auxiliary
+    states (:mod:`symrot.codegen.taylor.auxiliary_states`), then other series. ``rates`` has, for each row of states or
+    auxiliary states, a row with their time derivatives. ``seeds`` has the formulas that compute the auxiliary states at
+    the start of a step.
     """
 
     series: tuple[Series, ...]
@@ -193,10 +196,10 @@ class _Placer:
         self.rows.append(row._replace(lanes=lanes))
 
     def _inlined(self, most_uses: int) -> set[int]:
-        """Return the indices of the products that get no row, because the sums that contain them compute them.
+        """Return the indices of the products (series u v) that are not stored as series of their own.
 
-        They occur in at most ``most_uses`` sums and in no other series. A row is a vector of up to four series, each of
-        which is computed once and stored.
+        Such a product occurs in at most ``most_uses`` sums and in no other series. Each of these sums computes it anew,
+        as a convolution within the sum, which is cheaper than to compute it in a row, store it and add it.
         """
         count: dict[int, int] = {}
         for s in (*self.series, *self.system.rates):
@@ -206,9 +209,11 @@ class _Placer:
         return {operand for operand, uses in count.items() if uses <= most_uses}
 
     def level(self, i: int) -> int:
-        """Return how many computations, one after the other, coefficient n of series ``i`` needs; it is 0 for states.
+        """Return the number of computations in the longest chain that leads to coefficient n of series ``i``.
 
-        Only series of equal level can be computed together in one row.
+        It is 0 for a state, whose coefficient n is known from order n - 1; 1 for a product of two states; 2 for a
+        quotient of such a product. The series of one row (a vector of up to four series that are computed together)
+        must have equal levels, because none of them may need another one.
         """
         if i not in self.levels:
             s = self.series[i]
@@ -270,10 +275,11 @@ class _Placer:
         return tuple(Address(1, first.row, lane) if a is None else a for lane, a in enumerate(addresses))
 
     def address(self, sign: int, series: int, lane: int) -> Address:
-        """Return the address of ``series``: ``sign``, the number of its row, and its lane in this row.
+        """Return an Address (sign, row, lane): the place of ``series``, and the sign with which it is read.
 
-        A row may contain copies of a series. The address of the copy in ``lane`` is returned if there is one, otherwise
-        that of the first copy.
+        ``sign`` (1, -1, or 0 for a zero instead of the series) is copied from the argument. A row, a vector of four
+        lanes, may contain copies of a series. The address of the copy in ``lane`` is returned if there is one, because
+        no permutation is then needed; otherwise that of the first copy.
         """
         first = self.place[series]
         return Address(sign, first.row, lane if self.rows[first.row].lanes[lane] == series else first.lane)
@@ -360,12 +366,13 @@ class _Placer:
         return Row("sum", lanes, tuple(made), tuple(terms), None if set(constants) == {ZERO} else constants)
 
     def _columns(self, lanes: list[list[tuple[int, int]]]) -> Iterable[int]:
-        """Yield indices of columns, vectors of four convolutions, that together contain all products of each lane.
+        """Yield the indices of columns that together contain all products of ``lanes``, each product once.
 
-        ``lanes`` holds for each lane of a row the products of its sum, as pairs (sign, series of a product). Each
-        column takes at most one product from each lane. As long as a factor occurs in every lane that has products
-        left, these products form a column, in which the factor is broadcast to all lanes. Otherwise the next product of
-        each lane is taken (:meth:`_mixed`).
+        A column is a vector of four convolutions, one per lane; it is made here. ``lanes`` has a list for each lane of
+        a row: the products u v of the sum in this lane, as pairs (sign, index of the product). Each column has at most
+        one product from each lane. If one series occurs as a factor in every lane that still has products, the next
+        column has, from each lane, the first product with this factor, so that one number is broadcast to all lanes.
+        Otherwise it has the next product of each lane (:meth:`_mixed`).
         """
         rest = [[(sign, self.series[p].operands[0], self.series[p].operands[1]) for sign, p in lane] for lane in lanes]
         needed = [bool(lane) for lane in lanes]
@@ -425,9 +432,11 @@ class _Placer:
 
 
 def _first_positive(item: tuple[Node, list[tuple[int, int]]]) -> tuple[Node, list[tuple[int, int]]]:
-    """Return (weight, products) so that the first product has a positive sign.
+    """Return a weighted group of products (weight, products) in the form whose first product has a positive sign.
 
-    If it is negative, the signs of the weight and of all products are changed. So equal sums are recognised as equal.
+    A group stands for weight * (sum of sign * product); ``products`` holds pairs (sign, index of the product). If the
+    first sign is -1, all signs and the weight are negated. So -a*(u v - w x) and a*(w x - u v), which differ in form
+    only, are recognised as equal if their products are listed in the same order.
     """
     weight, terms = item
     return item if terms[0][0] > 0 else (("neg", weight), [(-sign, operand) for sign, operand in terms])

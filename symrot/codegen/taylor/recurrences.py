@@ -45,9 +45,10 @@ class Series(NamedTuple):
 
     ``operands`` are indices of series. For a sum, ``weights`` holds one constant per operand, and as its last entry the
     constant that is added to coefficient 0, or None for no such constant. For a function of ``a t + b`` (rule
-    ``clock``), it holds a and b. A rule such as ``driven`` does not give coefficient 0: that is ``function`` of
-    coefficient 0 of the argument, which is then the last operand. ``sign`` is s in the rules ``driven`` and ``clock``:
-    1, or -1 as for cos, whose derivative is -sin. ``number`` is the index of a state.
+    ``clock``), it holds a and b. A rule such as ``driven``, for f(u) with f' known, gives coefficients 1, 2, .. only.
+    Coefficient 0 is f(u[0]): ``function`` is the name of f, and the last of the ``operands`` is the argument u.
+    ``sign`` is s in the rules ``driven`` and ``clock``: 1, or -1 as for cos, whose derivative is -sin. ``number`` is
+    the index of a state.
     """
 
     rule: str  # state time sum product quotient root driven primitive clock, or theta (t u')
@@ -148,7 +149,8 @@ class _Builder:
     def series_of(self, form: _Linear) -> int:
         """Return the index of the series that equals a linear form (a constant plus weighted series).
 
-        It is added if it does not exist; a single series with weight 1 is that series itself.
+        If the form is one series with weight 1 and no constant, this is the index of that series. Otherwise it is the
+        index of a sum, which is added to the series unless it exists.
         """
         if form.constant is None and list(form.terms.values()) == [ONE]:
             return next(iter(form.terms))
@@ -195,10 +197,11 @@ class _Builder:
         return _sum(left, right, sign)
 
     def bracket(self, form: _Linear) -> _Linear:
-        """Return a multiple of a sum with functions, such as ``m*(1 + tanh(u))``, as m times one series.
+        """Return a form such as ``m + m*tanh(u)`` as ``m*s``, with one series ``s = 1 + tanh(u)``.
 
-        The expanded form ``m + m*tanh(u)`` would have a rounding error proportional to m where the sum tends to zero.
-        Any other linear form is returned unchanged.
+        ``form`` is a constant plus weighted series. It is changed if all weights and the constant are numbers times the
+        same factor m, and if one of the series is not a polynomial, such as tanh; other forms are returned unchanged.
+        The expanded form would have a rounding error proportional to m where the sum tends to zero.
         """
         parts = [*form.terms.values(), *([] if form.constant is None else [form.constant])]
         factors = [_number_and_rest(part) for part in parts]

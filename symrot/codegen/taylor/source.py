@@ -135,10 +135,11 @@ class _Jet:
         return f"l{self.packs[pack]}" if pack in self.packs else self.picked(pack)
 
     def picked(self, pack: Pack) -> str:
-        """Return the C expression of the coefficients of order n of a pack, from the variables ``r{i}`` that hold them.
+        """Return the C expression of the coefficients of order n of a pack, a vector of any four series.
 
-        ``r{i}`` is the vector of the coefficients, just computed, of row i: of the four series that are computed
-        together. A pack is a vector of any four series, so that its elements may come from several rows.
+        The coefficients of order n have just been computed, in vectors of up to four series each, the rows; the
+        variable ``r{i}`` holds those of row i. The expression picks the elements of the pack from the rows and gives
+        them the signs of the pack: for a pack with elements from rows 0 and 2, a permutation of ``r0`` and ``r2``.
         """
         rows = sorted({address.row for address in pack})
         if _is_row(pack):
@@ -269,10 +270,11 @@ class _Jet:
         return [f"{name} = V_DIV({upper}, {lower});"]
 
     def _quotient(self, row: Row, name: str, stage: str, terms: list[str], total: str) -> list[str]:
-        """Return the C statements that set ``name`` to coefficient n of ``u/v``, which is ``(u[n] - total)/v[0]``.
+        """Return the C statements that set the variable ``name`` to coefficient n of ``u/v``: ``(u[n] - total)/v[0]``.
 
-        ``terms`` holds the C expressions of v and, unless u is constant, of u; ``total`` is that of the sum of known
-        products.
+        ``row`` describes up to four quotients that are computed as one vector. ``terms`` holds the C expressions of
+        v[n] and, unless u is constant, of u[n]. ``total`` is the C expression of ``sum(v[k] (u/v)[n-k], k = 1..n)``,
+        whose terms are known at this point. ``stage`` is "first" for n = 0, where v[0] is also stored for later orders.
         """
         divisor, upper = f"d{name[1:]}", "V_ALL(0.0)"
         if len(terms) > 1:
@@ -357,7 +359,9 @@ class _Jet:
     def order(self, n: str, stage: str, sums: str) -> list[str]:
         """Return the C statements for coefficient ``n`` (C text) of all series and coefficient n + 1 of the states.
 
-        ``stage`` and ``sums`` are explained in the class and in :meth:`column`.
+        ``stage`` is "first" for n = 0, "second" for n = 1 and "later" for larger n: later convolutions have more terms.
+        ``sums`` is the letter of the C variables that hold the terms k = 1..n-1 of each convolution, already summed
+        (see :meth:`column`).
         """
         lines: list[str] = []
         done, packed = set(range(self.state_rows)), set[Pack]()
