@@ -18,6 +18,7 @@ RETRIES = 3
 def _client(address: str) -> Any:
     make = optional("distributed", "--scheduler", "cluster").Client
     try:
+        optional("distributed.comm", "--scheduler", "cluster").get_address_host_port(address)  # a client would wait
         client = make(address, timeout=SECONDS, set_as_default=False)
     except (OSError, ValueError, TypeError) as reason:
         raise InputError(
