@@ -198,8 +198,9 @@ class Propagator:
         setup, began = motion.setup, perf_counter()
         if events is not None and self.sensitivities is not None:
             raise InputError(
-                "events: expected none together with sensitivities, because the time of an event would change with "
-                "the variables of the derivatives; make one propagator for each"
+                "events: expected none together with sensitivities, because the time of an event depends on the "
+                "variables by which the states are differentiated; make one propagator for events and another for "
+                "sensitivities"
             )
         try:
             if events is not None:

@@ -206,7 +206,7 @@ def test_sensitivities_leave_the_motion_as_it_is():
         ({"sensitivities": ["tolerance"]}, "an initial value or a constant"),
         ({"sensitivities": ["span.t"]}, "an initial value or a constant"),
         ({"sensitivities": ["body.about"]}, "expected a number or a vector"),
-        ({"sensitivities": ["omega"], "state": "ZXZ"}, "expected the state 'quaternion'"),
+        ({"sensitivities": ["omega"], "state": "ZXZ"}, "expected state='quaternion'"),
         ({"sensitivities": ["omega"], "torque": lambda t, w, q: (0, 0, 0)}, "expected torques with formulas"),
         ({"sensitivities": ["omega"], "events": ["omega_3 == 0"]}, "expected none together with sensitivities"),
     ],
