@@ -49,9 +49,9 @@ def used_quaternions(
 ) -> Quaternions:
     """Decide which names of a relation are quaternions, from the way in which they are used.
 
-    Names in ``known`` are left out. Each quaternion q that remains gets the definition ``[q_0, q_1, q_2, q_3]`` in free
-    symbols. Return these definitions, sentences about the interpretation, and the relation with products of quaternions
-    in place of plain ones.
+    Names in ``known`` are left out. Each quaternion q that remains gets components as its definition, such as ``[q_0,
+    q_1, q_2, q_3]``. Return these definitions, sentences about the interpretation, and the relation with products of
+    quaternions in place of plain ones.
 
     Parameters
     ----------
@@ -181,6 +181,10 @@ def _quaternion_names(
         if node.kind == "call" and node.value == "sqrt" and node.args[0].kind == "call" and node.args[0].value == "dot":
             inner = _bare(node.args[0].args[0])  # the norm of q, of which the text has the conjugate
             if f"{inner.value}_bar" in used:
+                add(inner)
+        elif node.kind == "call" and node.value == "abs":  # |q|, of which the text has the conjugate
+            inner = node.args[0]
+            if inner.value in (*RATES, "p") and f"{inner.value}_bar" in used:
                 add(inner)
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         if (rotating := _rotating(side, other)) is not None:

@@ -176,8 +176,8 @@ class NamesPart(SumsPart):
     def resolved(self, name: str, subscript: str, others: tuple[str, ...] = ()) -> str:
         """Return a name with its subscript in the form that the claim declares: ``I_1`` or else ``I1``.
 
-        ``others`` are further forms, tried after these two: "x_primep" for "x_prime_prime", for example. The first
-        declared form is returned; if none is declared, ``I_1``.
+        ``others`` are further forms, tried after these two: ``xp`` for ``x_prime``, for example. The first declared
+        form is returned; if none is declared, ``I_1``.
         """
         forms = [f"{name}_{subscript}", f"{name}{subscript}"] if subscript else [name]
         return next((form for form in [*forms, *others] if form in self.names), forms[0])

@@ -19,7 +19,7 @@ ABOUT = (
     "entry and worked number was read into a claim, compared with a result that is derived from first principles, and "
     "decided exactly. A correction is found by a search near the printed formula, derived from the reference, or "
     "proposed by a person; it is printed only if it is proven. The difference between the printed and the corrected "
-    "formula is framed."
+    "formula is marked."
 )
 EXTRACTION = (
     "The documents are known here as text extracted from PDF files, which loses characters. A line counts as an error "

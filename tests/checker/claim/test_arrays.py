@@ -7,7 +7,7 @@ from symrot.errors import InputError
 
 TRUE = (
     # quaternions
-    "q q* = ‖q‖²", "(q ⊗ p)* = p* ⊗ q*", "‖q ⊗ p‖ = ‖q‖ ‖p‖", r"q^{-1} = \frac{\bar q}{\|q\|^2}", r"q\otimes q^{-1}\otimes p = p",
+    "q q* = ‖q‖²", r"q \bar q = |q|^2", "(q ⊗ p)* = p* ⊗ q*", "‖q ⊗ p‖ = ‖q‖ ‖p‖", r"q^{-1} = \frac{\bar q}{\|q\|^2}", r"q\otimes q^{-1}\otimes p = p",
     "q p = (q0 p0 - qv . pv, q0 pv + p0 qv + qv x pv)", r"(q\otimes p)\otimes r = q\otimes(p\otimes r)",
     r"q\cdot p = \begin{bmatrix} q_0p_0 - \mathbf q^T\mathbf p \\ q_0\mathbf p + p_0\mathbf q + \mathbf q\times\mathbf p \end{bmatrix}",
     # matrices and columns
