@@ -266,7 +266,7 @@ def variation_source(
     source : function
         Returns the C source for three arguments: the program of the rates of states and derivatives, ``edges`` and
         ``scales``. The error of a step is measured in blocks of the state vector: block i goes from index ``edges[i]``
-        to ``edges[i + 1]``, and its error is compared with ``scales[i]`` or its size
+        to ``edges[i + 1]``, and its error is divided by ``scales[i]`` or, where this is 0, by the size of the block
         (:func:`symrot.propagation.compiled_models.error_blocks`).
 
     Raises
