@@ -6,7 +6,15 @@ import symrot
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import text
 from symrot.checker.recognition.pairing import absent_name, renamings
-from symrot.checker.recognition.parts import LACKING, Letters, PointOfLetters, is_superfluous, multiples, parts, variants
+from symrot.checker.recognition.parts import (
+    LACKING,
+    Letters,
+    PointOfLetters,
+    is_superfluous,
+    multiples,
+    parts,
+    variants,
+)
 from tests.campaigns.checker.printed import names_fault, offers
 
 FAULTS = (
