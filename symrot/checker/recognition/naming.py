@@ -216,7 +216,9 @@ def _least_symbols_related(left: Node, right: Node) -> int:
     """
     nodes = [node for side in (left, right) for _, node in walk(side)]
     accelerated = {node.args[0] for node in nodes if is_derivative(node) and len(node.args) > 2}
-    of_motion = any(node.kind == "call" and node.value in ("sin", "cos") and accelerated & {*node.args} for node in nodes)
+    of_motion = any(
+        node.kind == "call" and node.value in ("sin", "cos") and accelerated & {*node.args} for node in nodes
+    )
     return LEAST_SYMBOLS_OF_MOTION if of_motion else LEAST_SYMBOLS_RELATED
 
 
