@@ -76,8 +76,8 @@ def check(
     repair : bool
         Whether to diagnose a claim that is not true and to look for true formulas near it.
     where : sequence of str
-        The meanings of names, in words: ``"I = moment of inertia about the centre"``. A claim such as
-        ``"I = m r^2/2"`` is a definition of I without such words; with them, it is decided.
+        The meanings of names, in words: ``"I = moment of inertia about the centre"``. Without such words, or those of
+        ``body``, a claim such as ``"I = m r^2/2"`` is at best "recognised" as a known formula; with them it is "true".
     body : str
         The body in words, ``"solid cylinder of radius r"``.
     frame : str

@@ -91,11 +91,11 @@ class Case(ABC):
     unproven : list of int
         Indices of the entries for which no proof of equality is known.
     proof_rings : tuple of FormulaRing
-        The other rings that the proofs of single entries used so far, collected before it is known whether all entries
-        can be proven.
+        The rings, besides ``ring``, in which the entries proven so far were proven equal. A stage that proves the last
+        entry passes them to :meth:`rely_on`, which stores them in ``rings``.
     rings : tuple of FormulaRing
-        The other rings on which the verdict relies, set when a stage has proven all entries. Their divisors, assumed to
-        be nonzero, are among the ``conditions``.
+        The same rings once all entries are proven; empty until then. Read these for a verdict: their divisors, assumed
+        to be nonzero, are among the ``conditions``.
     conditions : tuple
         Relations under which the verdict holds.
     counterexample : Counterexample or None
@@ -118,7 +118,7 @@ class Case(ABC):
         """Return the conditions of a verdict, relations under which the proof of an equation is valid.
 
         They say where both sides are defined, and that no divisor in ``rings`` is zero. ``rings`` are the polynomial
-        rings, other than that of the case, in which the proof computes.
+        rings, other than that of the case, that the proof uses.
         """
 
     @abstractmethod
@@ -130,7 +130,7 @@ class Case(ABC):
         """
 
     def rely_on(self, rings: tuple[FormulaRing, ...]) -> None:
-        """Add the polynomial rings in which a proof computes to the evidence of the case.
+        """Add the polynomial rings that a proof uses to the evidence of the case.
 
         The divisors in these rings, which must not be zero, become conditions.
         """
@@ -173,7 +173,7 @@ def first_decision(case: C, stages: Sequence[Callable[[C], Decision | None]]) ->
         decision = stage(case)
         if decision is not None:
             return decision
-    raise AssertionError(f"the last of the stages, {stages[-1].__name__}, must decide every case")
+    raise AssertionError(f"expected a decision of the last stage, {stages[-1].__name__}, which decides every case")
 
 
 # -- stages that all cases share --------------------------------------------------------------------------------------
@@ -231,11 +231,12 @@ def arguments(case: Case) -> Decision | None:
 
 
 def congruence(case: Case) -> Decision | None:
-    """Return a decision if all entries of the two sides are equal once equal inverse functions get one variable.
+    """Return a decision if all entries become equal after inverse functions are replaced by equal expressions.
 
-    An example is ``f(asin(x)) = f(pi/2 - acos(x))``. Otherwise return None. The entries that earlier stages have proven
-    equal are not tried again. The decision is "true", or "undecided" if no point is known where both sides are defined
-    (:meth:`Case.confirmed`). See :mod:`symrot.exact.congruence_closure`.
+    In ``f(asin(x)) = f(pi/2 - acos(x))``, acos(x) is replaced by pi/2 - asin(x), which is proven to be equal. Otherwise
+    return None. Entries that earlier stages have proven equal are not tried again. The decision is "true", or
+    "undecided" if no point is known where both sides are defined (:meth:`Case.confirmed`). See
+    :mod:`symrot.exact.congruence_closure`.
     """
     ring = case.ring
     proofs = [proof_by_congruence(case.lefts[n], case.rights[n], ring.hypotheses, ring.domain) for n in case.unproven]

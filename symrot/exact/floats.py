@@ -53,6 +53,7 @@ def float_at(formula: Expr, values: Mapping[Expr, float], known: dict[Expr, floa
     Raises
     ------
     NoValue
+        If the value is no finite real number, or a symbol has no value in ``values``.
     """
     if formula not in known:
         try:

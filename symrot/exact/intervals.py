@@ -49,7 +49,7 @@ def _refuse(outside: bool) -> None:
 def _root(x: Any) -> Any:
     _refuse(x.b < 0)
     if not x.a >= 0:
-        raise ValueError(f"expected a number under a root that is proven nonnegative, got one between {x.a} and {x.b}")
+        raise ValueError(f"expected a root of a number that is surely nonnegative, got one between {x.a} and {x.b}")
     return iv.sqrt(x)
 
 
@@ -69,7 +69,7 @@ def _atan2(y: Any, x: Any) -> Any:
 def _bounded(x: Any) -> Any:
     limit = iv.mpf(2) ** MOST_BITS
     if not (x.a >= -limit.a and x.b <= limit.a):
-        raise ValueError(f"expected a number of at most {MOST_BITS} bits")
+        raise ValueError(f"expected values below 2^{MOST_BITS} within a formula, got a larger one")
     return x
 
 

@@ -3,8 +3,8 @@
 The proof takes the sine and cosine, or the exponential, of the sum, and bounds the range of the sum.
 
 A rational combination D of ``asin``, ``acos``, ``atan``, ``atan2`` and ``pi`` is zero if ``sin D = 0``, ``cos D = 1``
-and D lies strictly between -2 pi and 2 pi; the same holds for D/2 and the bounds -4 pi and 4 pi of D. A real D with
-logarithms is zero if and only if ``exp D = 1``.
+and D lies strictly between -2 pi and 2 pi. If D only lies between -4 pi and 4 pi, ``sin(D/2) = 0`` and ``cos(D/2) = 1``
+show that it is zero. A real D with logarithms is zero if and only if ``exp D = 1``.
 """
 
 from collections.abc import Iterator, Sequence
@@ -51,9 +51,9 @@ def vanishes(ring: FormulaRing, numerator: PolyElement) -> bool:
 def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] | None:
     """Prove that the polynomial ``numerator`` of the ring, such as the numerator of left - right, is zero.
 
-    Return None if no proof was found. Otherwise return the polynomial rings in which the proof computes, besides
-    ``ring``: those of sines, cosines and exponentials of differences such as ``asin(x) + acos(x) - pi/2``. They are
-    few, or none if the relations of ``ring`` suffice. The proof holds where no divisor in these rings is zero.
+    Return None if no proof was found. The proof may show that a factor such as ``D = asin(x) + acos(x) - pi/2`` is
+    zero, by computing sin D and cos D in another polynomial ring. The result has these further rings; it is () if the
+    relations of ``ring`` suffice. The proof holds where no divisor in these rings is zero.
     """
     numerator = ring.reduce(numerator)
     if not numerator:
@@ -68,11 +68,12 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
 
 
 def lifts(ring: FormulaRing, numerator: PolyElement, only_zero: bool = False) -> Iterator[Lift]:
-    """Yield conditions, each of which suffices to make a factor of the polynomial ``numerator`` zero.
+    """Yield conditions, each of which is sufficient for the polynomial ``numerator`` to be zero.
 
-    A factor with inverse functions, such as asin(x) + acos(x) - pi/2, is zero if its sine is 0 and its cosine 1; one
-    with logarithms, if its exponential is 1. Such a condition is a :class:`Lift`: polynomials in another ring that must
-    be zero. With ``only_zero``, factors that are clearly nonzero in double precision are skipped.
+    ``numerator`` is zero if one of its factors is. Only factors with inverse functions or logarithms give conditions:
+    ``asin(x) + acos(x) - pi/2`` is zero if its sine is 0 and its cosine 1; a factor with logarithms, if its exponential
+    is 1. Each :class:`Lift` has the polynomials, in another ring, that must be zero for that. With ``only_zero``,
+    factors that are clearly nonzero in double precision give none, since their conditions cannot hold.
     """
     places = {number for leaf, number in ring.symbols.items() if isinstance(leaf, _NAMES)}
     if not places or len(numerator) > MOST_TERMS or not any(mono[n] for mono in numerator for n in places):
@@ -104,7 +105,7 @@ class PrincipalValueProof:
     """A proof that an expression is zero wherever the formulas ``nonnegative`` are >= 0 and ``positive`` are > 0.
 
     For ``asin(sin(x)) - x``, ``nonnegative`` has pi/2 - x and pi/2 + x: the expression is zero where x is between -pi/2
-    and pi/2. ``rings`` are the polynomial rings in which the proof computes; no divisor in them may be zero.
+    and pi/2. ``rings`` are the polynomial rings that the proof uses; no divisor in them may be zero.
     """
 
     nonnegative: tuple[Expr, ...]

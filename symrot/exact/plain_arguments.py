@@ -42,18 +42,19 @@ def with_plain_arguments(
         if not any(map(_is_compound, arguments)):
             continue
         ring = FormulaRing(arguments, hypotheses, domain)
-        shorter, further = _shortest(ring, arguments)
+        shorter, further = _common_forms(ring, arguments)
         values = {node: node.func(*(shorter[argument] for argument in node.args)) for node in nodes}
         formulas = [formula.xreplace(values) for formula in formulas]
         rings += [ring, *further]
     return formulas, tuple(rings)
 
 
-def _shortest(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Expr, Expr], tuple[FormulaRing, ...]]:
-    """Return (forms, rings): for each argument of a function its normal form, the same one for arguments proven equal.
+def _common_forms(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Expr, Expr], tuple[FormulaRing, ...]]:
+    """Return (forms, rings): a map from each argument to its form, the same form for arguments that are proven equal.
 
-    ``arguments`` come from all functions in some formulas, as x and 2*y from sin(x) + f(2*y). ``rings`` is one tuple of
-    all polynomial rings, besides ``ring``, in which the proofs of equality compute.
+    ``arguments`` are those of all functions in some formulas, as x + x and 2*y from ``sin(x + x) + f(2*y)``. The form
+    of x + x is 2*x, as ``ring`` writes it; an argument equal to an earlier one gets the form of that one. ``rings`` are
+    the polynomial rings, besides ``ring``, that the proofs of equality used.
     """
     shorter: dict[Expr, Expr] = {}
     rings: list[FormulaRing] = []
@@ -73,7 +74,7 @@ def proof_by_arguments(
 ) -> tuple[FormulaRing, ...] | None:
     """Prove ``left = right`` after all arguments of functions are replaced by their normal forms.
 
-    Return the polynomial rings in which the proof computes, or None if no proof was found or no argument changes.
+    Return the polynomial rings that the proof uses, or None if no proof was found or no argument changes.
     ``hypotheses`` and ``domain`` are those of :func:`with_plain_arguments`.
     """
     (shorter, other), rings = with_plain_arguments([left, right], hypotheses, domain)

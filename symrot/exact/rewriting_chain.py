@@ -86,10 +86,11 @@ def _chain(left: Expr, right: Expr, hypotheses: list[Expr]) -> tuple[Link, ...]:
 
 
 def _reversed(start: Expr, way: list[Link]) -> Iterator[Link]:
-    """Yield the links of a chain from its end back to ``start``; ``way`` is the chain from ``start`` to that end.
+    """Yield the steps of a chain of equal expressions in reverse, from its end back to ``start``.
 
-    For a = b = c, with ``start`` a and the links to b and c, the results are links to b and to a. Each reason stays
-    between the two expressions that it explains.
+    ``way`` has a Link (expression, reason) for each expression after ``start``: for a = b = c, (b, reason 1) and (c,
+    reason 2). The reverse chain c = b = a has the links (b, reason 2) and (a, reason 1), so each reason stays between
+    the same two expressions.
     """
     places = [start, *(link.expression for link in way)]
     for number in range(len(way) - 1, -1, -1):

@@ -100,10 +100,11 @@ def _consistent(
 ) -> list[Constraint]:
     """Return those ``constraints``, in order, that one choice of signs can satisfy together at every point.
 
-    A constraint is (sign, variables); ``insides`` maps the variable of each ``|f|`` to f. Where f is zero, its sign may
-    be chosen to satisfy one constraint, but maybe not two. So a constraint is left out if it shares a variable with an
-    earlier one, unless the f of this variable is nowhere zero. An f that is a divisor of a formula counts as nowhere
-    zero, since the formula is only defined there.
+    ``insides`` maps the variable of each ``|f|`` to f. A constraint (sign, variables) demands that the product of the
+    signs of the f of these variables is ``sign``. Where f = 0 its sign is free and can be chosen to satisfy one
+    constraint, but perhaps not two. So a constraint is left out if it shares a variable with an earlier one, unless the
+    f of this variable is nowhere zero. An f that is a divisor of a formula counts as nowhere zero, since the formula is
+    only defined there.
     """
     divisors = {factor for poly in ring.ratios.factors for factor, _ in poly.factor_list()[1]}
     nonzero = {place for place, inside in insides.items() if inside in divisors or -inside in divisors}

@@ -149,8 +149,8 @@ def _join(left: Monomial, right: Monomial) -> Monomial:
 def products_of_monomials(left: Polynomial, right: Polynomial) -> set[Monomial]:
     """Return all products of a monomial of ``left`` and one of ``right``.
 
-    These are the terms that multiplying out produces, also those whose coefficients cancel; their number measures its
-    cost.
+    These are the terms that appear when ``left * right`` is multiplied out, also those whose coefficients cancel.
+    Callers use their number as the cost of that multiplication.
     """
     return {_join(monomial, factor) for monomial in left.terms for factor in right.terms}
 

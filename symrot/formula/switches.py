@@ -91,10 +91,12 @@ class Switch(NamedTuple):
 
 
 class Smooth(NamedTuple):
-    """Formulas without jumps and kinks, and the switches that replace these.
+    """Formulas with all jumps and kinks replaced by smooth expressions, and the switches at which these change.
 
-    ``formulas`` and guards may contain names of modes, and ``where(p, a, b)``, in which p is a formula of modes with
-    the value 1 or 0; see :func:`chosen`. Each of the ``switches`` comes after those whose modes occur in its guard.
+    A mode is a number, such as s = 1 or -1 for sign(u), that replaces a jump. Its switch has a guard, here u: when the
+    guard changes sign, the mode changes. ``formulas`` and guards may contain modes, and ``where(p, a, b)``, in which p
+    is a formula of modes with the value 1 or 0; see :func:`chosen`. Each of the ``switches`` comes after those whose
+    modes occur in its guard.
     """
 
     formulas: tuple[Node, ...]
@@ -153,11 +155,12 @@ def has_choices(node: Node) -> bool:
 
 
 def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> Node:
-    """Return a smooth formula in which each ``where(p, a, b)`` is replaced by a or b, by the values of the modes.
+    """Return a formula in which each ``where(p, a, b)`` is replaced by a if p is 1, or by b if p is 0.
 
-    ``modes`` maps names of modes (see the module) to values, from which p is 1 (a applies) or 0 (b applies). While a
-    motion slides along a switch (its guard stays at zero), the mode of the switch is in ``held``. A ``where(p, a, b)``
-    whose p depends on this mode is replaced by the sum ``b + p (a - b)``.
+    p is a formula of modes, the numbers such as 1 or -1 that replace jumps. Its value follows from ``modes``, which
+    maps each mode to its present number: for s = 1, ``where((1 + s)/2, a, b)`` is a. Modes in ``held`` change too fast
+    to be either number, because a motion slides along their switch (its guard stays at zero). A ``where`` whose p
+    contains such a mode is replaced by the sum ``b + p (a - b)``.
     """
     if not has_choices(node):
         return node
@@ -300,8 +303,9 @@ class _Writer:
     def part(self, node: Node, share: Node, value: int) -> Node:
         """Return ``node``, which is the part a or b of ``where(c, a, b)``, as a smooth formula.
 
-        ``share`` is the formula of :meth:`share` for c, 1 or 0; ``value`` is 1 for the part a, and 0 for b. The
-        switches in the part affect the motion only where ``share`` equals ``value``.
+        ``share`` is a formula with the value 1 where c holds and 0 where it does not (see :meth:`share`). ``value`` is
+        1 for the part a, and 0 for b. The switches in the part affect the motion only where ``share`` has that value;
+        this condition is stored with them.
         """
         outside = self.conditions
         self.conditions = (*outside, (share, value))

@@ -99,7 +99,7 @@ class _Reader:
         self.depth += 1
         if self.depth > DEEPEST_NESTING:
             raise self.fail(
-                f"at most {DEEPEST_NESTING} nested levels of brackets and arguments", self.tokens[self.index][2]
+                f"a formula with at most {DEEPEST_NESTING} nested levels of brackets", self.tokens[self.index][2]
             )
         left = self.operand()
         while _BINDING.get(self.peek(), 0) > binding:
@@ -150,7 +150,7 @@ class _Reader:
         if len(arguments) != self.functions[token]:
             count = self.functions[token]
             number = f"{count} argument{'s' * (count != 1)}"
-            raise self.fail(f"'{token}' to have {number}, and not {len(arguments)},", position, token)
+            raise self.fail(f"{number} of '{token}' instead of {len(arguments)}", position, token)
         return ("call", token, tuple(arguments))
 
     def number(self, token: str, position: int) -> Fraction:
@@ -158,7 +158,7 @@ class _Reader:
         if len(token) > LONGEST_NUMBER:
             raise self.fail(f"a number of at most {LONGEST_NUMBER} characters", position)
         if exponent and (len(exponent[0]) > 5 or abs(int(exponent[0])) > LARGEST_EXPONENT):
-            raise self.fail(f"an exponent of ten of at most {LARGEST_EXPONENT}, and not '{token[:20]}',", position)
+            raise self.fail(f"an exponent of ten of at most {LARGEST_EXPONENT} instead of '{token[:20]}'", position)
         return Fraction(token)
 
     def power(self, position: int) -> int:
@@ -174,11 +174,11 @@ class _Reader:
             self.next()
         kind, token, at = self.next()
         if kind != "number" or not token.isdigit() or len(token) > 3 or int(token) > LARGEST_POWER:
-            raise self.fail(f"a whole exponent up to {LARGEST_POWER} (write sqrt(x) for a root)", at)
+            raise self.fail(f"a whole number up to {LARGEST_POWER} as exponent (write sqrt(x) for a root)", at)
         if self.peek() == "**":
             raise self.fail("brackets around a repeated power", self.tokens[self.index][2])
         if brackets and self.peek() != ")":
-            raise self.fail(f"a whole exponent up to {LARGEST_POWER} (write sqrt(x) for a root)", at)
+            raise self.fail(f"a whole number up to {LARGEST_POWER} as exponent (write sqrt(x) for a root)", at)
         if brackets:
             self.expect(")")
         return sign * int(token)

@@ -27,6 +27,7 @@ LINE_KINDS = {
     "definition": "a symbol, a component or a form of an equation is introduced",
     "law": "a law of mechanics that the document takes as given",
     "assumption": "a choice or an approximation that the document makes",
+    "observation": "a measured value, which no formula of the document gives",
     "label": "the label of a figure, a heading, or a number of an equation that was extracted without its formula",
     "other": "the title of another document",
 }

@@ -197,3 +197,17 @@ def test_of_lines_that_do_not_fit_together_one_is_repaired(lines, repair):
     verdict = symrot.check("\n".join(lines))
     assert (verdict.verdict, verdict.diagnosis.code) == ("doubtful", "wrong_symbol")
     assert [each.text for each in verdict.repairs] == [repair]
+
+
+@pytest.mark.parametrize(("claim", "body", "repair"), [
+    (r"I_x = \bar I_{x'} + m(\bar x^2+\bar z^2)", "", r"I_x = \bar{I}_{x'} + m (\bar{y}^2 + \bar{z}^2)"),
+    ("I_z = I_x - I_y", "thin plate in the plane of x and y", "I_z = I_x + I_y"),
+])  # fmt: skip
+def test_a_wrong_axis_and_a_wrong_sign_of_moments_are_found(claim, body, repair):
+    verdict = symrot.check(claim, body=body)
+    assert (verdict.verdict, [each.text for each in verdict.repairs]) == ("doubtful", [repair])
+
+
+def test_a_difference_of_moments_is_open_without_the_plane_of_the_body():
+    """In the plane of y and z, I_x is the sum."""
+    assert symrot.check("I_z = I_x - I_y").verdict == "definition"

@@ -5,6 +5,7 @@ from fractions import Fraction
 from math import inf
 from operator import mul
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -195,9 +196,25 @@ def test_sensitivities_leave_the_motion_as_it_is():
     assert np.array_equal(with_them.sensitivities["omega"].omega[0], np.eye(3))
 
 
+@needs_compiler
+def test_sensitivities_of_a_motion_that_starts_far_from_zero():
+    """The phase of the torque is counted from the start; without this the steps shrink to nothing."""
+    start = 10**9
+    driven = {
+        "schema": 1, "body": {"principal": [1, 2, 3]}, "initial": {"omega": [0, 0, 1]},
+        "span": {"t": [start, start + 2], "samples": 2},
+        "torque": [{"kind": "expression", "parameters": {"k": 1}, "torque": ["0", "0", "k*sin(100*t)"]}],
+    }  # fmt: skip
+    ensemble = symrot.propagate_ensemble(driven, omega=[[0, 0, 1]], sensitivities=["k"])
+    exact = float((mpmath.cos(100 * mpmath.mpf(start)) - mpmath.cos(100 * mpmath.mpf(start + 2))) / 300)
+    for motion in (symrot.propagate(driven, sensitivities=["k"]), ensemble[0]):
+        assert abs(motion.sensitivities["k"].omega[-1, 2] - exact) < 1e-13 * abs(exact)
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
+        ({"method": 3}, "expected the name of a method"),
         ({"sensitivities": "omega"}, "expected a list of names"),
         ({"sensitivities": []}, "at least one name"),
         ({"sensitivities": ["wieght"]}, "did you mean 'weight'"),

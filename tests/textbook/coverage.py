@@ -3,7 +3,8 @@
 FOLDER holds the texts of the documents as they were extracted, ``000_*.txt`` to ``003_*.txt`` in the order of
 ``symrot.textbook.DOCUMENTS``. A piece of text with a formula is the text around the relation signs of a line, or before
 the number of an equation. It is covered if a claim prints half of it, or names the number as its place, or if
-``symrot/textbook/lines.toml`` says why it states no formula of its own.
+``symrot/textbook/lines.toml`` says why it states no formula of its own. :func:`signs_left_out` asks the same of each
+relation sign of a piece.
 
 With ``--write``, the pieces are written to ``tests/reference/textbook_pieces.txt``, which tests read in place of the
 documents.
@@ -17,7 +18,9 @@ from pathlib import Path
 
 from symrot.textbook import DOCUMENTS, document, lines
 
-__all__ = ["PIECES", "Piece", "is_covered", "main", "pieces", "plain", "reference_pieces", "uncovered"]
+__all__ = [
+    "PIECES", "Piece", "is_covered", "main", "pieces", "plain", "reference_pieces", "signs_left_out", "uncovered",
+]  # fmt: skip
 
 PIECES = Path(__file__).parents[1] / "reference" / "textbook_pieces.txt"
 AROUND = 50
@@ -124,6 +127,36 @@ def uncovered(name: str, every: Sequence[Piece]) -> list[Piece]:
     ]
 
 
+NEAR_SIGN, OF_SIGN = 12, 6
+"""The letters on each side of a relation sign that belong to it, and how many in a row with it a claim must print."""
+
+
+def signs_left_out(name: str) -> list[Piece]:
+    """Return the surroundings of each relation sign of a document that no claim prints and no line lists.
+
+    A sign without a letter or digit near it, and the garbled lines of a double encoding, are not asked for.
+    """
+    printed = "\n".join(plain(claim["printed"]) for claim in document(name).claims.values())
+    others = [plain(line.printed) for line in lines(name)]
+    missing = []
+    for number, piece in reference_pieces()[name]:
+        text = plain(piece)
+        listed = [range(at, at + len(other)) for other in others for at in _places(other, text)]
+        for sign in RELATION.finditer(text if MATHEMATICAL not in piece else ""):
+            start = max(0, sign.start() - NEAR_SIGN)
+            near = text[start : sign.end() + NEAR_SIGN]
+            size, at = min(OF_SIGN, len(near)), sign.start() - start
+            windows = (near[k : k + size] for k in range(max(0, at - size + 1), min(at, len(near) - size) + 1))
+            is_listed = any(sign.start() in places for places in listed) or any(text in other for other in others)
+            if any(map(str.isalnum, near)) and not is_listed and not any(window in printed for window in windows):
+                missing.append((number, near))
+    return missing
+
+
+def _places(part: str, text: str) -> list[int]:
+    return [match.start() for match in re.finditer(re.escape(part), text)]
+
+
 def _is_listed(piece: str, others: Collection[str]) -> bool:
     return piece in others or any(len(other) > SHORTEST and other in piece for other in others)
 
@@ -140,6 +173,8 @@ def main(arguments: list[str]) -> int:
         for number, piece in missing:
             print(f"{name}:{number}: {piece.strip()[:150]}")
         print(f"{name}: {len(every) - len(missing)} of {len(every)} pieces with a formula are covered")
+        for number, near in signs_left_out(name):
+            print(f"{name}:{number}: no claim has the sign in {near}")
     if options == ["--write"]:
         PIECES.write_text("".join(written), encoding="utf-8")
     return 0

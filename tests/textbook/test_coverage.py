@@ -3,7 +3,7 @@
 import pytest
 
 from symrot.textbook import DOCUMENTS, LINE_KINDS, document, lines
-from tests.textbook.coverage import is_covered, pieces, plain, reference_pieces, uncovered
+from tests.textbook.coverage import is_covered, pieces, plain, reference_pieces, signs_left_out, uncovered
 
 WITH_CLAIM = ("operators", "letters", "repeats", "input")
 """The kinds of lines that name the claim which states their formula."""
@@ -38,6 +38,12 @@ def test_every_formula_of_a_document_is_a_claim_or_has_a_reason_why_it_is_none(n
     every = reference_pieces()[name]
     assert every and uncovered(name, every) == []
     assert uncovered(name, [(1, "E = m c^2 h nu / 7")]) == [(1, "E = m c^2 h nu / 7")]
+
+
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_every_relation_sign_of_a_document_is_in_a_claim_or_in_a_line_with_a_reason(name):
+    """A piece may have several formulas, as ``T = 300 days, .. T = 400 days`` has: each counts."""
+    assert signs_left_out(name) == []
 
 
 @pytest.mark.parametrize("name", DOCUMENTS)

@@ -49,9 +49,9 @@ def used_quaternions(
 ) -> Quaternions:
     """Decide which names of a relation are quaternions, from the way in which they are used.
 
-    Names in ``known`` are left out. Each quaternion q that remains gets the definition ``[q_0, q_1, q_2, q_3]`` in free
-    symbols. Return these definitions, sentences about the interpretation, and the relation with products of quaternions
-    in place of plain ones.
+    Names in ``known`` are left out. Each quaternion q that remains gets components as its definition, such as ``[q_0,
+    q_1, q_2, q_3]``. Return these definitions, sentences about the interpretation, and the relation with products of
+    quaternions in place of plain ones.
 
     Parameters
     ----------

@@ -75,10 +75,10 @@ def _shared_factors(ring: FormulaRing, numerators: Sequence[PolyElement]) -> lis
 def _left_out(requirement: Requirement, sides: Sequence[tuple[Expr, Expr]], hypotheses: Sequence[Expr]) -> bool:
     """Return whether the author of a false claim may have assumed a condition, such as ``A = B``, without stating it.
 
-    ``requirement`` is that condition. The result is True if each side has at most one of A and B: who takes them as
-    equal writes only one of the two. It is False if both sides have both, as ``(A - B) w`` against ``(B - A) w``, or if
-    one side has both and the other neither: such claims are wrong in another way. A side that has x counts as having A
-    too if one of the ``hypotheses`` relates x to A.
+    ``requirement`` is that condition. The result is True if one side of each pair lacks A or B: who takes them as equal
+    writes only one of the two. It is False if both sides have both, as ``(A - B) w`` against ``(B - A) w``, or if one
+    side has both and the other neither: such claims are wrong in another way. A side that has x counts as having A too
+    if one of the ``hypotheses`` relates x to A.
     """
     (formula,) = requirement.zeros
     symbols = formula.free_symbols

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from typing import ClassVar
 
 from symrot.checker.claim.functions import ROTATIONS
@@ -131,6 +132,28 @@ def _is_square(node: Node) -> bool:
     return node.kind == "call" and node.value == "dot" and node.args[0] == node.args[1]
 
 
+@cache
+def _with_marks(name: str) -> str:
+    """Return the LaTeX of a name with a bar or prime; empty for other names, and if its LaTeX has another name.
+
+    Examples
+    --------
+    >>> _with_marks("I_bar_x_prime"), _with_marks("y_bar"), _with_marks("I_xy")
+    ("\\\\bar{I}_{x'}", '\\\\bar{y}', '')
+    """
+    base, *rest = name.split("_")
+    if not {"bar", "prime"} & {*rest}:
+        return ""
+    letters = [f"\\{word}" if word in GREEK else word for word in (base, *rest) if word not in ("bar", "prime")]
+    primes = "'" * rest.count("prime")
+    head = f"\\bar{{{letters[0]}}}" if "bar" in rest else letters[0]
+    written = f"{head}_{{{','.join(letters[1:])}{primes}}}" if letters[1:] else head + primes
+    try:
+        return written if read_latex(f"{written} = 0").text == f"{name} == 0" else ""
+    except InputError:
+        return ""
+
+
 class Writer:
     """A writer that turns trees into LaTeX, in which functions of time have no ``(t)``."""
 
@@ -150,6 +173,8 @@ class Writer:
     def name(self, node: Node) -> str:
         if node.value == "pi":
             return "\\pi"
+        if node.value not in self.vectors and (marked := _with_marks(str(node.value))):
+            return marked
         base, _, subscript = str(node.value).partition("_")
         words = [f"\\{word}" if word in GREEK else word for word in (base, subscript)]
         if node.value in self.vectors:
@@ -206,7 +231,7 @@ class Writer:
         positive = exponent.kind == "number" and exponent.value.denominator == 1
         if base.kind == "call" and base.value in COMMANDS and positive and base.value != "det":
             return f"{COMMANDS[base.value]}{raised}{self.argument(base)}"
-        own_bracket = (*self.timed, "skew")
+        own_bracket = (*self.timed, "skew", "abs")
         plain = base.kind in ("name", "number") or (base.kind == "call" and base.value in own_bracket)
         return (self.formula(base) if plain else f"({self.formula(base)})") + raised
 

@@ -49,11 +49,12 @@ def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
 
 
 def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> list[ArrayFault]:
-    """Return all formulas that are one edit away from ``formula``, each with its values at the test points.
+    """Return formulas that are one edit away from ``formula``, each with its values at the test points.
 
     A fault in a claim is later looked up by value, so the list is sorted by a number: the sum of the entries of the
-    value at the first test point. If ``formula`` has no vectors or matrices, the only edits are added brackets: other
-    faults of scalar formulas are found part by part (:mod:`symrot.checker.recognition.parts`).
+    value at the first test point. There are at most MOST_EDITS edits. If ``formula`` has no vectors or matrices, the
+    only edits are added brackets: other faults of scalar formulas are found part by part
+    (:mod:`symrot.checker.recognition.parts`).
     """
     edits = _edits(formula, numeric, letters) if has_arrays(formula, numeric) else _brackets(formula)
     faults = []

@@ -216,7 +216,9 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
         return False  # the formula may be a more general one
     angles = _only_in_sines(named.formula) - names_in(near.tree)  # as theta in the factor sin(theta)
     has_own_angle = near.code == "factor" and words is not None and letters <= names_in(near.tree) | angles
-    if is_general and not ((near.code == "wrong_symbol" or has_own_angle) and count >= MANY_LETTERS):
+    is_of_axis = near.code == "wrong_symbol" and _is_of_axis(named, near) and count > LEAST_SYMBOLS_EDITED
+    is_long = (near.code == "wrong_symbol" or has_own_angle) and count >= MANY_LETTERS
+    if is_general and not is_long and not is_of_axis:
         return False
     entries = [node for _, node in walk(named.formula) if node.kind in ("call", "name") and node.value in letters]
     is_matrix_given = any(node.value == "Matrix" for _, node in walk(named.formula))
@@ -228,6 +230,8 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     if is_rotation and re.fullmatch(r"[RCAQ](_\w+)?", named.name):
         return True
     if _is_stated(claim, named, near) or _is_component_of_quaternion(named, near) or _is_entry_of_matrix(named, near):
+        return True
+    if near.code == "sign_of_term" and _is_of_stated_flat_body(claim, near):
         return True
     if near.code in SURE_IF_STATED and _are_letters_stated(claim, letters):
         return True
@@ -257,6 +261,18 @@ def _is_of_stated_body(claim: Claim, near: Near) -> bool:
     """Return whether the context of a claim states a body, and the known formula ``near`` is for this body."""
     body = claim.context.body
     return body is not None and body.kind.title in near.known.name
+
+
+def _is_of_axis(named: NamedFormula, near: Near) -> bool:
+    """Return whether the name of a quantity states an axis, as I_x does, and ``near`` is the formula for this axis."""
+    axis, own = re.search(r", ([xyz]) axis$", near.known.name), re.search("[xyz]+$", quantity_name(named))
+    return axis is not None and own is not None and {*own[0]} == {axis[1]}
+
+
+def _is_of_stated_flat_body(claim: Claim, near: Near) -> bool:
+    """Return whether the context of a claim states a flat body, and ``near`` is the sum of its moments in its plane."""
+    body = claim.context.body
+    return body is not None and "a flat body" in body.formulas and "of a flat body about the axis" in near.known.name
 
 
 def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:

@@ -185,7 +185,8 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
 
     The signature of an atom x holds the values of ``entries`` where x has one number as its value and all other atoms
     have a second number. ``DRAWS`` lists pairs of such numbers; the first pair at which the formula has a value for
-    each atom x is used. Values are taken modulo ``PRIME``.
+    each x is used. For a formula such as x/(A - B) there is none: its signatures are sums over several points. Values
+    are taken modulo ``PRIME``.
 
     Raises
     ------
@@ -218,9 +219,9 @@ def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | No
     """Return the fingerprint of a formula if it is defined at all points of the first pair in DRAWS; otherwise None.
 
     ``entries`` are the entries of the formula, ``written`` its atoms (symbols, functions, derivatives). There is one
-    point for each atom: this atom has the first number as its value, all others have the second. ``1/(x - y + z - w)``
-    has no value where all atoms are equal, which is tried first. The result is also None if a value does not depend on
-    its atom.
+    point for each atom: this atom has the first number of the pair as its value, all others have the second. The
+    formula must also have a value where all atoms have the second number, which ``1/(x - y)`` lacks. The result is also
+    None if the value at one of the points is the same as there.
     """
     raised, others = DRAWS[0]
     point = dict.fromkeys(written, others)

@@ -535,7 +535,7 @@ def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int)
     """Return the known formulas that are equal to ``tree`` and whose symbols fit the names in the claim.
 
     The likeliest comes first. Formulas with fewer than ``least_symbols`` symbols are not looked up. Only if
-    ``least_symbols`` is LEAST_SYMBOLS and the name of the claim's quantity has a known meaning, as T_rot for an energy,
+    ``least_symbols`` is LEAST_SYMBOLS and books use the quantity's name for one thing, as I_zz for a moment of inertia,
     one symbol suffices.
     """
     solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
@@ -587,10 +587,10 @@ def _readings_of_formula(
 ) -> tuple[Identification, ...]:
     """Return the known formulas for the claim's quantity that are equal to ``formula``, the likeliest first.
 
-    Formulas with fewer than ``least_symbols`` symbols are not looked up, and the result is (). LEAST_SYMBOLS is for the
-    claim's own formula: one symbol suffices there if the name ``named.name`` has a known meaning. Callers give larger
-    numbers for edited formulas, since a short one may be equal to a known formula by chance; there is no exception for
-    these.
+    Formulas with fewer than ``least_symbols`` symbols are not looked up, and the result is (). For the claim's own
+    formula, callers give LEAST_SYMBOLS; one symbol suffices then if books use ``named.name`` for one thing, as I_zz for
+    a moment of inertia. For edited formulas they give larger numbers, without this exception, since a short edited
+    formula may be equal to a known one by chance.
     """
     try:
         value = claim.with_definitions(claim.interpreter().read(formula))

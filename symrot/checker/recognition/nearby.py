@@ -466,12 +466,12 @@ def _renamed(tree: Node, nodes: dict[str, Node]) -> Node:
 
 
 def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters) -> Values | None:
-    """Return the values that the claim's right side should have, if the left side has the quantity of ``known``.
+    """Return the values that the claim's formula should have if its quantity is the one of the formula ``known``.
 
-    ``target`` are the values of the formula ``known`` at the test points. From each, the value of the quantity follows:
-    the root for a known square, the angle for a known cosine. It is inserted into ``named.side``, the claim's left
-    side; for the side 2*omega, 2*omega is returned. None is returned if a value does not exist, as the root of a
-    negative number.
+    ``target`` are the values of ``known`` at the test points. From each, the value of the quantity follows: the root
+    for a known square, the angle for a known cosine. It is inserted into ``named.side``, the side that the claim
+    equates to its formula: for the side 2*omega, twice the value is returned. None is returned if a value does not
+    exist, as the root of a negative number.
     """
     function = _FUNCTIONS_OF_ENDINGS.get(ending_of(known.name))
     if function is None:

@@ -112,6 +112,13 @@ NUMBERED = re.compile("([a-z])_?([1-9])")
 """A component of a factor of a product; its groups are the letter of the component and the number of the factor."""
 
 
+def _without_mark(name: str) -> tuple[str, str]:
+    """Return a name without the bar or prime over it, and this mark: z and _bar for ``z_bar``."""
+    mark = re.search("(_bar|_prime)*$", name)
+    assert mark is not None
+    return name[: mark.start()], mark[0]
+
+
 def _numbered_angle(known: str, mine: str, other: str) -> str:
     """Return the name of an angle or rate ``known`` if the angle or rate ``mine`` is called ``other``, as theta_1 is.
 
@@ -200,7 +207,8 @@ def is_fitting(known: str, own: str, is_angle: bool) -> bool:
     if re.match("[A-Z]{2}", name):
         return False  # two letters without a sign between them
     is_rate = own.startswith("diff(") or own.endswith("dot")
-    if is_rate != known.startswith("d") and (is_rate or unit not in ("rad/s", "rad/s^2")):
+    is_known_rate = known.startswith("d") and not known.startswith("d_")  # d_x is a distance
+    if is_rate != is_known_rate and (is_rate or unit not in ("rad/s", "rad/s^2")):
         return False
     if known in COORDINATES and re.fullmatch(r"[a-zA-Z]_[xyz1-3]", name):
         return True  # a component of any vector, such as a rotated velocity
@@ -230,7 +238,7 @@ def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]
     axis = axes_of(known)
     unit = UNIT_OF_NAME.get(known)
     for mine, other in renaming.items():
-        name = plain_name(other or "")
+        name, mark = _without_mark(plain_name(other or ""))
         index = INDEX.search(name)
         if other is None or index is None or UNIT_OF_NAME.get(mine) != unit or len(axes_of(mine)) != len(axis):
             continue
@@ -238,5 +246,5 @@ def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]
         if axis and own == new:
             letters = "0xyz" if index[0].isalpha() else "0123"
             new_index = "".join(letters[place] for place in sorted(axis))
-            return name[: index.start()] + new_index * (len(index[0]) if len(axis) == 1 else 1), True
+            return name[: index.start()] + new_index * (len(index[0]) if len(axis) == 1 else 1) + mark, True
     return USUAL.get(known, known), False

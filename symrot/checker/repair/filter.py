@@ -81,7 +81,7 @@ class NumericFilter:
 
     @property
     def sides_to_edit(self) -> tuple[str, ...]:
-        """The sides that repairs may edit."""
+        """Those of "left" and "right" that repairs may edit: the ones in the claim's ``editable``, usually both."""
         return tuple(place for place in SIDES if place in self.claim.editable)
 
     @property

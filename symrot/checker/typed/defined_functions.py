@@ -60,4 +60,4 @@ def instead(name: str) -> str:
     ``name`` is cot, sec or csc. The inverse functions, such as arccot, are refused: for x < 0, books define them
     differently.
     """
-    return f"{DISPUTED[name]} instead of the inverse function of {name} (its values for x < 0 differ by book)"
+    return f"{DISPUTED[name]} instead of the inverse function of {name} (books differ on it for x < 0)"

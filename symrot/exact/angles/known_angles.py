@@ -43,8 +43,9 @@ def halved(coefficient: Fraction) -> Iterator[tuple[int, int]]:
 def parts_of(atom: Expr, coefficient: Fraction) -> list[Expr]:
     """Return the expressions from which cosine and sine of the angle ``coefficient * atom`` follow by sum formulas.
 
-    The angle is split into whole multiples of the atom halved 0, 1, 2 or 3 times; the result has the cosine and sine of
-    each of these halved angles. The polynomial ring must have variables for the roots in them.
+    These are the cosine and the sine of ``atom``, ``atom/2``, ``atom/4`` and ``atom/8``, as far as the angle is a sum
+    of whole multiples of them: for 5/4, of ``atom`` and ``atom/4``. The caller gives the polynomial ring a variable for
+    each square root in these expressions, such as sqrt(1 - u**2).
 
     Examples
     --------

@@ -45,10 +45,10 @@ def radicands(ring: FormulaRing) -> list[Expr]:
 
 
 def split_radicands(ring: FormulaRing) -> list[Expr]:
-    """Return the radicands that proofs assume to be nonnegative, although the formulas may be real without this.
+    """Return the formulas P under roots that proofs assume to be nonnegative, although negative values may be allowed.
 
-    For example, ``sqrt(P f^2)`` is read as ``|f| sqrt(P)``, and P is in the result. Where f is zero and P is negative,
-    the first is 0, but the second is not real.
+    A proof replaces ``sqrt(P f^2)`` by ``|f| sqrt(P)``, and P is in the result. Where f = 0 and P = -1, ``sqrt(P f^2)``
+    is 0, but ``|f| sqrt(P)`` is not real: such a point is not covered by the proof.
     """
     loose = [root for radical in ring.radicals.values() if radical.loose for root in radical.roots]
     return list(dict.fromkeys(root.power_expression for root in loose if not root.power_expression.is_positive))

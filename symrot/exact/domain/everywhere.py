@@ -120,9 +120,10 @@ def _power(base: Range, exponent: Expr) -> Range:
 
 
 def _monotone(function: Callable[[Expr], Expr], least: Bound, most: Bound) -> Callable[[Range], Range]:
-    """Return a function that maps a range (low, high) of u to the range of f(u), where f is increasing, as log is.
+    """Return a function that maps a range (low, high) of u to the range of f(u), for an increasing f such as log.
 
-    ``function`` is f; ``least`` and ``most`` are its limits at the ends of its domain.
+    ``function`` is f. ``least`` and ``most`` are the limits of f(u) at the lower and upper end of the domain of f,
+    which replace f(low) and f(high) where these have no finite value: for log they are minus and plus infinity.
     """
 
     def of(argument: Range) -> Range:

@@ -126,7 +126,8 @@ class _Search:
     def moved(self, point: Point) -> Point:
         """Return a point at which fewer conditions are violated, or the same point; one value is changed at a time.
 
-        All conditions may hold there in double precision, which proves nothing.
+        The conditions are evaluated in double precision. A point that obeys all of them is therefore only a candidate;
+        the caller still has to prove that it obeys them.
         """
         point = self.jumped(point)
         return self.climbed(point) if self.broken(point) else point

@@ -70,7 +70,9 @@ def _irreducible(poly: PolyElement) -> list[tuple[PolyElement, int]]:
 class Dependence:
     """A square root expressed by others: ``sqrt(number) * product(roots) / product(factor^n)``.
 
-    ``divisors`` holds the pairs (factor, n). For sqrt(a b) with the roots sqrt(a) and sqrt(b), there are none.
+    ``divisors`` has the pairs (factor, n) of the denominator. sqrt(a c) is sqrt(a b) sqrt(b c) / |b|: number is 1, the
+    roots are sqrt(a b) and sqrt(b c), and the divisors are (|b|, 1). For sqrt(a b) with the roots sqrt(a) and sqrt(b),
+    there are no divisors.
     """
 
     number: Rational

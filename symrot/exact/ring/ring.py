@@ -191,9 +191,11 @@ class FormulaRing:
         return sympy.exp(node.args[0].xreplace(self.logarithms).expand()) if self.logarithms else node
 
     def _collect(self, expressions: Iterable[Expr]) -> None:
-        """Collect what needs a variable of the ring: angles, roots, exponentials and symbols in expressions.
+        """Find what needs a variable of the ring in ``expressions``, and store it in the ring's attributes.
 
-        Constant angles add the square roots that occur in their sines and cosines.
+        Symbols go into ``leaves``, roots into ``radicals``, angles into ``forms``, exponentials into ``exponents``. For
+        an angle with a constant such as x + pi/8, the square roots in cos(pi/8) and sin(pi/8) are searched and stored
+        too.
         """
         stack, seen = list(expressions), set()
         while stack:
@@ -334,11 +336,12 @@ class FormulaRing:
         return above.quo_ground(below.LC)
 
     def _tangled_numbers(self, rules: Sequence[Rule]) -> dict[int, Number]:
-        """Return a map from the index of each variable that is an algebraic number, such as sqrt(2), to this number.
+        """Return the algebraic numbers among the ring's variables, such as sqrt(2), by the index of the variable.
 
-        It is used to remove terms whose coefficient, a polynomial in such numbers, is zero although the relations of
-        the ring (``rules``) do not say so. The result is empty if they say all: if there are fewer than two numbers, or
-        if all of them are square roots of primes. It is also empty if one of the numbers is imaginary.
+        They are needed if the relations of the ring (``rules``) do not show all equations between these numbers, such
+        as sqrt(2)*sqrt(3) = sqrt(6). The caller then removes terms whose coefficient is zero by such an equation. The
+        result is {} where nothing is to remove: for fewer than two numbers, or if all are square roots of primes. It is
+        also {} if one of them is imaginary.
         """
         known: dict[int, Number] = {}
         if self.fine:
@@ -433,7 +436,11 @@ class FormulaRing:
         return self.ratios.multiply([number, *map(self._root, (*primes, *dependence.roots)), *divisors])
 
     def _outside(self, factors: Iterable[tuple[Root | Expr, int]]) -> Iterator[Ratio]:
-        """Yield factor^n for each of the ``factors`` (factor, n) that were taken out of a root: |x| of sqrt(x^2 y)."""
+        """Yield the element factor^n of the ring for each pair (factor, n) of ``factors``.
+
+        The pairs come from a root from which powers were taken out: sqrt(x^4 y) is x^2 sqrt(y), with the pair (|x|, 2).
+        n is negative for a factor below the fraction bar.
+        """
         for factor, times in factors:
             if isinstance(factor, Root):
                 yield self._power(self._root(factor), times, factor.expression)

@@ -95,7 +95,11 @@ class Radical:
 
     @property
     def generators(self) -> tuple[Root, ...]:
-        """The roots that are variables of the ring for this power: ``roots``, and absolute values in ``outside``."""
+        """All roots for which the ring needs a variable to express this fractional power.
+
+        These are the ``roots`` that stay, and the absolute values in ``outside``: |x| counts as the root sqrt(x^2). For
+        sqrt(x^2 y) they are sqrt(y) and |x|.
+        """
         return (*self.roots, *(factor for factor, _ in self.outside if isinstance(factor, Root)))
 
     @property

@@ -27,11 +27,13 @@ from symrot.formula.switches import STATES
 from symrot.planning.general_structure import PRODUCTS, constants_of, general_structure
 from symrot.planning.plan import Plan
 from symrot.planning.rules import UNIT_FIELDS, pattern
-from symrot.planning.scene_kernel import Parameters
+from symrot.planning.scene_kernel import EPOCH, Parameters
 from symrot.propagation.binding import value_of
 from symrot.propagation.compiled_models import has_formulas, kernel_key
 from symrot.propagation.sensitivities.variables import Variable, difference, groups_of, read_variables, require_smooth
 from symrot.propagation.steppers import taylor
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped
+from symrot.propagation.time_shift import starts_far
 from symrot.results.sensitivity import Sensitivities
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial
@@ -226,10 +228,19 @@ def rates_of(plan: Plan) -> tuple[Program, Parameters]:
     """Return the rates of a plan as a program, and their parameters, from the cache or newly derived.
 
     The rates are the time derivatives of the states; a program is a list of operations that can be printed as C. The
-    parameters are pairs (name, formula in the constants of the scene).
+    parameters are pairs (name, formula in the constants of the scene). If the structure of the plan has a clock, time
+    is counted from its epoch, a further constant in the formulas (:mod:`symrot.propagation.time_shift`).
     """
     key = f"rates alone\n{kernel_key(plan)}"
     saved = library.fetch(key)
+    if saved is None and plan.structure.clock:
+        from symrot.codegen.taylor.time_shift import moved
+
+        rates, formulas = moved(*rates_of(replace(plan, structure=replace(plan.structure, clock=None))))
+        saved = json.dumps(
+            {"rates": rates.to_json(), "parameters": [(name, node_to_json(node)) for name, node in formulas]}
+        )
+        library.store(key, saved)
     if saved is None:
         from symrot.codegen.scene_kernels import rates_program
         from symrot.dynamics.equations import equations_of_motion
@@ -311,7 +322,9 @@ class _Equations:
         self.scene, self.keys, self.variables = scene, keys, read_variables(scene, keys)
         columns = columns_of(scene, self.variables)
         self.restartable = all(column.restartable for column in columns)
-        self._parts = [_Part(scene, columns[first : first + AT_ONCE]) for first in range(0, len(columns), AT_ONCE)]
+        self._columns, self._parts = columns, _parts(scene, columns)
+        self._uses_time = any(part.uses_time for part in self._parts)
+        self._moved: tuple[float, list[_Part]] = (0.0, self._parts)
 
     def fit(self, scene: Scene, keys: Sequence[str]) -> bool:
         """Return whether these are the equations of a scene and its derivatives by the variables ``keys``."""
@@ -328,8 +341,17 @@ class _Equations:
         initial state; default: the start of its span.
         """
         begin = float(scene.span.start) if begin is None else begin
-        parts = [part.follow(scene, times, begin) for part in self._parts]
-        return parts[0][0], np.concatenate([slopes for _, slopes in parts], axis=2)
+        parts, epoch = self._parts, 0.0
+        if self._uses_time and len(times) and starts_far(begin, float(times.min()), float(times.max())):
+            parts, epoch = self._parts_from(begin), begin
+        results = [part.follow(scene, times, begin, epoch) for part in parts]
+        return results[0][0], np.concatenate([slopes for _, slopes in results], axis=2)
+
+    def _parts_from(self, epoch: float) -> "list[_Part]":
+        """Return the equations with time counted from an epoch, s; those for the last epoch are used again."""
+        if epoch != self._moved[0]:
+            self._moved = (epoch, _parts(self.scene, self._columns, epoch))
+        return self._moved[1]
 
 
 _recent: list[_Equations] = []
@@ -345,16 +367,25 @@ def _equations(scene: Scene, keys: Sequence[str]) -> _Equations:
     return equations
 
 
-class _Part:
-    """Up to :data:`AT_ONCE` columns of derivatives, in one library with the motion."""
+def _parts(scene: Scene, columns: Sequence[Column], epoch: float = 0.0) -> "list[_Part]":
+    """Return the equations of all columns of derivatives; ``epoch`` is as for :class:`_Part`."""
+    return [_Part(scene, columns[first : first + AT_ONCE], epoch) for first in range(0, len(columns), AT_ONCE)]
 
-    def __init__(self, scene: Scene, columns: Sequence[Column]) -> None:
+
+class _Part:
+    """Up to :data:`AT_ONCE` columns of derivatives, in one library with the motion.
+
+    ``epoch`` is the time of the scene, s, from which the equations count time.
+    """
+
+    def __init__(self, scene: Scene, columns: Sequence[Column], epoch: float) -> None:
         structure = structure_of(scene, columns)
-        plan = Plan(scene, structure, ())
+        plan = Plan(scene, replace(structure, clock=EPOCH) if epoch else structure, ())
         rates, parameters = rates_of(plan)
+        self.uses_time = rates.uses("t")
 
         def numbers(other: Scene) -> dict[str, Fraction]:
-            constants = {"pi": number.PI, **constants_of(other, structure)}
+            constants = {"pi": number.PI, EPOCH: Fraction(epoch), **constants_of(other, structure)}
             return {name: value_of(node, constants) for name, node in parameters}
 
         slopes = [difference(scene, column.variable, numbers) if column.constants else {} for column in columns]
@@ -364,8 +395,8 @@ class _Part:
         self._values = [float(own[name]) for name, _ in parameters]
         self._slopes = [[float(each[name]) for name in names] for each, names in zip(slopes, depends, strict=True)]
 
-    def follow(self, scene: Scene, times: Floats, begin: float) -> tuple[Floats, Floats]:
-        """Return states and derivatives as :meth:`_Equations.follow` does.
+    def follow(self, scene: Scene, times: Floats, begin: float, epoch: float) -> tuple[Floats, Floats]:
+        """Return states and derivatives as :meth:`_Equations.follow` does; ``epoch`` is that of the equations.
 
         A column that stays small is integrated again in smaller units, so that the control of errors fits it.
         """
@@ -378,9 +409,11 @@ class _Part:
             for unit, own, slopes in zip(units, starts, self._slopes, strict=True):
                 state += [unit * slope for slope in own]
                 p += [unit * slope for slope in slopes]
-            motion = taylor.integration(self._path, p, state, begin, TOLERANCE)
+            motion = taylor.integration(self._path, p, state, begin - epoch, TOLERANCE)
             try:
-                samples, _ = motion.sample(times)
+                samples, _ = motion.sample(times - epoch)
+            except IntegrationStopped as error:
+                raise PropagationError(f"{scene.name}: sensitivities: {error.later(epoch)}") from None
             except PropagationError as error:
                 raise PropagationError(f"{scene.name}: sensitivities: {error}") from None
             derivatives = samples[:, size:].reshape(len(times), len(columns), size)
