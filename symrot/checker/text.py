@@ -160,7 +160,10 @@ def verdict_on_readings(
         if other.verdict != verdict.verdict:
             notes.append(_on_reading(usual, reading, other, notation(reading)))
     if late:
-        notes.append(f"other readings were not decided, since one needs more than {MOST_SECONDS} s of processor time")
+        notes.append(
+            f"other readings were not decided, since one needs more than {MOST_SECONDS} s of processor time; "
+            "a faster machine may decide them"
+        )
     seconds = sum(other.seconds for _, other in verdicts)
     return _beside_units(replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds), source)
 
