@@ -70,7 +70,9 @@ class Numbers:
                 values[:, k] = self._each(folded(node, fixed), names(node))
         return values
 
-    def slopes(self, parameters: Parameters, moved: Mapping[str, Fraction], variable: str) -> dict[str, Floats]:
+    def slopes(
+        self, parameters: Parameters, moved: Mapping[str, Fraction], variable: str, epoch: float = 0.0
+    ) -> dict[str, Floats]:
         """Return the derivatives of kernel parameters by a variable for each trajectory, shape (n,), by name.
 
         Parameters
@@ -82,13 +84,19 @@ class Numbers:
             trajectories.
         variable : str
             The name of the variable, for messages.
+        epoch : float
+            As for :meth:`bound`.
 
         Raises
         ------
         InputError
             If a parameter of a trajectory does not depend smoothly on the variable.
         """
-        scene = {"pi": number.PI, **Plan(self._variation.scene, self._plan.structure, ()).constants}
+        scene = {
+            "pi": number.PI,
+            EPOCH: Fraction(epoch),
+            **Plan(self._variation.scene, self._plan.structure, ()).constants,
+        }
         fixed = {name: value for name, value in scene.items() if name not in self._columns}
         result: dict[str, Floats] = {}
         for name, node in parameters:

@@ -6,6 +6,7 @@ The equations are those of :mod:`symrot.propagation.sensitivities.variation`, wi
 """
 
 from collections.abc import Collection, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from symrot.errors import InputError, PropagationError
 from symrot.formula.program import Program
 from symrot.planning.general_structure import constants_of
 from symrot.planning.plan import Plan
+from symrot.planning.scene_kernel import EPOCH
 from symrot.propagation.compiled_models import has_formulas
 from symrot.propagation.sensitivities.variables import (
     ATTITUDE,
@@ -45,7 +47,9 @@ from symrot.propagation.sensitivities.variation import (
     variation_source,
 )
 from symrot.propagation.steppers import taylor
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import Floats
+from symrot.propagation.time_shift import starts_far
 from symrot.results.sensitivity import Sensitivities
 from symrot.scene.scene import Scene
 
@@ -89,7 +93,7 @@ def follow_sensitivities(problem: Problem, keys: Sequence[str]) -> tuple[Sensiti
     for first in range(0, len(columns), AT_ONCE):
         some = slice(first, first + AT_ONCE)
         equations = _Equations(problem, columns[some])
-        each = max(1, BLOCK // (samples * SIZE * (1 + len(columns[some]))))
+        each = max(1, BLOCK // (max(1, samples) * SIZE * (1 + len(columns[some]))))
         for start in range(0, count, each):
             rows = np.arange(start, min(start + each, count))
             states, slopes, reasons = equations.follow(rows)
@@ -98,7 +102,7 @@ def follow_sensitivities(problem: Problem, keys: Sequence[str]) -> tuple[Sensiti
             turned = small_rotation(
                 states[..., RATES:].reshape(-1, 4), slopes[:, :, RATES:].reshape(-1, 4, len(columns[some]))
             )
-            rotation[block, ..., some] = turned.reshape(*slopes.shape[:2], 3, -1)
+            rotation[block, ..., some] = turned.reshape(*slopes.shape[:2], 3, slopes.shape[3])
             for row, reason in zip(rows.tolist(), reasons, strict=True):
                 messages[row] = messages[row] or (reason and f"sensitivities: {reason}")
     names, units = tuple(variable.name for variable in variables), tuple(variable.unit for variable in variables)
@@ -168,15 +172,20 @@ class _Equations:
         self.problem, self.columns = problem, columns
         variation, scene = problem.variation, problem.variation.scene
         structure = structure_of(scene, columns, variation.columns)
-        self.plan = Plan(scene, structure, ())
+        self.plan, self.epoch = Plan(scene, structure, ()), 0.0
         rates, self.parameters = rates_of(self.plan)
+        times = problem.times
+        if rates.uses("t") and times.size and starts_far(problem.t0, float(times.min()), float(times.max())):
+            self.plan, self.epoch = Plan(scene, replace(structure, clock=EPOCH), ()), problem.t0
+            rates, self.parameters = rates_of(self.plan)
         numbers = Numbers(variation, self.plan, range(len(variation)))
-        self.values = numbers.bound(self.parameters)
+        self.values = numbers.bound(self.parameters, self.epoch)
         self.slopes = [
             numbers.slopes(
                 self.parameters,
                 difference(scene, column.variable, lambda other: constants_of(other, structure)),
                 column.variable.name,
+                self.epoch,
             )
             if column.constants
             else {}
@@ -279,10 +288,12 @@ class _Equations:
             return outcome.states, outcome.messages
         samples, messages = np.full((len(y), times.shape[-1], y.shape[1]), np.nan), []
         for k in range(len(y)):
-            motion = taylor.integration(self.path, p[k], y[k], problem.t0, TOLERANCE)
+            motion = taylor.integration(self.path, p[k], y[k], problem.t0 - self.epoch, TOLERANCE)
             try:
-                samples[k], _ = motion.sample(times if times.ndim == 1 else times[k])
+                samples[k], _ = motion.sample((times if times.ndim == 1 else times[k]) - self.epoch)
                 messages.append("")
+            except IntegrationStopped as error:
+                messages.append(str(error.later(self.epoch)))
             except PropagationError as error:
                 messages.append(str(error))
         return samples, messages

@@ -58,6 +58,11 @@ def read_surface(path: Path, where: str) -> Surface:
         mesh = _load(trimesh, content, suffix[1:])
     except MemoryError:
         raise InputError(f"{where}: expected a mesh that fits in memory, got a larger one") from None
+    except ImportError:  # a reader of trimesh looks for the encoding of a file that is no text
+        form = suffix[1:].upper()
+        raise InputError(
+            f"{where}: expected a mesh in the format {form}, got a file of another format or one that ends early"
+        ) from None
     except Exception as reason:  # a broken file raises errors of many kinds in the readers of trimesh
         fault = " ".join(str(reason).split())[:80] or type(reason).__name__
         raise InputError(f"{where}: expected a mesh in the format {suffix[1:].upper()}, got a fault: {fault}") from None

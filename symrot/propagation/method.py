@@ -5,6 +5,7 @@ from typing import NamedTuple
 from symrot.build import cache as library
 from symrot.closed_form.registry import FORMS, ClosedForm, exact_form
 from symrot.errors import CompilerError, InputError, with_hint
+from symrot.formula.exact_numbers import show
 from symrot.planning.plan import Plan
 from symrot.propagation.steppers.smoothness import non_smooth_torque
 
@@ -64,6 +65,8 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
     CompilerError
         If the method needs a compiler and no compiler is installed.
     """
+    if not isinstance(method, str):
+        raise InputError(f"method: expected the name of a method, such as 'auto', got {show(method)}")
     if plan.scene.table is not None:
         if method not in ("auto", "dop853"):
             raise InputError(f"method: expected 'auto' or 'dop853' for a torque without a formula, got {method!r}")

@@ -82,6 +82,14 @@ def test_derivatives_under_a_short_pulse_are_those_of_single_motions():
 
 
 @needs_compiler
+def test_derivatives_at_no_time_are_empty(tops):
+    alone = symrot.propagate_ensemble(
+        TOP, omega=OMEGA, quaternion=ATTITUDES, parameters={"weight": WEIGHTS}, t=[], sensitivities=KEYS
+    )
+    assert alone.sensitivities.omega.shape == (3, 0, 3, 2)
+
+
+@needs_compiler
 def test_derivatives_have_labels(tops):
     pytest.importorskip("xarray")
     assert tops.to_xarray().omega_by_weight.dims == ("trajectory", "time", "body_axis")

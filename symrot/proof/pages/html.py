@@ -15,6 +15,7 @@ from symrot.proof.pages.parts import equation, footer, passage_equations, remark
 __all__ = ["display", "document", "html_document", "prose"]
 
 MANY_SECTIONS = 3
+LONGEST_INLINE = 120  # letters of LaTeX; a longer formula in a sentence is scrolled by itself
 
 STYLE = """
 :root { color-scheme: light dark; }
@@ -25,6 +26,7 @@ nav { font-size: 0.95rem; }
 math { font-size: 1.05em; font-family: "STIX Two Math", "Latin Modern Math", "STIX Math", "Cambria Math",
   "TeX Gyre Termes Math", "DejaVu Math TeX Gyre", math; }
 mover > mo { padding-bottom: 0.12em; }
+msubsup > mo:first-child ~ :last-child { padding-left: 0.6em; } /* an upper limit beside the slanted integral sign */
 .display { overflow-x: auto; overflow-y: hidden; margin: 0.8rem 0; padding: 0.3rem 0; }
 .display math { margin: 0 auto; }
 .lines > mtr > mtd { text-align: left; padding-left: 0; padding-top: 0.25em; padding-bottom: 0.25em; }
@@ -41,10 +43,18 @@ table { border-collapse: collapse; margin: 0 auto; }
 td:first-child { white-space: nowrap; }
 th, td { text-align: left; padding: 0.3rem 0.6rem; border-bottom: 1px solid #8886; }
 .whole { white-space: nowrap; }
+.wide { display: inline-block; max-width: 100%; overflow-x: auto; overflow-y: hidden; vertical-align: middle; }
+td .wide { max-width: none; overflow: visible; }
 code { font-size: 0.9em; overflow-wrap: anywhere; }
 footer { margin-top: 3rem; border-top: 1px solid #8886; padding-top: 0.6rem; font-size: 0.9rem; }
 a { color: inherit; }
-@media print { .display { overflow: visible; } .step { break-inside: avoid; } }
+@media print {
+  .display { overflow: visible; }
+  .step { break-inside: avoid; }
+  .wide { overflow: visible; font-size: 0.75em; }
+  td .wide { font-size: inherit; }
+  .table { overflow: visible; width: auto; left: 0; transform: none; font-size: 0.7rem; }
+}
 """
 
 
@@ -162,7 +172,10 @@ def prose(text: str) -> str:
             after = re.match(r"[.,;:)']*", text[match.end() :])
             stop = after[0] if after else ""
             formula = mathml(quoted or plain)
-            markup += f'<span class="whole">{formula}{escape(stop)}</span>' if stop else formula
+            if len(quoted or plain) > LONGEST_INLINE:
+                markup += f'<span class="wide">{formula}{escape(stop)}</span>'
+            else:
+                markup += f'<span class="whole">{formula}{escape(stop)}</span>' if stop else formula
             place = match.end() + len(stop)
             continue
         elif code:

@@ -22,16 +22,21 @@ from symrot.build import cache as library
 from symrot.dynamics.structure import FieldTorque, FormulaTorque, InertiaTensor, Pattern, PrincipalInertia, Structure
 from symrot.errors import InputError, PropagationError
 from symrot.formula import exact_numbers as number
+from symrot.formula.float_functions import FLOAT_FUNCTIONS
 from symrot.formula.program import Program, node_from_json, node_to_json
 from symrot.formula.switches import STATES
 from symrot.planning.general_structure import PRODUCTS, constants_of, general_structure
 from symrot.planning.plan import Plan
 from symrot.planning.rules import UNIT_FIELDS, pattern
-from symrot.planning.scene_kernel import Parameters
+from symrot.planning.scene_kernel import EPOCH, Parameters
 from symrot.propagation.binding import value_of
 from symrot.propagation.compiled_models import has_formulas, kernel_key
+from symrot.propagation.events.event_result import EventResult
+from symrot.propagation.sensitivities.event_times import event_time_slopes
 from symrot.propagation.sensitivities.variables import Variable, difference, groups_of, read_variables, require_smooth
 from symrot.propagation.steppers import taylor
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped
+from symrot.propagation.time_shift import starts_far
 from symrot.results.sensitivity import Sensitivities
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial
@@ -46,6 +51,7 @@ __all__ = [
     "TRIES",
     "Column",
     "columns_of",
+    "event_slopes",
     "motion_library",
     "rates_of",
     "rotation_slopes",
@@ -101,6 +107,20 @@ def variation(scene: Scene, keys: Sequence[str], times: Floats) -> Sensitivities
         quaternion,
         small_rotation(values[:, RATES:], quaternion),
     )
+
+
+def event_slopes(scene: Scene, keys: Sequence[str], result: EventResult) -> tuple[Floats, ...]:
+    """Return the derivatives of the times of events by the variables ``keys``: for each event, shape (k, m).
+
+    ``result`` has the events of the motion of ``scene``; see
+    :func:`symrot.propagation.sensitivities.event_times.event_time_slopes`.
+    """
+    equations = _equations(scene, tuple(keys) if isinstance(keys, list) else keys)
+    slopes = []
+    for event, kinds, times in zip(result.events, result.kinds, result.t_events, strict=True):
+        states, by = equations.follow(scene, times)
+        slopes.append(event_time_slopes(event, kinds, times, states, equations.rates(scene, times, states), by))
+    return tuple(slopes)
 
 
 def transition_matrix(scene: Scene, start: float, stop: float) -> Floats:
@@ -231,10 +251,19 @@ def rates_of(plan: Plan) -> tuple[Program, Parameters]:
     """Return the rates of a plan as a program, and their parameters, from the cache or newly derived.
 
     The rates are the time derivatives of the states; a program is a list of operations that can be printed as C. The
-    parameters are pairs (name, formula in the constants of the scene).
+    parameters are pairs (name, formula in the constants of the scene). If the structure of the plan has a clock, time
+    is counted from its epoch, a further constant in the formulas (:mod:`symrot.propagation.time_shift`).
     """
     key = f"rates alone\n{kernel_key(plan)}"
     saved = library.fetch(key)
+    if saved is None and plan.structure.clock:
+        from symrot.codegen.taylor.time_shift import moved
+
+        rates, formulas = moved(*rates_of(replace(plan, structure=replace(plan.structure, clock=None))))
+        saved = json.dumps(
+            {"rates": rates.to_json(), "parameters": [(name, node_to_json(node)) for name, node in formulas]}
+        )
+        library.store(key, saved)
     if saved is None:
         from symrot.codegen.scene_kernels import rates_program
         from symrot.dynamics.equations import equations_of_motion
@@ -318,7 +347,9 @@ class _Equations:
         self.scene, self.keys, self.variables = scene, keys, read_variables(scene, keys)
         columns = columns_of(scene, self.variables)
         self.restartable = all(column.restartable for column in columns)
-        self._parts = [_Part(scene, columns[first : first + AT_ONCE]) for first in range(0, len(columns), AT_ONCE)]
+        self._columns, self._parts = columns, _parts(scene, columns)
+        self._uses_time = any(part.uses_time for part in self._parts)
+        self._moved: tuple[float, list[_Part]] = (0.0, self._parts)
 
     def fit(self, scene: Scene, keys: Sequence[str]) -> bool:
         """Return whether these are the equations of a scene and its derivatives by the variables ``keys``."""
@@ -335,8 +366,27 @@ class _Equations:
         initial state; default: the start of its span.
         """
         begin = float(scene.span.start) if begin is None else begin
-        parts = [part.follow(scene, times, begin) for part in self._parts]
-        return parts[0][0], np.concatenate([slopes for _, slopes in parts], axis=2)
+        parts, epoch = self._chosen(begin, times)
+        results = [part.follow(scene, times, begin, epoch) for part in parts]
+        return results[0][0], np.concatenate([slopes for _, slopes in results], axis=2)
+
+    def rates(self, scene: Scene, times: Floats, states: Floats) -> Floats:
+        """Return the time derivatives of the states of the motion of ``scene`` at n times, shape (n, 7)."""
+        parts, epoch = self._chosen(float(scene.span.start), times)
+        rows = [parts[0].rates(t, state) for t, state in zip(times - epoch, states, strict=True)]
+        return np.array(rows).reshape(len(times), len(STATES))
+
+    def _chosen(self, begin: float, times: Floats) -> "tuple[list[_Part], float]":
+        """Return the equations for a motion that begins at the time ``begin``, s, and the epoch of their clock, s."""
+        if self._uses_time and len(times) and starts_far(begin, float(times.min()), float(times.max())):
+            return self._parts_from(begin), begin
+        return self._parts, 0.0
+
+    def _parts_from(self, epoch: float) -> "list[_Part]":
+        """Return the equations with time counted from an epoch, s; those for the last epoch are used again."""
+        if epoch != self._moved[0]:
+            self._moved = (epoch, _parts(self.scene, self._columns, epoch))
+        return self._moved[1]
 
 
 _recent: list[_Equations] = []
@@ -356,19 +406,27 @@ def _equations(scene: Scene, keys: Sequence[str]) -> _Equations:
     return equations
 
 
+def _parts(scene: Scene, columns: Sequence[Column], epoch: float = 0.0) -> "list[_Part]":
+    """Return the equations of all columns of derivatives; ``epoch`` is as for :class:`_Part`."""
+    return [_Part(scene, columns[first : first + AT_ONCE], epoch) for first in range(0, len(columns), AT_ONCE)]
+
+
 class _Part:
     """A compiled library that integrates the motion and its derivatives by up to :data:`AT_ONCE` variables.
 
     A column is the vector of derivatives of all states by one variable.
+    ``epoch`` is the time of the scene, s, from which the equations count time.
     """
 
-    def __init__(self, scene: Scene, columns: Sequence[Column]) -> None:
+    def __init__(self, scene: Scene, columns: Sequence[Column], epoch: float) -> None:
         structure = structure_of(scene, columns)
-        plan = Plan(scene, structure, ())
+        plan = Plan(scene, replace(structure, clock=EPOCH) if epoch else structure, ())
         rates, parameters = rates_of(plan)
+        self.uses_time, self._rates = rates.uses("t"), rates
+        self._names = [name for name, _ in parameters]
 
         def numbers(other: Scene) -> dict[str, Fraction]:
-            constants = {"pi": number.PI, **constants_of(other, structure)}
+            constants = {"pi": number.PI, EPOCH: Fraction(epoch), **constants_of(other, structure)}
             return {name: value_of(node, constants) for name, node in parameters}
 
         slopes = [difference(scene, column.variable, numbers) if column.constants else {} for column in columns]
@@ -378,8 +436,13 @@ class _Part:
         self._values = [float(own[name]) for name, _ in parameters]
         self._slopes = [[float(each[name]) for name in names] for each, names in zip(slopes, depends, strict=True)]
 
-    def follow(self, scene: Scene, times: Floats, begin: float) -> tuple[Floats, Floats]:
-        """Return states and derivatives as :meth:`_Equations.follow` does.
+    def rates(self, time: float, state: Floats) -> list[float]:
+        """Return the time derivatives of the seven states at a time, s, on the clock of the equations."""
+        values = dict(zip(self._names, self._values, strict=True)) | dict(zip(STATES, state.tolist(), strict=True))
+        return list(self._rates.evaluate({**values, "t": float(time)}, FLOAT_FUNCTIONS, float).values())
+
+    def follow(self, scene: Scene, times: Floats, begin: float, epoch: float) -> tuple[Floats, Floats]:
+        """Return states and derivatives as :meth:`_Equations.follow` does; ``epoch`` is that of the equations.
 
         The column of derivatives by one variable is multiplied by a power of two, its unit, near the size of the
         variable. If all its products stay below SMALL, the control of errors, which compares errors with 1, hardly sees
@@ -394,9 +457,11 @@ class _Part:
             for unit, own, slopes in zip(units, starts, self._slopes, strict=True):
                 state += [unit * slope for slope in own]
                 p += [unit * slope for slope in slopes]
-            motion = taylor.integration(self._path, p, state, begin, TOLERANCE)
+            motion = taylor.integration(self._path, p, state, begin - epoch, TOLERANCE)
             try:
-                samples, _ = motion.sample(times)
+                samples, _ = motion.sample(times - epoch)
+            except IntegrationStopped as error:
+                raise PropagationError(f"{scene.name}: sensitivities: {error.later(epoch)}") from None
             except PropagationError as error:
                 raise PropagationError(f"{scene.name}: sensitivities: {error}") from None
             derivatives = samples[:, size:].reshape(len(times), len(columns), size)
