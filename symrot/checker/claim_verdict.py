@@ -90,14 +90,17 @@ def is_unfinished(verdict: Verdict) -> bool:
 
 
 def _ended() -> str:
-    return f"the search for other readings and for repairs was ended after {MOST_SECONDS} s of processor time"
+    return (
+        f"the search for other readings and for repairs was stopped after {MOST_SECONDS} s of processor time; "
+        "a faster machine may get further"
+    )
 
 
 def unfinished() -> Decision:
     """Return the decision "undecided" for a claim that would need more processor time than the limit allows."""
     reason = (
-        f"SymPy needs more than {MOST_SECONDS} s of processor time for these formulas; "
-        "check the claim with a letter in place of one of the inner functions"
+        f"stopped, since SymPy needs more than {MOST_SECONDS} s of processor time for these formulas; a faster "
+        "machine may decide, and so may a claim with a letter in place of one of the inner functions"
     )
     return Decision("undecided", reason=reason)
 

@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 
-from symrot.checker.arrays.as_written import as_written, has_arrays, is_odd
+from symrot.checker.arrays.as_written import as_written, has_arrays, is_odd, with_inverses
 from symrot.checker.arrays.index_notation import has_index_symbols
 from symrot.checker.arrays.matrices import as_rotations, matrices_of_entries
 from symrot.checker.claim.claims import Claim, relation_text
@@ -25,9 +25,7 @@ from symrot.checker.inequality import OPPOSITE, is_inequality, verdict_on_inequa
 from symrot.checker.marks import changed_entry, changed_spans
 from symrot.checker.measured import in_degrees, with_units
 from symrot.checker.open_equation import as_equation
-from symrot.checker.recognition.naming import recognised_edits
 from symrot.checker.recognition.together import fit_together, misplaced
-from symrot.checker.repair.edits import FAULT_DESCRIPTIONS
 from symrot.checker.rounding import with_rounding
 from symrot.checker.special_cases import for_complex_numbers, for_special_directions
 from symrot.checker.units.conversion import (
@@ -162,7 +160,10 @@ def verdict_on_readings(
         if other.verdict != verdict.verdict:
             notes.append(_on_reading(usual, reading, other, notation(reading)))
     if late:
-        notes.append(f"other readings were not decided, since one needs more than {MOST_SECONDS} s of processor time")
+        notes.append(
+            f"other readings were not decided, since one needs more than {MOST_SECONDS} s of processor time; "
+            "a faster machine may decide them"
+        )
     seconds = sum(other.seconds for _, other in verdicts)
     return _beside_units(replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds), source)
 
@@ -444,11 +445,28 @@ def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
     if claim.relation is None:
         return replace(repair, text=notation.rewritten(repair.text))
     texts: Sequence[str] = (relation_text(claim.relation), repair.text)
+    unchanged = [place for place in ("left", "right") if place not in repair.edited] if repair.edited else []
+    if len(unchanged) == 1:
+        texts = [_with_inverse(source, unchanged[0], claim.text) for source in texts]
     if not any(call in claim.text for call in CALLS_FOR_ARRAYS):
         texts = list(map(_with_plain_arrays, texts))
     before, after = map(notation.rewritten, texts)
     changed, text = changed_spans(before, after), after
     return replace(repair, text=text, changed=changed, entry=changed_entry(claim.relation, repair.text))
+
+
+def _with_inverse(source: str, place: str, typed: str) -> str:
+    """Return the text of an equation with ``q**(-1)`` on a side that is the inverse of a quaternion in the claim.
+
+    ``place`` is the side, ``typed`` the text of the claim. Other texts are returned unchanged.
+    """
+    relation = _relation_of(source)
+    if relation is None or relation[0] != "==":
+        return source
+    left, right = relation[1:]
+    inverse = with_inverses([left if place == "left" else right], typed)[0]
+    left, right = (inverse, right) if place == "left" else (left, inverse)
+    return source if relation[1:] == (left, right) else relation_text(("==", left, right))
 
 
 def _with_plain_arrays(source: str) -> str:
@@ -565,6 +583,9 @@ def _with_fitting_line(
     """
     if len(lines) != len(claims) or len(lines) > MOST_LINES or any(claim.hypotheses for claim in claims):
         return verdict
+    from symrot.checker.recognition.naming import recognised_edits  # it takes longer to import than most checks
+    from symrot.checker.repair.edits import FAULT_DESCRIPTIONS
+
     nearest: tuple[tuple[int, float], Verdict] | None = None
     for place, claim in enumerate(claims):
         named = named_formula(claim)

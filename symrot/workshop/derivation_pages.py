@@ -66,8 +66,9 @@ def _quiet(text: str) -> None:
 def illustrated(page: Page) -> PrintedPage:
     """Return a derivation's page with its figures and its lesson: question, numbers, a common mistake for students.
 
-    A figure is at the top of the page or below the heading of its section. A page with few figures has at least one at
-    the top. The steps that only symrot's numeric code needs are not on it (see :func:`printed_page`).
+    A figure is at the top of the page or below the heading of its section. If no figure is meant for the top and the
+    page has at most FEW_FIGURES (three) figures, the first of them is moved to the top. The steps that only symrot's
+    numeric code needs are not on the page (see :func:`printed_page`).
 
     Raises
     ------
@@ -101,7 +102,10 @@ def _with_figures(page: Page) -> tuple[Page, list[Figure]]:
         if isinstance(item, Section):
             items += by_section.pop(item.title, ())
     if by_section:
-        raise InputError(f"{page.name}: expected figures in sections of the page, got figures in {[*by_section]}")
+        raise InputError(
+            f"{page.name}: expected figures in sections of the page, got figures in sections that it lacks: "
+            f"{', '.join(map(repr, by_section))}"
+        )
     values = {each.name: getattr(page, each.name) for each in fields(Page)}
     return Page(**values | {"items": items}), top
 

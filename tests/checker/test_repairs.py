@@ -155,7 +155,10 @@ def test_repairs_with_quaternions_and_matrices_are_written_as_people_write_them(
     (r"\dot q = q\otimes\begin{bmatrix}0\\ \boldsymbol\omega\end{bmatrix}",
      r"\dot{q} = \frac{q \otimes \begin{bmatrix} 0 \\ \boldsymbol{\omega} \end{bmatrix}}{2}"),
     ("H_O = r_G x m v_G - H_G", "H_O = cross(r_G, m*v_G) + H_G"),
+    ("q̇ = ½ (I + [q̃] − q qᵀ) ω", "q' = 1/2*(eye(3) + skew(q) + q*q.T)*ω"),
+    ("J omega' = L + omega x (J omega)", "L = J*omega' + cross(omega, J*omega)"),
+    ("q^{-1} = \\frac{q^*}{|q|}", "q^{-1} = \\frac{q^*}{|q|^2}"), ("q⁻¹ = q̄ / ‖q‖", "q^(-1) = conjugate(q)/abs(q)^2"),
 ])  # fmt: skip
 def test_a_repair_can_be_checked_as_it_is_written(claim, repair):
     assert [each.text for each in symrot.check(claim).repairs] == [repair]
-    assert symrot.check(repair).verdict == "recognised"
+    assert symrot.check(repair).verdict in ("recognised", "true", "conditional")

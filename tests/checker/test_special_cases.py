@@ -19,6 +19,14 @@ def test_the_special_case_is_the_condition(text, condition):
 
 
 @pytest.mark.parametrize(("text", "outcome"), [
+    ("max(a,b) = (a + b + |a-b|)/2", "true"), (r"\max(a, b) = \frac{a+b-|a-b|}{2}", "false"), ("min(a,b) + max(a,b) = a + b", "true"),
+    ("300 days = 2.592e7 s", "true"), ("2 hours = 7000 s", "false"), ("ω_max = a_min", "definition"),
+])  # fmt: skip
+def test_extremes_and_times_in_words_are_read(text, outcome):
+    assert check(text, repair=False).verdict == outcome
+
+
+@pytest.mark.parametrize(("text", "outcome"), [
     ("abs(z)**2 == z**2", "true"), ("|z w| = |z| |w|", "true"), ("m·g = m g", "true"), ("|a|² = a²", "true"),
     (r"\vec F\cdot\vec d = 2 F d", "false"), ("W = F·d = F d cos θ", "definition"), ("A·B = AB cos θ", "definition"),
 ])  # fmt: skip

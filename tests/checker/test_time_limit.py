@@ -86,7 +86,7 @@ def test_a_claim_for_which_sympy_needs_minutes_is_undecided_and_says_why(monkeyp
     verdict = symrot.check(SLOW)
     assert time.process_time() - start < ENDLESS
     assert verdict.verdict == "undecided"
-    assert "more than 0.5 s of processor time" in verdict.reason
+    assert "more than 0.5 s of processor time" in verdict.reason and "a faster machine may decide" in verdict.reason
     assert symrot.check("sin(2*x) == 2*sin(x)*cos(x)")  # the next claim has its own time
 
 
@@ -95,4 +95,4 @@ def test_a_verdict_whose_repair_takes_too_long_is_kept(monkeypatch):
     monkeypatch.setattr(claim_verdict, "_diagnosed", lambda *_: compute(ENDLESS))
     verdict = symrot.check("sin(2*x) == sin(x)*cos(x)")
     assert verdict.verdict == "false"
-    assert any("ended after 0.5 s" in note for note in verdict.notes)
+    assert any("stopped after 0.5 s" in note for note in verdict.notes)

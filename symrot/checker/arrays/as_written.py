@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from symrot.checker.arrays.pauli import eye
-from symrot.checker.claim.tree import Node, number, product, walk
+from symrot.checker.claim.tree import Node, negated, number, product, walk
 
-__all__ = ["as_written", "has_arrays", "is_odd"]
+__all__ = ["as_written", "has_arrays", "inverse_of", "is_odd", "with_inverses"]
 
 QUATERNION, UNIT = ("qmul", "conjugate"), eye()
 IMAGINARY = Node("name", "i")
@@ -63,6 +63,29 @@ def _determinant(factors: Sequence[Node]) -> Node | None:
         return None
     of_square = Node("neg", None, (Node("call", "trace", (product([matrix, matrix]),)),))
     return Node("call", "det", (matrix,)) if rest == [of_square] else None
+
+
+def inverse_of(side: Node, source: str) -> Node | None:
+    """Return q if a side of a claim is the inverse of the quaternion q, and its text ``source`` writes it as a power.
+
+    The side is ``conjugate(q)/dot(q, q)``, as ``q^{-1}`` is read. The result is None otherwise.
+    """
+    if not any(mark in source for mark in INVERSES) or side.kind != "product" or len(side.args) != 2:
+        return None
+    above, below = side.args
+    is_conjugate = above.kind == "call" and above.value == "conjugate" and below.kind == "inv"
+    return above.args[0] if is_conjugate and below.args[0] == Node("call", "dot", above.args * 2) else None
+
+
+def with_inverses(sides: Sequence[Node], source: str) -> list[Node]:
+    """Return the sides of a claim with ``q**(-1)`` in place of a side that is the inverse of a quaternion."""
+    inner = [inverse_of(side, source) for side in sides]
+    minus = negated(number(1))
+    return [side if q is None else Node("power", None, (q, minus)) for side, q in zip(sides, inner, strict=True)]
+
+
+INVERSES = ("^{-1}", "⁻¹", "^-1", "^(-1)", "**-1", "**(-1)")
+"""The ways to write the power minus one."""
 
 
 def as_written(tree: Node) -> Node:

@@ -462,11 +462,17 @@ def _is_cross(before: Token | None, token: Token, after: Token, factor: Token, v
 def _crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collection[tuple[str, int]]) -> Iterator[str]:
     """Yield the names before and after the signs of cross products, ``×`` or x; these names are vectors.
 
+    In a text with rates, which would make functions of time of them, so are names in ``cross(a, b)`` and ``skew(a)``.
     ``vectors`` are names that are already known to be vectors. ``flips`` are the keys of ambiguous places with their
     less usual meaning, in which x is a name.
     """
     alone = set(_alone(tokens, vectors))
     padded = [*tokens, tokens[-1]]
+    if any(token.kind in ("prime", "dots") for token in tokens):
+        for function, opening, operand, closing in zip(tokens, tokens[1:], tokens[2:], padded[3:], strict=False):
+            is_call = function.text in ("cross", "skew") and opening.text == "(" and closing.text in (",", ")")
+            if is_call and operand.kind == "name":
+                yield operand.text
     for before, sign, after, last in zip(tokens, tokens[1:], tokens[2:], padded[3:], strict=False):
         factor = last if is_mass_before_vector(after, last) else after
         if (sign.kind == "mark" and sign.text == "×") or (
@@ -701,9 +707,7 @@ def _only(readings: Sequence[Reading], source: str, where: str, rates: bool = Fa
     doubts = [doubt for doubt in usual.doubts if not (rates and doubt.key[0] == "prime")]
     if usual.plain and len(readings) > 1 and doubts:
         doubt = doubts[0]
-        raise complaint(
-            source, where, doubt.key[1], f"brackets or product signs, since {doubt.excerpt!r} has two readings,"
-        )
+        raise complaint(source, where, doubt.key[1], f"brackets or product signs ({doubt.excerpt!r} has two readings)")
     return usual
 
 

@@ -231,7 +231,7 @@ class Writer:
         positive = exponent.kind == "number" and exponent.value.denominator == 1
         if base.kind == "call" and base.value in COMMANDS and positive and base.value != "det":
             return f"{COMMANDS[base.value]}{raised}{self.argument(base)}"
-        own_bracket = (*self.timed, "skew")
+        own_bracket = (*self.timed, "skew", "abs")
         plain = base.kind in ("name", "number") or (base.kind == "call" and base.value in own_bracket)
         return (self.formula(base) if plain else f"({self.formula(base)})") + raised
 

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import combinations, islice
 from typing import Any
 
+from symrot.checker.arrays.as_written import inverse_of
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.tree import Node
@@ -201,10 +202,16 @@ class _Search:
         The result is always False if repairs may edit only one side: the other side is the result that the author wants
         to reach, and an equal formula is then a proper repair.
         """
-        if len(self.numeric.sides_to_edit) < len(SIDES):
+        if len(self.numeric.sides_to_edit) < len(SIDES) or self.gives_inverse(changes):
             return False
         left, right, *_ = self.trees(changes)
         return not terms_of_equation(left, right, self.numeric.is_matrix)
+
+    def gives_inverse(self, changes: Sequence[Change]) -> bool:
+        """Return whether the unchanged side is an inverse, q^(-1): a formula for it is no tautology."""
+        unchanged = {*SIDES} - {change.place for change in changes}
+        sides = [self.numeric.tree_at(place) for place in unchanged]
+        return len(sides) == 1 and inverse_of(sides[0], self.numeric.claim.text) is not None
 
     def cancels(self, equation: Equation) -> bool:
         """Return whether the repaired claim ``equation`` says nothing, since letters of a side cancel.

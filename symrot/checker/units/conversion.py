@@ -57,6 +57,10 @@ ANGULAR = frozenset({"rad", "rev", "rpm", DEGREE})
 ALIASES = {
     "sec": "s", "degrees": DEGREE, "degree": DEGREE, "°": DEGREE, "%": "percent", "Nm": "N m", "μm": "um",
     "miles": "mile", "knots": "knot",
+    **dict.fromkeys(("secs", "second", "seconds"), "s"), **dict.fromkeys(("minute", "minutes"), "min"),
+    **dict.fromkeys(("hr", "hrs", "hour", "hours"), "h"), **dict.fromkeys(("day", "days"), "d"),
+    **dict.fromkeys(("revs", "revolution", "revolutions"), "rev"), **dict.fromkeys(("radian", "radians"), "rad"),
+    **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
 }  # fmt: skip
 PRODUCTS = frozenset({"mg", "ms", "hp"})
 """Units that are products of letters just as often: the weight m*g."""
