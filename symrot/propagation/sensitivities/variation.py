@@ -22,6 +22,7 @@ from symrot.build import cache as library
 from symrot.dynamics.structure import FieldTorque, FormulaTorque, InertiaTensor, Pattern, PrincipalInertia, Structure
 from symrot.errors import InputError, PropagationError
 from symrot.formula import exact_numbers as number
+from symrot.formula.float_functions import FLOAT_FUNCTIONS
 from symrot.formula.program import Program, node_from_json, node_to_json
 from symrot.formula.switches import STATES
 from symrot.planning.general_structure import PRODUCTS, constants_of, general_structure
@@ -30,6 +31,8 @@ from symrot.planning.rules import UNIT_FIELDS, pattern
 from symrot.planning.scene_kernel import EPOCH, Parameters
 from symrot.propagation.binding import value_of
 from symrot.propagation.compiled_models import has_formulas, kernel_key
+from symrot.propagation.events.event_result import EventResult
+from symrot.propagation.sensitivities.event_times import event_time_slopes
 from symrot.propagation.sensitivities.variables import Variable, difference, groups_of, read_variables, require_smooth
 from symrot.propagation.steppers import taylor
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
@@ -48,6 +51,7 @@ __all__ = [
     "TRIES",
     "Column",
     "columns_of",
+    "event_slopes",
     "motion_library",
     "rates_of",
     "rotation_slopes",
@@ -103,6 +107,20 @@ def variation(scene: Scene, keys: Sequence[str], times: Floats) -> Sensitivities
         quaternion,
         small_rotation(values[:, RATES:], quaternion),
     )
+
+
+def event_slopes(scene: Scene, keys: Sequence[str], result: EventResult) -> tuple[Floats, ...]:
+    """Return the derivatives of the times of events by the variables ``keys``: for each event, shape (k, m).
+
+    ``result`` has the events of the motion of ``scene``; see
+    :func:`symrot.propagation.sensitivities.event_times.event_time_slopes`.
+    """
+    equations = _equations(scene, tuple(keys) if isinstance(keys, list) else keys)
+    slopes = []
+    for event, kinds, times in zip(result.events, result.kinds, result.t_events, strict=True):
+        states, by = equations.follow(scene, times)
+        slopes.append(event_time_slopes(event, kinds, times, states, equations.rates(scene, times, states), by))
+    return tuple(slopes)
 
 
 def transition_matrix(scene: Scene, start: float, stop: float) -> Floats:
@@ -341,11 +359,21 @@ class _Equations:
         initial state; default: the start of its span.
         """
         begin = float(scene.span.start) if begin is None else begin
-        parts, epoch = self._parts, 0.0
-        if self._uses_time and len(times) and starts_far(begin, float(times.min()), float(times.max())):
-            parts, epoch = self._parts_from(begin), begin
+        parts, epoch = self._chosen(begin, times)
         results = [part.follow(scene, times, begin, epoch) for part in parts]
         return results[0][0], np.concatenate([slopes for _, slopes in results], axis=2)
+
+    def rates(self, scene: Scene, times: Floats, states: Floats) -> Floats:
+        """Return the time derivatives of the states of the motion of ``scene`` at n times, shape (n, 7)."""
+        parts, epoch = self._chosen(float(scene.span.start), times)
+        rows = [parts[0].rates(t, state) for t, state in zip(times - epoch, states, strict=True)]
+        return np.array(rows).reshape(len(times), len(STATES))
+
+    def _chosen(self, begin: float, times: Floats) -> "tuple[list[_Part], float]":
+        """Return the equations for a motion that begins at the time ``begin``, s, and the epoch of their clock, s."""
+        if self._uses_time and len(times) and starts_far(begin, float(times.min()), float(times.max())):
+            return self._parts_from(begin), begin
+        return self._parts, 0.0
 
     def _parts_from(self, epoch: float) -> "list[_Part]":
         """Return the equations with time counted from an epoch, s; those for the last epoch are used again."""
@@ -382,7 +410,8 @@ class _Part:
         structure = structure_of(scene, columns)
         plan = Plan(scene, replace(structure, clock=EPOCH) if epoch else structure, ())
         rates, parameters = rates_of(plan)
-        self.uses_time = rates.uses("t")
+        self.uses_time, self._rates = rates.uses("t"), rates
+        self._names = [name for name, _ in parameters]
 
         def numbers(other: Scene) -> dict[str, Fraction]:
             constants = {"pi": number.PI, EPOCH: Fraction(epoch), **constants_of(other, structure)}
@@ -394,6 +423,11 @@ class _Part:
         own = numbers(scene)
         self._values = [float(own[name]) for name, _ in parameters]
         self._slopes = [[float(each[name]) for name in names] for each, names in zip(slopes, depends, strict=True)]
+
+    def rates(self, time: float, state: Floats) -> list[float]:
+        """Return the time derivatives of the seven states at a time, s, on the clock of the equations."""
+        values = dict(zip(self._names, self._values, strict=True)) | dict(zip(STATES, state.tolist(), strict=True))
+        return list(self._rates.evaluate({**values, "t": float(time)}, FLOAT_FUNCTIONS, float).values())
 
     def follow(self, scene: Scene, times: Floats, begin: float, epoch: float) -> tuple[Floats, Floats]:
         """Return states and derivatives as :meth:`_Equations.follow` does; ``epoch`` is that of the equations.
