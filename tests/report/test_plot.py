@@ -155,4 +155,4 @@ def test_ticks_of_whole_rotations_and_letters_of_names():
 def test_a_constant_component_is_written_in_a_unit_of_its_own():
     """The Earth's spin is 72.9 microradians a second, however small the wobble in the same panel."""
     axes = symrot.plot(symrot.propagate("earth_wobble"), Figure().add_subplot(), "rates")
-    assert any("72.9211 µrad/s" in text.get_text() for text in axes.get_legend().get_texts())
+    assert any("72.9211 \N{GREEK SMALL LETTER MU}rad/s" in text.get_text() for text in axes.get_legend().get_texts())
