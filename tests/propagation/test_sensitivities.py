@@ -243,7 +243,7 @@ def test_sensitivities_of_a_motion_that_starts_far_from_zero():
         ({"sensitivities": ["tolerance"]}, "an initial value or a constant"),
         ({"sensitivities": ["span.t"]}, "an initial value or a constant"),
         ({"sensitivities": ["body.about"]}, "expected a number or a vector"),
-        ({"sensitivities": ["omega"], "state": "ZXZ"}, "expected the state 'quaternion'"),
+        ({"sensitivities": ["omega"], "state": "ZXZ"}, "expected state='quaternion'"),
         ({"sensitivities": ["omega"], "torque": lambda t, w, q: (0, 0, 0)}, "expected torques with formulas"),
         ({"sensitivities": ["omega"], "events": ["abs(omega_3) == 1"]}, "expected formulas without abs"),
     ],

@@ -162,7 +162,11 @@ class Column:
         self.constants = every
 
     def start_from(self, initial: Initial) -> list[float]:
-        """Return ``start`` for another initial state of the scene; only that of a small rotation depends on it."""
+        """Return the derivatives of omega and quaternion at the start, by this column's variable, for ``initial``.
+
+        ``initial`` is another initial state of the scene. If the variable is a small rotation of the initial attitude,
+        the derivatives of the quaternion depend on it; otherwise the list is the same for every initial state.
+        """
         if self.variable.moved is not None:
             return self.start
         slopes = rotation_slopes(initial.quaternion, self.variable.axis)
@@ -170,9 +174,10 @@ class Column:
 
     @property
     def restartable(self) -> bool:
-        """Whether the column is the same for each initial state of the scene, but for :meth:`start_from`.
+        """Whether this column, with a new :meth:`start_from` only, also holds for other initial states of the scene.
 
-        It is false for a variable that sets the initial state in another form, such as ``initial.attitude.angle``.
+        It is false for a variable that sets the initial state in another form, such as ``initial.attitude.angle``: its
+        derivatives must be computed again.
         """
         variable = self.variable
         return variable.moved is None or variable.key.startswith("omega") or not any(self.start)
@@ -288,8 +293,10 @@ def variation_source(
     stepper : str
         The name of the stepper, which is a part of the key.
     source : function
-        Takes the program of the rates of states and derivatives, and the edges and scales of the blocks whose errors
-        are measured (:func:`symrot.propagation.compiled_models.error_blocks`); it returns the C source.
+        Returns the C source for three arguments: the program of the rates of states and derivatives, ``edges`` and
+        ``scales``. The error of a step is measured in blocks of the state vector: block i goes from index ``edges[i]``
+        to ``edges[i + 1]``, and its error is divided by ``scales[i]`` or, where this is 0, by the size of the block
+        (:func:`symrot.propagation.compiled_models.error_blocks`).
 
     Raises
     ------
@@ -387,7 +394,11 @@ _recent: list[_Equations] = []
 
 
 def _equations(scene: Scene, keys: Sequence[str]) -> _Equations:
-    """Return the equations of a scene's motion and its derivatives by the variables ``keys``, recent or new ones."""
+    """Return the equations of a scene's motion and its derivatives by the variables ``keys``.
+
+    Equations that were made for this scene and these variables are used again, if they are among the last MOST_RECENT
+    ones.
+    """
     equations = next((each for each in _recent if each.fit(scene, keys)), None)
     if equations is None:
         equations = _Equations(scene, keys)
@@ -401,8 +412,9 @@ def _parts(scene: Scene, columns: Sequence[Column], epoch: float = 0.0) -> "list
 
 
 class _Part:
-    """Up to :data:`AT_ONCE` columns of derivatives, in one library with the motion.
+    """A compiled library that integrates the motion and its derivatives by up to :data:`AT_ONCE` variables.
 
+    A column is the vector of derivatives of all states by one variable.
     ``epoch`` is the time of the scene, s, from which the equations count time.
     """
 
@@ -432,7 +444,9 @@ class _Part:
     def follow(self, scene: Scene, times: Floats, begin: float, epoch: float) -> tuple[Floats, Floats]:
         """Return states and derivatives as :meth:`_Equations.follow` does; ``epoch`` is that of the equations.
 
-        A column that stays small is integrated again in smaller units, so that the control of errors fits it.
+        The column of derivatives by one variable is multiplied by a power of two, its unit, near the size of the
+        variable. If all its products stay below SMALL, the control of errors, which compares errors with 1, hardly sees
+        them. The motion is then integrated again, with a unit that makes them near 1.
         """
         columns, size = self.columns, len(STATES)
         start = [float(value) for value in (*scene.initial.omega_b, *scene.initial.quaternion)]
