@@ -125,7 +125,9 @@ def test_a_full_disk_loses_nothing(whole, tmp_path, name, monkeypatch):
 )  # fmt: skip
 def test_results_of_another_sweep_are_refused(tmp_path, name, options, word):
     sweep(path=tmp_path / name)
-    with pytest.raises(InputError, match=f"got those of a sweep with a different .*{word}.*; choose another name"):
+    with pytest.raises(
+        InputError, match=f"got the results of a sweep with a different .*{word}.*; choose another name"
+    ):
         sweep(path=tmp_path / name, **options)
 
 
@@ -229,6 +231,16 @@ def test_a_scheduler_that_does_not_answer_is_one_sentence(monkeypatch):
     monkeypatch.setattr(cluster, "SECONDS", 1)
     with pytest.raises(InputError, match=r"--scheduler: expected the address of a Dask scheduler"):
         sweep(scheduler="tcp://127.0.0.1:9")
+
+
+@pytest.mark.parametrize("address", ["foo", "tcp://foo", "http://foo:1"])
+def test_an_address_of_no_scheduler_is_refused_at_once(address):
+    """No client is made, which would wait for a minute when the process ends."""
+    pytest.importorskip("distributed")
+    began = time.perf_counter()
+    with pytest.raises(InputError, match=r"--scheduler: expected the address of a Dask scheduler"):
+        sweep(scheduler=address)
+    assert time.perf_counter() - began < 20
 
 
 def test_the_description_names_what_identifies_a_sweep(tmp_path):

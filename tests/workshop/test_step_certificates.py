@@ -11,7 +11,7 @@ import pytest
 import symrot
 from symrot.certificates import truncation
 from symrot.certificates.certificate import certificate_json, seal
-from symrot.certificates.step_certificate import rates_of
+from symrot.certificates.step_certificate import formula_section, rates_of
 from symrot.certificates.truncation import _OF_SERIES, _number, _Power, _trees, require_order, truncation_bounds
 from symrot.cli.main import main
 from symrot.codegen.steps import RK4, TaylorSeries, stepped
@@ -143,6 +143,17 @@ def test_coefficients_of_dop853_fulfil_the_conditions_to_25_digits():
         truncation_bounds(driven, method, {})
 
 
+def test_a_step_of_dop853_with_one_wrong_digit_is_refused():
+    text = step_text("tumbling_prism", "dop853")
+    source, name = text.c_files()[f"{text.name}.c"], text.name
+    assert formula_section(name, text._rates_program, text.method, source)
+    digits = repr(float(text.method.stages[1][0]))
+    assert digits in source
+    wrong = source.replace(digits, f"{digits[:-1]}{(int(digits[-1]) + 5) % 10}")
+    with pytest.raises(CertificateError, match="got another formula"):
+        formula_section(name, text._rates_program, text.method, wrong)
+
+
 @pytest.mark.campaign
 def test_a_certificate_of_dop853_bounds_the_errors_of_one_step(tmp_path):
     """The constants of the C text stand for the decimals; the bound holds at random starts, and the audit repeats it."""
@@ -268,7 +279,7 @@ def test_the_rates_in_a_certificate_are_those_of_the_scene():
 @pytest.mark.parametrize(("options", "message"), [
     ({"step": "rk4", "box": {"omega_1": (-1, 1)}}, "expected --box omega_2=LOW:HIGH .* --box dt=LOW:HIGH"),
     ({"step": "exact", "box": BOX}, "exact steps have a test and no certificate"),
-    ({"step": "rk4", "objects": True}, "no objects and no rounding=False"), ({"order": 3}, "expected a step as well"),
+    ({"step": "rk4", "objects": True}, "neither objects nor rounding=False"), ({"order": 3}, "expected a step as well"),
     ({"step": "rk4", "box": BOX | {"weight": (1, 2)}}, "an input of the kernel or a constant"),
 ])  # fmt: skip
 def test_impossible_requests_are_one_sentence(options, message):

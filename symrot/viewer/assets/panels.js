@@ -59,8 +59,8 @@ export function withGaps(t, columns, turn) {
             const end = jumps[i] < 0 ? turn/2 : -turn/2, rise = jumps[i] - Math.sign(jumps[i])*turn;
             return {i, part: Math.min(Math.max((end - columns[i][k - 1])/rise, 0), 1), end};
         }).sort((a, b) => a.part - b.part);
-        for (const {i, part, end} of wraps) {
-            const passed = wraps.filter((other) => other.part < part || other.i === i).map((other) => other.i);
+        for (const [place, {i, part, end}] of wraps.entries()) {
+            const passed = wraps.slice(0, place).map((other) => other.i);
             for (const value of end === null ? [null] : [end, null, -end]) {
                 times.push(t[k - 1] + part*(t[k] - t[k - 1]));
                 series.forEach((curve, j) => {
@@ -131,7 +131,7 @@ export class Panel {
             return values;
         };
         this.plot = new libraries.uPlot({
-            width: 400, height: this.height, legend: {show: false},
+            width: 400, height: this.height, legend: {show: false}, padding: [null, 2*size, null, null],
             cursor: {drag: {x: true, y: false}, points: {show: false}},
             scales: {x: {time: false, range: (_, low, high) => high > low ? [low, high] : [(low ?? 0) - 0.5, (low ?? 0) + 0.5]}, y: {range: () => [this.low, this.high]}},
             axes: [
@@ -189,7 +189,7 @@ export class Panel {
         }), written);
         const inWords = kind === "drift" ? this.raw.map((most, k) => `${names[k]} at most ${most.toPrecision(2)}`)
             : spans.map(([from, to], k) => from <= to ? `${names[k]} from ${Number(from.toPrecision(4))} to ${Number(to.toPrecision(4))}` : "").filter(Boolean);
-        this.holder.setAttribute("aria-label", `${this.definition.title}${unit ? `, ${unit}` : ""}: ${inWords.join("; ")}`);
+        this.holder.setAttribute("aria-label", `${this.definition.title}${unit && ` ${unit}`}: ${inWords.join("; ")}`);
         this.plot.setData([times.map((time) => time/clock[0]), ...series]);
         this.cursor(this.time);
     }
