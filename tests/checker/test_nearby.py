@@ -229,3 +229,9 @@ def test_a_difference_of_moments_is_open_without_the_plane_of_the_body():
 def test_formulas_of_further_books_are_known(claim):
     """Entries of Euler matrices, an axis and an angle from a matrix, symmetric bodies, a torsional pendulum, a box."""
     assert symrot.check(claim).verdict == "recognised"
+
+
+def test_the_first_angle_of_a_matrix_is_not_called_as_the_third_one():
+    """With the arguments exchanged, it would be the third angle of ZXZ for the transposed matrix."""
+    assert symrot.check("phi = atan2(r_13, r_23)").verdict == "definition"
+    assert symrot.check("psi = atan2(A_13, A_23)").verdict == "recognised"
