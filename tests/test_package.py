@@ -139,6 +139,12 @@ def test_a_check_without_integrals_imports_no_numpy():
     assert run(code).strip() == "['conditional', 'recognised'] False"
 
 
+def test_an_identity_is_checked_without_the_table_of_known_formulas():
+    recognition = "symrot.checker.recognition.known_formulas"
+    code = f"import sys, symrot; print(symrot.check('sin(2x) = 2 sin x cos x').verdict, {recognition!r} in sys.modules)"
+    assert run(code).strip() == "true False"
+
+
 @pytest.mark.parametrize("name", sorted(set(symrot.__all__) - {"__version__"}))
 def test_every_public_name_is_there_and_documented(name):
     value = getattr(symrot, name)

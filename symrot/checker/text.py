@@ -25,9 +25,7 @@ from symrot.checker.inequality import OPPOSITE, is_inequality, verdict_on_inequa
 from symrot.checker.marks import changed_entry, changed_spans
 from symrot.checker.measured import in_degrees, with_units
 from symrot.checker.open_equation import as_equation
-from symrot.checker.recognition.naming import recognised_edits
 from symrot.checker.recognition.together import fit_together, misplaced
-from symrot.checker.repair.edits import FAULT_DESCRIPTIONS
 from symrot.checker.rounding import with_rounding
 from symrot.checker.special_cases import for_complex_numbers, for_special_directions
 from symrot.checker.units.conversion import (
@@ -585,6 +583,9 @@ def _with_fitting_line(
     """
     if len(lines) != len(claims) or len(lines) > MOST_LINES or any(claim.hypotheses for claim in claims):
         return verdict
+    from symrot.checker.recognition.naming import recognised_edits  # it takes longer to import than most checks
+    from symrot.checker.repair.edits import FAULT_DESCRIPTIONS
+
     nearest: tuple[tuple[int, float], Verdict] | None = None
     for place, claim in enumerate(claims):
         named = named_formula(claim)

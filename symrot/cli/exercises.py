@@ -22,7 +22,9 @@ def _exercise(options: Namespace) -> int:
         for topic, names in TOPICS.items():
             say([topic, *(f"  {name}" for name in names)])
         return OK
-    text = symrot.exercise(options.topic or "", seed=options.seed, count=options.count).print(options.format)
+    text = symrot.exercise(options.topic or "", seed=options.seed, count=options.count).print(
+        options.format, not options.no_solutions
+    )
     if options.output is None:
         sys.stdout.write(text)
         return OK
@@ -75,6 +77,9 @@ def _exercise_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--format", choices=FORMS, default="markdown", help="format of the sheet (default: markdown)")
     parser.add_argument(
         "-o", type=Path, metavar="FILE", dest="output", help="write to a file (default: standard output)"
+    )
+    parser.add_argument(
+        "--no-solutions", action="store_true", help="leave out hints and solutions (Markdown and LaTeX)"
     )
     parser.add_argument("--list", action="store_true", help="list the topics and their templates")
 

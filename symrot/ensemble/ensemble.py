@@ -107,7 +107,7 @@ class EnsembleMember(MotionSamples):
         """The derivatives of this motion by the k variables that were requested, or None if none were.
 
         Their arrays have the shape (m, .., k) for m sample times: (m, 3, k) for the angular velocity and (m, 4, k) for
-        the quaternion. See :class:`~symrot.propagation.sensitivities.result.Sensitivities`.
+        the quaternion.
         """
         every = self._ensemble.sensitivities
         return None if every is None else every.of(self._number)
@@ -144,8 +144,9 @@ class Ensemble(MotionSamples):
     tolerance : float
         Tolerance with which the motions were computed.
     sensitivities : Sensitivities or None
-        Derivatives by initial values and constants, if they were requested: arrays of the shapes (n, m, 3, k),
-        (n, m, 4, k) and (n, m, 3, k) for k variables.
+        Derivatives of the motions by k variables (initial values and constants), if they were requested. The arrays
+        have the variables on their last axis: the derivatives of ``omega`` and ``quaternion`` have the shapes
+        (n, m, 3, k) and (n, m, 4, k); those of the rotation vector of the attitude, in the body, have (n, m, 3, k).
 
     Examples
     --------

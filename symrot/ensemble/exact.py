@@ -118,23 +118,28 @@ class Solved(NamedTuple):
 def choose(variation: Variation, times: Floats, start: float, faster: bool) -> list[Solved]:
     """Return the trajectories of an ensemble to compute in closed form, grouped by their form; the others need steps.
 
-    ``times`` are the sample times and ``start`` the initial time, s.
+    ``times`` are the sample times and ``start`` the initial time, s. Without ``faster``, every trajectory that has a
+    closed form is returned.
 
-    With ``faster``, return only those for which this is faster than steps. The choice uses times that were measured, in
-    microseconds per trajectory, for rotation by 0.01 to 10^4 rad, tolerances of 1e-6 and 1e-12, and 400 trajectories of
-    101 samples (``python -m symrot.bench.starts --ensembles`` prints them for the spans of the scenes):
+    With ``faster``, only those are returned for which the closed form is faster than steps. Trajectories are computed
+    in a batch (NumPy arrays for many at once) where their numbers allow it; otherwise each is computed alone. A
+    trajectory in a batch is always returned, except for the forms in :data:`ARRAYS_LOSE_BELOW`, which need a larger
+    angle of rotation than the one listed there, if only initial states vary. A trajectory that is computed alone is
+    returned if its angle is larger than the one listed in :data:`ALONE_LOSES_BELOW`. The choice uses only the
+    trajectory's own angle, so that it does not depend on other trajectories.
 
-    - A batch in closed form takes 4 to 18 if only initial states vary and 4 to 29 if constants vary. Steps take 13 to
-      46 in the first case and 33 to 75 in the second for up to 10 rad, and more for larger angles. If products of
-      inertia vary, a batch takes 23 and steps take 280.
-    - One exception is the angular velocity of a symmetric damped body without its attitude, if only initial states
-      vary: 12 in a batch, 6 to 9 by steps, of which there are few because the motion ends.
-    - A motion computed alone takes 1100 if products of inertia vary and are nearly zero, or if moments of inertia are
-      nearly equal, because its principal axes are computed in fractions. It takes 40 to 80 for rotation about one axis
-      or spin-up if constants are too large or too small for a batch. Below the angles of :data:`ALONE_LOSES_BELOW`,
-      steps are faster.
+    These rules follow from measured times, in microseconds per trajectory of 101 samples, among 400, for rotation by
+    0.01 to 10^4 rad and tolerances of 1e-6 and 1e-12 (``python -m symrot.bench.starts --ensembles`` prints them for the
+    spans of the scenes):
 
-    The choice for a trajectory uses only its own angle of rotation, so that it does not depend on other trajectories.
+    - In a batch, a closed form takes 4 to 18 us if only initial states vary and 4 to 29 us if constants vary. Steps up
+      to 10 rad take 13 to 46 us in the first case and 33 to 75 us in the second, and more for larger angles. If
+      products of inertia vary, a batch takes 23 us and steps take 280 us.
+    - For a symmetric damped body without its attitude, if only initial states vary, a batch takes 12 us and steps take
+      6 to 9 us: there are few steps, because the motion ends.
+    - Computed alone, a trajectory takes 1100 us if products of inertia vary and are nearly zero, or if moments of
+      inertia are nearly equal, because its principal axes are computed in fractions. It takes 40 to 80 us for rotation
+      about one axis or spin-up, if constants are too large or too small for a batch.
     """
     solved: list[Solved] = []
     for kind, rows in forms_of(variation):
@@ -269,7 +274,7 @@ class _Part(NamedTuple):
     omega: Floats  # (n, 3)
 
     def of(self, chosen: NDArray[np.bool_]) -> "_Part":
-        """Return the part with only those trajectories whose entry in the Boolean array ``chosen`` is true."""
+        """Return a _Part with those trajectories of this one whose entry in the Boolean array ``chosen`` is true."""
         return self._replace(rows=self.rows[chosen], omega=self.omega[chosen])
 
     @property

@@ -92,10 +92,11 @@ def translation_unit(
 
 
 def wrap_translation_unit(definitions: str, width: int | None = None) -> str:
-    """Return the C source of the library of :func:`translation_unit`, given the C text of its Taylor series.
+    """Return the C source of a library that integrates many motions in SIMD lanes, as :func:`translation_unit` does.
 
-    ``definitions`` is this text; the stepper and its headers are put around it. ``width`` is the number of lanes, as
-    there.
+    ``definitions`` is the C text of the Taylor series of the motion; the stepper and its headers are put around it.
+    ``width`` is the number of lanes, as in :func:`translation_unit`: 1 (plain C), 2, 4 or 8, or None for as many as the
+    processor's registers hold.
     """
     head = "" if width is None else "#define SYMROT_PLAIN\n" if width == 1 else f"#define SYMROT_LANES {width}\n"
     paths = ("propagation/steppers/library.h", "ensemble/lanes.h", "propagation/steppers/series.h", "ensemble/lanes.c")
@@ -149,7 +150,8 @@ class Lanes:
         carry.argtypes, carry.restype = (ctypes.c_double, ctypes.c_double), ctypes.c_double
         if carry(1.0, 2.0**-60) != 2.0**-60:
             raise CompilerError(
-                f"the compiled kernel {path} ignores rounding errors that it should add; compile without -ffast-math"
+                f"the compiled kernel {path} does not compute the rounding errors of its sums, with which it must "
+                "correct them; compile without -ffast-math"
             )
 
     def jet(self, t: float, y: Sequence[float], p: Sequence[float], unit: float = 1.0) -> Floats:

@@ -264,9 +264,11 @@ class _Stepped:
         return times - self.epoch if self.epoch else times
 
     def clock(self, k: int, make: Callable[[Plan, SceneKernel], Any] = epoch.compiled) -> Any:
-        """Return, for motion k, a function from an epoch, s, to rates and parameters for times since this epoch.
+        """Return a function that computes, for motion k, what a stepper needs when it resets its clock, or None.
 
-        Return None if the rates do not depend on time. See :func:`symrot.propagation.time_shift.clock`.
+        The function takes an epoch, the time in s at which the clock is reset to 0, and returns the compiled rates
+        together with the parameter values for times since the epoch. ``make`` compiles the rates from a plan and a
+        kernel. The result is None if the rates do not depend on time. See :func:`symrot.propagation.time_shift.clock`.
         """
         if not self.kernel.rates.uses("t"):
             return None

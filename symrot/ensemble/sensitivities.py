@@ -110,10 +110,11 @@ def follow_sensitivities(problem: Problem, keys: Sequence[str]) -> tuple[Sensiti
 
 
 def read_columns(scene: Scene, keys: Sequence[str], varying: Collection[str]) -> tuple[list[Variable], list[Column]]:
-    """Return the variables that the keys of a request name, and the dependence of the scene on each of them.
+    """Return the variables that ``keys`` name, and for each a :class:`Column` with the derivatives of the scene by it.
 
-    ``varying`` are the names of the constants that vary in the ensemble, with ``omega`` and ``quaternion`` if the
-    initial states do. The errors are those of :func:`follow_sensitivities`.
+    ``keys`` are the texts with which a user requests derivatives, such as "omega_2". A Column has the derivatives of
+    the initial state and of the constants. ``varying`` are the names of the constants that vary in the ensemble, with
+    ``omega`` and ``quaternion`` if the initial states do. The errors are those of :func:`follow_sensitivities`.
     """
     require_smooth(scene)
     variables = read_variables(scene, keys)
@@ -140,15 +141,17 @@ def _require_own(column: Column, varying: Collection[str]) -> None:
     own = sorted(moved.intersection(varying))
     if own:
         raise InputError(
-            f"sensitivities: expected variables that change nothing which varies between the motions, but "
-            f"{variable.name} changes {', '.join(own)}; name the constants that vary as variables"
+            f"sensitivities: expected variables that do not set quantities which vary between the motions, but "
+            f"{variable.name} sets {', '.join(own)}, and the motions have different values of it; name the varying "
+            "quantity itself as a variable"
         )
 
 
 def _constant(variable: Variable) -> str:
-    """Return the name of the constant of the equations that a variable sets, if it sets only one: its own name.
+    """Return the name of the constant in the equations that ``variable`` sets: its own name, such as ``weight``.
 
-    A principal moment, such as ``principal_2``, sets a moment of inertia, ``I_yy``.
+    For a principal moment, such as ``principal_2``, it is the moment of inertia ``I_yy``. For a variable that sets
+    several constants, such as a mass, no constant has the returned name.
     """
     stem, _, number = variable.name.rpartition("_")
     return f"I_{2 * 'xyz'[int(number) - 1]}" if stem == "principal" else variable.name
@@ -204,8 +207,10 @@ class _Equations:
     def follow(self, rows: lanes.Integers) -> tuple[Floats, Floats, list[str]]:
         """Return states, shape (n, m, 7), their derivatives, (n, m, 7, k), and why each motion stopped early, or "".
 
-        ``rows`` are the indices of the n motions in the ensemble. A column that stays small is integrated again in
-        smaller units, so that the control of errors fits it, as for one motion.
+        ``rows`` are the indices of the n motions in the ensemble. A column, the derivatives by one variable, is
+        integrated in a unit chosen in advance (:meth:`_units`). If all its numbers stay below SMALL in this unit, the
+        control of errors, which compares errors with 1, hardly sees them. The motion is then integrated again with a
+        unit in which they are near 1.
         """
         problem, count, columns = self.problem, len(rows), len(self.columns)
         times = problem.times if problem.times.ndim == 1 else problem.times[rows]
@@ -235,7 +240,11 @@ class _Equations:
         return grid[..., :SIZE], slopes_of.transpose(0, 1, 3, 2), reasons
 
     def _start(self, rows: lanes.Integers) -> Floats:
-        """Return the initial states of motions and their derivatives in each column, shape (n, 7, 1 + k)."""
+        """Return the initial states of the motions ``rows`` and their derivatives by k variables, (n, 7, 1 + k).
+
+        The 7 numbers are angular velocity and quaternion. Entry 0 of the last axis is the state, entry j its derivative
+        by variable j.
+        """
         states = self.problem.variation.initial_states[rows]
         start = np.empty((len(rows), SIZE, 1 + len(self.columns)))
         start[..., 0] = states
@@ -246,9 +255,11 @@ class _Equations:
         return start
 
     def _units(self, rows: lanes.Integers) -> Floats:
-        """Return the power of two by which each column of each motion is first multiplied, shape (n, k).
+        """Return the unit of each derivative in each of the motions ``rows``: a power of two, shape (n, k).
 
-        It is near the value of the variable in this motion, as for one motion.
+        The derivatives by a variable are multiplied by its unit for the first integration (:meth:`follow`). The unit is
+        near the value of the variable in this motion, which makes the products about as large as the states; it is 1
+        for a rotation of the initial attitude.
         """
         variation, units = self.problem.variation, np.ones((len(rows), len(self.columns)))
         for k, column in enumerate(self.columns):
@@ -264,10 +275,12 @@ class _Equations:
         return units
 
     def _integrate(self, p: Floats, y: Floats, times: Floats) -> tuple[Floats, Sequence[str]]:
-        """Return the states of motions and columns at the times, shape (n, m, 7 (1 + k)), and the reasons of stops.
+        """Return the states of n motions and their derivatives by k variables, shape (n, m, 7 (1 + k)), and messages.
 
-        Steps under torques given by formulas are limited by bounds of the rates, which the stepper in lanes does not
-        support; these motions are integrated one after the other.
+        ``p`` has the parameters of each motion, ``y`` its initial state followed by the k columns of derivatives,
+        ``times`` the m sample times. A message is the reason for which a motion stopped early, or "". Steps under
+        torques given by formulas are limited by bounds of the rates, which the stepper in lanes does not support; these
+        motions are integrated one after the other.
         """
         problem = self.problem
         if self.in_lanes:

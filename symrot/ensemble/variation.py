@@ -159,10 +159,11 @@ class Variation:
         return structure.torques[torque].prefix
 
     def constants_beside(self, name: str) -> list[float]:
-        """Return the constants that do not vary in the vector or tensor that contains the constant ``name``.
+        """Return the constants in the same vector or tensor as the constant ``name`` that do not vary in the ensemble.
 
-        They are compared with the varying constant ``name``, to detect equal constants. A value that differs from the
-        nearest double by more than 2^-200 is left out, because no double in a column can equal it.
+        An example: if ``I_xx`` varies, these are ``I_yy`` and the other entries of the tensor. The values of ``name``
+        in the ensemble, which are doubles, are compared with them to detect equal constants. A constant that differs
+        from the nearest double by more than 2^-200 is left out, because it equals none of them.
         """
         place = self.places[name]
         same = [key for key, other in self.places.items() if other[:2] == place[:2] and key not in self.columns]

@@ -29,7 +29,7 @@ def proof_by_congruence(
     """Prove ``left = right`` by replacing inverse functions and logarithms by others that are proven equal.
 
     ``hypotheses`` are expressions that are zero, ``domain`` formulas that are nonnegative. Return the polynomial rings
-    in which the proof computes (the proof holds where their divisors are not zero), or None if no proof was found.
+    that the proof uses (it holds where their divisors are not zero), or None if no proof was found.
     """
     rings: list[FormulaRing] = []
     while True:
@@ -55,8 +55,8 @@ def _equal_pairs(
     """Yield pairs of members of ``names`` that are proven equal, or to have the sum pi/2, as asin(x) and acos(x).
 
     ``names`` are the inverse functions and logarithms in the formulas; each is a variable of its own in a polynomial
-    ring. Each pair is yielded as (one, its value in terms of the other, the polynomial rings in which the proof
-    computes). ``hypotheses`` are expressions that are zero, and ``domain`` are formulas that are not negative.
+    ring. Each pair is yielded as (one, its value in terms of the other, the polynomial rings that the proof uses).
+    ``hypotheses`` are expressions that are zero, and ``domain`` are formulas that are not negative.
     """
     for first, second in combinations(names, 2):
         for other in (first, pi / 2 - first):

@@ -118,7 +118,7 @@ class Case(ABC):
         """Return the conditions of a verdict, relations under which the proof of an equation is valid.
 
         They say where both sides are defined, and that no divisor in ``rings`` is zero. ``rings`` are the polynomial
-        rings, other than that of the case, in which the proof computes.
+        rings, other than that of the case, that the proof uses.
         """
 
     @abstractmethod
@@ -130,7 +130,7 @@ class Case(ABC):
         """
 
     def rely_on(self, rings: tuple[FormulaRing, ...]) -> None:
-        """Add the polynomial rings in which a proof computes to the evidence of the case.
+        """Add the polynomial rings that a proof uses to the evidence of the case.
 
         The divisors in these rings, which must not be zero, become conditions.
         """

@@ -105,7 +105,7 @@ class PrincipalValueProof:
     """A proof that an expression is zero wherever the formulas ``nonnegative`` are >= 0 and ``positive`` are > 0.
 
     For ``asin(sin(x)) - x``, ``nonnegative`` has pi/2 - x and pi/2 + x: the expression is zero where x is between -pi/2
-    and pi/2. ``rings`` are the polynomial rings in which the proof computes; no divisor in them may be zero.
+    and pi/2. ``rings`` are the polynomial rings that the proof uses; no divisor in them may be zero.
     """
 
     nonnegative: tuple[Expr, ...]

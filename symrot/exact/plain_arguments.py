@@ -74,7 +74,7 @@ def proof_by_arguments(
 ) -> tuple[FormulaRing, ...] | None:
     """Prove ``left = right`` after all arguments of functions are replaced by their normal forms.
 
-    Return the polynomial rings in which the proof computes, or None if no proof was found or no argument changes.
+    Return the polynomial rings that the proof uses, or None if no proof was found or no argument changes.
     ``hypotheses`` and ``domain`` are those of :func:`with_plain_arguments`.
     """
     (shorter, other), rings = with_plain_arguments([left, right], hypotheses, domain)

@@ -71,15 +71,16 @@ def require_boundary(surface: Surface, where: str) -> str:
     pairs = "no two triangles cross" if searched else "pairs of triangles were not searched for crossings"
     return (
         f"the surface is closed ({parts}); {lines} of {len(chosen)} straight lines cross it alternately inwards and "
-        f"outwards, as they must, and the others meet an edge; {pairs}"
+        f"outwards, as is right, and the others meet an edge and test nothing; {pairs}"
     )
 
 
 def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[np.int64]:
     """Return the indices of the triangles through which straight lines test what is inside the surface.
 
-    They are the largest triangle of each shell and others at equal distances in the list, so many that the test takes a
-    few seconds at most. ``numbers`` gives the shell of each triangle, and ``count`` is the number of shells.
+    A shell is a connected part of the surface. The result has the largest triangle of each shell, and every j-th
+    triangle of the surface: j is so large that the test takes a few seconds at most. ``numbers`` gives the shell of
+    each triangle, and ``count`` is the number of shells.
     """
     edges = corners[1] - corners[0], corners[2] - corners[0]
     areas = sum((edges[0][i] * edges[1][j] - edges[0][j] * edges[1][i]) ** 2 for i, j, _ in AXES)

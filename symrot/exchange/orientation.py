@@ -24,7 +24,10 @@ class Angles(NamedTuple):
     sequence: str = "xyz"
 
     def angle(self, value: Fraction) -> Angle:
-        """Return the exact angle for the number ``value`` of a file, which is in degrees or rad."""
+        """Return the exact angle for the number ``value`` of a file: in degrees if ``self.degrees``, otherwise in rad.
+
+        An :class:`Angle` is a sum of a number of rad and a multiple of pi, so that 90 degrees is exactly pi/2.
+        """
         return Angle(Fraction(0), value / 180) if self.degrees else Angle(value, Fraction(0))
 
 

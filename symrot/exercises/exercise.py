@@ -268,9 +268,10 @@ def _draw(problem: Problem, source: Random) -> list[tuple[Quantity, str]]:
 
 
 def _length(answer: Expr) -> int:
-    """Return the length of an answer in digits, so that numbers with short answers are preferred.
+    """Return a measure of the length of an answer, in digits; an exercise prefers numbers whose answers are short.
 
-    Zero, and numbers that are not short decimals, count as longer.
+    A decimal such as 0.25 has its number of digits. Three kinds of answers count as longer, so that they are rarely
+    chosen: zero, fractions such as 1/3, and irrational numbers such as sqrt(2).
     """
     if answer.is_zero:
         return ZERO

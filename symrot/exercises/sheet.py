@@ -52,13 +52,26 @@ class ExerciseSheet:
         """Return the sheet as plain data for JSON."""
         return sheet_data(self.exercises)
 
-    def print(self, form: str) -> str:
-        """Return the text of the sheet; ``form`` is ``markdown``, ``latex``, ``html``, ``moodle`` or ``json``."""
-        from symrot.exercises.formats import FORMATS
+    def print(self, form: str, solutions: bool = True) -> str:
+        """Return the text of the sheet; ``form`` is ``markdown``, ``latex``, ``html``, ``moodle`` or ``json``.
+
+        If ``solutions`` is false, a sheet of Markdown or LaTeX has the exercises alone, to hand out. The other formats
+        are made to show hints and solutions later.
+
+        Raises
+        ------
+        InputError
+            For an unknown format, and for a format that cannot leave out the solutions.
+        """
+        from symrot.exercises.formats import FORMATS, WITHOUT_SOLUTIONS
 
         if form not in FORMATS:
             raise InputError(f"format: expected one of {', '.join(FORMATS)}, got {form!r}")
-        return FORMATS[form](self.exercises)
+        if solutions:
+            return FORMATS[form](self.exercises)
+        if form not in WITHOUT_SOLUTIONS:
+            raise InputError(f"format without solutions: expected {' or '.join(WITHOUT_SOLUTIONS)}, got {form!r}")
+        return WITHOUT_SOLUTIONS[form](self.exercises, False)
 
     def markdown(self) -> str:
         """Return the sheet as Markdown, with hints and solutions after the exercises."""

@@ -14,8 +14,9 @@ DASHES = ' stroke-dasharray="3 5"'
 
 def _drawing(title: str, width: int, height: int, *parts: str) -> str:
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" role="img" fill="none" '
-        f'stroke="currentColor" stroke-width="2" stroke-linecap="round"><title>{title}</title>{"".join(parts)}</svg>'
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" '
+        f'role="img" fill="none" stroke="currentColor" stroke-width="2" stroke-linecap="round">'
+        f"<title>{title}</title>{''.join(parts)}</svg>"
     )
 
 

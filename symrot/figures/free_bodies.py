@@ -165,8 +165,8 @@ def momentum_sphere() -> Picture:
 def cone_vectors(moments: tuple[float, float], nutation: float) -> tuple[Floats, Floats, Floats]:
     """Return the directions of L, omega and the symmetry axis of a free symmetric body, in space components.
 
-    The moments are (A, C), about an axis across the symmetry axis and about it; ``nutation``, rad, is the angle from L
-    to the symmetry axis.
+    ``moments`` are (A, C): A about any axis perpendicular to the symmetry axis, C about the symmetry axis.
+    ``nutation``, rad, is the angle from L to the symmetry axis.
     """
     a, c = moments
     momentum = np.array([np.sin(nutation), 0.0, np.cos(nutation)])  # in the body, |L| = 1

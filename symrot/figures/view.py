@@ -22,7 +22,8 @@ class View:
     Attributes
     ----------
     azimuth, elevation : float, degrees
-        Direction from the origin toward the eye: its angle in the level plane from axis 1, and its angle above it.
+        Direction from the origin toward the eye. ``azimuth`` is measured from axis 1 toward axis 2 in the horizontal
+        plane, ``elevation`` from this plane upward.
     scale : float
         Points of the picture for each unit of length.
     origin : (float, float)

@@ -181,9 +181,9 @@ def _degree(node: Node) -> int:
 
 
 def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: object, where: str = "") -> Polynomial:
-    """Return a density as a polynomial in the coordinates in terms of which ``values`` gives x, y, z.
+    """Return a density, a formula in x, y, z, as a polynomial in the coordinates that describe the shape.
 
-    These are coordinates with limits that describe the shape, such as radius, angle and height of a cylinder.
+    Such coordinates are, for a cylinder, radius, angle and height. ``values`` expresses x, y and z by them.
 
     Parameters
     ----------

@@ -208,9 +208,10 @@ def _mapped(name: str) -> Domain:
 
 @cache
 def _default_dimensions(name: str) -> dict[str, Symbol]:
-    """Return the symbols that stand for a shape's dimensions by default, by the names of ``scalar_names``.
+    """Return a map from each dimension of a shape to the symbol that stands for it if the user gives no value.
 
-    Example: the cone's radius has the symbol R.
+    The keys are the names of single numbers (:func:`scalar_names`), such as "radius" of a cone, with the symbol R; a
+    corner of a tetrahedron has three, such as "x1", "y1" and "z1".
     """
     shape = SHAPES[name]
     plain = {d.name: d.symbol for d in shape.dimensions if d.form == "length"}

@@ -170,11 +170,12 @@ def _is_product(expr: Expr) -> bool:
 
 
 def _with_sinc(expr: Expr, symbol: Symbol, partial: Expr) -> Expr:
-    """Return ``partial``, the derivative of ``expr`` by a named root, with ``sin(x)`` written as ``x*sinc(x)``.
+    """Return ``partial``, the derivative of ``expr`` by ``symbol``, with sin(x) written as ``x*sinc(x)``.
 
-    ``symbol`` stands for the root, such as angle = sqrt(v . v), and x is a multiple of the angle in ``expr``. For
-    cos(angle) the derivative by a component of v is -sin(angle)*v_i/angle: the last quotient is the derivative of the
-    root, and it has no value at angle = 0. With -angle*sinc(angle) for -sin(angle), SymPy cancels the angle.
+    ``symbol`` stands for a root, such as angle = sqrt(v . v); x is each argument of a cosine in ``expr`` that contains
+    it. For cos(angle), ``partial`` is -sin(angle), and the result is -angle*sinc(angle). The caller multiplies it by
+    the derivative of the root, v_i/angle, which has no value at angle = 0; now SymPy cancels the angle, and
+    -sinc(angle)*v_i remains.
     """
     angles = [call.args[0] for call in expr.atoms(cos) if symbol in call.free_symbols]
     for angle in angles:

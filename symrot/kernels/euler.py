@@ -140,10 +140,10 @@ def _rates(frame: str, name: str, sequence: str) -> Definition:
 def _solved(jacobian: RateMatrix, omega: Matrix) -> tuple[Named, list[Expr]]:
     """Return (definitions, formulas) of the rates of the Euler angles from ``omega``, with a single division.
 
-    Definitions are pairs (symbol, formula); here there is one. Of the first and the last angle, one rotates about an
-    axis of the frame in which omega is given; call it a, and the other one b. The rate of b is divided by the
-    determinant and gets a symbol. The rate of a then needs no division by the determinant: it follows from one
-    component of omega and this symbol.
+    ``definitions`` has one pair (symbol, formula). Of the first and the last angle of the sequence, one rotates about a
+    coordinate axis of the frame in which omega is given. The rate of the other one is divided by the determinant; this
+    is the pair, with the symbol ``turning``. The rate of the former then follows from one component of omega and this
+    symbol, without a division by the determinant.
     """
     matrix, determinant = Matrix(jacobian), jacobian.determinant
     last = next(place for place in (0, 2) if not matrix[:, place].free_symbols)

@@ -24,7 +24,11 @@ def kernel_names() -> tuple[str, ...]:
 
 
 def is_kernel(name: object) -> bool:
-    """Return whether ``name`` names a kernel of the library; ``quaternion_dcm_by_q``, with derivatives, counts too."""
+    """Return whether ``name`` is the name of a kernel of the library, with or without derivatives.
+
+    A kernel with derivatives has the name of a kernel and the suffix ``_by_`` with an argument, such as
+    ``quaternion_dcm_by_q``; only the part before the suffix is checked.
+    """
     return isinstance(name, str) and name.split(BY, maxsplit=1)[0] in _table()
 
 

@@ -133,9 +133,9 @@ def _branch(matrix: Matrix, pivot: int) -> Branch:
 def _larger(left: Branch, right: Branch) -> Branch:
     """Return the branch with the larger ``4 q_k^2``, as formulas that choose between two branches at run time.
 
-    A branch, a result of :func:`_branch`, is the pair of ``4 q_k^2`` and the list of the components of ``4 q_k q``, for
-    one index k; ``left`` and ``right`` are branches for two indices. In the result, each of the five formulas compares
-    the two values of ``4 q_k^2`` and selects the entry from the branch with the larger one.
+    A branch is a pair (square, components) for one index k from 0 to 3: the formula of ``4 q_k^2``, and the four
+    formulas of ``4 q_k q_0`` to ``4 q_k q_3``. Each of the five formulas in the result is a conditional: it compares
+    the two squares and has the value of that branch whose square is larger.
     """
     (a, row_a), (b, row_b) = left, right
     return select_ge(a, b, a, b), [select_ge(a, b, x, y) for x, y in zip(row_a, row_b, strict=True)]

@@ -33,9 +33,10 @@ _SIZE = {"scalar": 1, "vector": 3, "scalar or vector": 3, "attitude": 4}
 
 
 class _Turned(Motion):
-    """A motion that gives torque laws the components of a space vector in the body by the quaternion itself.
+    """A motion that rotates vectors of space into the body by the quaternion itself, without a rotation matrix.
 
-    This takes fewer operations than the rotation matrix that :class:`Motion` uses.
+    A torque law, such as that of gravity, asks the motion for the body components of a vector of space. This class
+    takes fewer operations for them than :class:`Motion`, which computes the whole rotation matrix.
     """
 
     def to_body(self, vector_s: Matrix) -> Matrix:

@@ -81,8 +81,9 @@ class SingularSet:
     def points(self) -> tuple[Expr, ...]:
         """Return the values of the variable at which the chart is singular, in increasing order; there may be none.
 
-        If the values repeat with the period 2 pi, those of one period are returned: of [0, 2 pi), or of [2 pi, 4 pi) if
-        [0, 2 pi) contains none. Example: the set of all n pi gives (0, pi).
+        If the values repeat with the period 2 pi, those of [0, 2 pi) are returned: for the set of all n pi the result
+        is (0, pi). A set whose smallest value lies in [2 pi, 4 pi), such as the rotation vectors of length 2 pi, 4 pi,
+        .., gives its values there, here (2 pi,).
         """
         for turn in (Interval.Ropen(0, 2 * pi), Interval.Ropen(2 * pi, 4 * pi)):
             points = self.values.intersect(turn)

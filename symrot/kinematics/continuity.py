@@ -44,11 +44,11 @@ def unwrap_euler(angles: Any, sequence: str, locked: Any = None) -> Array:
 
     Notes
     -----
-    Each attitude has two sets of angles, apart from multiples of 2 pi: a proper sequence also has
-    ``(q1 + pi, -q2, q3 + pi)``, a Tait-Bryan sequence ``(q1 + pi, pi - q2, q3 + pi)``. At each sample the set is chosen
-    that is closer to the set chosen before. One comparison for each pair of neighbouring samples suffices: if the other
-    set of the next sample is closer to the passed set of this one, the choice changes there, whichever set was chosen
-    before.
+    Each attitude has two sets of angles, apart from multiples of 2 pi: a proper sequence also has ``(q1 + pi, -q2, q3 +
+    pi)``, a Tait-Bryan sequence ``(q1 + pi, pi - q2, q3 + pi)``. At each sample the set is chosen that is closer to the
+    set chosen at the sample before. The sets are called own, the one in ``angles``, and other. One comparison for each
+    pair of neighbouring samples suffices: the own set of the first is compared with both sets of the second. If the
+    other set is closer, the choice changes between these samples from own to other, or from other to own.
     """
     (first, _, last), _, _, _ = places(sequence)
     angles = np.array(array_of(angles, 3, what=f"a set of {sequence} angles"))

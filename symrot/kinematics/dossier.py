@@ -67,8 +67,9 @@ class SingularityDossier:
     regular_sequences : tuple of str
         Sequences that are regular at every attitude where this sequence locks.
     partly_regular : dict of str to Set
-        Sequences that lock at only some of those attitudes. The set contains the values of phi (intrinsic) or psi
-        (extrinsic) at which they lock while the other of the two angles is zero.
+        Sequences that lock at only some of the attitudes at which this sequence locks. Such an attitude depends on one
+        angle, besides the middle angle of gimbal lock: on phi, with psi = 0, for an intrinsic sequence; on psi, with
+        phi = 0, for an extrinsic one. The set contains the values of this angle at which the other sequence locks.
     singular_sequences : tuple of str
         Sequences that lock wherever this sequence locks.
 
@@ -108,7 +109,10 @@ class SingularityDossier:
         return self.jacobian_b.limits
 
     def text(self) -> str:
-        """Return all entries of the dossier as text; the same sequence always gives the same bytes."""
+        """Return this report on an Euler sequence as text: determinant, rate matrices, gimbal lock, other sequences.
+
+        The same sequence always gives the same bytes.
+        """
         kind = "intrinsic" if parse_sequence(self.sequence)[1] else "extrinsic"
         return "\n".join(
             [

@@ -284,12 +284,12 @@ def _rate_jacobian(sequence: str, frame: str, parameters: tuple[Expr, ...]) -> E
 
 @cache
 def sequences_at_lock(sequence: str) -> dict[str, Set]:
-    """Return, for each other sequence, the gimbal-lock attitudes of ``sequence`` at which both are in gimbal lock.
+    """Return a map from each other sequence to the gimbal-lock attitudes of ``sequence`` at which it locks too.
 
-    In gimbal lock the attitude depends only on the sum or difference of the first and the last angle. One of these two
-    angles is therefore set to zero: the last angle of an intrinsic sequence, the first of an extrinsic one. The other
-    describes the attitude, and each returned set contains values of this angle, rad. The set is empty for a sequence
-    that is regular at all these attitudes; it contains all real numbers for a sequence that locks at all of them.
+    In gimbal lock the attitude depends only on the sum or difference of the first and the last angle. So one of these
+    two angles is set to zero (the last of an intrinsic sequence, the first of an extrinsic one), and the attitude is
+    described by the other of the two. Each set contains values of this angle, rad. It is empty for a sequence that is
+    regular at all these attitudes, and contains all real numbers for one that locks at all of them.
     """
     left, _, _ = factors(sequence)
     chi = left.angle

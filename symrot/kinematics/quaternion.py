@@ -267,7 +267,8 @@ def quaternion_rates(frame: str = "body", q: Sequence[Any] | Matrix = symbols.qu
 def quaternion_rate_jacobian(frame: str = "body", q: Sequence[Any] | Matrix = symbols.quaternion) -> RateMatrix:
     """Return the rate matrix B(q), shape (3, 4), of ``omega = B(q) * dq/dt`` for unit q: ``2 q* dq`` or ``2 dq q*``.
 
-    The determinant of B with the gradient of ``|q|^2`` as a fourth row is constant, so B is never singular.
+    B has rank 3 for every q, so that each omega has a dq. Proof: the gradient of ``|q|^2`` is added as a fourth row;
+    the determinant of this square matrix is a constant other than zero.
     """
     q = expressions(q, 4, "a quaternion")
     product = (left_matrix if check_frame(frame) == "body" else right_matrix)(conjugate(q))

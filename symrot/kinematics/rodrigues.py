@@ -135,9 +135,10 @@ def _rate_matrix(which: Projection, frame: str) -> RateMatrix:
 def _along(
     parameters: tuple[Symbol, ...], determinant: Expr, inverse: ImmutableMatrix, size: Expr
 ) -> tuple[Expr, ImmutableMatrix]:
-    """Return (determinant, inverse) of a rate matrix at the parameters ``size * n``, for a unit axis n.
+    """Return (determinant, inverse), those of a rate matrix at the parameters ``size * n``, for a unit axis n.
 
-    ``determinant`` and ``inverse`` are its formulas in ``parameters``; the determinant depends on their length alone.
+    The arguments ``determinant`` and ``inverse`` are the formulas of the same quantities in terms of ``parameters``.
+    The determinant depends only on the length of the vector of parameters, so that it needs no n.
     """
     straight = dict(zip(parameters, (size, Integer(0), Integer(0)), strict=True))
     turned = dict(zip(parameters, (size * n for n in symbols.axis), strict=True))
@@ -149,10 +150,10 @@ MODIFIED = Projection("mrp", symbols.mrp, 1, "modified Rodrigues parameters, axi
 
 
 def projection(name: str) -> Projection:
-    """Return the set of parameters called ``name``, ``"rodrigues"`` or ``"mrp"``, as a :class:`Projection`.
+    """Return the :class:`Projection` called ``name``: Rodrigues (``"rodrigues"``) or modified Rodrigues (``"mrp"``).
 
-    Both project unit quaternions from a point onto a space of three dimensions; the result has methods for the
-    conversion from and to quaternions.
+    Either is a map from unit quaternions to three parameters: it projects the unit sphere in four dimensions from a
+    point onto a space of three dimensions. The result has methods for the conversion from and to quaternions.
     """
     for which in (CLASSICAL, MODIFIED):
         if which.name == name:

@@ -109,8 +109,8 @@ class Lesson:
     topic : str
         Topic of exercises.
     library : tuple of str
-        Titles of the last sections of the derivation that only symrot's numeric code needs; they are printed on an
-        appendix, a page of their own.
+        Titles of those sections, the last ones of the derivation, that only symrot's numeric library needs. These
+        sections are printed on an appendix, a page of their own, and not in the lesson.
 
     Examples
     --------

@@ -100,14 +100,21 @@ def _divided(page: Page, sections: Sequence[str]) -> tuple[Items, Items]:
     """
     titles = [item.title for item in page.items if isinstance(item, Section)]
     if [*sections] != titles[len(titles) - len(sections) :]:
-        raise InputError(f"{page.name}: expected the last sections of the page, {titles}, got {[*sections]}")
+        raise InputError(
+            f"{page.name}: expected the appendix to have the last sections of the page, which has {titles}, "
+            f"got {[*sections]}"
+        )
     places = (n for n, item in enumerate(page.items) if isinstance(item, Section) and item.title in sections)
     place = next(places, len(page.items))
     return page.items[:place], page.items[place:]
 
 
 def _to_the_appendix(page: Page, course: Items, library: Items) -> str:
-    """Return the sentence that leads from a lesson to its appendix, with the numbers of the steps there."""
+    """Return the sentence in a lesson that links to its appendix and tells which steps of the derivation are there.
+
+    ``course`` are the items of the page that the lesson prints, ``library`` those that the appendix prints. For
+    example: "Steps 7 to 9, which only symrot's numeric code needs, are on a page of their own."
+    """
     before, count = (len(Page("", "", items=items).steps) for items in (course, library))
     first, last = page.first + before, page.first + before + count - 1
     target = f"[{'another page' if count == 1 else 'a page of their own'}]({page.name}{APPENDIX}.md)"

@@ -161,9 +161,9 @@ class Plan:
 
     @cached_property
     def _shared(self) -> dict[str, Any]:
-        """The attributes, by name, that do not depend on the initial state; :meth:`from_start` copies them.
+        """The attributes of a plan, by name, that are the same for every initial state; :meth:`from_start` copies them.
 
-        They belong to the scene and to the structure, the form of the equations.
+        They follow from the scene's body and torques. One is ``structure``: which terms the equations have.
         """
         names = ("structure", "rows", "scene_constants", "states", "_places", "_start_places")
         attributes: dict[str, Any] = {name: getattr(self, name) for name in names}

@@ -80,8 +80,9 @@ class Binding:
     def __call__(self, plan: Plan) -> list[float]:
         """Return the parameter values for ``plan``, which may differ from the constructor's in its initial state.
 
-        Each value is computed exactly and rounded once. The list has one double per parameter, or two whose sum is more
-        accurate, as the constructor's function ``rounded`` decides.
+        Each value is computed exactly and rounded once, by the function ``rounded`` that was passed to the constructor:
+        to one double, or to two doubles whose sum has about 32 digits, for closed forms. The list has one or two
+        doubles per parameter, accordingly.
         """
         numbers = self._numbers.copy()
         if self._moving:
@@ -104,7 +105,8 @@ class _Moving:
     def ratio(self, constants: Mapping[str, Fraction]) -> tuple[int, int]:
         """Return the value of the formula as a pair of integers: numerator and positive denominator.
 
-        ``constants`` maps the names of the numbers of the initial state to their exact values.
+        ``constants`` maps names to exact values. The formula contains only numbers of the initial state, such as
+        ``omega_1``; all other constants have been replaced by their values.
         """
         if self._monomial is None:
             return value_of(self._formula, constants).as_integer_ratio()
@@ -148,9 +150,9 @@ def value_of(formula: Node, constants: Mapping[str, Fraction]) -> Fraction:
 
 
 def folded(node: Node, known: Mapping[str, Fraction]) -> Node:
-    """Return a formula in which subexpressions of numbers and names in ``known`` alone are replaced by their values.
+    """Return a formula in which each subexpression without unknown names is replaced by its value.
 
-    With ``known`` = {"A": 2} the formula ``(A + 1)*omega_1`` becomes ``3*omega_1``.
+    ``known`` has the values of names. With ``known`` = {"A": 2} the formula ``(A + 1)*omega_1`` becomes ``3*omega_1``.
     """
     if names(node) <= known.keys():
         return ("number", value_of(node, known))

@@ -210,9 +210,10 @@ def grows_late(plan: Plan) -> bool:
 
 
 def _degree(node: Node) -> int:
-    """Return the degree of a formula as a polynomial in time and states; a function or quotient counts as degree 1.
+    """Return an estimate of how fast a formula can vary: its degree as a polynomial in time and states.
 
-    An example is 3 for ``a*t**2*omega_1``, and 1 for ``sin(t**3)``. A formula of constants alone has degree 0.
+    It is 3 for ``a*t**2*omega_1``, and 0 for a formula of constants. A function counts as degree 1 if its argument is
+    not constant, because it is no polynomial: 1 for ``sin(t**3)``. A negative power counts as a positive one.
     """
     if node[0] == "symbol":
         return int(node[1] in CHANGING)

@@ -145,10 +145,10 @@ class _Function(TorqueSource):
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Prepare for a motion from ``low`` to ``high``, s: forget an exception of the function in the last motion.
+        """Accept a motion from any time ``low`` to any time ``high``, s, and remove the last exception of the function.
 
-        The method of a torque that is a table refuses times outside the table here. The domain of a function is not
-        known, so all times are accepted.
+        It is accepted without a test, because it is not known at which times the user's Python function is defined.
+        ``self.error`` becomes None, so that :meth:`failure` reports only exceptions of the motion that follows.
         """
         self.error = None
 

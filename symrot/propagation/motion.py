@@ -514,7 +514,7 @@ class ClosedFormMotion(RestartableMotion):
         return self._shared.starts(self.plan.scene.initial)
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[tuple[Floats, ...], Stats]:
-        """Return the states at the times and the cost of the motion, which counts no steps.
+        """Return the states at the times, and the cost of the closed form: the seconds, and zero steps.
 
         The states are the arrays of angular velocity, shape (n, 3), and attitude, shape (n, 4), if it is computed.
         ``in_order`` promises that the times are finite and never decrease.

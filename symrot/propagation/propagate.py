@@ -121,7 +121,7 @@ def propagator(
         if torque is not None:
             raise InputError(f"state: expected 'quaternion' for a torque without a formula, got {state!r}")
         if switched(scene):
-            raise InputError(f"state: expected 'quaternion' for torques that jump or bend, got {state!r}")
+            raise InputError(f"state: expected 'quaternion' for torques with a jump or a kink, got {state!r}")
         from symrot.propagation.euler_state import EulerPropagator
 
         return EulerPropagator(scene, method, aim, state, switching)
@@ -150,10 +150,10 @@ def propagator(
 def _refuse_sensitivities(scene: Scene, torque: Any, state: str) -> None:
     """Raise InputError if symrot computes no derivatives of such a motion; ``state`` is the option ``state``.
 
-    These are motions in Euler angles and motions under torques that jump, bend or have no formula.
+    These are motions in Euler angles and motions under torques that have a jump or a kink, or no formula.
     """
     if state != "quaternion":
-        raise InputError(f"sensitivities: expected the state 'quaternion', got {state!r}")
+        raise InputError(f"sensitivities: expected state='quaternion', the attitude to integrate, got {state!r}")
     if torque is not None:
         raise InputError("sensitivities: expected torques with formulas, got a torque that is a function or a table")
     from symrot.propagation.sensitivities.variables import require_smooth

@@ -2,6 +2,7 @@
 
 from collections.abc import Hashable, Mapping, Sequence
 from copy import copy
+from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from math import isfinite, isqrt
@@ -196,11 +197,6 @@ class Propagator:
         if omega is not None or quaternion is not None or attitude is not None:
             motion = self.motion_from(read_start(self.scene, omega, quaternion, attitude))
         setup, began = motion.setup, perf_counter()
-        if events is not None and self.sensitivities is not None:
-            raise InputError(
-                "events: expected none together with sensitivities, because the time of an event would change with "
-                "the variables of the derivatives; make one propagator for each"
-            )
         try:
             if events is not None:
                 return self._with_events(motion, times, events)
@@ -241,7 +237,12 @@ class Propagator:
         from symrot.propagation.events.event_result import integrate_with_events
         from symrot.propagation.events.events import read_events
 
-        result = integrate_with_events(motion, times, read_events(events))
+        requested = read_events(events)
+        if self.sensitivities is not None:
+            from symrot.propagation.sensitivities.event_times import require_smooth_events
+
+            require_smooth_events(requested)
+        result = integrate_with_events(motion, times, requested)
         message = motion.setup.message if result.error is None else str(result.error)
         trajectory = Trajectory(
             motion, result.t, result.states, motion.choice.method, result.stats, message, result, propagator=self
@@ -249,6 +250,12 @@ class Propagator:
         if result.error is not None:
             result.error.trajectory = trajectory  # type: ignore[attr-defined]
             raise result.error
+        derivatives = self.sensitivities_of(trajectory.scene, result.t)
+        if derivatives is not None and self.sensitivities is not None:
+            from symrot.propagation.sensitivities.variation import event_slopes
+
+            slopes = event_slopes(trajectory.scene, self.sensitivities, result)
+            trajectory.sensitivities = replace(derivatives, t_events=slopes)
         return trajectory
 
     def _with_samples(self, error: BaseException, motion: Motion, times: Floats, began: float) -> BaseException:

@@ -67,8 +67,9 @@ def time_shifted(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
 class ShiftedParameters:
     """Values of formulas that contain the time of the scene at which the clock of a stepper shows 0.
 
-    In a long motion the stepper sets its clock to 0 again and again. It calls this function with each new epoch: the
-    time, s, on the clock of the motion. Subexpressions without this time are computed once.
+    A motion has a clock, which shows 0 at its start. In a long motion, the stepper has another clock, which it sets to
+    0 again and again, so that times keep their digits. The time on the motion's clock at such a moment is the epoch,
+    and :meth:`parameters` returns the values of the formulas for it. Subexpressions without it are computed once.
 
     Parameters
     ----------

@@ -321,7 +321,10 @@ class Trajectory(MotionSamples):
         if times < 2:
             raise InputError(f"times: expected 2 or more as the number of new samples, got {times}")
         if not len(self):
-            raise InputError("times: expected sample times instead of a number, since the trajectory has no samples")
+            raise InputError(
+                "times: expected a list of sample times, because a number of samples divides the span of the present "
+                f"samples and the trajectory has none, got {times}"
+            )
         return self.at(np.linspace(float(self.t.min()), float(self.t.max()), int(times)))
 
     @cached_property

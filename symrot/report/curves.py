@@ -26,7 +26,11 @@ BAND_NOTE = "filled: least to greatest"
 
 
 def columns_of(axes: Any) -> tuple[float, float]:
-    """Return the size (width, height) of a panel, matplotlib axes, in columns: units of 1/150 inch, about a pixel."""
+    """Return the width and the height of a panel, matplotlib axes, both in units of 1/150 inch.
+
+    This unit, about a pixel of a printed figure, is called a column, because curves are thinned out to what differs
+    between neighbouring columns of pixels.
+    """
     box, dpi = axes.get_window_extent(), axes.figure.dpi
     return COLUMNS_PER_INCH * box.width / dpi, COLUMNS_PER_INCH * box.height / dpi
 
@@ -170,10 +174,11 @@ def draw_curves(axes: Any, t: Floats, curves: Sequence[Floats], names: Sequence[
 
 
 def _is_band(t: Floats, curve: Floats, size: tuple[float, float], height: float) -> bool:
-    """Return whether a curve oscillates so fast that it is drawn as a band instead of a line.
+    """Return whether a curve oscillates so fast that it is drawn as a filled band between its envelopes, not as a line.
 
-    ``size`` is the panel's in columns (:func:`columns_of`), and ``height`` its height in the unit of the curve. Times
-    that do not increase, and fewer than three values, always give a line.
+    ``t`` are the times and ``curve`` the values. ``size`` is the width and height of the panel in units of 1/150 inch
+    (:func:`columns_of`), and ``height`` the range of values that the panel shows. Times that do not increase, and fewer
+    than three values, always give a line.
     """
     known = np.isfinite(curve)
     if np.count_nonzero(known) < 3 or np.any(np.diff(t) < 0):

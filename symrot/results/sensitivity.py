@@ -63,6 +63,9 @@ class Sensitivities(Mapping[str, Sensitivity]):
         Requested name -> the numbers of its variables.
     omega, quaternion, rotation : array, shape (n, 3, m), (n, 4, m), (n, 3, m)
         The derivatives, as in :class:`Sensitivity`.
+    t_events : tuple of arrays, shape (k, m)
+        For each event, the derivatives of its k times, s per unit of the variable; NaN where the formula of the event
+        touches zero. Files of samples do not contain them.
 
     Examples
     --------
@@ -78,6 +81,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
     omega: Floats
     quaternion: Floats
     rotation: Floats
+    t_events: tuple[Floats, ...] = ()
 
     def __getitem__(self, name: str) -> Sensitivity:
         if name in self.groups:

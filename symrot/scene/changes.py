@@ -347,10 +347,11 @@ def _vector(scene: _Scene, path: Path) -> Sequence[Any]:
 
 
 def _constant_of_torque(scene: _Scene, path: Path) -> Fraction | tuple[Fraction, ...] | None:
-    """Return a constant of a torque that the content does not give, because it follows from the body: an exact value.
+    """Return the exact value of a torque's constant that the file leaves out, because it follows from others; or None.
 
     An example is the path ``("torque", 0, "weight")`` of a torque that gives gravity's acceleration and no weight. The
-    result is None if the torque has no such constant. A torque of kind table is no torque of ``scene.torques``.
+    number in the path counts the torques of the file. ``scene.torques`` has no torques of kind table, so that its
+    indices are smaller after a table; for the table itself the result is None, as for a torque without such a constant.
     """
     kinds = [torque.get("kind") for torque in scene.content.get("torque", ())]
     if path[0] != "torque" or len(path) != 3 or not isinstance(path[1], int) or path[1] >= len(kinds):

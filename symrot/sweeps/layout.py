@@ -85,10 +85,10 @@ class Store(Protocol):
 
     @property
     def only_statistics(self) -> str:
-        """The statistics whose values the store has instead of the values of the outputs, as a text; usually empty.
+        """A text that describes the statistics if the store has only these; otherwise an empty text.
 
-        The text is not empty if the values of the outputs were removed after the statistics had been computed from
-        them.
+        A sweep with ``keep="statistics"`` removes the values of the outputs after the statistics have been computed
+        from them.
         """
 
     def pending(self) -> list[tuple[int, int]]:

@@ -39,7 +39,10 @@ class MemoryStore:
 
     @property
     def only_statistics(self) -> str:
-        """Empty: this store has the values of the outputs, not only statistics of them."""
+        """Always an empty text: this store has the values of the outputs.
+
+        In other stores it describes the statistics, if only these are stored (``keep="statistics"``).
+        """
         return ""
 
     def pending(self) -> list[tuple[int, int]]:

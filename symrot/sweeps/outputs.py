@@ -162,7 +162,8 @@ def _reduced(reduction: str, time: float) -> str:
 def _derivatives(name: str, scene: Scene, reduction: str, time: float, suffix: str) -> list[SweepOutput]:
     """Return the outputs for a derivative such as ``omega_2_by_weight`` or, for three components, ``omega_by_weight``.
 
-    ``reduction``, ``time`` and ``suffix`` are those that :func:`_reduction` returns for the word after @.
+    The user may write ``omega_2_by_weight@max`` for the largest value in time. ``name`` is the part before the @;
+    ``reduction``, ``time`` and ``suffix`` are those that :func:`_reduction` returns for the word after it.
     """
     part, _, variable = name.partition(BY)
     parts = {component: (quantity, k) for quantity, (names, *_) in OUTPUTS.items() for k, component in enumerate(names)}

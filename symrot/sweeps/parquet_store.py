@@ -58,7 +58,7 @@ class ParquetStore:
                 raise InputError(f"{expectation}, got something else; choose another name") from None
             if different := difference(header.identity, identity):
                 raise InputError(
-                    f"{expectation}, got those of a sweep with a different {different}; choose another name"
+                    f"{expectation}, got the results of a sweep with a different {different}; choose another name"
                 )
             header = replace(header, rows=rows)
         else:

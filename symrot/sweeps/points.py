@@ -95,7 +95,8 @@ def _mixed(words: Words) -> Words:
 class _Sobol:
     """The Sobol points of one sweep, which fill the unit cube evenly.
 
-    Ranges of points that are requested in order need no time to skip points.
+    SciPy produces them one after the other. If each range of points starts where the last one ended, no point is
+    computed in vain; for another start, the points before it are produced again and dropped.
     """
 
     def __init__(self, dimensions: int, seed: int) -> None:
@@ -109,9 +110,9 @@ class _Sobol:
         self._next = 0
 
     def points(self, start: int, stop: int) -> Floats:
-        """Return the points ``start`` to ``stop - 1``.
+        """Return points ``start`` to ``stop - 1`` of the Sobol sequence, one per row, with coordinates from 0 to 1.
 
-        A lock protects the position in the sequence, which threads share.
+        Threads share the generator of the sequence, so that a lock lets one at a time advance it.
         """
         with self._lock:
             return self._points(start, stop)

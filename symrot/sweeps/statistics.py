@@ -287,9 +287,12 @@ def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, i
 
 
 def _split(search: _Search, counts: NDArray[np.int64], shift: int) -> list[_Search]:
-    """Split the interval of a search into equal parts, and return as searches those parts that contain its ranks.
+    """Split a search for order statistics, such as a median, into searches in parts of its range that contain a result.
 
-    ``counts`` are the numbers of values in the parts, each of the length ``2^shift``.
+    A search asks for the values with certain ranks among all values of a column; rank 0 is the smallest value. Values
+    are represented by integers in the same order. The range of integers is divided into parts of length ``2^shift``,
+    and ``counts`` are the numbers of values in these parts: with counts 5 and 7, rank 6 lies in the second part, with
+    rank 1 there. Parts without a rank asked for are dropped.
     """
     ends = np.cumsum(counts)
     parts: dict[int, _Search] = {}

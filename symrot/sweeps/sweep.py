@@ -297,7 +297,10 @@ def _target(path: str | Path, keep: str) -> Path:
     if not target.parent.is_dir():
         raise InputError(f"-o: expected a name in an existing folder, got {str(path)!r}")
     if target.suffix.lower() != ".zarr" and keep == "statistics":
-        raise InputError(f"-o: expected a name that ends in .zarr to keep statistics alone, got {str(path)!r}")
+        raise InputError(
+            f"-o: expected a name that ends in .zarr for keep = statistics, which stores no values of single motions, "
+            f"got {str(path)!r}"
+        )
     return target
 
 
@@ -330,7 +333,8 @@ def _job(
 def _require_derivatives(scene: Scene, content: Content | None, design: Design, keys: Sequence[str]) -> None:
     """Raise InputError if the motions of a sweep have no derivatives by the variables ``keys``.
 
-    This is so for torques that jump or bend, and for a variable that changes something which varies in the sweep.
+    There are none under torques with a jump or a kink. Nor are there any by a variable that sets a quantity which the
+    sweep varies in another way, such as the mass of a body whose radius is varied: both set its moments of inertia.
     """
     from symrot.ensemble.sensitivities import read_columns
 

@@ -71,7 +71,9 @@ class ZarrStore:
         except (OSError, LookupError, ValueError, TypeError):
             raise InputError(f"{expectation}, got something else at this path; choose another name") from None
         if different := difference(header.identity, identity):
-            raise InputError(f"{expectation}, got those of a sweep with a different {different}; choose another name")
+            raise InputError(
+                f"{expectation}, got the results of a sweep with a different {different}; choose another name"
+            )
         return replace(header, rows=rows)
 
     def _create(self, zarr: Any, header: Header) -> None:

@@ -135,10 +135,12 @@ def _moved(rotation: Sequence[Sequence[Fraction]], point: Sequence[float], offse
 
 
 def _faces(shape: Shape) -> Iterator[tuple[dict[str, str], tuple[Coordinate, ...]]]:
-    """Yield for each face of a shape the coordinate that is constant on it, with its value, and the others.
+    """Yield for each face of a shape a pair: {name: value} of the coordinate that is constant on it, and the others.
 
-    A shape is the image of a box of coordinates, such as radius, angle and height. An angle from 0 to 2 pi gives no
-    faces, since its two ends are the same points inside the body.
+    A shape is the image of a box of coordinates, such as radius, angle and height of a cylinder. Each of its ends gives
+    a face: ({"radius": "R"}, (angle, height)) is the curved side. The second part of the pair has those two Coordinates
+    that vary on the face. An angle from 0 to 2 pi gives no faces, since its two ends are the same points inside the
+    body. A shape with fewer than three coordinates is a surface and gives one pair, ({}, all coordinates).
     """
     coordinates = shape.coordinates
     if len(coordinates) < 3:

@@ -308,8 +308,9 @@ def _angle_kernels(sequence: str) -> dict[str, Program]:
 def _kernel_text(kernel: SceneKernel, constants: Sequence[str], sequence: str) -> str:
     """Return the JavaScript of all functions with which a page computes the motion of a scene.
 
-    They compute the rates of the state and the output quantities, the parameters of these two functions from
-    ``constants``, and the Euler angles of ``sequence`` from a quaternion and back.
+    ``rates`` computes the time derivatives of the state, ``quantities`` the output quantities. ``rate_parameters`` and
+    ``quantity_parameters`` compute the parameters of these two functions from ``constants``. Two more functions convert
+    a quaternion to the Euler angles of ``sequence`` and back.
     """
     programs = {
         "rates": kernel.rates,

@@ -63,9 +63,11 @@ def table_faults() -> list[str]:
 
 
 def understated(required: Mapping[str, BoundTask]) -> list[str]:
-    """Return the keys of the bounds in the table that are too small, given the tasks that the table must have, by key.
+    """Return the keys of bounds in the table that are too small, among those for the tasks in ``required``.
 
-    A bound is too small if it is below the error that is computed now at the worst point stored with it.
+    A task (BoundTask) describes the search for the largest rounding error of one output on one box; ``required`` maps
+    keys to tasks, and the table maps the same keys to bounds. A bound is too small if it is below the error that is
+    computed now at the worst point stored with it.
     """
     return [key for key, task in required.items() if not _is_consistent(task, STORE.get(key))]
 

@@ -111,7 +111,10 @@ def require_known(kernel: str) -> None:
 
 
 def _known_text(kernel: str) -> KernelText:
-    """Return the texts of a library kernel or of a scene's kernel; raise InputError for an unknown name."""
+    """Return the :class:`KernelText` of a library or scene kernel: its C source, certificate and other texts.
+
+    InputError is raised for an unknown name.
+    """
     require_known(kernel)
     return kernel_text(kernel)
 

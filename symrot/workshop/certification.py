@@ -157,6 +157,7 @@ class RoundingBounds:
     box : mapping of str to (float, float)
         A map from each input, such as ``"theta"``, ``"omega[0]"`` or ``"y[2]"``, to its range, in the input's unit.
     outputs : tuple of OutputError
+        For each output of the kernel, the bound of its rounding error.
     assumptions : tuple of str
         The assumptions under which the bounds hold.
     data : mapping
@@ -288,7 +289,7 @@ def certify(
     if step is not None:
         if objects or not rounding:
             raise InputError(
-                "certify: expected no objects and no rounding=False together with a step: they are options for kernels"
+                "certify: expected neither objects nor rounding=False for a step, because both are options for kernels"
             )
         data, files = steps.certify_step(str(kernel), step, order, _ranges(box), folder, progress)
         return Certificate(data["kernel"], data["title"], (), steps.proofs(data), data, tuple(files))

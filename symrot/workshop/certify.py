@@ -311,10 +311,11 @@ def all_lines(certificates: Mapping[str, Data]) -> list[str]:
 
 
 def refuted(certificates: Iterable[Data]) -> bool:
-    """Return whether a certificate records object code that is not proven to compute the bits of the C text.
+    """Return whether a certificate records object code of which none is proven to compute the same bits as the C text.
 
-    Object code is considered if its compiler's flags preserve every bit; code compiled with ``-ffast-math``, for
-    example, is not. A certificate that records only such other code gives True as well.
+    Only object code whose compiler flags preserve every bit can be proven so; code compiled with ``-ffast-math``
+    cannot. The result is True for a certificate with a function that differs, and for one that records only code with
+    flags such as ``-ffast-math``. It is False if no certificate records object code.
     """
     return any(data.get("objects") and not object_code.holds(data["objects"]) for data in certificates)
 

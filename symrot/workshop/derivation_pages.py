@@ -43,6 +43,12 @@ ABOUT = (
 APPENDICES = "Appendices: for the numeric code"
 """The title of the last chapter, with the pages that a course can leave out."""
 
+HANDOUT = "Handout"
+ABOUT_HANDOUT = (
+    "Derivations of symrot. Each step was proven when its page was printed: the exact normal form of left minus right "
+    "is zero."
+)
+
 FEW_FIGURES = 3
 """A page with no more figures opens with the first of them, also if it belongs to a section."""
 
@@ -60,8 +66,9 @@ def _quiet(text: str) -> None:
 def illustrated(page: Page) -> PrintedPage:
     """Return a derivation's page with its figures and its lesson: question, numbers, a common mistake for students.
 
-    A figure is at the top of the page or below the heading of its section. A page with few figures has at least one at
-    the top. The steps that only symrot's numeric code needs are not on it (see :func:`printed_page`).
+    A figure is at the top of the page or below the heading of its section. If no figure is meant for the top and the
+    page has at most FEW_FIGURES (three) figures, the first of them is moved to the top. The steps that only symrot's
+    numeric code needs are not on the page (see :func:`printed_page`).
 
     Raises
     ------
@@ -95,7 +102,10 @@ def _with_figures(page: Page) -> tuple[Page, list[Figure]]:
         if isinstance(item, Section):
             items += by_section.pop(item.title, ())
     if by_section:
-        raise InputError(f"{page.name}: expected figures in sections of the page, got figures in {[*by_section]}")
+        raise InputError(
+            f"{page.name}: expected figures in sections of the page, got figures in sections that it lacks: "
+            f"{', '.join(map(repr, by_section))}"
+        )
     values = {each.name: getattr(page, each.name) for each in fields(Page)}
     return Page(**values | {"items": items}), top
 
@@ -217,8 +227,10 @@ def write_pages(directory: Path | str, form: str, chosen: Sequence[str] = (), sa
     directory = Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
     chapters = {chapter: [derived[name] for name in members] for chapter, members in _chapters([*derived]).items()}
+    if chosen:
+        chapters = {"": [page for members in chapters.values() for page in members]}
     written = []
-    for name, content in FORMS[form](chapters).items():
+    for name, content in FORMS[form](*((HANDOUT, ABOUT_HANDOUT) if chosen else (TITLE, ABOUT)), chapters).items():
         path = directory / name
         path.write_bytes(content)
         written.append(path)
@@ -279,21 +291,24 @@ def _only_links_to(present: set[str], link: re.Pattern[str], text: str) -> str:
     return link.sub(lambda match: match["label"] if match["page"] in missing else match[0], text)
 
 
-def _html(chapters: Chapters) -> dict[str, bytes]:
-    return _encoded(book(TITLE, ABOUT, chapters)) | {math_font.FILE: math_font.content()}
+def _html(title: str, about: str, chapters: Chapters) -> dict[str, bytes]:
+    return _encoded(book(title, about, chapters)) | {math_font.FILE: math_font.content()}
 
 
-def _latex(chapters: Chapters) -> dict[str, bytes]:
+def _latex(title: str, about: str, chapters: Chapters) -> dict[str, bytes]:
     documents = {f"{page.name}.tex": page.latex() for members in chapters.values() for page in members}
-    return _encoded({"book.tex": latex_book(TITLE, ABOUT, chapters)} | documents)
+    return _encoded({"book.tex": latex_book(title, about, chapters)} | documents)
 
 
 def _encoded(texts: dict[str, str]) -> dict[str, bytes]:
     return {name: text.encode() for name, text in texts.items()}
 
 
-FORMS: dict[str, Callable[[Chapters], dict[str, bytes]]] = {"latex": _latex, "html": _html}
-"""Format of all pages, other than Markdown -> function from the pages of each chapter to the contents of the files."""
+FORMS: dict[str, Callable[[str, str, Chapters], dict[str, bytes]]] = {"latex": _latex, "html": _html}
+"""Format of all pages, other than Markdown -> function that returns the contents of the files.
+
+Its arguments are the title, the paragraph below the title, and the pages of each chapter.
+"""
 
 
 def _converted(directory: Path, figures: list[Figure]) -> list[Path]:

@@ -51,7 +51,10 @@ def input_box(kernel_problem: RoundingProblem, inputs: SceneInputs | None, range
         used = names(formula) & constants.keys()
         if used and place in by_place:
             both = f"{by_place[place][0][:60]!r} and {by_place[min(used)][0][:60]!r}"
-            raise InputError(f"--box: expected a range of {name} or of the constants in it, got {both}")
+            raise InputError(
+                f"--box: expected either a range of {name} or ranges of the constants from which it follows, "
+                f"got both: {both}; leave one out"
+            )
         if used and inputs and place in kernel_problem.symbols:
             box[place] = parameter_range(name, formula, inputs.constants, constants)
             _check_finite(name, box[place], by_place[min(used)][0])

@@ -82,8 +82,9 @@ def certificate_files(
 ) -> dict[str, str]:  # fmt: skip
     """Return the certificate file of a kernel, as a map from file name to text; empty for a step without a certificate.
 
-    Verdicts on object code, and the bounds of a step's errors, are copied from the certificate in ``directory`` if they
-    still hold. Bounds of rounding errors are on the kernel's own box; for a scene, they are ``bounds``.
+    Verdicts on object code are copied from the certificate in ``directory`` if they still hold. The certificate of a
+    library kernel states the bounds of rounding errors that come with symrot. That of a scene's kernel states
+    ``bounds``, or no bounds if this is None.
     """
     if not kernel.has_certificate:
         return {}

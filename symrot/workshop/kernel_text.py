@@ -132,9 +132,10 @@ class LibraryText(KernelText):
         self.name, self._definition = name, definition(name)
 
     def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
-        """Return the pair (C source, header); the comment at the head of each states bounds of rounding errors.
+        """Return the pair (C source, header), each with an opening comment that states bounds of rounding errors.
 
-        These are the bounds that come with symrot. The argument ``bounds`` has an effect for kernels of scenes only.
+        These are the bounds that come with symrot for this kernel; ``bounds``, which the kernel of a scene needs, is
+        ignored.
         """
         return self._c
 
@@ -174,22 +175,24 @@ class LibraryText(KernelText):
     def rounding(self, bounds: Bounds | None) -> Bounds | None:
         """Return the bounds of rounding errors that come with symrot for this kernel, or None if there are none.
 
-        The argument ``bounds`` has an effect for kernels of scenes only.
+        ``bounds`` is ignored: the kernel of a scene, which has no bounds of its own, returns it instead.
         """
         return self._section if isinstance(self._section, dict) else None
 
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
-        """Return the kernel with its texts, formulas and laws, for proofs that the texts compute the formulas.
+        """Return the kernel with its C files, formulas and laws, for proofs that the C files compute the formulas.
 
-        The argument ``bounds`` has an effect for kernels of scenes only: the texts state the bounds that come with
-        symrot.
+        The comments in the C files state the bounds of rounding errors that come with symrot; ``bounds``, which the
+        kernel of a scene needs, is ignored.
         """
         description = kernel_description(self._definition, "c")
         return library_kernel_under_test(self._definition, description, self._certified_files(bounds))
 
 
 class SceneText(KernelText):
-    """The texts of the kernel of a scene's equations of motion, which are derived once.
+    """The texts (C, NumPy, JavaScript, ..) of a kernel that computes the equations of motion of a scene.
+
+    The equations are derived when the object is made, once for all its texts.
 
     Parameters
     ----------
@@ -232,7 +235,11 @@ class SceneText(KernelText):
 
     @cached_property
     def program(self) -> Program:
-        """The operations that compute the rates ``dy/dt``; its parameters are described by formula and value."""
+        """The operations that compute the rates ``dy/dt``.
+
+        The description of each of its parameters, which are printed in the comments of the texts, has the formula by
+        which the parameter follows from the scene's constants, and its value.
+        """
         return with_values(self._lowered.program, self._lowered.parameters, self.plan.constants)
 
     @cached_property

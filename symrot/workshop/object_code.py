@@ -56,8 +56,9 @@ def objects_of(texts: Mapping[str, str], source: str, programs: str) -> Data:
 def holds(section: Data | None) -> bool:
     """Return whether the object code in a certificate's section is proven to perform the C text, bit by bit.
 
-    Object code is considered if its compiler's flags preserve every bit of the results; if there is none, the result is
-    False. ``section`` is the section ``objects`` of a certificate, or None.
+    ``section`` is the section ``objects`` of a certificate, or None. Only object code whose compiler flags preserve
+    every bit of the results is considered. All of its functions must be proven. The result is False if the section has
+    no such code or is None.
     """
     strict = [item for item in _objects(section) if item["flags_hold"] == BITS]
     return bool(strict) and all(function["verdict"] == IDENTICAL for item in strict for function in item["functions"])

@@ -228,7 +228,10 @@ def test_what_does_not_overflow_is_bounded_to_the_largest_numbers(capsys):
             ["bound", "t_handle", *_options((*CUBE, "A=0:1"))],
             "on which p0 = (B - C)/A is a finite number, got A 0 .. 1",
         ),
-        (["bound", "t_handle", *_options((*CUBE, "A=1:2", "p0=0:1"))], "a range of p0 or of the constants in it"),
+        (
+            ["bound", "t_handle", *_options((*CUBE, "A=1:2", "p0=0:1"))],
+            "either a range of p0 or ranges of the constants",
+        ),
         (["bound", "t_handle", *_options((*CUBE, "y[0]=0:1"))], "expected one range of y[0], got also 'omega_1=-1:1'"),
         (["bound", "t_handle", *_options((*CUBE, "q0=0:1.7976931348623158e308"))], "within the range of a double"),
         (["bound", "t_handle", *_options((*CUBE, "A=1e-300:1e-290", "B=1e20:1e30"))], "within the range of a double"),

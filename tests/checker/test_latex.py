@@ -104,7 +104,7 @@ def test_what_is_not_understood_is_refused_with_its_place(latex, position):
 
 
 @pytest.mark.parametrize(("latex", "words"), [
-    (r"\mathbf r\times\mathbf r\times\mathbf r = 0", "brackets"), (r"m\times\mathbf r = 0", "two vectors"),
+    (r"\mathbf r\times\mathbf r\times\mathbf r = 0", "brackets"), (r"m\times\mathbf r = 0", "a vector on both sides"),
     (r"\theta'(3) = 0", "a declared function"), (r"m'(t) = 0", "a declared function"), (r"\dot{m} = 0", "to be declared as a function of t"), (r"\vec v = 0", "v to be declared as a vector"),
 ])  # fmt: skip
 def test_vectors_are_refused_where_they_make_no_sense(latex, words):

@@ -46,6 +46,10 @@ RIGHT = (
     ("tau == J*alpha", "torque about one axis; with J for C, alpha for domega_3"), ("P == M*omega", "power of a torque"),
     ("T == m*v**2/2 + J*omega**2/2", "kinetic energy of a body that moves and rotates"),
     ("T == 2*pi*sqrt(J/(m*g*d))", "period of a physical pendulum; with J for A"),
+    ("T = 2π sqrt(L/g)", "period of a simple pendulum (a point mass); with L for c_3"),
+    ("T = 2π sqrt(3 R/(2 g))", "period of a disk that hangs from its rim"),
+    ("θ'' + (g/L) sin θ = 0", "relation for a simple pendulum (a point mass); with L for c_3"),
+    (r"\ddot\theta = -\frac{3g}{2l} \sin\theta", "relation for a rod about an end; with l for L"),
     ("k == sqrt(J/m)", "radius of gyration; with J for C"), ("omega == L/J", "angular velocity about one axis"),
     ("I_n == I_xx*l**2 + I_yy*m**2 + I_zz*n**2 - 2*I_xy*l*m - 2*I_yz*m*n - 2*I_xz*n*l",
      "moment of inertia about an axis of any direction; for products of inertia without the minus sign"),
@@ -96,7 +100,7 @@ def test_a_formula_with_one_fault_is_doubtful_and_repaired(claim, code, name, ca
 
 @pytest.mark.thinned(3)
 @pytest.mark.parametrize("claim", [
-    "y == p*s + s**3 + exp(u)", "y == sin(2*x)", "M == Matrix([[cos(a), sin(a)], [sin(a), cos(a)]])", "x == 5",
+    "L = I α", "y == p*s + s**3 + exp(u)", "y == sin(2*x)", "M == Matrix([[cos(a), sin(a)], [sin(a), cos(a)]])", "x == 5",
     "Omega == a*g*b/(c*d)", "omega == v/r", "k == J/m", "T == 4*pi**2*J/(m*g*d)", "I_0 == C*omega_3", "x == C*omega_3", "y == m*g/r",
 ])  # fmt: skip
 def test_any_other_formula_may_be_a_definition(claim, capsys):

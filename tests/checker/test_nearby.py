@@ -6,7 +6,15 @@ import symrot
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import text
 from symrot.checker.recognition.pairing import absent_name, renamings
-from symrot.checker.recognition.parts import LACKING, Letters, PointOfLetters, is_absent, multiples, parts, variants
+from symrot.checker.recognition.parts import (
+    LACKING,
+    Letters,
+    PointOfLetters,
+    is_superfluous,
+    multiples,
+    parts,
+    variants,
+)
 from tests.campaigns.checker.printed import names_fault, offers
 
 FAULTS = (
@@ -88,11 +96,11 @@ def test_a_multiple_and_an_absent_part_are_seen():
     letters = _letters(a=(1.5, 0.7), b=(0.4, 1.1))
     tree = read_expression("a - b")
     negative = next(part for part in parts(tree, letters.points, (1.9, 1.8)) if text(part.node) == "b")
-    assert not is_absent(negative)
+    assert not is_superfluous(negative)
     assert [(text(change.made), change.code) for change in multiples(negative)] == [("-b", "sign_of_term")]
     doubled = next(part for part in parts(tree, letters.points, (0.7, -1.5)) if text(part.node) == "b")
     assert [text(change.made) for change in multiples(doubled)] == ["2*b"]
-    (lone,) = [part for part in parts(tree, letters.points, (1.5, 0.7)) if is_absent(part)]
+    (lone,) = [part for part in parts(tree, letters.points, (1.5, 0.7)) if is_superfluous(part)]
     assert text(lone.node) == "-b"
 
 

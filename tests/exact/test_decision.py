@@ -38,7 +38,7 @@ def test_a_way_without_a_decision_is_an_error_and_no_verdict():
     def silent(case):
         return None
 
-    with pytest.raises(AssertionError, match="silent, must decide"):
+    with pytest.raises(AssertionError, match="last stage, silent"):
         first_decision(case_of(x, y), [silent])
 
 

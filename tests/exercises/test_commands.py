@@ -39,12 +39,22 @@ def test_topics_take_turns(capsys):
     assert len({each["template"] for each in sheet}) == 5
 
 
+@pytest.mark.parametrize("form", ["markdown", "latex"])
+def test_a_sheet_without_solutions_has_the_exercises_alone(capsys, form):
+    words = ("exercise", "rod_about_end", "--format", form)
+    _, whole, _ = run(capsys, *words)
+    _, text, _ = run(capsys, *words, "--no-solutions")
+    assert "Hints" in whole and "Solutions" in whole and not ("Hints" in text or "Solution" in text)
+    assert "A rod about its end" in text and (form != "latex" or text.endswith("\\end{document}\n"))
+
+
 def test_the_list_names_every_topic(capsys):
     code, text, _ = run(capsys, "exercise", "--list")
     assert code == 0 and "gears\n  ring_fixed\n" in text
 
 
 @pytest.mark.parametrize("arguments, words", [
+    (("exercise", "gears", "--format", "html", "--no-solutions"), "expected markdown or latex, got 'html'"),
     (("exercise", "cooking"), "expected a topic"), (("exercise", "gears", "rollin"), "did you mean 'rolling'"), (("exercise", "--count", "many"), "invalid whole number"),
     (("exercise", "--format", "pdf"), "invalid choice"), (("exercise", "gears", "--list"), "--list alone"),
     (("exercise", "--count", "0"), "count: expected"), (("grade", "x.json"), "expected EXERCISES.json"),

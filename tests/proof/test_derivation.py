@@ -11,6 +11,7 @@ from symrot.exact.rewriting_chain import chains
 from symrot.proof.derivation import Derivation, Passage, ProofError, Section, Step
 from symrot.proof.notation.latex_reader import Unread, read
 from symrot.proof.notation.mathml import mathml, rows
+from symrot.proof.pages.html import prose
 from symrot.symbols import A, B, C, delta_1, dphi, omega_1, omega_b, phi, q0, q1, q2, q3, theta, x
 
 UNIT = q0**2 + q1**2 + q2**2 + q3**2 - 1
@@ -314,3 +315,9 @@ def test_a_condition_is_said_once(page):
     root = sqrt(x**2 + phi**2)
     step = page.step("It is.", x / root / (x**2 + phi**2), x / root**3, because="of powers")
     assert [str(c) for c in step.conditions] == ["Ne(phi**2 + x**2, 0)"]
+
+
+def test_a_long_formula_in_a_sentence_scrolls_by_itself():
+    long = " + ".join(f"x_{{{n}}}" for n in range(30))
+    assert prose(f"It is ${long}$.").startswith('It is <span class="wide"><math')
+    assert "wide" not in prose("It is $x$.")

@@ -125,7 +125,9 @@ def test_a_full_disk_loses_nothing(whole, tmp_path, name, monkeypatch):
 )  # fmt: skip
 def test_results_of_another_sweep_are_refused(tmp_path, name, options, word):
     sweep(path=tmp_path / name)
-    with pytest.raises(InputError, match=f"got those of a sweep with a different .*{word}.*; choose another name"):
+    with pytest.raises(
+        InputError, match=f"got the results of a sweep with a different .*{word}.*; choose another name"
+    ):
         sweep(path=tmp_path / name, **options)
 
 

@@ -1,11 +1,8 @@
 """Pages that move: one file without links, which runs in a browser and says how far it can be trusted."""
 
 import base64
-import html
 import json
 import re
-import shutil
-import subprocess
 
 import numpy as np
 import pytest
@@ -15,11 +12,16 @@ from symrot.errors import InputError
 from symrot.scene.scene import Scene
 from symrot.viewer.body_surface import patches
 from symrot.viewer.page import page
+from tests.viewer.browser import BROWSER, Browser
 
-BROWSER = next(
-    (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
-)
 needs_browser = pytest.mark.skipif(BROWSER is None, reason="needs Chromium")
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """A browser for all tests of this file."""
+    with Browser() as running:
+        yield running
 
 
 def scene_of(body, **more):
@@ -30,31 +32,60 @@ def scene_of(body, **more):
     return Scene.from_dict(content | more)
 
 
-def dom_of(path, *flags):
-    """The document as a browser has it after two seconds."""
-    command = [
-        BROWSER, "--headless", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking",
-        "--disable-component-update", "--disable-sync", "--use-gl=angle", "--use-angle=swiftshader",
-        "--enable-unsafe-swiftshader", f"--user-data-dir={path.parent / 'profile'}", "--virtual-time-budget=2000",
-        *flags, "--dump-dom", path.as_uri(),
-    ]  # fmt: skip
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=True).stdout
+def text_of(browser, name):
+    return browser.evaluate(f"document.getElementById('{name}').textContent")
 
 
 @needs_browser
-@pytest.mark.parametrize("name", ["heavy_top_loops", "friction_wheel"])
-def test_a_page_runs_in_a_browser(name, tmp_path):
-    path = symrot.show(name, tmp_path / "page.html")
-    text = html.unescape(dom_of(path))
-    trust = re.search(r'<p id="trust">([^<]+)</p>', text)[1]
-    if name == "heavy_top_loops":
-        assert (
-            float(re.search(r"agrees with the motion that symrot computed to ([\d.e-]+)", trust, re.I)[1].rstrip("."))
-            < 1e-12
-        )
-    else:
-        assert "played" in text or "plays the motion" in text
-    assert re.search(r'<output id="time">t = [\d.]+ s</output>', text)
+def test_a_page_agrees_with_symrot_in_a_browser(browser, tmp_path):
+    browser.open(symrot.show("heavy_top_loops", tmp_path / "page.html"))
+    agreement = re.search(r"Agrees with the motion that symrot computed to ([\d.e-]+)\.", text_of(browser, "trust"))[1]
+    assert float(agreement) < 1e-12
+    assert text_of(browser, "time") == "t = 0.000 s"
+    assert browser.errors == []
+
+
+@needs_browser
+def test_a_browser_plays_a_motion_that_symrot_computed(browser, tmp_path):
+    browser.open(symrot.show("friction_wheel", tmp_path / "page.html"))
+    assert "plays the motion" in text_of(browser, "played")
+    assert browser.errors == []
+
+
+@needs_browser
+def test_the_last_motion_is_shown_while_the_next_is_computed(browser, tmp_path):
+    """A slider of a long motion does not stop the page: frames and keys go on, and the new motion comes at last."""
+    scene = scene_of({"principal": [1, 2, 2.5]}, span={"t": [0, 300], "samples": 5})
+    browser.open(symrot.show(scene, tmp_path / "page.html"))
+    old = browser.evaluate("symrot.first.energy")
+    shown = browser.evaluate(
+        "symrot.change('omega_3', 3.5), symrot.seek(1), [symrot.job !== null, symrot.state.energy]"
+    )
+    assert shown == [True, pytest.approx(old)]
+    browser.wait("!symrot.job")
+    assert browser.evaluate("symrot.first.energy") == pytest.approx((0.1**2 + 2 * 0.2**2 + 2.5 * 3.5**2) / 2)
+    assert browser.evaluate("symrot.frames") > 1
+    assert browser.errors == []
+
+
+@needs_browser
+def test_a_moment_beyond_the_sum_of_the_others_is_limited_and_the_body_is_stretched(browser, tmp_path):
+    browser.open(symrot.show(scene_of({"shape": "box", "a": 1, "b": 2, "c": 3, "mass": 12}), tmp_path / "page.html"))
+    browser.evaluate("symrot.change('A', 100)")
+    browser.wait("!symrot.job")
+    assert browser.evaluate("symrot.model.constants.A") == 10 + 5
+    assert "A = 15 kg m²: no moment of a body is larger" in text_of(browser, "warning")
+    assert "has these moments" in text_of(browser, "kept")
+
+
+@needs_browser
+def test_a_motion_too_long_for_a_page_says_where_it_ends(browser, tmp_path):
+    """What is not computed is not claimed to agree."""
+    path = symrot.show(scene_of({"principal": [1, 2, 2.5]}), tmp_path / "page.html")
+    path.write_text(path.read_text(encoding="utf-8").replace("MOST_STEPS = 200000", "MOST_STEPS = 2"), encoding="utf-8")
+    browser.open(path)
+    assert "at most 2 steps" in text_of(browser, "warning")
+    assert "Agrees" not in text_of(browser, "trust")
 
 
 def test_a_page_is_one_file_of_at_most_two_megabytes(tmp_path):

@@ -389,7 +389,10 @@ def check_section(
         )
     head = _section_head(box, region, budget, libm_ulp)
     if not _alike({name: value for name, value in section.items() if name != "precisions"}, head):
-        raise CertificateError("expected box and assumptions in the form in which symrot prints them, got another form")
+        raise CertificateError(
+            "expected the entries for the box and the assumptions (all except 'precisions') as symrot prints them: "
+            "these names, and numbers in hexadecimal form; got other names or forms"
+        )
     if rerun:
         check_bounds(section, operations_double, operations_float, fresh=True)
 
@@ -422,7 +425,8 @@ def check_bounds(
         unit, libm_ulp = 2.0 ** -DIGITS[operations.precision], float.fromhex(section["libm_ulp"])
         if not _alike({**part, "outputs": []}, _precision_part(operations, [])):
             raise CertificateError(
-                f"{operations.name}: expected bounds in the form in which symrot prints them, got another form"
+                f"{operations.name}: expected an entry of 'precisions' with the names and values that symrot prints "
+                "apart from its 'outputs', got others"
             )
         tasks_by_output = bound_tasks(operations, box, region, section["budget"], libm_ulp)
         for item, (place, task) in zip(part["outputs"], tasks_by_output.items(), strict=True):

@@ -43,7 +43,7 @@ def matrices_of_entries(definitions: Sequence[tuple[str, Node]]) -> list[str]:
 def as_rotations(definitions: Sequence[tuple[str, Node]], names: Collection[str]) -> list[tuple[str, Node]]:
     """Return definitions in which each matrix of ``names`` is a rotation, not a matrix of any nine entries.
 
-    The rotation is a product of three elementary rotations by any angles.
+    The rotation is a product of rotations about z, x and z, whose angles are free symbols.
     """
     return [
         (name, _rotation(name, tree == matrix_of_entries(name, timed=True)) if name in names else tree)

@@ -153,7 +153,7 @@ def _dot(scope: Scope, node: Node) -> Expr:
 def _square(scope: Scope, node: Node) -> ImmutableMatrix:
     matrix = scope.matrix(node.args[0], f"as the argument of {node.value}")
     if matrix.rows != matrix.cols or matrix.rows > LARGEST_MATRIX:
-        raise scope.fail(node.args[0], f"a square matrix, at most {LARGEST_MATRIX} x {LARGEST_MATRIX},")
+        raise scope.fail(node.args[0], f"a square matrix of at most {LARGEST_MATRIX} x {LARGEST_MATRIX} entries")
     return matrix
 
 
@@ -164,7 +164,7 @@ def _det(scope: Scope, node: Node) -> Expr:
 def _determinant(scope: Scope, matrix: ImmutableMatrix, node: Node, most_products: int) -> Expr:
     products = products_of_determinant(matrix)
     if products > most_products:
-        raise scope.fail(node, f"a smaller matrix (its determinant has {products} products, at most {most_products})")
+        raise scope.fail(node, f"a determinant of at most {most_products} products instead of {products}")
     return _by_cofactors(matrix) if pieces(matrix) > LARGE_MATRIX else matrix.det(method="berkowitz")
 
 
@@ -197,9 +197,7 @@ def _adjugate(scope: Scope, node: Node) -> ImmutableMatrix:
     matrix = _square(scope, node)
     products = products_of_determinant(matrix)
     if products > LARGEST_INVERSE:
-        raise scope.fail(
-            node.args[0], f"a smaller matrix (its determinant has {products} products, at most {LARGEST_INVERSE})"
-        )
+        raise scope.fail(node.args[0], f"a determinant of at most {LARGEST_INVERSE} products instead of {products}")
     return matrix.adjugate(method="berkowitz")
 
 
@@ -233,7 +231,7 @@ def _of_blocks(scope: Scope, node: Node, rows: Any) -> ImmutableMatrix:
     rows = tuple(row if isinstance(row, tuple) else (row,) for row in rows)
     cells = [cell for row in rows for cell in row]
     if len({len(row) for row in rows}) != 1 or any(isinstance(cell, tuple) for cell in cells):
-        raise scope.fail(node, "rows of scalars of equal length, Matrix([[a, b], [c, d]]),")
+        raise scope.fail(node, "rows of scalars of equal length, as in Matrix([[a, b], [c, d]])")
     heights = [max(cell.rows if is_matrix(cell) else 1 for cell in row) for row in rows]
     widths = [max(cell.cols if is_matrix(cell) else 1 for cell in column) for column in zip(*rows, strict=True)]
     if max(sum(heights), sum(widths)) > LARGEST_MATRIX:
@@ -242,7 +240,7 @@ def _of_blocks(scope: Scope, node: Node, rows: Any) -> ImmutableMatrix:
     for row, height in zip(rows, heights, strict=True):
         blocks = [_block(cell, height, width) for cell, width in zip(row, widths, strict=True)]
         if None in blocks:
-            raise scope.fail(node, "blocks that fit together, or rows of scalars of equal length,")
+            raise scope.fail(node, "blocks that fit together, or rows of scalars of equal length")
         lines.append(ImmutableMatrix.hstack(*blocks))
     return ImmutableMatrix.vstack(*lines)
 
@@ -326,7 +324,7 @@ def _integrate(scope: Scope, node: Node) -> Any:
         variable = scope.scalar(place.args[0], "to integrate over")
         lower, upper = (scope.scalar(limit, "as a limit of an integral") for limit in place.args[1:])
         if not variable.is_Symbol or lower.has(variable) or upper.has(variable):
-            raise scope.fail(place, "a symbol to integrate over, which does not occur in its limits,")
+            raise scope.fail(place, "a symbol to integrate over that does not occur in its limits")
         limits.append((variable, lower, upper))
     divisors_before, radicands_before = len(scope.divisors), len(scope.radicands)
     total = scope.evaluate(integrand)

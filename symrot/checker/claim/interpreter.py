@@ -85,9 +85,9 @@ def _name(interpreter: Interpreter, node: Node) -> Any:
     if name in DISPUTED_NAMES:
         raise interpreter.fail(node, instead(DISPUTED_NAMES[name]))
     if name in UNKNOWN_HERE:
-        hint = f", such as {INSTEAD[name]}," if name in INSTEAD else ","
+        hint = f" such as {INSTEAD[name]}" if name in INSTEAD else ""
         raise interpreter.fail(
-            node, f"a symbol with another name{hint} since {name!r} means something else to most readers,"
+            node, f"a symbol with another name{hint} ({name!r} means something else to most readers)"
         )
     symbol = interpreter.values[name] = time if name == "t" else Symbol(name, real=True)
     return symbol
@@ -151,9 +151,7 @@ def _power(interpreter: Interpreter, node: Node) -> Any:
         raise interpreter.fail(node.args[1], "a number as an exponent")
     most = LARGEST_WHOLE_EXPONENT if exponent.q == 1 and not is_matrix(base) else LARGEST_EXPONENT
     if abs(exponent.p) > most or exponent.q > LARGEST_ROOT:
-        raise interpreter.fail(
-            node.args[1], f"an exponent of at most {most} or a root of degree at most {LARGEST_ROOT}"
-        )
+        raise interpreter.fail(node.args[1], f"an exponent up to {most}, or a root of degree at most {LARGEST_ROOT}")
     if is_matrix(base):
         if base.rows != base.cols or exponent.q != 1:
             raise interpreter.fail(node, "a square matrix to a whole power")
@@ -219,7 +217,7 @@ def _call(interpreter: Interpreter, node: Node) -> Any:
             raise interpreter.fail(node, f"{count} argument(s) of {name} instead of {len(arguments)}")
         return function(interpreter, node)
     if name in interpreter.values:
-        raise interpreter.fail(node, f"an operator between {name} and '(', since {name} is no function,")
+        raise interpreter.fail(node, f"an operator between {name} and '(' ({name} is no function)")
     close = get_close_matches(name, list(BUILT_IN), 1, 0.74)
     if not interpreter.implied or close or name in UNKNOWN_HERE or [a.value for a in arguments] != ["t"]:
         known = (

@@ -707,9 +707,7 @@ def _only(readings: Sequence[Reading], source: str, where: str, rates: bool = Fa
     doubts = [doubt for doubt in usual.doubts if not (rates and doubt.key[0] == "prime")]
     if usual.plain and len(readings) > 1 and doubts:
         doubt = doubts[0]
-        raise complaint(
-            source, where, doubt.key[1], f"brackets or product signs, since {doubt.excerpt!r} has two readings,"
-        )
+        raise complaint(source, where, doubt.key[1], f"brackets or product signs ({doubt.excerpt!r} has two readings)")
     return usual
 
 

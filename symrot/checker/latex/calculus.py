@@ -139,7 +139,7 @@ class CalculusPart(NamesPart):
             raise self.fail("one name between d and /dt, or \\frac{d}{dt}(..)")
         self.index += 2
         if self.order() != order:
-            raise self.fail(f"the same order of the derivative above and below the slash, {order},", item)
+            raise self.fail(f"the same order of the derivative above and below the slash ({order})", item)
         return self.derivative(operand, order, item)
 
     def derivative_fraction(self, fraction: tree.Fraction) -> Node:
@@ -149,7 +149,7 @@ class CalculusPart(NamesPart):
             raise self.fail("another name for the symbol d, since d means a derivative here", fraction)
         variables = self.inside(fraction.below, self.variables)
         if len(variables) != order:
-            raise self.fail(f"the same order of the derivative above and below the line, {order},", fraction)
+            raise self.fail(f"the same order of the derivative above and below the line ({order})", fraction)
         if operand is None:
             operand = self.factor()
             if self.starts_factor() or self.at("/"):
@@ -207,7 +207,7 @@ class CalculusPart(NamesPart):
             self.notes.append(f"the density times d{self.peek(1).text} is read as dm")
             integrand = mass
         elif not self.differential() or self.peek(1).text != "m":
-            raise self.fail("limits as in \\int_a^b; or, for an integral over a body, dm or a density and dV,")
+            raise self.fail("limits as in \\int_a^b; or, for an integral over a body, dm or a density and dV")
         self.index += 2
         return Node("call", "integral_over_body", (integrand,))
 

@@ -121,7 +121,7 @@ class NamesPart(SumsPart):
         is returned, and t is parsed as the next factor.
         """
         follower = self.peek()
-        product_or_change = f"\\{name}_{{..}} for a change, or \\cdot for a product,"
+        product_or_change = f"\\{name}_{{..}} for a change, or \\cdot for a product"
         if self.flips is None:
             raise self.fail(product_or_change, follower)
         if self.doubtful("change", item, self.end_of_next(), product_or_change):
@@ -139,7 +139,7 @@ class NamesPart(SumsPart):
         """Raise InputError for ``f(x)`` and ``f(0)``: each may be a product, or the value of a function."""
         inner = self.peek(1)
         if self.at("(") and (inner.kind == "number" or is_letter(inner)) and self.peek(2).text == ")":
-            raise self.fail("\\cdot before the bracket if this is a product, or a declared function if it is a call,")
+            raise self.fail("\\cdot before the bracket if this is a product, or a declared function if it is a call")
 
     def subscript(self, mark: tree.Script) -> str:
         """Return the content of a subscript as text: "1x" for ``_{1x}``."""
@@ -199,7 +199,7 @@ class NamesPart(SumsPart):
             if declared:
                 return Node("name", declared[0])
             if not self.names.implied:
-                raise self.fail(f"{name} to be declared as a function of t, since it is differentiated,", item)
+                raise self.fail(f"{name} to be declared as a function of t (it is differentiated)", item)
             self.timed.add(name)
         for _ in range(times):
             node = appended(node, TIME)
@@ -238,7 +238,7 @@ class NamesPart(SumsPart):
         r"""Parse the name after a sum sign, ``\sum M_x``, and return its node: M_x is the total of all torques."""
         follower = self.peek()
         if follower.text.removeprefix("\\") not in TOTALS:
-            raise self.fail("the terms of the sum, joined by +,", sign)
+            raise self.fail("the terms of the sum, joined by +", sign)
         self.notes.append(f"\\sum {follower.text} is read as one quantity, the total")
         return self.factor()
 

@@ -354,9 +354,9 @@ class SumsPart(Cursor):
         return Node("call", "skew", (inner,))
 
     def paired(self, first: Node, sign: str) -> Node:
-        r"""Parse ``, B`` in ``[A, B]`` or ``\{A, B\}`` with Pauli's matrices, after A; return the (anti)commutator.
+        r"""Parse ``, B`` after A in ``[A, B]`` or ``\{A, B\}``; return ``A B - B A`` or ``A B + B A``, by ``sign``.
 
-        ``sign`` tells which of them. Without a comma at the cursor, return ``first``, the tree of A.
+        A and B must contain Pauli's matrices. Without a comma at the cursor, return ``first``, the tree of A.
         """
         if not self.at(","):
             return first

@@ -130,6 +130,9 @@ RARE = ("annulus", "thin tube", "conical shell")
 AXES = ("x1Ap", "y2Bq", "z3Cr")
 """The last letters of symbols that belong to one axis; p, q and r are the rates of an aircraft."""
 
+OF_ROLL = re.compile(r"d?([pqr]|[Hh](_?\w+)?)")
+"""Rates of an aircraft and letters of angular momentum: next to them, the name L may mean a torque, as for a roll."""
+
 RATES_OF_AIRCRAFT = {"p": "x1", "q": "y2", "r": "z3"}
 """Rate of an aircraft -> the axis of this component of its angular velocity in the body frame."""
 
@@ -343,6 +346,9 @@ def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> b
     if words is None and "inertia" in known.name and named.name[:1].islower():
         return False  # books call moments of inertia by capital letters
     if _is_component_of_rate(named) and any(word in known.name for word in RATES_OF_TOPS):
+        return False
+    is_torque = "torque" in known.name and re.fullmatch(r"L(_\w+)?", named.name) is not None
+    if is_torque and not any(map(OF_ROLL.fullmatch, names_in(named.formula))):
         return False
     is_multiple = "times" in known.how and words is not None
     if known.how and (not matrix or "sign" in known.how or is_multiple):

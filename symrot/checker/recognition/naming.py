@@ -79,6 +79,9 @@ LEAST_SYMBOLS_RELATED = 5
 With fewer symbols, it may be another formula.
 """
 
+LEAST_SYMBOLS_OF_MOTION = 3
+"""The fewest symbols of a relation with an angle's second time derivative and its sine: an equation of motion."""
+
 
 MOST_SOLVED = 4
 """The most letters for which an equation is solved, to compare it with known relations."""
@@ -202,8 +205,21 @@ def verdict_on_relation(claim: Claim) -> Verdict | None:
     assert claim.relation is not None
     _, left, right = claim.relation
     whole = NamedFormula(text(left), left, right, solve=None)
-    readings = _readings_of_relation(claim, whole, right, LEAST_SYMBOLS_RELATED)
+    readings = _readings_of_relation(claim, whole, right, _least_symbols_related(left, right))
     return Verdict("recognised", recognised_as=readings) if readings else None
+
+
+def _least_symbols_related(left: Node, right: Node) -> int:
+    """Return the fewest symbols that the equation ``left == right`` needs to be compared with known relations.
+
+    An equation of motion such as ``L theta'' = -g sin theta`` needs fewer than another equation.
+    """
+    nodes = [node for side in (left, right) for _, node in walk(side)]
+    accelerated = {node.args[0] for node in nodes if is_derivative(node) and len(node.args) > 2}
+    of_motion = any(
+        node.kind == "call" and node.value in ("sin", "cos") and accelerated & {*node.args} for node in nodes
+    )
+    return LEAST_SYMBOLS_OF_MOTION if of_motion else LEAST_SYMBOLS_RELATED
 
 
 def _with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tuple[Identification, ...]:
@@ -281,7 +297,7 @@ def _near_relation(claim: Claim, left: Node, right: Node) -> Verdict | None:
     The search for faults needs an equation with a single quantity on the left. So the equation is solved for each of
     its letters in turn (rates first), and each result, such as ``T == I*alpha``, is searched until one gives a verdict.
     """
-    if len(names_in(left) | names_in(right)) < LEAST_SYMBOLS_RELATED:
+    if len(names_in(left) | names_in(right)) < _least_symbols_related(left, right):
         return None
     atoms = dict.fromkeys(node for side in (left, right) for _, node in walk(side) if is_atom(node))
     order = sorted(atoms, key=lambda atom: atom.value != "diff")  # rates first
@@ -524,7 +540,8 @@ def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int)
     """
     solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
     is_open = (words_of(named) is None or _is_stated(claim, named)) and least_symbols == LEAST_SYMBOLS
-    return solved or _readings_of_relation(claim, named, tree, LEAST_SYMBOLS if is_open else LEAST_SYMBOLS_RELATED)
+    least = LEAST_SYMBOLS if is_open else _least_symbols_related(named.side, tree)
+    return solved or _readings_of_relation(claim, named, tree, least)
 
 
 def _is_stated(claim: Claim, named: NamedFormula) -> bool:

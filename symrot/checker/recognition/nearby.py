@@ -32,8 +32,8 @@ from symrot.checker.recognition.parts import (
     PointOfLetters,
     Values,
     Variant,
-    is_absent,
     is_multiple,
+    is_superfluous,
     multiples,
     near,
     parts,
@@ -283,7 +283,7 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
     actual = values_of(named.formula, letters.points)
     if actual and named.side.kind in ("name", "call") and not ending_of(known.name):
         for part in parts(_tree(known), own, actual):
-            if is_absent(part):
+            if is_superfluous(part):
                 code = "missing_term" if part.parent == "sum" else "factor"
                 cost = COST["missing_term" if part.parent == "sum" else "solved_factor"]
                 trees.append(
@@ -345,12 +345,13 @@ def _is_promising(search: Search, needed: Values) -> bool:
     """
     formula, at = search.named.formula, search.letters.points[:2]
     return any(
-        is_absent(part) or is_multiple(part) or any(search.matching(part)) for part in parts(formula, at, needed[:2])
+        is_superfluous(part) or is_multiple(part) or any(search.matching(part))
+        for part in parts(formula, at, needed[:2])
     )
 
 
 def _changes(search: Search, part: Part) -> Iterator[Change]:
-    if is_absent(part):
+    if is_superfluous(part):
         code, cost = ("extra_term", 0.0) if part.parent == "sum" else ("factor", COST["factor_removed"])
         yield Change(number(int(part.parent == "product")), code, COST[code] + cost)
     elif is_multiple(part):

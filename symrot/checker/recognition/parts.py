@@ -26,8 +26,8 @@ __all__ = [
     "Part",
     "PointOfLetters",
     "Variant",
-    "is_absent",
     "is_multiple",
+    "is_superfluous",
     "multiples",
     "near",
     "parts",
@@ -269,11 +269,12 @@ _INWARD: dict[tuple[str, str | None], Callable[[Sequence[Any], int, Any], Any]] 
 # -- what a part should be --------------------------------------------------------------------------------------------
 
 
-def is_absent(part: Part) -> bool:
-    """Return whether a claim would be right without a part: the part's needed values are 0 in a sum, or 1 in a product.
+def is_superfluous(part: Part) -> bool:
+    """Return whether a formula has its needed values without a part: a term to be 0, or a factor to be 1.
 
-    ``part.needed`` are the values at the test points with which the claim would be right. Numbers, and parts whose
-    needed values are matrices, never count.
+    ``part.needed`` are the values of the part, at the test points, with which the whole formula has its needed values.
+    In a claim's formula, such a part is one too many; in a known formula, it is one that the claim lacks. Numbers, and
+    parts whose needed values are matrices, never count.
     """
     neutral = {"sum": 0.0, "product": 1.0}.get(part.parent)
     if neutral is None or any(map(is_matrix, part.needed)) or part.node.kind == "number":

@@ -279,16 +279,33 @@ def _rolling() -> Iterator[Relation]:
 
 
 def _pendulum() -> Iterator[Relation]:
-    """Yield the Lagrangian, the energy and the period of a physical pendulum, by its moment or radius of gyration."""
-    potential = -MASS * G * ARM * cos(THETA)
-    stiffness = potential.diff(THETA, 2).subs(THETA, 0)
-    for moment in (A, MASS * GYRATION**2):
+    """Yield the Lagrangian, the energy, the equation of motion and the period of pendulums.
+
+    They are bodies of any moment or radius of gyration, the simple pendulum (a point mass), and solids that hang from
+    their ends or rims.
+    """
+    bodies = [("a physical pendulum", A, ARM), ("a physical pendulum", MASS * GYRATION**2, ARM),
+              ("a simple pendulum (a point mass)", MASS * ARM**2, ARM)]  # fmt: skip
+    for title, name, axis, arm in (("rod about an end", "rod", (1, 1), symbols.L / 2),
+                                   ("ring that hangs from its rim", "ring", (2, 2), symbols.R),
+                                   ("disk that hangs from its rim", "disk", (2, 2), symbols.R)):  # fmt: skip
+        body = solid(name)
+        point = body.center_of_mass + Matrix([arm, 0, 0] if name != "rod" else [0, 0, arm])
+        bodies.append((f"a {title}", body.inertia_about(point)[axis], arm))
+    for title, moment, arm in bodies:
+        potential = -MASS * G * arm * cos(THETA)
         kinetic = moment * DTHETA**2 / 2
-        title = "a physical pendulum"
         yield Relation(title, PENDULUM, ENERGY - (kinetic - potential), {ENERGY: "Lagrangian of"})
         yield Relation(title, PENDULUM, ENERGY - (kinetic + potential), {ENERGY: "energy of"})
+        common = MASS * arm if moment.has(arm) else MASS
+        motion = moment * DDTHETA + potential.diff(THETA)
+        yield Relation(title, PENDULUM, cancel(motion / common), {DDTHETA: "angular acceleration of"})
+        stiffness = potential.diff(THETA, 2).subs(THETA, 0)
         swing = PERIOD**2 * stiffness - (2 * pi) ** 2 * moment
-        yield Relation(title, PENDULUM, cancel(swing / MASS), {PERIOD: "period of"})
+        yield Relation(title, PENDULUM, cancel(swing / common), {PERIOD: "period of"})
+        if moment != A:
+            beat = symbols.n**2 * moment - stiffness
+            yield Relation(title, PENDULUM, cancel(beat / common), {symbols.n: "frequency of"})
 
 
 def _wheel() -> Iterator[Relation]:

@@ -207,7 +207,7 @@ class Cursor(ABC):
         if token.kind in ("number", "fraction"):
             raise self.fail("a product sign before a number" if token.kind == "number" else "an operator")
         if token.text in ENGLISH:
-            raise self.fail(f"each claim on a line of its own, without the word {token.text!r},")
+            raise self.fail(f"each claim on a line of its own, without the word {token.text!r}")
         return token.kind == "name" or token.text in FACTOR_MARKS or (token.text in ("|", "‖") and not self.bars)
 
     def is_element(self) -> bool:

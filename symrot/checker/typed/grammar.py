@@ -182,7 +182,7 @@ class Parser(PiecesPart):
         if left.kind == "call" and left.value == "cross" and not closed:
             raise self.fail("brackets that say which of the products comes first", sign.start)
         if self.token().kind == "name" and self.token().text in self.vocabulary.vectors:
-            raise self.fail("brackets around the right factor of the cross product, since a further vector follows,")
+            raise self.fail("brackets around the right factor of the cross product (a further vector follows)")
         factors[own:] = [Node("call", "cross", (left, right), self.span(left.span[0]))]
 
     def dotted(self, factors: list[Node]) -> None:

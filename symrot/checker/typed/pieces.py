@@ -181,9 +181,9 @@ class PiecesPart(OpenFunctionsPart):
             if doubtful and self.other_reading("prime", start, start, mark.end):
                 return Node("name", name + "_prime" * order, (), self.span(start))
             if name in ("t", "pi"):
-                raise self.fail(f"a quantity that may depend on t before the prime or dot, instead of {name},", start)
+                raise self.fail(f"a quantity that may depend on t before the prime or dot, instead of {name}", start)
             if name not in self.vocabulary.functions and name in self.vocabulary.symbols:
-                raise self.fail(f"{name} to be declared as a function of t", start)
+                raise self.fail(f"{name} to be declared as a function of t (in the claim's list of functions)", start)
             if [self.token(n).text for n in range(3)] == ["(", "t", ")"]:
                 self.index += 3
             self.timed.add(name)
@@ -210,7 +210,7 @@ class PiecesPart(OpenFunctionsPart):
         if (leibniz := self.leibniz(token)) is not None:
             return leibniz
         if self.source[token.start] == "∂":
-            raise self.fail("∂ only in a derivative such as ∂f/∂x, for which you may write diff(f, x),", token.start)
+            raise self.fail("∂ only in a derivative such as ∂f/∂x (or write diff(f, x))", token.start)
         if word == "Matrix" and self.peek() == "." and self.token(1).text in CONSTRUCTORS:
             self.index += 2
             return self.called(CONSTRUCTORS[self.tokens[self.index - 1].text], token)
@@ -353,7 +353,7 @@ class PiecesPart(OpenFunctionsPart):
         self.in_integral, self.element = True, self.element_ahead(limits is not None)
         inner = number(1) if self.is_element() else self.expression()
         if not self.is_element():
-            raise self.fail("dm at the end of an integral over a body, or limits and dx, as in ∫_0^1 x dx,")
+            raise self.fail("dm at the end of an integral over a body, or limits and dx, as in ∫_0^1 x dx")
         element = self.next().text
         self.in_integral, self.element = outer
         if limits is not None:
@@ -363,7 +363,7 @@ class PiecesPart(OpenFunctionsPart):
             mass = over_mass(inner)
             if mass is None:
                 raise self.fail(
-                    f"limits of the integral, dm, or a density before {element} for an integral over a body,"
+                    f"limits of the integral, dm, or a density before {element} for an integral over a body"
                 )
             self.note(f"the density times {element} is read as dm")
             inner = mass

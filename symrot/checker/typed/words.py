@@ -168,7 +168,11 @@ OF_LETTERS = re.compile(f"[cs][{''.join(ANGLES)}]")
 
 
 def shorthands_of_letters(tokens: Sequence[Token]) -> list[Shorthand]:
-    """Return the short forms ``ca``, ``sa``, ``cb`` and ``sb`` in a text, if several angles have both a c and an s."""
+    """Return the short forms in a text of letters for angles: cos(alpha) for ``ca``, sin(beta) for ``sb``.
+
+    The list is empty unless the text has both a cosine and a sine, as ``ca`` and ``sa``, for at least two angles:
+    otherwise ca is probably c times a.
+    """
     places = [place for place, token in enumerate(tokens) if token.kind == "name" and OF_LETTERS.fullmatch(token.text)]
     forms = {tokens[place].text for place in places}
     angles = {form[1] for form in forms if {f"c{form[1]}", f"s{form[1]}"} <= forms}

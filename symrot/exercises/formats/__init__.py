@@ -9,7 +9,7 @@ from symrot.exercises.formats.latex import latex_sheet
 from symrot.exercises.formats.markdown import markdown_sheet
 from symrot.exercises.formats.moodle import moodle_quiz
 
-__all__ = ["FORMATS"]
+__all__ = ["FORMATS", "WITHOUT_SOLUTIONS"]
 
 
 def _json(exercises: Sequence[Exercise]) -> str:
@@ -24,3 +24,9 @@ FORMATS: dict[str, Callable[[Sequence[Exercise]], str]] = {
     "json": _json,
 }
 """Format -> the function that prints exercises in it."""
+
+WITHOUT_SOLUTIONS: dict[str, Callable[[Sequence[Exercise], bool], str]] = {
+    "markdown": markdown_sheet,
+    "latex": latex_sheet,
+}
+"""Format -> the function that prints exercises in it, with solutions or without."""

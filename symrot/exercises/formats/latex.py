@@ -29,8 +29,8 @@ HEAD = r"""\documentclass[a4paper]{article}
 ESCAPES = {"&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "^": r"\^{}", "~": r"\~{}", "°": r"\textdegree{}"}
 
 
-def latex_sheet(exercises: Sequence[Exercise]) -> str:
-    """Return exercises as the text of a LaTeX document."""
+def latex_sheet(exercises: Sequence[Exercise], solutions: bool = True) -> str:
+    """Return exercises as the text of a LaTeX document; without ``solutions``, it has no hints either."""
     parts = [HEAD + r"\section*{Exercises}"]
     for number, exercise in enumerate(exercises, 1):
         questions = "\n".join(rf"\item[({each.key})] {prose(each.prompt)}" for each in exercise.questions)
@@ -41,6 +41,8 @@ def latex_sheet(exercises: Sequence[Exercise]) -> str:
             prose(data_text(exercise.data)),
             f"\\begin{{itemize}}\n{questions}\n\\end{{itemize}}",
         ]
+    if not solutions:
+        return "\n\n".join([*parts, r"\end{document}"]) + "\n"
     parts.append("\\clearpage\n\\section*{Hints}")
     for number, exercise in enumerate(exercises, 1):
         hints = "\n".join(rf"\item {prose(hint)}" for hint in exercise.hints)

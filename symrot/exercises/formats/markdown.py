@@ -15,8 +15,8 @@ def data_text(data: Sequence[Datum]) -> str:
     return f"Data: {', '.join(pairs)}." if data else ""
 
 
-def markdown_sheet(exercises: Sequence[Exercise]) -> str:
-    """Return exercises as Markdown text."""
+def markdown_sheet(exercises: Sequence[Exercise], solutions: bool = True) -> str:
+    """Return exercises as Markdown text; without ``solutions``, it has no hints either."""
     lines = ["# Exercises", ""]
     for number, exercise in enumerate(exercises, 1):
         lines += [f"## {number}. {exercise.title}", "", exercise.statement, ""]
@@ -25,6 +25,8 @@ def markdown_sheet(exercises: Sequence[Exercise]) -> str:
         lines += [data_text(exercise.data), ""]
         lines += [f"- ({question.key}) {question.prompt}" for question in exercise.questions]
         lines.append("")
+    if not solutions:
+        return "\n".join(lines).rstrip() + "\n"
     lines += ["# Hints", ""]
     for number, exercise in enumerate(exercises, 1):
         lines += [f"**{number}.**", "", *(f"{stage}. {hint}" for stage, hint in enumerate(exercise.hints, 1)), ""]

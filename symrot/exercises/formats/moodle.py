@@ -18,9 +18,6 @@ __all__ = ["moodle_quiz"]
 TOLERANCE = 0.005
 """The largest relative error of a number that Moodle accepts: three significant digits."""
 
-WIDTH = 260
-"""The width of a figure, px."""
-
 UNIT_PENALTY = "0.1"
 SPELLING = "Write products with * and powers with ^, with one fraction, letters in the order of the alphabet."
 UNMATCHED = (
@@ -68,7 +65,7 @@ def _image(exercise: Exercise) -> str:
     if not exercise.figure:
         return ""
     title = escape(title_of(exercise.figure))
-    return f'<p><img src="@@PLUGINFILE@@/{_file_name(exercise)}" alt="{title}" width="{WIDTH}"></p>'
+    return f'<p><img src="@@PLUGINFILE@@/{_file_name(exercise)}" alt="{title}"></p>'
 
 
 def _file_name(exercise: Exercise) -> str:

@@ -220,9 +220,10 @@ def _code_without_units(own: str, truth: str, question: Question) -> str:
 
 
 def _holds(own: str, truth: str, question: Question) -> bool:
-    """Return whether a modified formula of the student, such as its inverse, equals the right formula ``truth``.
+    """Return whether ``own``, a modified form of the student's formula, equals the right formula ``truth``.
 
-    Return False if it has no value, such as 1/0. The message can then say what the student confused.
+    ``own`` is, for example, the inverse of what the student wrote. If the result is True, the mark can tell the student
+    what was confused. It is False also if ``own`` has no value, such as 1/0.
     """
     try:
         return _is_right(_verdict(own, truth, question, repair=False))

@@ -60,7 +60,7 @@ def mark_number(key: str, answer: str, question: Question) -> Mark:
     Parameters
     ----------
     key : str
-        The name of the question on the mark.
+        The name of the question, which is copied to the mark.
     answer : str
         A number with a unit: ``"0.125 kg m^2"``, ``"3/8"``, ``"45 deg"``, ``"1.2e-3 m"``, or LaTeX.
     question : Question

@@ -69,7 +69,7 @@ def book(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) -> dict
     title, about : str
         The title of the book, and a paragraph for the page of contents.
     chapters : mapping of str to sequence of Page
-        A map from the title of a chapter to its pages, in reading order.
+        A map from the title of a chapter to its pages, in reading order. An empty title is not printed.
 
     Returns
     -------
@@ -98,7 +98,8 @@ def _contents(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) ->
     number = 1
     for chapter, pages in chapters.items():
         links = (f'<li><a href="{page.name}.html">{prose(page.title)}</a>, {page.extent}</li>' for page in pages)
-        parts += [f"<h2>{prose(chapter)}</h2>", f'<ol start="{number}">', *links, "</ol>"]
+        parts += [f"<h2>{prose(chapter)}</h2>"] if chapter else []
+        parts += [f'<ol start="{number}">', *links, "</ol>"]
         number += len(pages)
     return document(title, [*parts, f'<script src="{SEARCH}"></script>'], face(FILE) + STYLE)
 

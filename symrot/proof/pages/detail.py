@@ -1,7 +1,7 @@
 """One step of a derivation as a page of its own.
 
-In detail, the page also shows how the checker decides the step: the chain of rewritings that turns the left side minus
-the right side into zero.
+With the option for details, the page also shows how the checker decides the step: the chain of rewritings that turns
+the left side minus the right side into zero.
 """
 
 from sympy import MatrixBase, factor

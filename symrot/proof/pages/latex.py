@@ -73,7 +73,7 @@ def latex_book(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) -
     title, about : str
         The title of the book, and a paragraph below it.
     chapters : mapping of str to sequence of Page
-        Title of a part of the book -> its pages, in reading order.
+        Title of a part of the book -> its pages, in reading order. Pages with an empty title do not begin a part.
 
     Examples
     --------
@@ -84,7 +84,7 @@ def latex_book(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) -
     head = rf"\title{{{_prose(title)}}}" + f"\n{below}\n\\begin{{document}}\n\\maketitle"
     parts = [BOOK + head, r"\tableofcontents"]
     for chapter, pages in chapters.items():
-        parts.append(rf"\part{{{_prose(chapter)}}}")
+        parts += [rf"\part{{{_prose(chapter)}}}"] if chapter else []
         for page in pages:
             parts += [rf"\chapter{{{_prose(page.title)}}}\label{{{page.name}}}", *_body(page)]
     return "\n\n".join([*parts, r"\end{document}"]) + "\n"

@@ -83,10 +83,10 @@ def _inverse(a: Disc) -> Disc:
 def _sqrt(a: Disc, whole: float) -> Disc:
     """Return a disc that contains the square roots of all numbers in a disc.
 
-    If the disc contains zero, the root has no Taylor series there, and a step may overlook its whole change. A step
-    limit otherwise assumes that a step overlooks only a small fraction of the radius, the missed share. So the radius
-    is then the size of the root times ``whole``, which is 1 divided by the missed share: their product is the size of
-    the whole root.
+    If the disc contains zero, the root has no Taylor series there, and a step may overlook all of it. The step limit,
+    however, counts only a fraction of a disc's radius, the missed share, as overlooked. Therefore the radius is made
+    larger: it is the size of the root times ``whole``, which is 1 divided by the missed share. The step limit then
+    multiplies it by the missed share and counts the whole root as overlooked.
     """
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:
@@ -259,10 +259,11 @@ class Deviations:
     def __call__(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
         """Return, for each rate, a bound of its deviation for times within ``reach`` of t and states near y.
 
-        ``y`` and ``radii`` hold one number per state: the state is within this radius of y. Times and states may be
-        complex. A bound is infinite if a pole may lie in these discs. ``whole`` serves for square roots near zero,
-        whose whole change a step may overlook: it is 1 divided by the missed share, the fraction of a deviation that a
-        step overlooks otherwise.
+        The deviation is the distance of the rate from its value at t and y. ``y`` and ``radii`` hold one number per
+        state: the state is within this radius of y. Times and states may be complex. A bound is infinite if a pole may
+        lie in these discs. The caller counts only a fraction of a deviation, the missed share, as overlooked by a step.
+        ``whole`` is 1 divided by this share: the deviation of a square root near zero, all of which a step may
+        overlook, is multiplied by it.
         """
         self.spent += 1
         try:

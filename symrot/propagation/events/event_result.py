@@ -78,9 +78,10 @@ class EventResult(NamedTuple):
 
 
 class _Side(NamedTuple):
-    """The part of a motion after or before its start, for the search for events.
+    """One direction of a motion from its start, for the search for events: toward later or toward earlier times.
 
-    It has polynomials (``pieces``), a function from times to states, and the errors that ended it early (``broken``).
+    ``pieces`` are polynomials of the states, piece by piece; ``states`` is a function from times to states. ``broken``
+    is empty, or has the error that ended the motion early in this direction.
     """
 
     pieces: Generator[Piece, None, None]
@@ -197,7 +198,8 @@ def _searched(
 def _warnings(events: Sequence[Event], doubts: Sequence[tuple[int, float]]) -> Iterator[str]:
     """Yield a warning for each event whose formula comes so close to zero that the error of the motion matters.
 
-    Each item of ``doubts`` is (index of the event, time, s, of an extremum of its formula so close to zero).
+    Each item of ``doubts`` is a pair (number of the event in ``events``, time in s): the time of an extremum at which
+    the event's formula is that close to zero.
     """
     for number, event in enumerate(events):
         times = [t for each, t in doubts if each == number]

@@ -91,9 +91,10 @@ class Event(NamedTuple):
 
 
 class ZerosNotSeparated(PropagationError):
-    """Raised if a search cannot separate the zeros of the formulas beyond the time ``t``, s, within its limits.
+    """Raised if the zeros of ``formulas`` after the time ``t``, s, are not separated within the allowed operations.
 
-    ``zeros`` lists the zeros before that time, ``formulas`` the formulas as text, and ``effort`` how much was computed.
+    ``zeros`` lists the zeros before that time, ``formulas`` the formulas as text. ``effort`` is a text that tells how
+    much was computed: "4e+08 operations and 20000 entries".
     """
 
     def __init__(self, t: float, formulas: Sequence[str], effort: str) -> None:
@@ -273,12 +274,13 @@ class _Search:
         self.again, self.spent, self.allowed = False, 0.0, MOST_OPERATIONS
 
     def entries(self, piece: Piece) -> tuple[list[list[float]], ZerosNotSeparated | None]:
-        """Return the intervals of a piece that may contain zeros of an event's formula, and None or an error.
+        """Return (intervals, error): the intervals of ``piece`` that may contain zeros of the events' formulas.
 
-        An interval is a list [event, start, end, sign before, sign after]. Times are in s; signs of the formula are 0
-        where they are not known. The error says that the search ended early, because it needed more operations than the
-        limit; the intervals then cover the piece up to that time. Extrema that differ from zero by less than the error
-        of the motion are no intervals: they are added to the attribute ``doubts`` as (event, time).
+        An interval is a list [event, start, end, sign before, sign after]: the number of the event, times in s, and
+        signs of the formula, 0 where they are not known. The error is None, or a ZerosNotSeparated if the search needed
+        more operations than the limit and so ended early; it is returned, not raised, and the intervals then cover the
+        piece up to its time. An extremum that differs from zero by less than the error of the motion gives no interval;
+        (event, time) is added to the attribute ``doubts`` instead.
         """
         edges, rows = np.ascontiguousarray(piece.edges), np.ascontiguousarray(piece.rows)
         count, listed, answer = len(rows), [], (ctypes.c_int64 * 3)()
@@ -498,10 +500,10 @@ def _settled(
 ) -> float | None:  # fmt: skip
     """Append the zeros in the intervals ``entries`` to ``zeros``; return the time of a terminal event, s, or None.
 
-    The entries are lists [event, start, end, sign before, sign after] of a piece of the motion, which starts at ``t0``,
-    s. Nothing is appended for an interval in which the formula stays zero: throughout, or up to the end of the piece.
-    ``left`` holds, for each event, the number of zeros after which it ends the motion (0: never); this function counts
-    it down.
+    The entries are lists [event, start, end, sign before, sign after] of ``piece``, a part of the motion; ``event`` is
+    an index of ``events``. ``t0`` is the start of the whole motion, s. An interval gives no zero if the formula is zero
+    from its start to the end of the piece: whether it changes its sign shows in the next piece, if at all. ``left``
+    holds, for each event, the number of zeros after which it ends the motion (0: never); this function counts it down.
     """
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     side = 1.0 if last >= first else -1.0

@@ -197,9 +197,10 @@ def fitted_pieces(
 ) -> Generator[Piece, None, None]:
     """Yield polynomials that agree with a motion in closed form from ``start`` to ``end``, s; see :func:`fitted`.
 
-    ``end`` may lie before ``start``. Each piece consists of several polynomials, more and more as the motion goes on.
-    ``states``, ``blocks`` and ``scales`` are arguments of :func:`fitted`. ``longest``, s, is a first guess of the
-    length of time that one polynomial can fit.
+    ``end`` may lie before ``start``. Each piece consists of several polynomials, one for each of successive intervals.
+    Their number doubles from piece to piece, up to MOST: the first events are found after little work, and a long
+    motion takes few calls. ``states``, ``blocks`` and ``scales`` are arguments of :func:`fitted`. ``longest``, s, is a
+    first guess of the length of time that one polynomial can fit.
     """
     side, t, most, count = math.copysign(1.0, end - start), start, 8.0 * longest, FEWEST
     while t != end:

@@ -196,9 +196,14 @@ def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numb
 def slopes(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> dict[str, Fraction]:
     """Return the derivatives, by a variable, of numbers that depend on it; those that are zero are left out.
 
-    ``values`` takes a change of the variable, 0 or one or two times ``step`` up or down, and returns exact numbers by
-    name. ``name`` is the variable, for messages. The errors are those of :func:`difference`, which this function does
-    for the numbers of a scene.
+    ``values`` takes a change of the variable (0, or plus or minus one or two times ``step``) and returns exact numbers
+    by name. ``name`` is the variable, for messages. For ``values`` that return {"A": (3 + change)^2}, the result is
+    {"A": 6}.
+
+    Raises
+    ------
+    InputError
+        If a number has a kink or a jump at the variable's present value: derivatives over one and two steps differ.
     """
     first, second = (_quotient(values, size, name) for size in (step, 2 * step))
     for each, slope in first.items():

@@ -22,6 +22,7 @@ from symrot.build import cache as library
 from symrot.dynamics.structure import FieldTorque, FormulaTorque, InertiaTensor, Pattern, PrincipalInertia, Structure
 from symrot.errors import InputError, PropagationError
 from symrot.formula import exact_numbers as number
+from symrot.formula.float_functions import FLOAT_FUNCTIONS
 from symrot.formula.program import Program, node_from_json, node_to_json
 from symrot.formula.switches import STATES
 from symrot.planning.general_structure import PRODUCTS, constants_of, general_structure
@@ -30,6 +31,8 @@ from symrot.planning.rules import UNIT_FIELDS, pattern
 from symrot.planning.scene_kernel import EPOCH, Parameters
 from symrot.propagation.binding import value_of
 from symrot.propagation.compiled_models import has_formulas, kernel_key
+from symrot.propagation.events.event_result import EventResult
+from symrot.propagation.sensitivities.event_times import event_time_slopes
 from symrot.propagation.sensitivities.variables import Variable, difference, groups_of, read_variables, require_smooth
 from symrot.propagation.steppers import taylor
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
@@ -48,6 +51,7 @@ __all__ = [
     "TRIES",
     "Column",
     "columns_of",
+    "event_slopes",
     "motion_library",
     "rates_of",
     "rotation_slopes",
@@ -105,6 +109,20 @@ def variation(scene: Scene, keys: Sequence[str], times: Floats) -> Sensitivities
     )
 
 
+def event_slopes(scene: Scene, keys: Sequence[str], result: EventResult) -> tuple[Floats, ...]:
+    """Return the derivatives of the times of events by the variables ``keys``: for each event, shape (k, m).
+
+    ``result`` has the events of the motion of ``scene``; see
+    :func:`symrot.propagation.sensitivities.event_times.event_time_slopes`.
+    """
+    equations = _equations(scene, tuple(keys) if isinstance(keys, list) else keys)
+    slopes = []
+    for event, kinds, times in zip(result.events, result.kinds, result.t_events, strict=True):
+        states, by = equations.follow(scene, times)
+        slopes.append(event_time_slopes(event, kinds, times, states, equations.rates(scene, times, states), by))
+    return tuple(slopes)
+
+
 def transition_matrix(scene: Scene, start: float, stop: float) -> Floats:
     """Return the state transition matrix of a scene's motion from one time to another, shape (6, 6).
 
@@ -144,7 +162,11 @@ class Column:
         self.constants = every
 
     def start_from(self, initial: Initial) -> list[float]:
-        """Return ``start`` for another initial state of the scene; only that of a small rotation depends on it."""
+        """Return the derivatives of omega and quaternion at the start, by this column's variable, for ``initial``.
+
+        ``initial`` is another initial state of the scene. If the variable is a small rotation of the initial attitude,
+        the derivatives of the quaternion depend on it; otherwise the list is the same for every initial state.
+        """
         if self.variable.moved is not None:
             return self.start
         slopes = rotation_slopes(initial.quaternion, self.variable.axis)
@@ -152,9 +174,10 @@ class Column:
 
     @property
     def restartable(self) -> bool:
-        """Whether the column is the same for each initial state of the scene, but for :meth:`start_from`.
+        """Whether this column, with a new :meth:`start_from` only, also holds for other initial states of the scene.
 
-        It is false for a variable that sets the initial state in another form, such as ``initial.attitude.angle``.
+        It is false for a variable that sets the initial state in another form, such as ``initial.attitude.angle``: its
+        derivatives must be computed again.
         """
         variable = self.variable
         return variable.moved is None or variable.key.startswith("omega") or not any(self.start)
@@ -270,8 +293,10 @@ def variation_source(
     stepper : str
         The name of the stepper, which is a part of the key.
     source : function
-        Takes the program of the rates of states and derivatives, and the edges and scales of the blocks whose errors
-        are measured (:func:`symrot.propagation.compiled_models.error_blocks`); it returns the C source.
+        Returns the C source for three arguments: the program of the rates of states and derivatives, ``edges`` and
+        ``scales``. The error of a step is measured in blocks of the state vector: block i goes from index ``edges[i]``
+        to ``edges[i + 1]``, and its error is divided by ``scales[i]`` or, where this is 0, by the size of the block
+        (:func:`symrot.propagation.compiled_models.error_blocks`).
 
     Raises
     ------
@@ -341,11 +366,21 @@ class _Equations:
         initial state; default: the start of its span.
         """
         begin = float(scene.span.start) if begin is None else begin
-        parts, epoch = self._parts, 0.0
-        if self._uses_time and len(times) and starts_far(begin, float(times.min()), float(times.max())):
-            parts, epoch = self._parts_from(begin), begin
+        parts, epoch = self._chosen(begin, times)
         results = [part.follow(scene, times, begin, epoch) for part in parts]
         return results[0][0], np.concatenate([slopes for _, slopes in results], axis=2)
+
+    def rates(self, scene: Scene, times: Floats, states: Floats) -> Floats:
+        """Return the time derivatives of the states of the motion of ``scene`` at n times, shape (n, 7)."""
+        parts, epoch = self._chosen(float(scene.span.start), times)
+        rows = [parts[0].rates(t, state) for t, state in zip(times - epoch, states, strict=True)]
+        return np.array(rows).reshape(len(times), len(STATES))
+
+    def _chosen(self, begin: float, times: Floats) -> "tuple[list[_Part], float]":
+        """Return the equations for a motion that begins at the time ``begin``, s, and the epoch of their clock, s."""
+        if self._uses_time and len(times) and starts_far(begin, float(times.min()), float(times.max())):
+            return self._parts_from(begin), begin
+        return self._parts, 0.0
 
     def _parts_from(self, epoch: float) -> "list[_Part]":
         """Return the equations with time counted from an epoch, s; those for the last epoch are used again."""
@@ -359,7 +394,11 @@ _recent: list[_Equations] = []
 
 
 def _equations(scene: Scene, keys: Sequence[str]) -> _Equations:
-    """Return the equations of a scene's motion and its derivatives by the variables ``keys``, recent or new ones."""
+    """Return the equations of a scene's motion and its derivatives by the variables ``keys``.
+
+    Equations that were made for this scene and these variables are used again, if they are among the last MOST_RECENT
+    ones.
+    """
     equations = next((each for each in _recent if each.fit(scene, keys)), None)
     if equations is None:
         equations = _Equations(scene, keys)
@@ -373,8 +412,9 @@ def _parts(scene: Scene, columns: Sequence[Column], epoch: float = 0.0) -> "list
 
 
 class _Part:
-    """Up to :data:`AT_ONCE` columns of derivatives, in one library with the motion.
+    """A compiled library that integrates the motion and its derivatives by up to :data:`AT_ONCE` variables.
 
+    A column is the vector of derivatives of all states by one variable.
     ``epoch`` is the time of the scene, s, from which the equations count time.
     """
 
@@ -382,7 +422,8 @@ class _Part:
         structure = structure_of(scene, columns)
         plan = Plan(scene, replace(structure, clock=EPOCH) if epoch else structure, ())
         rates, parameters = rates_of(plan)
-        self.uses_time = rates.uses("t")
+        self.uses_time, self._rates = rates.uses("t"), rates
+        self._names = [name for name, _ in parameters]
 
         def numbers(other: Scene) -> dict[str, Fraction]:
             constants = {"pi": number.PI, EPOCH: Fraction(epoch), **constants_of(other, structure)}
@@ -395,10 +436,17 @@ class _Part:
         self._values = [float(own[name]) for name, _ in parameters]
         self._slopes = [[float(each[name]) for name in names] for each, names in zip(slopes, depends, strict=True)]
 
+    def rates(self, time: float, state: Floats) -> list[float]:
+        """Return the time derivatives of the seven states at a time, s, on the clock of the equations."""
+        values = dict(zip(self._names, self._values, strict=True)) | dict(zip(STATES, state.tolist(), strict=True))
+        return list(self._rates.evaluate({**values, "t": float(time)}, FLOAT_FUNCTIONS, float).values())
+
     def follow(self, scene: Scene, times: Floats, begin: float, epoch: float) -> tuple[Floats, Floats]:
         """Return states and derivatives as :meth:`_Equations.follow` does; ``epoch`` is that of the equations.
 
-        A column that stays small is integrated again in smaller units, so that the control of errors fits it.
+        The column of derivatives by one variable is multiplied by a power of two, its unit, near the size of the
+        variable. If all its products stay below SMALL, the control of errors, which compares errors with 1, hardly sees
+        them. The motion is then integrated again, with a unit that makes them near 1.
         """
         columns, size = self.columns, len(STATES)
         start = [float(value) for value in (*scene.initial.omega_b, *scene.initial.quaternion)]

@@ -89,13 +89,13 @@ def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
 
 
 def why_hopeless(steps: int, way: float, left: float, limit: int) -> str:
-    """Return a sentence that says that a motion would take far too many steps, or an empty text if it would not.
+    """Return a sentence that says that a motion would need far more steps than allowed, or else an empty text.
 
     The last ``steps`` steps covered a time of ``way`` seconds; ``left`` seconds remain. ``limit`` is the largest number
-    of steps; far too many are more than three times as many.
+    of steps. "Far more" means more than three times ``limit``, if the steps stay as short as the last ones.
     """
     if steps * left <= HOPELESS * limit * way:
         return ""
-    more = f"{steps * left / way:.0e} of them, far" if way > 0.0 else "endlessly many of them,"
+    more = f"{steps * left / way:.0e} steps, far" if way > 0.0 else "endlessly many steps,"
     each = f"each step or evaluation covers {way / steps:.1e} s"
-    return f"{each}: the motion would need {more} more than the limit of {limit}"
+    return f"{each}: the motion would need {more} more than the largest allowed number of {limit}"

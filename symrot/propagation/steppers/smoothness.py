@@ -23,7 +23,7 @@ def _of_formulas(torque: FormulaTorque) -> str:
             inner = expression.children(node)
             waiting += inner
             if node[0] == "call" and node[1] in BRANCHING and any(CHANGING & expression.names(part) for part in inner):
-                return f"{node[1]} in the torque is not smooth everywhere"
+                return f"the torque contains {node[1]}, which has no Taylor series at some arguments"
     return ""
 
 
@@ -31,7 +31,7 @@ def _of_torque(torque: TorqueStructure) -> str:
     if isinstance(torque, FormulaTorque):
         return _of_formulas(torque)
     if torque.kind == "damping" and torque.number("quadratic") is not Pattern.ZERO:
-        return "quadratic damping is not smooth at rest"
+        return "quadratic damping has no Taylor series at rest"
     return ""
 
 

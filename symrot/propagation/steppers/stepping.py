@@ -166,10 +166,11 @@ class Segment(NamedTuple):
 
 
 def segments(t0: float, end: float, breaks: Sequence[float]) -> list[Segment]:
-    """Return the segments into which switching times divide the span from t0 to ``end``; ``end`` may lie before t0.
+    """Return the segments into which switching times divide the span from t0 to ``end``, in the order of the motion.
 
-    Without times in ``breaks`` that lie inside, the result is one segment. For t0 = 0, ``end`` = 2 and a break at 1 it
-    is the segment from 0 to 1 and the segment from 1 to 2.
+    ``breaks`` are the switching times, in increasing order; those outside the span do not count. For t0 = 0, ``end`` =
+    2 and a break at 1 the result is the segment from 0 to 1 and the segment from 1 to 2. ``end`` may lie before t0: for
+    t0 = 2 and ``end`` = 0 they are those from 2 to 1 and from 1 to 0. Without breaks inside, the result is one segment.
     """
     if not breaks:
         return [Segment(t0, end, t0, end)]
@@ -267,10 +268,10 @@ class SteppedRecording(Recording):
 
 
 class Window(NamedTuple):
-    """The C function of a stepper and the parameters of the rates for a window of time: until the epoch is moved.
+    """The C function of a stepper, and the parameters of the rates that it uses until its clock is set to 0 again.
 
-    The kernel counts time from the epoch, and a stepper moves the epoch along with the motion, so that times keep
-    digits.
+    In a long motion the stepper now and then sets its clock to 0, so that times on the clock have many digits. The time
+    of the scene at such a moment is called epoch. Parameters that depend on time are computed for the present epoch.
     """
 
     step: Callable[..., Any]
@@ -420,10 +421,11 @@ def is_sorted(times: Floats) -> bool:
 
 
 class Integration:
-    """The integration of one motion by a stepper in C: its checked arguments, and the cost of all calls so far.
+    """The integration of one motion by a stepper in C: its checked arguments, and the cost of all calls of it so far.
 
-    ``load`` returns the stepper for the path of a library. The other parameters are explained in
-    :func:`symrot.propagation.steppers.dop853.integration`.
+    The cost is counted in steps, evaluations and seconds, over all calls of :meth:`sample` and :meth:`record`.
+    ``library`` is the path of a compiled C library with the rates and the stepper; ``load`` takes this path and returns
+    the stepper. The other parameters are explained in :func:`symrot.propagation.steppers.dop853.integration`.
     """
 
     def __init__(
@@ -557,8 +559,8 @@ class Integration:
     def record(self, span: tuple[float, float]) -> SteppedRecording:
         """Return the motion as a function of time, over the shortest interval that contains ``span`` and t0.
 
-        The steps are the same as in :meth:`sample` to the ends of the span, so that both give equal states. The record
-        of a step takes 8 N + 2 numbers with DOP853, and 21 N + 4 with Taylor series of order 20.
+        The steps are the same as in :meth:`sample` to the ends of the span, so that both give equal states. For N
+        states, the record of a step takes 8 N + 2 numbers with DOP853, and 21 N + 4 with Taylor series of order 20.
         """
         low, high = min(span), max(span)
         if not (math.isfinite(low) and math.isfinite(high)):

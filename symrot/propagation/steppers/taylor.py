@@ -66,9 +66,10 @@ ORDERS = {  # for few and for many products: least tolerance, and the fastest or
 def step_tail(tolerance: float) -> tuple[float, float]:
     """Return a limit for the last terms of a step's Taylor series, and the step length for which it holds.
 
-    The length is a fraction of the span. In a step that is shorter by a factor r, the limit is multiplied by r^(7/4),
-    because errors of single steps add up about as the number of steps to this power; the final error then hardly
-    depends on the span. ``tolerance`` is the error of the whole trajectory to aim for.
+    ``tolerance`` is the error of the whole trajectory to aim for; the limit is equal to it. The length is
+    1/STEPS_OF_ALL of the span. The stepper multiplies the limit by r^(7/4) in a step that is r times as long. For n
+    equal steps, r is proportional to 1/n, and the sum of their errors grows about as n^(7/4) times the error of one: so
+    the final error hardly depends on the number of steps.
 
     The fraction is calibrated against references of 50 digits for free asymmetric bodies, some of which flip about the
     intermediate axis, and for heavy tops (``tests/propagation/test_taylor.py``): errors stay below 5 tolerances.

@@ -1,7 +1,8 @@
 """Times as sums of two doubles, and clocks that show 0 at such a time.
 
-At t = 1e6 s adjacent doubles lie 1e-10 s apart. If the time of a switch is rounded to one double, the motion changes by
-up to 1e-10 of the effect that the torque has within a second. A sum of two doubles has 32 digits.
+At t = 1e6 s adjacent doubles lie 1e-10 s apart. If the time of a switch is rounded to one double, a torque that
+switches there acts up to 1e-10 s too long or too short, and the error in the angular momentum is the jump of the torque
+times this time. A sum of two doubles has 32 digits.
 """
 
 from fractions import Fraction

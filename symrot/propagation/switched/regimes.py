@@ -33,12 +33,13 @@ Modes = dict[str, int]
 
 
 class Guard(NamedTuple):
-    """A formula at whose zero a switching function (sign, floor, ..) switches: when ``formula`` becomes negative.
+    """A formula at whose zero a switching function (sign, floor, ..) switches: it is positive before, negative after.
 
-    ``mode`` is the name of the number that replaces the function in the equations. For floor, ``change`` (1 or -1) is
-    added to this number. For a sign, ``change`` is 0, and the number changes from 1 to -1 or back. A sign may be held
-    at zero while the motion slides; ``change`` is then the number, 1 or -1, that replaces the sign after the sliding
-    ends here. ``where`` lists the conditions under which the function affects the motion.
+    ``mode`` is the name of the number that replaces the function in the equations. ``change`` tells how this number
+    changes at the switch. For floor, 1 or -1 is added to it. For a sign, ``change`` is 0: the number changes from 1 to
+    -1 or back. While the motion slides, a sign is held at zero; then ``change`` is 1 or -1, the value that replaces the
+    sign when the sliding ends at this guard, or 0 for the guard that shows that the motion no longer slides back.
+    ``where`` lists the conditions under which the function affects the motion.
     """
 
     mode: str

@@ -270,12 +270,14 @@ class SwitchedRun(RunState):
         return guard
 
     def _coincident(self, regime: Regime, active: list[bool], values: list[float], most: int) -> Guard | None:
-        """Return a guard whose function has to switch at the present time, because it becomes negative; or None.
+        """Return a guard whose function has to switch at the present time, or None.
 
-        This matters where several functions switch at one time, which they do one after the other: before the last one,
-        the rates may have no value, such as the root of a negative number. With ``most`` = 0, a guard that stays zero
-        is returned too; with -1, only one that becomes negative. ``active`` says, for each guard, whether it can end
-        the regime; ``values`` are the parameters of the guards.
+        A guard is a formula that is negative once its function (sign, floor, ..) has to switch. Several functions may
+        switch at one time; they do so one after the other, and this method returns the next one. The rates may have no
+        value until the last one has switched: a root may have a negative argument. ``most`` is the largest sign that
+        the guard may have just after the present time: -1 for a guard that becomes negative, 0 if one that stays zero
+        counts too. ``active`` says, for each guard, whether it can end the regime; ``values`` are the parameters of the
+        guards.
         """
         h = self.side * SHORT * self.span
         row = np.concatenate([[self.t, h, 0.0, h], self.y, np.zeros_like(self.y)])
@@ -397,12 +399,12 @@ class SwitchedRun(RunState):
         return self._past(regime, guard, instant.after(correction))
 
     def _past(self, regime: Regime, guard: Guard, instant: Instant) -> Instant:
-        """Return a time close to a switch at which its guard, a formula of time alone, is no longer positive.
+        """Return a time at, or just after, a switch at which its guard, a formula of time alone, is no longer positive.
 
-        A guard is a formula at whose zero a function such as sign switches. While it is still positive by rounding
-        errors, the function would switch back at once. Times after ``instant``, the computed time of the switch, are
-        tried at growing distances of a few units in the last place. If the formula is positive at all of them,
-        ``instant`` is returned.
+        A guard is a formula that becomes negative where a function such as sign switches. At ``instant``, the computed
+        time of the switch, it may still be slightly positive by rounding errors, and the function would switch back at
+        once. So ``instant`` and later times are tried, at growing distances of a few units in the last place. If the
+        formula is positive at all of them, ``instant`` is returned.
         """
         formula, later = parse(guard.formula), instant
         step = self.side * math.ulp(math.ulp(instant.high))
@@ -428,11 +430,11 @@ class SwitchedRun(RunState):
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
     ) -> tuple[list[Guard], list[Guard]]:
-        """Return two lists of guards: those that are negative just after the start of a piece, and those at its end.
+        """Return two lists of guards: those that are negative just after the start of ``piece``, and at its end.
 
-        A guard is a formula that becomes negative when its function (sign, floor, ..) has to switch: if it is negative,
-        the function should have switched. ``active`` says, for each guard, whether it can end the regime. ``values``
-        are the parameters of the guards' formulas for the present modes.
+        A guard is a formula that becomes negative when its function (sign, floor, ..) has to switch. One in the first
+        list should have switched before the piece, one in the second within it. ``active`` says, for each guard,
+        whether it can end the regime. ``values`` are the parameters of the guards' formulas for the present modes.
         """
         formulas = [guard.formula for guard in regime.guards]
         first, last = (
@@ -524,7 +526,12 @@ class SwitchedRun(RunState):
         slides = kind == "sign" and again > 0 and mode not in self.held and self._returns(mode)
         self.order.append(mode)
         if len(self.order) > MOST_AT_ONCE or (slides and self._state(hold=mode) in self.visited):
-            raise IntegrationStopped(self.t, f"no value of {self._name(mode)} lets the motion continue", self.end)
+            raise IntegrationStopped(
+                self.t,
+                f"the torque contradicts itself: with every value that {self._name(mode)} can have here, it switches "
+                "at once to another value; change the torque, or end the motion here",
+                self.end,
+            )
         if again == 0:
             self._count()
         self.flipped[mode] = again + 1
@@ -553,12 +560,12 @@ class SwitchedRun(RunState):
             self._wake(other)
 
     def _returns(self, mode: str) -> bool:
-        """Return whether the argument of the sign with the mode ``mode`` must be held at zero: the motion slides.
+        """Return whether the motion slides: the argument of the sign with the mode ``mode`` must be held at zero.
 
-        A mode is the number that replaces a function in the equations. The argument must be held if a change of this
-        sign would restore values that all switching functions had together before, at the same time: without holding,
-        the same changes would follow again and again. A function with only a kink, such as abs, is not held if a
-        function with a jump has switched since then.
+        A mode is the number that replaces a function in the equations. The motion slides if changing this sign again
+        would lead back to a state that was already visited at the present time: one in which all switching functions
+        had the same values. The same changes would then repeat without end. A function with only a kink, such as abs,
+        is not held if a function with a jump has switched since that state.
         """
         first = self.visited.get(self._state(flip=mode))
         if first is None:
@@ -577,10 +584,10 @@ class SwitchedRun(RunState):
         return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether a function inside the argument of another one has switched later than the outer function.
+        """Return whether, at the present time, a function inside the argument of ``mode`` switched after ``mode``.
 
-        ``mode`` names the outer function, which is the abs in abs(x + sign(y)); the sign is the inner function. Only
-        switches at the present time count.
+        ``mode`` names the outer function, such as abs in abs(x + sign(y)), where sign is the inner function. If sign
+        switched after abs, the argument of abs has jumped since, and abs may switch once more.
         """
         last = len(self.order) - self.order[::-1].index(mode)
         return bool(self._inside(mode) & set(self.order[last:]))
@@ -631,11 +638,11 @@ class SwitchedRun(RunState):
         self._regime(self.modes)
 
     def _comes_to_rest(self, regime: Regime) -> bool:
-        """Set each held sign(x) whose x stays zero by itself to its value at zero; return whether there are any.
+        """Release each held sign(x) whose x stays zero without being held; return whether there are any.
 
-        While the motion slides, x is held at zero by a torque between those for sign(x) = 1 and -1, and the equations
-        contain a value of sign(x) between them. Nothing drives a body at rest away from zero, so no such torque is
-        needed.
+        While the motion slides, x is held at zero: the equations contain a value of sign(x) between -1 and 1 for which
+        x remains zero. If x remains zero with sign(x) = sign(0) as well, as for a body at rest that no torque drives,
+        holding it is needless. The number for sign(x) in the equations is then set to the value at zero.
         """
         resting = [mode for mode in sorted(self.held - self.rested) if self.system.matters_at_zero(mode)]
         if resting:
@@ -695,10 +702,11 @@ class SwitchedRun(RunState):
         return " and ".join(self._name(mode) for mode in sorted(self.held))
 
     def _check_held_alone(self) -> None:
-        """Raise IntegrationStopped if a held argument keeps the argument of another function with a jump at zero.
+        """Raise IntegrationStopped if x, held at zero for sign(x), also keeps the argument of another jump at zero.
 
-        An example is sign(omega_1 + omega_1^3) beside sign(omega_1): the equations of the sliding motion determine the
-        value of the held function only, not that of the other.
+        In sliding motion the equations determine a value between -1 and 1 for the sign of the held argument. In
+        sign(omega_1) + sign(omega_1 + omega_1^3), both arguments are zero together, and the equations determine one of
+        the two values only.
         """
         y = self.y.tolist()
         steps = [PERTURBATION * max(abs(self.t), self.span), *(PERTURBATION * max(1.0, abs(x)) for x in y)]

@@ -57,11 +57,11 @@ class RunState:
         return Instant(self.motion.start) - self.zero
 
     def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
-        """Return a function that takes an epoch, s, and returns the rates and the parameters to use with this epoch.
+        """Return a function from an epoch, s, to (rates, parameters), or None if the rates do not depend on time.
 
-        The rates ``stepped`` of the smooth motion ``regime`` are a compiled library or a Python function. With the
-        returned parameters they count time from the epoch, which is given in s after the last switch. Return None if
-        the rates do not depend on time.
+        The epoch is the time, in s after the last switch, at which the stepper sets its clock to 0. ``stepped`` are the
+        rates of the smooth motion ``regime``, a compiled library or a Python function; the function returns them
+        unchanged, with the parameter values that they need for times on this clock.
         """
         parameters = regime.rates_since(self.modes, self.zero)
         return (lambda since: (stepped, parameters(since))) if parameters else None

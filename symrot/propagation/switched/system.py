@@ -100,9 +100,9 @@ class SwitchedSystem:
 
     @cached_property
     def settled(self) -> set[str]:
-        """The switching functions, named by their modes, whose arguments are constant, so that they never switch.
+        """The modes of the switching functions that never switch, because their arguments are constant.
 
-        A mode is the number that replaces the function in the formulas.
+        A mode is the name of the number that replaces a function, such as sign, in the formulas.
         """
         settled = set[str]()
         for switch in self.switches:
@@ -137,9 +137,9 @@ class SwitchedSystem:
     def beside_start(self, mode: str, sign: int) -> Modes:
         """Return the values of all switching functions just after the start, if that of ``mode`` is ``sign``.
 
-        A mode is the name of the number that replaces a function such as sign in the formulas. The argument of this
-        function is zero at the start, so that 1 and -1 are both possible; functions whose arguments contain it get
-        other values with it.
+        A mode is the name of the number that replaces a function such as sign(x) in the formulas; the result maps modes
+        to values. x is zero at the start, so that both ``sign`` = 1 and ``sign`` = -1 are possible. Functions inside
+        whose arguments sign(x) occurs, such as floor(sign(x) + y), have different values in the two cases.
         """
         return self._modes_at_start({mode: sign})[0]
 
@@ -189,8 +189,9 @@ class SwitchedSystem:
                 for switch in switches:
                     if names(switch.guard) & (held | tied.keys()):
                         raise InputError(
-                            f"torque: the motion slides along the jump of a function inside {switch.label}, where "
-                            f"{switch.label} has no value; write the torque without one of them inside the other"
+                            f"torque: the motion slides along the jump of a function that occurs inside "
+                            f"{switch.label}, and {switch.label} has no value there; write the torque so that no "
+                            "function with a jump occurs inside another one"
                         )
                 own = on_own_clock(plan, self.choice, self.tolerance)
                 self._regime_of[content] = Regime(self.constants, self.switches, own, held, switches)
@@ -217,8 +218,8 @@ class SwitchedSystem:
 def _switches(torque: FormulaTorque) -> list[Switch]:
     """Return the switching functions (sign, abs, ..) of a torque, as conditions on time and states.
 
-    The number that replaces a function, its mode, is a constant of the plan. There the constants of a torque may have a
-    prefix, such as ``torque2_``; the result has the names with this prefix.
+    Each function is replaced by a number, its mode, which is a constant of the torque. A plan with several torques
+    gives the constants of each a prefix, such as ``torque2_``, so that names differ; the names in the result have it.
     """
     own = {name: f"{torque.prefix}{name}" for name in torque.parameters}
     return [

@@ -105,7 +105,9 @@ def _entry(erratum: Erratum, items: Sequence[Finding]) -> Entry:
 def _correction(item: Finding, formula: PrintedFormula) -> Correction:
     """Return a faulty formula as printed and as corrected, in LaTeX, with boxes around what differs.
 
-    ``item`` is the finding about it, ``formula`` its LaTeX with holes for the parts that the checker read.
+    ``item`` is the finding about it: the parts that the checker read, and what corrects them. ``formula`` is the
+    printed LaTeX as a template: each of these parts is replaced by a name, which this function replaces by the LaTeX of
+    the printed or the corrected part.
     """
     where = item.claim["where"]
     if not item.parts:

@@ -157,11 +157,15 @@ class Model {
         return state;
     }
 
-    /** Return the largest difference from symrot's own motion: of ω relative to its size, and of the quaternion. */
+    /**
+     * Return the largest difference from symrot's own motion: of ω relative to its size, and of the quaternion; null if the
+     * motion ends before the first time after the start at which it could be compared.
+     */
     agreement() {
         const at = unpack(data.reference.t, 1), states = unpack(data.reference.y, 7);
         const largest = Math.max(...states.map((y) => Math.hypot(y[0], y[1], y[2]))) || 1;
         let worst = 0;
+        if (this.motion.t < at[1][0]) return null;
         states.forEach((expected, k) => {
             if (at[k][0] > this.motion.t) return;
             const y = this.motion.at(at[k][0]);

@@ -164,8 +164,8 @@ export class Motion {
         for (;;) {
             const last = this.t + this.h*(1 + 1e-12) >= this.stop;
             const h = (last ? this.stop : this.t + this.h) - this.t;      // what the clock really moves by
-            if (this.steps.length >= MOST_STEPS) return this.#fail(`the motion needs more than ${MOST_STEPS} steps`);
-            if (!(h > 4*2**-52*Math.abs(this.t))) return this.#fail("the motion needs steps below the rounding of time");
+            if (this.steps.length >= MOST_STEPS) return this.#fail(`a page computes at most ${MOST_STEPS} steps, and they end`);
+            if (!(h > 4*2**-52*Math.abs(this.t))) return this.#fail("its steps fall below the rounding of time");
             for (let stage = 2; stage <= 12; ++stage) this.#stage(stage, h);
             for (let i = 0; i < size; ++i) {
                 let sum = 0;

@@ -5,6 +5,7 @@ const KEYS = "space: play or pause; left, right: step; home, end: start, end; up
 const REDUCED = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
 const DARK = window.matchMedia("(prefers-color-scheme: dark)");
 const SLICE = 10, FIRST_SLICE = 100;     // ms: how long a motion is computed before the next frame; the first motion
+const TOLD_AFTER = 4;             // frames between two texts of the time, where the processor draws the page
 const STEPS_AT_ONCE = 16, SAMPLES_AT_ONCE = 64;
 const LONGEST_RUN = 500;          // ms: a computation that has run longer is given up when the reader asks for another motion
 const TURN = Math.PI/24;          // rad: rotation of the view by a key
@@ -130,7 +131,7 @@ class Page {
         const play = element("play");
         play.addEventListener("click", () => this.toggle());
         element("restart").addEventListener("click", () => this.seek(data.start));
-        element("scrub").addEventListener("input", (event) => this.seek(data.start + event.target.value/1000*(data.stop - data.start)));
+        element("scrub").addEventListener("input", (event) => this.seek(data.start + event.target.value/1000*(this.stop - data.start)));
         element("speed").addEventListener("input", (event) => this.setSpeed(this.#usualSpeed()*2**Number(event.target.value)));
         element("view").addEventListener("change", (event) => {
             this.drawing.follow = event.target.value;
@@ -145,7 +146,7 @@ class Page {
         document.addEventListener("keydown", (event) => {
             if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest?.("input[type=number], select")) return;
             if (event.key === " " && event.target.closest?.("button, summary, input[type=checkbox]")) return;
-            const step = (data.stop - data.start)/200, speed = element("speed"), turn = (...by) => () => this.drawing.turn(...by);
+            const step = (this.stop - data.start)/200, speed = element("speed"), turn = (...by) => () => this.drawing.turn(...by);
             const actions = event.shiftKey && event.key.startsWith("Arrow") ? {
                 ArrowLeft: turn(-TURN, 0, 1), ArrowRight: turn(TURN, 0, 1), ArrowUp: turn(0, TURN, 1), ArrowDown: turn(0, -TURN, 1),
             } : {
@@ -177,6 +178,13 @@ class Page {
     toggle() {
         if (!this.playing && this.t >= this.stop) this.t = data.start;
         this.playing = !this.playing;
+        this.#showPlaying();
+    }
+
+    /** Play the motion from its start. */
+    restart() {
+        this.seek(data.start);
+        this.playing = true;
         this.#showPlaying();
     }
 
@@ -447,14 +455,16 @@ class Page {
         element("trust").textContent = lines.join(" ");
     }
 
-    #pose() {
+    /** Show the present time in the picture, and, if `everywhere`, beside it and in the plots. */
+    #pose(everywhere = true) {
         const state = this.model.at(Math.min(this.t, this.stop));
         this.state = state;
         this.drawing.pose(state);
         this.drawing.trailUpTo((this.t - data.start)/((this.stop - data.start) || 1), this.trailCount);
+        if (!everywhere) return;
         const time = `t = ${moment(this.t)}`;
         if (element("time").textContent !== time) element("time").textContent = time;
-        element("scrub").value = 1000*(this.t - data.start)/(data.stop - data.start);
+        element("scrub").value = 1000*(this.t - data.start)/(this.stop - data.start || 1);
         if (!this.playing) element("scrub").setAttribute("aria-valuetext", time);
         for (const {panel} of this.panels) panel.cursor(this.t);
     }
@@ -478,7 +488,7 @@ class Page {
                 this.playing = false;
                 this.#showPlaying();
             }
-            this.#pose();
+            this.#pose(!this.playing || !this.drawing.isSoftware || this.frames % TOLD_AFTER === 0);
         }
         this.drawing.render(this.playing);
         this.frames += 1;

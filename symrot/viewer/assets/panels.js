@@ -131,7 +131,7 @@ export class Panel {
             return values;
         };
         this.plot = new libraries.uPlot({
-            width: 400, height: this.height, legend: {show: false},
+            width: 400, height: this.height, legend: {show: false}, padding: [null, 2*size, null, null],
             cursor: {drag: {x: true, y: false}, points: {show: false}},
             scales: {x: {time: false, range: (_, low, high) => high > low ? [low, high] : [(low ?? 0) - 0.5, (low ?? 0) + 0.5]}, y: {range: () => [this.low, this.high]}},
             axes: [
@@ -189,7 +189,7 @@ export class Panel {
         }), written);
         const inWords = kind === "drift" ? this.raw.map((most, k) => `${names[k]} at most ${most.toPrecision(2)}`)
             : spans.map(([from, to], k) => from <= to ? `${names[k]} from ${Number(from.toPrecision(4))} to ${Number(to.toPrecision(4))}` : "").filter(Boolean);
-        this.holder.setAttribute("aria-label", `${this.definition.title}${unit ? `, ${unit}` : ""}: ${inWords.join("; ")}`);
+        this.holder.setAttribute("aria-label", `${this.definition.title}${unit && ` ${unit}`}: ${inWords.join("; ")}`);
         this.plot.setData([times.map((time) => time/clock[0]), ...series]);
         this.cursor(this.time);
     }

@@ -85,7 +85,10 @@ def audit_step(
     try:
         texts = _files(path, name, data)
     except (KeyError, TypeError, ValueError, OverflowError) as reason:
-        raise CertificateError(f"{path}: expected files and parameters as symrot prints them ({reason})") from None
+        raise CertificateError(
+            f"{path}: expected the entries 'files' and 'parameters' in the form that symrot prints, got a fault in "
+            f"them ({reason}); print the certificate again"
+        ) from None
     source = texts[f"{name}.c"]
     check_header(texts[f"{name}.h"], source, name)
     method, rates = _method(path, data), rates_of(data)
@@ -198,7 +201,10 @@ def _bounds(path: Path, data: Data, method: Method, source: str, rerun: bool) ->
     except InputError as reason:
         raise CertificateError(f"{path}: {reason}") from None
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as reason:
-        raise CertificateError(f"{path}: expected bounds as symrot prints them, got others ({reason})") from None
+        raise CertificateError(
+            f"{path}: expected the section 'bounds' of rounding errors in the form that symrot prints, got a fault "
+            f"in it ({reason}); print the certificate again"
+        ) from None
     if json.dumps(own, sort_keys=True) != json.dumps(data["bounds"], sort_keys=True):
         raise CertificateError(f"{path}: expected the bounds that symrot computes on the box, got others")
     return "bounds of rounding and truncation were computed again and agree"

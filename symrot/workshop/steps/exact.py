@@ -64,7 +64,10 @@ def _form(scene: Scene) -> _Form:
 
 
 def _rounded(value: Fraction) -> Fraction:
-    """Return the double nearest to a number as a fraction, because the C function receives doubles."""
+    """Return, as a fraction, the double that is nearest to ``value``: the C function receives doubles.
+
+    For 1/10 the result is 3602879701896397/36028797018963968.
+    """
     return Fraction(float(value))
 
 

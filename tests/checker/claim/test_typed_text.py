@@ -284,7 +284,7 @@ def test_a_greek_letter_with_an_index_is_a_name_where_it_is_the_whole_left_side(
     assert verdict.reading == "ωp = m*g*r/(I_3*ω)"
     assert any("read as ω*p = " in note for note in verdict.notes)
     verdict = symrot.check("v = ωr")
-    assert (verdict.verdict, verdict.reading) == ("definition", "v = ω*r")
+    assert (verdict.verdict, verdict.reading) == ("recognised", "v = ω*r")
 
 
 def test_tr_is_the_trace():

@@ -1,6 +1,6 @@
 """Time and error of mass, centre and inertia of a mesh of a million triangles, for each format of files.
 
-    python -m symrot.bench.mesh [--triangles 1000000] [--rounds 3]
+    python -m symrot.bench.comparison.meshes [--triangles 1000000] [--rounds 3]
 
 The mesh is an ellipsoid, written by trimesh. A run is a call of :func:`symrot.mesh`: it reads the file, tests the
 surface, and integrates. The least processor time counts. The error is that of the moments of inertia against those of

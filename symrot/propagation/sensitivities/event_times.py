@@ -1,0 +1,71 @@
+"""Derivatives of the times of events by initial values and constants.
+
+At an event the formula g(t, x) is zero. If a variable v changes, the state x changes at fixed time by S dv, and the
+zero moves by dt with ``(dg/dt) dt + (grad g) S dv = 0``, where dg/dt is the derivative along the motion.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.codegen.duals import Dual, dual_functions
+from symrot.errors import InputError
+from symrot.formula.float_functions import FLOAT_FUNCTIONS
+from symrot.formula.switches import STATES
+from symrot.formula.tree import evaluate, operations
+from symrot.propagation.events.events import Event
+
+__all__ = ["event_time_slopes", "require_smooth_events"]
+
+Floats = NDArray[np.float64]
+TOUCHING = "touching"
+
+
+def require_smooth_events(events: Sequence[Event]) -> None:
+    """Raise InputError if the formula of an event contains abs, which has no derivative at zero."""
+    for event in events:
+        if operations(event.node)["abs"]:
+            raise InputError(f"events: expected formulas without abs, for sensitivities, got {event.formula!r}")
+
+
+def event_time_slopes(
+    event: Event, kinds: Sequence[str], times: Floats, states: Floats, rates: Floats, slopes: Floats
+) -> Floats:
+    """Return the derivatives of the times of one event by m variables, s per unit of each variable, shape (k, m).
+
+    Parameters
+    ----------
+    event : Event
+        The event.
+    kinds : k texts
+        The kind of each zero. A zero at which the formula touches zero has no derivative: its row is NaN.
+    times : array, shape (k,)
+        The times of the event, s.
+    states, rates : arrays, shape (k, 7)
+        The states omega and quaternion at these times, and their time derivatives.
+    slopes : array, shape (k, 7, m)
+        The derivatives of the states by the variables, at fixed time.
+
+    Examples
+    --------
+    For ``omega_3 - 1`` and a body whose omega_3 grows by 2 rad/s^2, a start that is faster by 1 rad/s reaches the event
+    half a second earlier:
+
+    >>> rows = np.zeros((1, 7)), np.array([[0.0, 0, 2, 0, 0, 0, 0]]), np.zeros((1, 7, 1))
+    >>> rows[2][0, 2, 0] = 1.0
+    >>> event_time_slopes(Event("omega_3 - 1"), ["rising"], np.array([0.5]), *rows)
+    array([[-0.5]])
+    """
+    node, functions = event.node, dual_functions(FLOAT_FUNCTIONS)
+    result = np.full((len(times), slopes.shape[2]), np.nan)
+    for k, kind in enumerate(kinds):
+        if kind == TOUCHING:
+            continue
+        values = {name: Dual(float(x), {name: 1.0}) for name, x in zip(STATES, states[k], strict=True)}
+        formula = evaluate(node, {**values, "t": Dual(float(times[k]), {"t": 1.0})}, functions, float)
+        gradient = np.array([formula.slopes.get(name, 0.0) for name in STATES])
+        along = formula.slopes.get("t", 0.0) + gradient @ rates[k]
+        if along:
+            result[k] = -(gradient @ slopes[k]) / along
+    return result
