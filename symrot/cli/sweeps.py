@@ -108,10 +108,8 @@ def _sweep(options: Namespace) -> int:
         )
         return INTERRUPTED
     except OSError as reason:  # such as a full disk
-        raise InputError(
-            f"{options.out}: {reason.strerror or reason}; the complete chunks are saved, run the same command again to "
-            "go on"
-        ) from None
+        advice = "; the complete chunks are saved, run the same command again to go on" if options.out.exists() else ""
+        raise InputError(f"{options.out}: {reason.strerror or reason}{advice}") from None
     progress("")
     facts = {
         "written": str(result.path),

@@ -4,6 +4,7 @@ The module uses matplotlib's objects and the Agg canvas, without a window or glo
 equal bytes.
 """
 
+import re
 from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
@@ -108,11 +109,11 @@ def _legend(axes: Any) -> None:
                     frameon=True, framealpha=0.85)  # fmt: skip
 
 
-def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -> None:
-    """Draw the components of a vector over time: ``columns`` has one column for each of ``names``, in ``unit``.
+def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str, size: float = 1.0) -> None:
+    """Draw the components of a vector over time: ``columns`` has one column for each of ``names``.
 
-    A nearly constant component that is much larger than the others would make them look flat. It is not drawn; the
-    legend states its value.
+    The numbers are drawn divided by ``size``, the size of a prefix of ``unit``. A nearly constant component that is
+    much larger than the others would make them look flat. It is not drawn; the legend states its value.
     """
     low, high = columns.min(axis=0), columns.max(axis=0)
     largest = np.maximum(np.abs(low), np.abs(high))
@@ -120,10 +121,11 @@ def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str) -
     others = np.max(largest[~steady], initial=0.0)
     written = steady & (largest > 3 * others) & (others > 0)
     drawn = np.flatnonzero(~written)
-    draw_curves(axes, t, [columns[:, i] for i in drawn], [names[i] for i in drawn], [COLOURS[i] for i in drawn])
+    draw_curves(axes, t, [columns[:, i] / size for i in drawn], [names[i] for i in drawn], [COLOURS[i] for i in drawn])
     for number in np.flatnonzero(written):
-        ends = dict.fromkeys(f"{end:.6g}" for end in (low[number], high[number]))
-        axes.plot([], [], " ", label=f"{names[number]} = {' to '.join(ends)} {unit}")
+        own, shown = prefixed(float(largest[number]), unit) if unit else (1.0, unit)
+        ends = dict.fromkeys(f"{end / own:.6g}" for end in (low[number], high[number]))
+        axes.plot([], [], " ", label=f"{names[number]} = {' to '.join(ends)} {shown}")
     _legend(axes)
 
 
@@ -140,7 +142,7 @@ def _unwrapped(angles: Floats, turn: float) -> Floats:
 def _rates(axes: Any, t: Floats, trajectory: Any) -> None:
     changing = np.ptp(trajectory.omega, axis=0)
     size, unit = prefixed(float(np.max(changing) or np.max(np.abs(trajectory.omega))), "rad/s")
-    _lines(axes, t, trajectory.omega / size, [rf"$\omega_{i}$" for i in (1, 2, 3)], unit)
+    _lines(axes, t, trajectory.omega, [rf"$\omega_{i}$" for i in (1, 2, 3)], "rad/s", size)
     axes.set_title("Angular velocity in the body")
     axes.set_ylabel(unit)
 
@@ -156,6 +158,8 @@ def _attitude(axes: Any, t: Floats, trajectory: Any) -> None:
     kind = "intrinsic" if sequence.isupper() else "extrinsic"
     names = [rf"$\{letter}$ about {axis}" for letter, axis in zip(("phi", "theta", "psi"), sequence, strict=True)]
     draw_curves(axes, t, [_unwrapped(column, 360.0) for column in angles.T], names)
+    if np.ptp(angles) > 270.0:
+        axes.set_yticks((-180, -90, 0, 90, 180))
     _legend(axes)
     axes.set_title(f"Euler angles {sequence}, {kind}")
     axes.set_ylabel("deg")
@@ -186,7 +190,8 @@ def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
     for item in items:
         change = np.maximum.accumulate(np.abs(item.values - item.values[0])) / (item.scale or 1.0)
         curves.append(np.where(change > 0, change, np.nan))
-        names.append(item.name if change[-1] > 0 else f"{item.name} (no change)")
+        name = re.sub(r"\bomega_(\d)", r"$\\omega_\1$", item.name)
+        names.append(name if change[-1] > 0 else f"{name} (no change)")
         colours.append(FAINT if item.name == "quaternion norm" else COLOURS[len(colours) % len(COLOURS)])
     positive = np.concatenate([curve[np.isfinite(curve)] for curve in curves] or [np.array([tolerance])])
     low, high = (positive.min(), positive.max()) if len(positive) else (tolerance, tolerance)

@@ -18,6 +18,10 @@ RETRIES = 3
 def _client(address: str) -> Any:
     make = optional("distributed", "--scheduler", "cluster").Client
     try:
+        if not address.startswith(
+            "inproc:"
+        ):  # a client of a wrong address would wait for a minute when the process ends
+            optional("distributed.comm", "--scheduler", "cluster").get_address_host_port(address)
         client = make(address, timeout=SECONDS, set_as_default=False)
     except (OSError, ValueError, TypeError) as reason:
         raise InputError(

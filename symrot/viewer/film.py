@@ -28,6 +28,7 @@ MOST_FLAT = 60
 LONGEST_TITLE = 60
 SIZE = 5.0  # inches at 100 dots per inch
 REACH = 1.75  # half the width of the picture, relative to the size of the body
+CLOSE = 0.2  # distance of the tips of two arrows
 TIP = 1.35  # length of the drawn axis of the body
 BODY, EDGE, AXES, OMEGA, MOMENTUM, TRAIL = "#7fa6cf", "#24364a", "#6b7684", "#d55e00", "#0060b0", "#008a63"
 VIEW = {"elev": 22.0, "azim": -52.0}
@@ -119,13 +120,12 @@ def _frames(trajectory: Trajectory, times: Floats) -> Iterator[Floats]:
         for points_of_curve in curves:
             style = {"marker": "o", "linestyle": ""} if len(points_of_curve) < 2 else {"linewidth": 4}
             axes.plot(*(points_of_curve @ dcm.T).T, color=BODY, zorder=2, **style)
-        arrows = (
-            (dcm @ omega * scales[0], OMEGA, "\u03c9"),
-            (dcm @ (inertia @ omega + rotor) * scales[1], MOMENTUM, "L"),
-        )
-        for vector, colour, name in arrows:
+        rate, momentum = dcm @ omega * scales[0], dcm @ (inertia @ omega + rotor) * scales[1]
+        is_close = bool(np.linalg.norm(rate - momentum) < CLOSE)  # the two labels would cover each other
+        arrows = ((rate, OMEGA, "\u03c9", 1.25 if is_close else 1.1), (momentum, MOMENTUM, "L", 1.1))
+        for vector, colour, name, place in arrows:
             axes.quiver(0, 0, 0, *vector, color=colour, linewidth=2, arrow_length_ratio=0.1, zorder=5)
-            axes.text(*(1.1 * vector), name, color=colour, fontsize=13, fontstyle="italic", zorder=6)
+            axes.text(*(place * vector), name, color=colour, fontsize=13, fontstyle="italic", zorder=6)
         title = scene.title if len(scene.title) <= LONGEST_TITLE else f"{scene.title[: LONGEST_TITLE - 2]} .."
         figure.text(0.02, 0.95, title, fontsize=11, color=EDGE, parse_math=False)
         figure.text(0.02, 0.03, f"t = {time:.4g} s", fontsize=11, color=EDGE)

@@ -160,7 +160,7 @@ def test_drift_never_falls_and_names_what_does_not_change():
     axes = symrot.propagate("heavy_top_loops").plot(Figure().add_subplot(), "drift")
     names = axes.get_legend_handles_labels()[1]
     assert {name.partition(" (")[0] for name in names} == {
-        item.name for item in symrot.propagate("heavy_top_loops").invariants
+        item.name.replace("omega_3", r"$\omega_3$") for item in symrot.propagate("heavy_top_loops").invariants
     }
     for line in axes.lines:
         values = np.asarray(line.get_ydata(), dtype=float)

@@ -142,3 +142,17 @@ def test_panels_that_cannot_be_drawn_are_refused_in_a_sentence():
         motion.plot(panel="vertical")
     assert not pyplot.get_fignums()
     assert symrot.propagator("t_handle")([1.0]).plot(Figure().add_subplot(), "rates").get_xlabel() == "t (s)"
+
+
+def test_ticks_of_whole_rotations_and_letters_of_names():
+    """Angles that go all the way round have ticks at multiples of 90 degrees; omega_3 is a letter with an index."""
+    top = symrot.propagate("heavy_top_loops")
+    assert symrot.plot(top, Figure().add_subplot(), "attitude").get_yticks().tolist() == [-180, -90, 0, 90, 180]
+    texts = [text.get_text() for text in symrot.plot(top, Figure().add_subplot(), "drift").get_legend().get_texts()]
+    assert any(text.startswith(r"spin $\omega_3$") for text in texts)
+
+
+def test_a_constant_component_is_written_in_a_unit_of_its_own():
+    """The Earth's spin is 72.9 microradians a second, however small the wobble in the same panel."""
+    axes = symrot.plot(symrot.propagate("earth_wobble"), Figure().add_subplot(), "rates")
+    assert any("72.9211 \N{GREEK SMALL LETTER MU}rad/s" in text.get_text() for text in axes.get_legend().get_texts())

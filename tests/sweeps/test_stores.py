@@ -233,6 +233,16 @@ def test_a_scheduler_that_does_not_answer_is_one_sentence(monkeypatch):
         sweep(scheduler="tcp://127.0.0.1:9")
 
 
+@pytest.mark.parametrize("address", ["foo", "tcp://foo", "http://foo:1"])
+def test_an_address_of_no_scheduler_is_refused_at_once(address):
+    """No client is made, which would wait for a minute when the process ends."""
+    pytest.importorskip("distributed")
+    began = time.perf_counter()
+    with pytest.raises(InputError, match=r"--scheduler: expected the address of a Dask scheduler"):
+        sweep(scheduler=address)
+    assert time.perf_counter() - began < 20
+
+
 def test_the_description_names_what_identifies_a_sweep(tmp_path):
     sweep(path=tmp_path / "a.parquet")
     identity = json.loads((tmp_path / "a.parquet" / "_sweep.json").read_text())["identity"]

@@ -51,8 +51,9 @@ def derive() -> Derivation:
     d.section("The extrinsic sequences")
     _tabulate(
         d,
-        "The same quantities for the sequences about axes of space. An extrinsic sequence is the intrinsic sequence of "
-        "the reversed name with the angles in reversed order.",
+        "The matrices, the determinant and the angles of gimbal lock for the sequences about axes of space. Such an "
+        "extrinsic sequence, for example xyz, equals the intrinsic sequence with the reversed name, ZYX, if the angles "
+        "are in reversed order too.",
         EXTRINSIC_SEQUENCES,
     )
     d.section("The direction cosine matrices")

@@ -35,7 +35,7 @@ def derive() -> Derivation:
     _cofactors(d, EXAMPLE)
     for point in singularity_dossier(EXAMPLE).locked:
         _locked(d, EXAMPLE, point)
-    d.passage(f"Sequences without gimbal lock at any of the attitudes above: {_regular(EXAMPLE)}.")
+    d.passage(f"Sequences that are regular wherever {EXAMPLE} is in gimbal lock: {_regular(EXAMPLE)}.")
     others = [sequence for sequence in INTRINSIC_SEQUENCES if sequence != EXAMPLE]
     d.section("How close to gimbal lock, for the other sequences")
     d.tabulate(
@@ -55,8 +55,8 @@ def derive() -> Derivation:
     d.section("What is lost at gimbal lock, for the other sequences")
     d.tabulate(
         "At each singular angle: the combination of angles on which the attitude depends, the direction $n$ (in body "
-        "components) about which no angle rates rotate the body, and the limit of the rates, with the rates $s$ that "
-        "do not rotate the body.",
+        r"components) about which no angle rates rotate the body, and the limit of $\det B\,\dot q$, the angle rates "
+        "times the determinant. It is a multiple of $s$, angle rates that do not rotate the body.",
         ("Sequence", r"$\theta$", "Attitude depends on", "$n$", r"$\det B\,\dot q \to$", "$s$"),
         [
             (_cells(sequence, point), _locked(d, sequence, point))
@@ -109,8 +109,8 @@ def _locked(d: Derivation, sequence: str, point: LockedPoint) -> tuple[Step, Ste
     d.notation({"n": lost})
     if sequence == EXAMPLE:
         d.define(
-            "At this angle of gimbal lock, all three axes of rotation are perpendicular to one direction, in body "
-            "components:",
+            "At this angle of gimbal lock, all three axes of rotation are perpendicular to the following direction $n$ "
+            "(body components):",
             "n",
             lost,
         )

@@ -148,7 +148,8 @@ def _points(d: Derivation) -> None:
     )
     d.notation({}, pairs(symbols.offset, moving))
     d.step(
-        r"The rate of a vector in space is its rate relative to the body plus $\omega$ times the vector.",
+        r"The rate of a vector in space is its rate relative to the body plus the cross product of $\omega$ and the "
+        "vector.",
         dcm_sb.T * rate(dcm_sb * point, motion | pairs(symbols.offset, moving)),
         moving + OMEGA.cross(point),
         because="the product rule gives one term from each factor",

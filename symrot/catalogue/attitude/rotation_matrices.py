@@ -34,8 +34,8 @@ def derive() -> Derivation:
         source="Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., sections 4.2 and 4.3",
         about=(
             "The distances between the points of a rigid body are constant. It follows that the matrix that maps the "
-            "positions of the points from one attitude to another is orthogonal. In $D$ dimensions $D (D - 1) / 2$ "
-            "numbers determine it, in space three."
+            "positions of the points from one attitude to another is orthogonal. Such a matrix in $D$ dimensions is "
+            "determined by $D (D - 1) / 2$ numbers: by three numbers if $D = 3$."
         ),
     )
     d.passage("Let $R$ be any matrix, with entries $R_{ij}$, and $u$, $v$ any vectors.")

@@ -82,9 +82,10 @@ def _other_sequences(d: Derivation) -> None:
     others = [sequence for sequence in INTRINSIC_SEQUENCES if sequence != EXAMPLE]
     rows = [((sequence,), [_one_sequence(d, sequence, f"The sequence {sequence}.")]) for sequence in others]
     d.tabulate(
-        r"The first step of the lesson, $E[\mu \cdot \omega] = B^{\mathsf T} (\omega \times \mu)$, is proven for each "
-        "of the other sequences with the matrix $B$ of that sequence. So the equations of motion are equivalent for "
-        "each of them.",
+        "For one sequence, Lagrange's equations were proven to be equivalent to Euler's, from the relation "
+        r"$E[\mu \cdot \omega] = B^{\mathsf T} (\omega \times \mu)$. Here this relation is proven for each of the "
+        "other sequences, with the matrix $B$ of that sequence. So Lagrange's equations are equivalent to Euler's for "
+        "every sequence.",
         ("Sequence",),
         rows,
     )

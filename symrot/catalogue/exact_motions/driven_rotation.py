@@ -171,8 +171,9 @@ def _weakly_braked(d: Derivation) -> None:
     power = -DRAG * T / C
     d.notation({"x": power, "f_1": (exp(power) - 1) / power, "f_2": (exp(power) - 1 - power) / power**2})
     d.step(
-        "The rate and the angle under a torque with damping are written with $f_1$ and $f_2$; these formulas also hold "
-        "without damping.",
+        "The rate and the angle under a torque with damping are written with $f_1 = (e^x - 1)/x$ and "
+        r"$f_2 = (e^x - 1 - x)/x^2$. Both formulas also hold without damping, with the limits $f_1 = 1$ and $f_2 = "
+        r"\tfrac12$ at $x = 0$.",
         Matrix([speed, angle]),
         Matrix([START * decay + PUSH / C * T * first, START * T * first + PUSH / C * T**2 * second]),
         because="the equation is multiplied by the denominators",
@@ -270,8 +271,8 @@ def _by_kummer(d: Derivation) -> None:
     )
     d.notation({"S": speed, "Z": area}, swept)
     d.step(
-        "The integral of $S$ over time is elementary. It is called the phase: in a slow sweep, the axes rotate by this "
-        "angle about the angular velocity, whose direction changes slowly.",
+        r"The integral of $S$ over time is elementary. It is called the phase: if $\Omega$ changes slowly, it is the "
+        "angle by which the axes rotate about the direction of their angular velocity, which changes slowly too.",
         rate(angle, swept),
         speed,
         because=r"$S^2 = \Omega^2 + \omega_1^2$",

@@ -302,7 +302,7 @@ def _theta(d: Derivation) -> None:
     )
     d.step(
         "This function of sn and dn, the variable part of the derivative of the argument of $N(u + w)$, is a constant "
-        r"minus the term with $\Delta$ of $\dot\psi$, up to a constant factor.",
+        r"minus a constant multiple of that term of $\dot\psi$ which contains $\Delta$.",
         argument,
         H * TWO / (2 * ONE * THREE) - TWO / (2 * ONE * THREE) * (H - THREE * DN) / below,
         because=r"$\mathrm{sn}_w, \mathrm{cn}_w, \mathrm{dn}_w$ are substituted, and the polynomial division "

@@ -16,8 +16,8 @@ def derive() -> Derivation:
         source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 32",
         about=(
             "A body with three equal moments is called spherical. A cube is one example: its inertia tensor is like "
-            "that of a ball. Angular momentum and angular velocity are parallel in all axes, and without a torque the "
-            "body rotates steadily about a fixed axis."
+            "that of a ball. Angular momentum and angular velocity are parallel for every axis of rotation, and "
+            "without a torque the body rotates steadily about a fixed axis."
         ),
     )
     inertia = diag(symbols.A, symbols.A, symbols.A)

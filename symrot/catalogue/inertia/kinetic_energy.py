@@ -187,7 +187,8 @@ def _angles(d: Derivation) -> None:
         named="T",
     )
     d.step(
-        "With three equal moments, precession and spin occur in the same way, since no body axis is distinguished.",
+        "With three equal moments, the energy stays the same if the rates of precession and spin are exchanged, since "
+        "no body axis is distinguished.",
         HALF * omega.dot(diag(a, a, a) * omega),
         HALF * a * (dphi**2 + dtheta**2 + dpsi**2 + 2 * dphi * dpsi * cos(theta)),
         because=r"$T = \tfrac12 A\,|\omega|^2$",

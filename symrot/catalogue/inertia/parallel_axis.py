@@ -45,8 +45,8 @@ def derive() -> Derivation:
         display="F(r) + F(r')",
     )
     d.step(
-        "Added over the body, $F$ is evaluated at the first moment, which is zero. This proves the theorem of parallel "
-        "axes.",
+        r"Therefore the sum of $F$ over all points of the body is $F$ at the first moment $\sum m\,r$, which is zero. "
+        "This proves the theorem of parallel axes.",
         linear.subs(dict.fromkeys(R, S.Zero)),
         0,
         because="the positions are measured from the centre of mass",

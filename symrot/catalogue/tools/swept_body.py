@@ -99,8 +99,8 @@ def _small_angle(d: Derivation) -> None:
         r"$\kappa^2 e - 2 (1 - \kappa^2 v) e' = \kappa^2 v h$."
     )
     d.step(
-        r"The derivative of the function $\delta$ is the rate of this small angle, so $\delta$ is the angle up to a "
-        "constant.",
+        r"The function $\delta = \frac{x}{r} e(v)$ has the same derivative as the small angle by which the rotation "
+        "about $m$ exceeds the integral of $r$, so it equals this angle up to a constant.",
         rate(X / R * e, motion).subs(h, -c / (1 + third)),
         -KAPPA / R**2 * (KAPPA / R**3 * c) / (1 + third),
         because=r"$\frac{d}{dx} \frac{x}{r} = \kappa^2 / r^3$, and $\dot v = -2 x v^2$",
