@@ -127,6 +127,13 @@ def test_an_angle_that_passes_the_end_of_its_range_leaves_a_gap(tmp_path):
     assert result["series"] == [[100, 160, 180, None, -180, -160, -100], [0, 10, 15, 15, 15, 20, 30]]
 
 
+def test_angles_that_pass_the_end_together_are_interrupted_once_each(tmp_path):
+    result = in_panels("withGaps([0, 1], [[170, -170], [170, -170]], 360)", tmp_path)
+    for curve in result["series"]:
+        pieces = [piece.split() for piece in " ".join(map(str, curve)).split("None")]
+        assert [{float(value) > 0 for value in piece} for piece in pieces] == [{True}, {False}]
+
+
 def test_ticks_are_round_numbers(tmp_path):
     script = "[ticks(-184, 184, 5, [1, 2, 5, 10, 15, 30, 45, 90, 180]), ticks(0, 12, 7), ticks(0, 694.4, 7), ticks(-7.2, 7.2, 3), ticks(3, 3, 5)]"
     angles, seconds, days, rates, point = (ticks["values"] for ticks in in_panels(script, tmp_path))

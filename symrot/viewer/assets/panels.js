@@ -59,8 +59,8 @@ export function withGaps(t, columns, turn) {
             const end = jumps[i] < 0 ? turn/2 : -turn/2, rise = jumps[i] - Math.sign(jumps[i])*turn;
             return {i, part: Math.min(Math.max((end - columns[i][k - 1])/rise, 0), 1), end};
         }).sort((a, b) => a.part - b.part);
-        for (const {i, part, end} of wraps) {
-            const passed = wraps.filter((other) => other.part < part || other.i === i).map((other) => other.i);
+        for (const [place, {i, part, end}] of wraps.entries()) {
+            const passed = wraps.slice(0, place).map((other) => other.i);
             for (const value of end === null ? [null] : [end, null, -end]) {
                 times.push(t[k - 1] + part*(t[k] - t[k - 1]));
                 series.forEach((curve, j) => {
