@@ -106,7 +106,7 @@ def test_derivatives_have_labels(tops):
         (
             "heavy_top_loops",
             {"sensitivities": ["gravity"], "parameters": {"weight": [1.0, 2.0, 3.0]}},
-            "gravity changes weight",
+            "gravity sets weight",
         ),
     ],
 )

@@ -11,7 +11,7 @@ import pytest
 import symrot
 from symrot.certificates import truncation
 from symrot.certificates.certificate import certificate_json, seal
-from symrot.certificates.step_certificate import rates_of
+from symrot.certificates.step_certificate import formula_section, rates_of
 from symrot.certificates.truncation import _OF_SERIES, _number, _Power, _trees, require_order, truncation_bounds
 from symrot.cli.main import main
 from symrot.codegen.steps import RK4, TaylorSeries, stepped
@@ -141,6 +141,17 @@ def test_coefficients_of_dop853_fulfil_the_conditions_to_25_digits():
     driven = replace(text._rates_program, outputs=((first, ("symbol", "t")), *others))
     with pytest.raises(InputError, match="polynomials in the states, without the time"):
         truncation_bounds(driven, method, {})
+
+
+def test_a_step_of_dop853_with_one_wrong_digit_is_refused():
+    text = step_text("tumbling_prism", "dop853")
+    source, name = text.c_files()[f"{text.name}.c"], text.name
+    assert formula_section(name, text._rates_program, text.method, source)
+    digits = repr(float(text.method.stages[1][0]))
+    assert digits in source
+    wrong = source.replace(digits, f"{digits[:-1]}{(int(digits[-1]) + 5) % 10}")
+    with pytest.raises(CertificateError, match="got another formula"):
+        formula_section(name, text._rates_program, text.method, wrong)
 
 
 @pytest.mark.campaign
