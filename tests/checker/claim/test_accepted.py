@@ -57,8 +57,8 @@ NAMED = (
 )  # fmt: skip
 
 DEFINITIONS = (
-    "F = ma", "θ'' = −(g/l) sin θ", "V = mgh", "T = p²/2m",
-    "f = 1/2π √(k/m)", "T = ½ I ω² = L²/(2I)", "α = dω/dt",
+    "F = ma", "V = mgh", "T = p²/2m",
+    "f = 1/2π √(k/m)", "α = dω/dt",
 )  # fmt: skip
 
 
