@@ -53,6 +53,7 @@ NAMED = (
     ("I_O = I_c + md^2", "moment of inertia about a parallel axis (parallel-axis theorem)"),
     ("P = M ω", "power of a torque about one axis"),
     ("q0 = cos θ/2", "scalar component of the quaternion of axis and angle"),
+    ("θ'' = −(g/l) sin θ", "relation for a simple pendulum"),
     ("φ̇ = (ω₁ sin ψ + ω₂ cos ψ)/sin θ", "first component of the angle rates of ZXZ from omega in the body frame"),
 )  # fmt: skip
 
