@@ -19,6 +19,7 @@ from sympy.polys.rings import PolyElement
 
 from symrot.errors import InputError
 from symrot.exact.angles.angles import base_angle
+from symrot.exact.domain.needs import fits_assumptions
 from symrot.exact.evidence import Counterexample
 from symrot.exact.floats import NoValue, float_at
 from symrot.exact.intervals import enclosure, is_nonnegative_at, surely_nonnegative_number
@@ -91,7 +92,7 @@ def rational_witness(
             if not _solve(hypothesis, generator, values):
                 return None
         admissible = (
-            all(_assumed(leaf, values[number]) for leaf, number in ring.symbols.items())
+            all(fits_assumptions(leaf, values[number]) for leaf, number in ring.symbols.items())
             and not any(_value(hypothesis, values) for hypothesis in ring.hypothesis_numerators)
             and all(_value(factor, values) for factor in ring.ratios.factors)
             and all(_ratio_value(ring, formula, values) >= 0 for formula in domain)
@@ -179,12 +180,12 @@ def closed_form_witness(
             continue
         fixed = {places[number]: _rational(value) for number, value in numbers.items()}
         values = dict(fixed)
-        if not all(_assumed(leaf, value) for leaf, value in values.items()):
+        if not all(fits_assumptions(leaf, value) for leaf, value in values.items()):
             continue
         for leaf in variables:
             if leaf not in values:
                 choices = _TURNS if early and leaf in angles else pool
-                values[leaf] = source.choice([v for v in choices if _assumed(leaf, v)] or [Rational(1)])
+                values[leaf] = source.choice([v for v in choices if fits_assumptions(leaf, v)] or [Rational(1)])
         if attempt >= UNMOVED:
             _move_within(within, values, [leaf for leaf in variables if leaf not in fixed], simple)
         if not all(_seems_nonnegative(formula, values) for formula in within):
@@ -211,7 +212,7 @@ def _move_within(
         if _seems_nonnegative(formula, values) and _nonnegative(formula, values):
             continue
         own = formula.free_symbols
-        trials = ({**values, leaf: v} for leaf in movable if leaf in own for v in simple if _assumed(leaf, v))
+        trials = ({**values, leaf: v} for leaf in movable if leaf in own for v in simple if fits_assumptions(leaf, v))
         moved = next((t for t in trials if _seems_nonnegative(formula, t) and _nonnegative(formula, t)), values)
         values.update(moved)
 
@@ -314,7 +315,7 @@ def _coordinates(ring: FormulaRing) -> tuple[list[FreeChoice], list[tuple[int, P
         coordinates.append(FreeChoice(pair, _simple_circle(), _random_sphere(2), atom))
     for leaf, number in ring.symbols.items():
         if number not in fixed:
-            simple = tuple((Fraction(v),) for v in (0, 1, -1, 2, 3) if _assumed(leaf, Fraction(v)))
+            simple = tuple((Fraction(v),) for v in (0, 1, -1, 2, 3) if fits_assumptions(leaf, Fraction(v)))
             coordinates.append(FreeChoice((number,), simple, _random_number(leaf)))
     return coordinates, solved[::-1]
 
@@ -383,22 +384,11 @@ def _random_number(leaf: Expr) -> Callable[[Random], tuple[Fraction, ...]]:
     def draw(source: Random) -> tuple[Fraction, ...]:
         for _ in range(20):
             value = Fraction(source.randint(-20, 20), 1 if leaf.is_integer else source.randint(1, 4))
-            if _assumed(leaf, value):
+            if fits_assumptions(leaf, value):
                 break
         return (value,)
 
     return draw
-
-
-def _assumed(leaf: Expr, value: Any) -> bool:
-    """Return whether a rational ``value`` agrees with SymPy's assumptions on the symbol ``leaf``, such as positive."""
-    return not (
-        (leaf.is_positive and value <= 0)
-        or (leaf.is_negative and value >= 0)
-        or (leaf.is_nonnegative and value < 0)
-        or (leaf.is_nonzero and value == 0)
-        or (leaf.is_integer and Fraction(int(value.numerator), int(value.denominator)).denominator != 1)
-    )
 
 
 def _solve(hypothesis: PolyElement, generator: int, values: dict[int, Fraction]) -> bool:

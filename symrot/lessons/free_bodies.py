@@ -57,6 +57,7 @@ LESSONS = {
         mistake=Mistake(
             "For a ball, the angular momentum is parallel to the angular velocity. Students expect this of a disk too.",
             "cross(Matrix([a, b, c]), Matrix([A*a, A*b, C*c])) == Matrix([0, 0, 0])",
+            repair=1,
             lesson="For a disk the two vectors are parallel only if the angular velocity is along the symmetry axis "
             "or perpendicular to it.",
         ),

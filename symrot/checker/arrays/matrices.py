@@ -13,7 +13,8 @@ from symrot.checker.claim.tree import TIME, Node, is_derivative, number, walk
 from symrot.checker.claim.vectors import is_tensor
 
 __all__ = [
-    "as_rotations", "bold_matrices", "matrices_of_entries", "matrix_of_entries", "rate_matrices", "used_columns",
+    "as_rotations", "bold_matrices", "bold_unit_matrices", "matrices_of_entries", "matrix_of_entries", "rate_matrices",
+    "used_columns",
     "used_matrices", "with_lengths", "without_time",
 ]  # fmt: skip
 
@@ -71,7 +72,7 @@ def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, .
     Left out are the names in ``known``, which the claim defines, and names of the unit matrix such as I. Only in
     ``det(I)`` and ``tr(I)`` does I count as a matrix of the claim, for example an inertia tensor.
     """
-    names: dict[str, None] = {}
+    names = dict.fromkeys(name for name in _inverted_in_order(sides) if name not in (*known, *UNIT_NAMES))
     for side in sides:
         for _, node in walk(side):
             inside = _of_matrix(node)
@@ -82,6 +83,50 @@ def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, .
                     if leaf[0].isupper() and leaf not in known and not is_unit:
                         names[leaf] = None
     return tuple(names)
+
+
+def _inverted_in_order(sides: Sequence[Node]) -> list[str]:
+    """Return the capital letters A and B of ``(A B)^-1 = A^-1 B^-1``, whose order would matter for matrices alone.
+
+    With the right order for matrices, B^-1 A^-1, the equation is true for numbers too, and the list is empty.
+    """
+    for side, other in (sides, sides[::-1]):
+        base = side.args[0] if _is_inverse(side) else side
+        if base is side or base.kind != "product" or other.kind != "product" or not all(map(_is_inverse, other.args)):
+            continue
+        names, inverted = ([_name_of_array(factor) for factor in part.args] for part in (base, other))
+        if sorted(names) == sorted(inverted) and inverted != names[::-1] and all(n[:1].isupper() for n in names):
+            return names
+    return []
+
+
+def bold_unit_matrices(sides: Sequence[Node]) -> set[str]:
+    """Return {"I"} if a bold I is the unit matrix and no tensor of inertia; an empty set otherwise.
+
+    It is if one side is I alone and the other has a transpose, or if the equation has a skew matrix or ``a a^T``, and
+    in both cases no angular velocity.
+    """
+    nodes = [node for side in sides for _, node in walk(side)]
+    names = {str(node.value) for node in nodes if node.kind in ("name", "call")}
+    has_transpose = any(node.kind == "transpose" for node in nodes)
+    is_alone = any(side.kind == "name" and side.value == "I" for side in sides) and has_transpose
+    has_square = "skew" in names or any(
+        second.kind == "transpose" and second.args[0] == first
+        for node in nodes if node.kind == "product" for first, second in pairwise(node.args)
+    )  # fmt: skip
+    in_sum = any(node.kind == "sum" and any("I" in map(_name_of_array, _factors_of_term(term)) for term in node.args)
+                 for node in nodes)  # fmt: skip
+    is_of_motion = any(name.startswith(("omega", "Omega", "alpha")) for name in names)
+    return {"I"} if (is_alone or (has_square and in_sum)) and not is_of_motion else set()
+
+
+def _factors_of_term(term: Node) -> Sequence[Node]:
+    bare = term.args[0] if term.kind == "neg" else term
+    return bare.args if bare.kind == "product" else (bare,)
+
+
+def _is_inverse(node: Node) -> bool:
+    return node.kind == "power" and node.args[1] in (number(-1), Node("neg", None, (number(1),)))
 
 
 def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, bool]:

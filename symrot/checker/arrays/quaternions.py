@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from symrot.checker.arrays.rotated_vectors import as_matrix_of_map
 from symrot.checker.claim.shapes import Shape, shape_of
-from symrot.checker.claim.tree import TIME, Node, is_derivative, number, product, walk
+from symrot.checker.claim.tree import TIME, Node, is_derivative, negated, number, product, sum_of, walk
 
 __all__ = ["CONJUGATE", "Quaternions", "quaternion_product", "used_quaternions"]
 
@@ -66,6 +66,9 @@ def used_quaternions(
     sign, *sides = relation
     if _has_units(sides, (*vectors, *known)):
         return _of_units(relation)
+    by_components = _by_components(relation, known)
+    if by_components is not None:
+        return by_components
     bold = {
         node.args[0].value
         for side in sides
@@ -121,6 +124,50 @@ def _of_units(relation: tuple[str, Node, Node]) -> Quaternions:
     definitions = [(name, _column([number(int(n == place)) for n in range(4)])) for name, place in UNITS.items()]
     note = "i, j and k are the units of quaternions, with i j = k"
     return Quaternions((sign, first, second), tuple(d for d in definitions if d[0] in used), (), (note,))
+
+
+def _by_components(relation: tuple[str, Node, Node], known: Collection[str]) -> Quaternions | None:
+    """Return ``q = a + b i + c j + d k`` as the equation of q and the column ``[a, b, c, d]``.
+
+    The result is None if the equation has another form: the left side must be one of the usual letters of quaternions,
+    and the right side must have a scalar part and all three units, which may be bold. A defined name, one in ``known``,
+    is no unit.
+    """
+    sign, left, right = relation
+    if left.kind != "name" or str(left.value)[0] not in LETTERS or {*UNITS, left.value} & {*known}:
+        return None
+    parts = _components(right)
+    if parts is None or not all(parts):
+        return None
+    column = _column([sum_of(part) for part in parts])
+    return Quaternions((sign, left, column), (), (), ("i, j and k are the units of quaternions",))
+
+
+def _components(node: Node) -> tuple[list[Node], ...] | None:
+    """Return the terms of the scalar part of a formula, and of its factors of i, j and k; None if it is not linear.
+
+    ``s*(x*i + y*j)`` has no term in the scalar part, one term ``s*x`` of i and one term ``s*y`` of j.
+    """
+    if not {str(part.value) for _, part in walk(node) if part.kind == "name"} & {*UNITS}:
+        return [node], [], [], []
+    if node.kind == "name":
+        return tuple([number(1)] if UNITS[str(node.value)] == place else [] for place in range(4))
+    if node.kind not in ("sum", "neg", "product"):
+        return None
+    parts = [_components(argument) for argument in node.args]
+    if any(part is None for part in parts):
+        return None
+    known = [part for part in parts if part is not None]
+    if node.kind == "neg":
+        return tuple([negated(term) for term in terms] for terms in known[0])
+    if node.kind == "sum":
+        return tuple([term for part in known for term in part[place]] for place in range(4))
+    scalars = [part for part in known if not any(part[1:])]
+    if len(scalars) < len(known) - 1:
+        return None  # a product of two quaternions
+    (vector,) = (part for part in known if any(part[1:]))
+    factors = [sum_of(part[0]) for part in scalars]
+    return tuple([product([*factors, term]) for term in terms] for terms in vector)
 
 
 def _without_squares(node: Node) -> Node:

@@ -223,7 +223,8 @@ def _decide(equation: Equation) -> Decision:
             witness = None
         if witness:
             return Decision("false", counterexample=witness, products=MOST_PRODUCTS)
-        return Decision("undecided", reason=str(reason), products=MOST_PRODUCTS)
+        undecided = Decision("undecided", reason=str(reason), products=MOST_PRODUCTS)
+        return _with_shorter_powers(equation, lefts, rights) or undecided
 
 
 @dataclass
@@ -528,9 +529,24 @@ def _decide_large(equation: Equation, lefts: Sequence[Expr], rights: Sequence[Ex
     refusal = InputError(f"expected a formula of degree up to {LARGEST_DEGREE} in symbols and sines, got about {size}")
     if equation.hypotheses or len(lefts) > 1:
         raise refusal
+    proof = _with_shorter_powers(equation, lefts, rights)
+    if proof is not None:
+        return proof
+    witness = point_of_difference(lefts[0], rights[0], _stated_needs(equation))
+    if witness is None:
+        raise refusal
+    return Decision("false", counterexample=witness)
+
+
+def _with_shorter_powers(equation: Equation, lefts: Sequence[Expr], rights: Sequence[Expr]) -> Decision | None:
+    """Return the decision "true" on an equation that holds with letters in place of its large powers; or None.
+
+    ``lefts`` and ``rights`` are the entries of its sides. Matrices and equations with hypotheses are not tried.
+    """
+    if equation.hypotheses or len(lefts) > 1:
+        return None
     formulas = [lefts[0], rights[0], *equation.divisors, *equation.radicands]
     shorter = shorter_powers(formulas)
-    needs = _stated_needs(equation)
     if shorter is not None and degree_of(shorter.formulas) <= LARGEST_DEGREE:
         left, right, *others = shorter.formulas
         divided = len(equation.divisors)
@@ -538,15 +554,13 @@ def _decide_large(equation: Equation, lefts: Sequence[Expr], rights: Sequence[Ex
             equation, left=left, right=right, divisors=tuple(others[:divided]), radicands=tuple(others[divided:])
         )
         decision = _decide(other)
-        if decision.verdict == "true" and known_point([*needs, *needs_of(formulas)]) is not None:
+        needs = [*_stated_needs(equation), *needs_of(formulas)]
+        if decision.verdict == "true" and known_point(needs) is not None:
             conditions = tuple(
                 each.func(each.lhs.xreplace(shorter.bases), 0, evaluate=False) for each in decision.conditions
             )
             return replace(decision, conditions=conditions)
-    witness = point_of_difference(lefts[0], rights[0], needs)
-    if witness is None:
-        raise refusal
-    return Decision("false", counterexample=witness)
+    return None
 
 
 # -- conditions and reasons -------------------------------------------------------------------------------------------

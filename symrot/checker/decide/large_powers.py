@@ -27,7 +27,10 @@ LARGEST_DEGREE = 240
 """The largest degree of a side in its symbols, sines and cosines; a formula of larger degree is not expanded."""
 
 LARGEST_EXPANDED = 64
-"""Powers with a larger exponent are replaced."""
+"""Powers are replaced if their exponent, times the degree of their base, is larger."""
+
+HIGHEST_OF_BASE = 4
+"""The highest power of one base that another base is compared with."""
 
 MOST_POINTS = 500
 MOST_BASES = 12
@@ -132,28 +135,30 @@ class ShorterPowers:
 def shorter_powers(formulas: Sequence[Expr]) -> ShorterPowers | None:
     """Return formulas with letters in place of large powers, such as Z for ``(a - x)**6000``.
 
-    Return None if no power is large, or if the large ones have too many different bases.
+    A base that is a power of another one becomes that power: ``(1 - cos(x)**2)**64`` becomes ``sin(x)**128`` if there
+    is another power of the sine. Return None if no power is large, or if the large ones have too many different bases.
     """
     powers = {node for formula in formulas for node in formula.atoms(Pow) if node.exp.is_Integer}
-    large = {node for node in powers if abs(node.exp) > LARGEST_EXPANDED}
-    bases: dict[Expr, list[Expr]] = {}
-    for base in sorted({node.base for node in large}, key=str):
-        same = next((other for other in bases if _equal_up_to_sign(base, other)), base)
-        bases.setdefault(same, []).append(base)
+    large = {node for node in powers if abs(node.exp) * max(1, _size(node.base)) > LARGEST_EXPANDED}
+    bases: dict[Expr, dict[Expr, int]] = {}
+    for base in sorted({node.base for node in large}, key=lambda base: (_size(base), str(base))):
+        same, power = next(((other, power) for other in bases for power in range(1, HIGHEST_OF_BASE + 1)
+                            if _equal_up_to_sign(base, other**power)), (base, 1))  # fmt: skip
+        bases.setdefault(same, {})[base] = power
     if not large or len(bases) > MOST_BASES:
         return None
     values: dict[Expr, Expr] = {}
     letters: dict[Expr, Expr] = {}
     for base, members in bases.items():
         own = [node for node in large if node.base in members]
-        least = min(abs(int(node.exp)) for node in own)
+        least = min(abs(int(node.exp)) * members[node.base] for node in own)
         letter = Dummy("Z", real=True)
         letters[letter] = base
         for node in own:
             direction = 1 if node.exp > 0 else -1
-            rest = abs(int(node.exp)) - least
-            sign = 1 if is_zero(node.base - base) else (-1) ** least
-            values[node] = sign * letter**direction * node.base ** (direction * rest)
+            rest = abs(int(node.exp)) * members[node.base] - least
+            sign = 1 if is_zero(node.base - base ** members[node.base]) else (-1) ** int(node.exp)
+            values[node] = sign * letter**direction * base ** (direction * rest)
     return ShorterPowers(tuple(formula.xreplace(values) for formula in formulas), letters)
 
 

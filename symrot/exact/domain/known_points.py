@@ -12,7 +12,7 @@ from typing import Any
 
 from sympy import Expr
 
-from symrot.exact.domain.needs import Need, assumptions_of, leaves_of
+from symrot.exact.domain.needs import Need, assumptions_of, fits_assumptions, leaves_of
 from symrot.exact.domain.newton_box import EquationSystem
 from symrot.exact.floats import NoValue, float_at
 from symrot.exact.intervals import enclosure
@@ -106,7 +106,7 @@ class _Search:
             yield {leaf: self.drawn(leaf, pool, source) for leaf in self.leaves}
 
     def drawn(self, leaf: Expr, pool: Sequence[Fraction], source: Random) -> Fraction:
-        fitting = [value for value in pool if _allowed(leaf, value)]
+        fitting = [value for value in pool if fits_assumptions(leaf, value)]
         return source.choice(fitting) if fitting else Fraction(1)
 
     def broken(self, point: Point) -> list[Need]:
@@ -170,7 +170,7 @@ class _Search:
         while broken and self.looks < MOST_LOOKS:
             trials = (
                 {**point, leaf: value}
-                for need in broken for leaf in self.own[need] for value in WIDER if _allowed(leaf, value)
+                for need in broken for leaf in self.own[need] for value in WIDER if fits_assumptions(leaf, value)
             )  # fmt: skip
             for trial in trials:
                 left = self.broken(trial)
@@ -182,12 +182,3 @@ class _Search:
             else:
                 break
         return point
-
-
-def _allowed(leaf: Expr, value: Fraction) -> bool:
-    """Return whether a rational ``value`` agrees with SymPy's assumptions on the symbol ``leaf``, such as positive."""
-    return not (
-        (leaf.is_positive and value <= 0) or (leaf.is_negative and value >= 0) or (leaf.is_nonnegative and value < 0)
-        or (leaf.is_nonpositive and value > 0) or (leaf.is_nonzero and value == 0)
-        or (leaf.is_integer and value.denominator != 1)
-    )  # fmt: skip

@@ -8,6 +8,7 @@ claims records it.
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import sympy
 from sympy import Expr, cos, sin, sinh
@@ -16,7 +17,7 @@ from sympy.matrices.expressions.matexpr import MatrixElement
 
 from symrot.exact.intervals import INTERVAL
 
-__all__ = ["Need", "assumptions_of", "is_leaf", "leaves_of", "needs_of"]
+__all__ = ["Need", "assumptions_of", "fits_assumptions", "is_leaf", "leaves_of", "needs_of"]
 
 
 @dataclass(frozen=True)
@@ -77,6 +78,15 @@ def assumptions_of(leaf: Expr) -> list[Need]:
     known = ((leaf, "> 0", leaf.is_positive), (-leaf, "> 0", leaf.is_negative), (leaf, ">= 0", leaf.is_nonnegative),
              (-leaf, ">= 0", leaf.is_nonpositive), (leaf, "!= 0", leaf.is_nonzero))  # fmt: skip
     return [Need(formula, sign) for formula, sign, assumed in known if assumed]
+
+
+def fits_assumptions(leaf: Expr, value: Any) -> bool:
+    """Return whether a rational ``value`` agrees with SymPy's assumptions on the symbol ``leaf``, such as positive."""
+    return not (
+        (leaf.is_positive and value <= 0) or (leaf.is_negative and value >= 0) or (leaf.is_nonnegative and value < 0)
+        or (leaf.is_nonpositive and value > 0) or (leaf.is_nonzero and value == 0)
+        or (leaf.is_integer and int(value.denominator) != 1)
+    )  # fmt: skip
 
 
 def needs_of(formulas: Iterable[Expr]) -> list[Need]:

@@ -53,12 +53,13 @@ NAMED = (
     ("I_O = I_c + md^2", "moment of inertia about a parallel axis (parallel-axis theorem)"),
     ("P = M ω", "power of a torque about one axis"),
     ("q0 = cos θ/2", "scalar component of the quaternion of axis and angle"),
+    ("θ'' = −(g/l) sin θ", "relation for a simple pendulum"),
     ("φ̇ = (ω₁ sin ψ + ω₂ cos ψ)/sin θ", "first component of the angle rates of ZXZ from omega in the body frame"),
 )  # fmt: skip
 
 DEFINITIONS = (
-    "F = ma", "θ'' = −(g/l) sin θ", "V = mgh", "T = p²/2m",
-    "f = 1/2π √(k/m)", "T = ½ I ω² = L²/(2I)", "α = dω/dt",
+    "F = ma", "V = mgh", "T = p²/2m",
+    "f = 1/2π √(k/m)", "α = dω/dt",
 )  # fmt: skip
 
 

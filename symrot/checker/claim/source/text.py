@@ -8,6 +8,7 @@ from symrot.checker.arrays.complex_parts import imaginary_unit, is_complex, with
 from symrot.checker.arrays.index_notation import written_out
 from symrot.checker.arrays.matrices import (
     bold_matrices,
+    bold_unit_matrices,
     matrices_of_entries,
     matrix_of_entries,
     rate_matrices,
@@ -101,6 +102,7 @@ def claim_of_relation(
     moving_matrices = {name: timed for name, timed in rate_matrices(relation).items() if name not in dict(define)}
     sign, left, right = relation
     relation = sign, without_time(left, moving_matrices), without_time(right, moving_matrices)
+    vectors = [vector for vector in vectors if vector.name not in bold_unit_matrices(relation[1:])]
     bold = bold_matrices(relation[1:], {vector.name for vector in vectors}) | moving_matrices
     vectors = [vector for vector in vectors if vector.name not in bold]
     define = [*((name, matrix_of_entries(name, timed)) for name, timed in bold.items()), *define]
