@@ -223,7 +223,7 @@ def test_a_difference_of_moments_is_open_without_the_plane_of_the_body():
 
 @pytest.mark.parametrize("claim", [
     "R_11 = cos phi cos theta cos psi - sin phi sin psi", "e_1 = (A_23 - A_32)/(2 sin Phi)", "phi = atan2(r_23, r_13)",
-    "M_x = I_t omega_x' + (I_a - I_t) omega_y omega_z", "L_1' = (1/I_3 - 1/I_2) L_2 L_3", "omega = sqrt(kappa/I)",
+    "L_1' = (1/I_3 - 1/I_2) L_2 L_3", "omega = sqrt(kappa/I)",
     "E = L^2/(2 I_1) + 1/2 (1/I_3 - 1/I_1) L_3^2", "I = m/6 (a^2 b^2 + b^2 c^2 + c^2 a^2)/(a^2 + b^2 + c^2)",
 ])  # fmt: skip
 def test_formulas_of_further_books_are_known(claim):
