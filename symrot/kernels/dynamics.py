@@ -173,7 +173,7 @@ def _heavy_top(name: str, body: str) -> Definition:
 
 
 def _weighed(center: Matrix) -> tuple[Matrix, Named]:
-    """Return (vector, definitions) of 2 W r, where W is the weight and r = ``center`` the position of the centre of mass.
+    """Return (vector, definitions) of 2 W r, for the weight W and the position r = ``center`` of the centre of mass.
 
     The vector consists of symbols, except zeros; definitions are pairs (symbol, formula). The factor 2 is here because
     the torque is the cross product of half the vertical with this vector: half of it needs fewer operations.

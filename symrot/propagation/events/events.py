@@ -212,8 +212,9 @@ def guard_library_source(
 ) -> str:
     """Return the C source of a library that locates the zeros of formulas along a motion.
 
-    A formula may be a guard: where it is zero, a function such as sign changes its value. The formulas contain t, omega,
-    q and parameters. ``quantities`` is the program that computes omega and q from the states, with the same parameters. ``states`` are the names of the states;
+    A formula may be a guard: where it is zero, a function such as sign changes its value. The formulas contain t,
+    omega, q and parameters. ``quantities`` is the program that computes omega and q from the states, with the same
+    parameters. ``states`` are the names of the states;
     ``edges`` and ``scales`` are those of :func:`symrot.propagation.compiled_models.error_blocks`.
     """
     from symrot.codegen.printing.event_source import event_definitions
