@@ -107,7 +107,7 @@ class _Search:
                 [*edited, *by_entries(numeric), *exchanged_definitions(numeric), *solutions(numeric)],
                 key=lambda candidate: candidate.cost,
             ),
-            lambda: missing_terms(numeric),
+            lambda: () if self.conditional else missing_terms(numeric),
             lambda: missing_matrices(numeric),
         )
         repairs: list[Repair] = []
