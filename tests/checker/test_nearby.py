@@ -219,3 +219,19 @@ def test_a_wrong_axis_and_a_wrong_sign_of_moments_are_found(claim, body, repair)
 def test_a_difference_of_moments_is_open_without_the_plane_of_the_body():
     """In the plane of y and z, I_x is the sum."""
     assert symrot.check("I_z = I_x - I_y").verdict == "definition"
+
+
+@pytest.mark.parametrize("claim", [
+    "R_11 = cos phi cos theta cos psi - sin phi sin psi", "e_1 = (A_23 - A_32)/(2 sin Phi)", "phi = atan2(r_23, r_13)",
+    "M_x = I_t omega_x' + (I_a - I_t) omega_y omega_z", "L_1' = (1/I_3 - 1/I_2) L_2 L_3", "omega = sqrt(kappa/I)",
+    "E = L^2/(2 I_1) + 1/2 (1/I_3 - 1/I_1) L_3^2", "I = m/6 (a^2 b^2 + b^2 c^2 + c^2 a^2)/(a^2 + b^2 + c^2)",
+])  # fmt: skip
+def test_formulas_of_further_books_are_known(claim):
+    """Entries of Euler matrices, an axis and an angle from a matrix, symmetric bodies, a torsional pendulum, a box."""
+    assert symrot.check(claim).verdict == "recognised"
+
+
+def test_the_first_angle_of_a_matrix_is_not_called_as_the_third_one():
+    """With the arguments exchanged, it would be the third angle of ZXZ for the transposed matrix."""
+    assert symrot.check("phi = atan2(r_13, r_23)").verdict == "definition"
+    assert symrot.check("psi = atan2(A_13, A_23)").verdict == "recognised"

@@ -50,3 +50,7 @@ def test_a_counterexample_keeps_the_assumptions_on_a_symbol(sign, solution):
 ])  # fmt: skip
 def test_large_powers_inverses_and_unit_matrices(text, outcome):
     assert check(text, repair=False).verdict == outcome
+
+
+def test_conditions_that_contradict_each_other_are_no_range():
+    assert check("(-x)**(2*n) == x**(2*n)").conditions == ("x < 0 and x > 0",)

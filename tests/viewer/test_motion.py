@@ -151,3 +151,15 @@ def test_a_curve_with_more_periods_than_pixels_is_a_band(tmp_path):
     assert line is None
     assert 100 < len(pieces) <= 301
     assert all(low < -0.9 and high > 0.9 for _, low, high in pieces)
+
+
+def test_a_motion_whose_numbers_overflow_does_not_go_on(tmp_path):
+    """An infinite norm would make every error look small."""
+    script = """
+    const model = new Model({...data, omega: [1e308, 0, 200]});
+    model.motion.reach(data.stop);
+    console.log(JSON.stringify([model.motion.failure, model.motion.t]));
+    """
+    failure, reached = in_node(page_model(symrot.load_scene("heavy_top_loops")), script, tmp_path)
+    assert "beyond all bounds" in failure
+    assert reached == 0

@@ -54,7 +54,8 @@ MOMENTS, OMEGAS = "A|B|C|I_xx|I_yy|I_zz", "omega_[123xyzif]"
 QUANTITIES: tuple[Quantity, ...] = (
     Quantity("moment of inertia", ("inertia",), INERTIA, MOMENTS, MOMENT),
     Quantity("axial moment of inertia",
-             ("axial moment", "moment about the axis", "moment of inertia about the axis", "inertia about the axis",
+             ("axial moment", "moment about the spin axis", "moment about the axis",
+              "moment of inertia about the axis", "inertia about the axis",
               "moment about the symmetry axis", "moment of inertia about the symmetry axis"), INERTIA, "C", MOMENT),
     Quantity("transverse moment of inertia",
              ("transverse moment", "transverse inertia", "moment about a transverse axis", "equatorial moment",

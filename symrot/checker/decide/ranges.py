@@ -5,6 +5,7 @@ factors of known sign are left out, bounds of one quantity are joined, and condi
 from the others are dropped. The text holds exactly where the conditions hold and their formulas have values.
 """
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -64,7 +65,12 @@ def condition_texts(conditions: Iterable[Any]) -> tuple[str, ...]:
     assumed = required[0].conditions if len(required) == 1 else []
     texts = _texts(_Conditions.of([*assumed, *_signs(conditions)]))
     stated = required[0].text.split(" and ") if assumed else []
+    texts = [_EMPTY_RANGE.sub(r"\2 < \1 and \2 > \1", text) for text in texts]
     return (*(each.text for each in required), *(text for text in texts if text not in stated))
+
+
+_EMPTY_RANGE = re.compile(r"^(.+) < (\w+) < \1$")
+"""A range without a number, such as ``0 < x < 0``; two conditions that contradict each other are easier to read."""
 
 
 def positive_symbols(conditions: Iterable[Any]) -> dict[Expr, Expr]:

@@ -69,7 +69,8 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"[pqr]", ("angular velocity", "angle rates", "distance of", "vector", "Rodrigues", "quaternion")),
     (r"(d(phi|theta|psi|alpha|gamma)|(phi|theta|psi)_?dot)(_?[1-3])?", ("angle rates", "precession", "spin")),
     (r"dbeta(_?[0-4])?", ("angle rates", "quaternion rates")),
-    (r"(q|beta|e|eps|epsilon|eta)_?[0-4iswxyz]", ("quaternion", "Rodrigues parameters of")),
+    (r"(q|beta|e|eps|epsilon|eta)_?[0-4iswxyz]",
+     ("quaternion", "Rodrigues parameters of", "axis of a rotation matrix")),
     (r"d(omega|w|Omega)(_?[xyz1-3])?|d[pr]", ("Euler's equations", "angular acceleration")),
     (r"dq", ("Euler's equations", "angular acceleration", "Rodrigues", "quaternion")),
     (r"theta|phi|psi|Phi|vartheta|varphi", ("angle of", "angle at")),
@@ -143,6 +144,9 @@ CROSS_PRODUCT = "cross product v x n"
 
 ENTRY = r"[RrACQ]_?([1-3]{2})"
 """Pattern of the names of the entries of a rotation matrix."""
+
+FIRST_ANGLE, LAST_ANGLE = r"(var)?phi|alpha|\w+_1", r"psi|gamma|\w+_3"
+"""Patterns of the names of the first and of the third of three Euler angles."""
 
 USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 """The sequences of Euler angles that books use most, in this order."""
@@ -398,6 +402,9 @@ def keeps_places(named: NamedFormula, known: Identification) -> bool:
         return False
     entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(ENTRY, named.name)
     if entry and own and own[1] not in (entry[1], entry[1][::-1]):
+        return False
+    angle_of = re.match(r"(first|third) angle of (ZXZ|ZYZ) of a rotation matrix", known.name)
+    if angle_of and re.fullmatch(LAST_ANGLE if angle_of[1] == "first" else FIRST_ANGLE, named.name):
         return False
     letters = [*known.mapping.values()] or [*names_in(named.formula)]
     is_parallel = re.search("parallel.ax", known.name) is not None

@@ -215,6 +215,9 @@ def _mechanics() -> Iterator[Named]:
         yield f"gyroscopic torque omega x I omega, {axes}", page_of, omega.cross(momentum)
         yield f"angular momentum I omega, {axes}", "derivations/angular_momentum.md", momentum
         yield f"kinetic energy of rotation, {axes}", "derivations/kinetic_energy.md", omega.dot(momentum) / 2
+    first, second, _ = moments
+    needed = (principal * rates + omega.cross(principal * omega)).subs(second, first)
+    yield "torque by Euler's equations, equal moments about two axes", page_of, needed
     point = Matrix(tensor.inertia_of_point(symbols.m, symbols.position))
     page_of = "derivations/parallel_axis.md"
     yield "inertia tensor of a point mass, which is what the parallel-axis theorem adds", page_of, point

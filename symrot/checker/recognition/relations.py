@@ -230,7 +230,10 @@ def _one_axis() -> Iterator[Relation]:
         yield Relation(motion, PLANE, END - mean.subs(start), {END: "angle at"})
     twist = (STIFFNESS * THETA).integrate((THETA, 0, THETA))
     yield Relation("a torsional spring", PENDULUM, ENERGY - twist, {ENERGY: "potential energy of"})
-    yield Relation("a torsional pendulum", PENDULUM, STIFFNESS * PERIOD**2 - (2 * pi) ** 2 * A, {PERIOD: "period of"})
+    swing, rate = STIFFNESS * PERIOD**2 - (2 * pi) ** 2 * A, symbols.Omega
+    yield Relation("a torsional pendulum", PENDULUM, swing, {PERIOD: "period of"})
+    by_rate = cancel(swing.subs(PERIOD, 2 * pi / rate) * rate**2 / (2 * pi) ** 2)
+    yield Relation("a torsional pendulum", PENDULUM, by_rate, {rate: "frequency of"})
     # the pivot has no reaction to a blow at the distance q_d if the blow moves the centre of mass as the pivot needs
     blow = Symbol("blow", real=True)
     (rate,) = solve(blow * LENGTH - C * SPIN, SPIN)
@@ -425,6 +428,9 @@ def _free() -> Iterator[Relation]:
     velocities = [part / moment for part, moment in zip(parts, (A, B, C), strict=True)]
     by_momenta = energy.subs(dict(zip(OMEGA, velocities, strict=True)))
     yield Relation("a body by its angular momentum", EULER, ENERGY - by_momenta, {ENERGY: "kinetic energy of"})
+    across = {parts[0] ** 2: H**2 - parts[1] ** 2 - parts[2] ** 2}
+    along = expand(expand(by_momenta.subs(symmetric)).subs(across))
+    yield Relation("a symmetric body by its angular momentum", EULER, ENERGY - along, {ENERGY: "kinetic energy of"})
     first, second, third = OMEGA
     for eliminated, rest in ((third, first), (first, third)):
         (value,) = {solution**2 for solution in solve(2 * energy - 2 * E, eliminated)}

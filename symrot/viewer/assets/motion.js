@@ -153,7 +153,7 @@ export class Motion {
             const size = fixed || Math.max(length(y, from, to), length(end, from, to), RATE_FLOOR/h);
             const norm = fifth + 0.01*third;
             const error = norm > 0 ? h*fifth/Math.sqrt(norm)/size : 0;
-            worst = Math.max(worst, Number.isFinite(error) ? error : Infinity);
+            worst = Math.max(worst, Number.isFinite(error) && Number.isFinite(size) ? error : Infinity);      // an infinite size hides any error
         }
         return worst/Math.max(this.tolerance, ROUND_OFF);
     }
@@ -165,7 +165,7 @@ export class Motion {
             const last = this.t + this.h*(1 + 1e-12) >= this.stop;
             const h = (last ? this.stop : this.t + this.h) - this.t;      // what the clock really moves by
             if (this.steps.length >= MOST_STEPS) return this.#fail(`a page computes at most ${MOST_STEPS} steps, and they end`);
-            if (!(h > 4*2**-52*Math.abs(this.t))) return this.#fail("its steps fall below the rounding of time");
+            if (!(h > 4*2**-52*Math.abs(this.t))) return this.#fail(this.isInfinite ? "its numbers grow beyond all bounds" : "its steps fall below the rounding of time");
             for (let stage = 2; stage <= 12; ++stage) this.#stage(stage, h);
             for (let i = 0; i < size; ++i) {
                 let sum = 0;
@@ -174,6 +174,7 @@ export class Motion {
                 end[i] = this.y[i] + rise[i];
             }
             const error = this.#error(h, end);
+            this.isInfinite = error === Infinity;
             if (error === Infinity) {
                 this.h = COLLAPSE*h;
                 this.growth = 1;

@@ -448,7 +448,7 @@ class Page {
         } else {
             const drifts = data.conserved.length ? this.panels.at(-1).panel.largest() : [];
             lines.push(`Computed in this page in ${model.motion.steps.length} steps of Dormand-Prince 8(5,3), ${number(1000*this.seconds, 2)} ms.`);
-            if (drifts.length) lines.push(`Conserved: ${data.conserved.map(({name}) => name).join(", ")}; largest relative drift ${number(Math.max(...drifts), 2)}.`);
+            if (drifts.length) lines.push(`Conserved: ${data.conserved.map(({name}) => name).join(", ")}; ${drifts.every(Number.isFinite) ? `largest relative drift ${number(Math.max(...drifts), 2)}` : "but their drift has no number"}.`);
             this.agreement = model.isOriginal ? model.agreement() : null;
             if (this.agreement !== null) lines.push(`Agrees with the motion that symrot computed to ${number(this.agreement, 2)}.`);
         }

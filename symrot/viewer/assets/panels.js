@@ -154,7 +154,7 @@ export class Panel {
     /** Show curves: `t` are times, s, and `columns` their values. */
     fill(t, columns) {
         const {definition: {kind, unit, names}, clock} = this;
-        this.raw = columns.map((column) => column.reduce((most, value) => Math.abs(value) > most ? Math.abs(value) : most, 0));
+        this.raw = columns.map((column) => column.reduce((most, value) => Math.max(most, Math.abs(value)), 0));      // NaN if a value is none
         let drawn = columns;
         if (kind === "drift") drawn = columns.map((column) => {
             let most = 0;
@@ -185,7 +185,7 @@ export class Panel {
         this.caption.querySelector(".unit").textContent = shown;
         this.#keys(names.map((name, k) => {
             if (written[k]) return `${name} = ${this.#value(spans[k])} ${unit}`;
-            return kind === "drift" && !(this.raw[k] > 0) ? `${name} (no change)` : name;
+            return kind !== "drift" || this.raw[k] > 0 ? name : this.raw[k] === 0 ? `${name} (no change)` : `${name} (no number)`;
         }), written);
         const inWords = kind === "drift" ? this.raw.map((most, k) => `${names[k]} at most ${most.toPrecision(2)}`)
             : spans.map(([from, to], k) => from <= to ? `${names[k]} from ${Number(from.toPrecision(4))} to ${Number(to.toPrecision(4))}` : "").filter(Boolean);

@@ -32,6 +32,9 @@ def bodies() -> Iterator[Named]:
                 mass = symbols.rho * body.measure
                 dense = factor(moment.subs(symbols.m, mass))
                 yield f"moment of inertia of a {title} of given density, {axis} axis", SOLIDS, dense
+    box, edges = solid("box"), Matrix([symbols.a, symbols.b, symbols.c])
+    along = edges.dot(box.inertia_about(tuple(box.center_of_mass)) * edges) / edges.dot(edges)
+    yield "moment of inertia of a box about its space diagonal", SOLIDS, cancel(along)
     yield from _right_triangle()
     yield from _rods_and_masses()
     yield from _theorems()

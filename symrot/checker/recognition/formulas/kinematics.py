@@ -183,6 +183,12 @@ def _entries() -> Iterator[Named]:
             forms += [homogeneous[i, j] + relation, homogeneous[i, j] - relation] if i == j else []
             for form in dict.fromkeys(map(expand, forms)):
                 yield name, PARAMETERS, form
+    for sequence in ("ZXZ", "ZYX", "ZYZ", "XYZ"):
+        of_angles = euler.dcm(sequence)
+        for i in range(3):
+            for j in range(3):
+                if len(of_angles[i, j].free_symbols) == len(symbols.angles):
+                    yield f"entry {i + 1}{j + 1} of the rotation matrix of {sequence}", RATES, of_angles[i, j]
     rest = cancel((trace(homogeneous) + quaternion.norm_squared(Q)) / Q[0] ** 2)  # 4: the trace is 4 q0^2 - |q|^2
     yield "scalar component of the quaternion of a rotation matrix, squared", PARAMETERS, (trace(ENTRIES) + 1) / rest
     for number, (i, j) in enumerate(BELOW, start=1):
@@ -202,6 +208,8 @@ def _angles() -> Iterator[Named]:
     sines = [cancel(skew_part[place] / component) for place, component in zip(BELOW, AXIS, strict=True)]
     axis = Matrix([(ENTRIES[i, j] - ENTRIES[j, i]) / (2 * sine) for (i, j), sine in zip(BELOW, sines, strict=True)])
     yield "axis of a rotation matrix", UNIT, axis
+    for word, component in zip(WORDS, axis, strict=True):
+        yield f"{word} component of the axis of a rotation matrix", UNIT, component
     scalar, *vector = rotation_vector.quaternion_of_axis_angle(symbols.axis, symbols.phi)
     yield "scalar component of the quaternion of axis and angle", UNIT, scalar
     yield from _with_words("quaternion of axis and angle", UNIT, Matrix(vector))
@@ -227,6 +235,18 @@ def _euler_angles() -> Iterator[Named]:
         assert expand(matrix[over] * cos(angle) - matrix[under] * sin(angle)) == 0
         for title, entries in (("unit quaternion", quaternion.quaternion_to_dcm(Q)), ("rotation matrix", ENTRIES)):
             yield f"{name} angle of a {title}, atan2", PARAMETERS, Matrix([entries[over], entries[under]])
+    first, _, third = symbols.angles
+    for name, over_first, under_first, over_third, under_third in (
+        ("ZYZ", (1, (1, 2)), (1, (0, 2)), (1, (2, 1)), (-1, (2, 0))),
+        ("ZXZ", (1, (0, 2)), (-1, (1, 2)), (1, (2, 0)), (1, (2, 1))),
+    ):
+        matrix_of = euler.dcm(name)
+        for word, angle, (up, over), (down, under) in (
+            ("first", first, over_first, under_first), ("third", third, over_third, under_third),
+        ):  # fmt: skip
+            assert expand(up * matrix_of[over] * cos(angle) - down * matrix_of[under] * sin(angle)) == 0
+            pair = Matrix([up * ENTRIES[over], down * ENTRIES[under]])
+            yield f"{word} angle of {name} of a rotation matrix, atan2", PARAMETERS, pair
     assert matrix[2, 0] == -sin(pitch)
     yield "pitch angle of a unit quaternion, asin", PARAMETERS, -quaternion.quaternion_to_dcm(Q)[2, 0]
 

@@ -67,6 +67,8 @@ def points() -> Iterator[Named]:
     yield axis, MOMENTUM, MOMENTUM_RATE
     turned = Matrix(symbols.omega_b).cross(Matrix(symbols.momentum_b))
     yield "rate of the angular momentum in the body", MOMENTUM, Matrix(symbols.torque_b) - turned
+    own = [momentum / moment for momentum, moment in zip(symbols.momentum_b, symbols.principal, strict=True)]
+    yield "rate of the angular momentum of a free body", MOMENTUM, -Matrix(own).cross(Matrix(symbols.momentum_b))
     yield from _speeds()
 
 
