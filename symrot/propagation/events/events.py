@@ -137,6 +137,8 @@ def read_events(events: Any) -> tuple[Event, ...]:
     """
     if isinstance(events, str | Event) or hasattr(events, "keys"):
         events = [events]
+    if not isinstance(events, Iterable):
+        raise InputError(f'events: expected formulas as text, such as ["omega_3", "t - 1"], got {number.show(events)}')
     checked = []
     for place, entry in enumerate(events):
         where = f"events[{place}]"
