@@ -1,4 +1,4 @@
-"""The command for bodies from other programs: inertia."""
+"""The command ``symrot inertia``, which reads bodies from meshes and robot files of other programs."""
 
 from argparse import ArgumentParser, Namespace
 from pathlib import Path

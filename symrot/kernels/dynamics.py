@@ -173,10 +173,10 @@ def _heavy_top(name: str, body: str) -> Definition:
 
 
 def _weighed(center: Matrix) -> tuple[Matrix, Named]:
-    """Return (vector, definitions) of twice the weight times the position ``center`` of the centre of mass.
+    """Return (vector, definitions) of 2 W r, for the weight W and the position r = ``center`` of the centre of mass.
 
     The vector consists of symbols, except zeros; definitions are pairs (symbol, formula). The factor 2 is here because
-    the torque is computed as the cross product of half the upward vertical with this vector.
+    the torque is the cross product of half the vertical with this vector: half of it needs fewer operations.
     """
     components = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]
     return Matrix(components), tuple(

@@ -123,9 +123,9 @@ def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str, s
     drawn = np.flatnonzero(~written)
     draw_curves(axes, t, [columns[:, i] / size for i in drawn], [names[i] for i in drawn], [COLOURS[i] for i in drawn])
     for number in np.flatnonzero(written):
-        own, shown = prefixed(float(largest[number]), unit) if unit else (1.0, unit)
+        own, own_unit = prefixed(float(largest[number]), unit) if unit else (1.0, unit)
         ends = dict.fromkeys(f"{end / own:.6g}" for end in (low[number], high[number]))
-        axes.plot([], [], " ", label=f"{names[number]} = {' to '.join(ends)} {shown}")
+        axes.plot([], [], " ", label=f"{names[number]} = {' to '.join(ends)} {own_unit}")
     _legend(axes)
 
 

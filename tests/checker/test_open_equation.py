@@ -24,3 +24,9 @@ def test_two_letters_are_a_condition():
 ])  # fmt: skip
 def test_a_wrong_identity_and_an_equation_without_a_solution_are_false(text):
     assert symrot.check(text, repair=False).verdict == "false"
+
+
+def test_a_derivative_that_is_a_hidden_zero_is_no_condition():
+    """``diff(x, t) == 0`` states that x is constant, but nobody writes this zero as ``2*y - y - y``."""
+    assert symrot.check("diff(sin(x(t)), t) == 0", repair=False).verdict == "definition"
+    assert symrot.check("diff(sin(x(t)), t) == 2*y - y - y", repair=False).verdict == "false"

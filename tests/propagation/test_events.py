@@ -247,6 +247,7 @@ def test_scipy_finds_the_same():
         (["omega_4"], r"events\[0\]: expected names among t, omega_1..3, q0..q3 and pi, got omega_4"),
         (["__import__('os')"], r"events\[0\]: expected"),
         ([3], r"events\[0\]: expected a formula as text"),
+        (abs, r"events: expected formulas as text, such as \[\"omega_3\", \"t - 1\"\], got <built-in"),
         (["q0", {"formula": "q1", "stop": 1}], r"events\[1\]: expected a formula as text"),
         ([symrot.Event("q0", terminal=-1)], "terminal: expected true, false or a count, got -1"),
         ([symrot.Event("q0", direction=2)], "direction: expected -1, 0 or 1, got 2"),

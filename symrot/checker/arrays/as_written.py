@@ -78,7 +78,7 @@ def inverse_of(side: Node, source: str) -> Node | None:
 
 
 def with_inverses(sides: Sequence[Node], source: str) -> list[Node]:
-    """Return the sides of a claim with ``q**(-1)`` in place of a side that is the inverse of a quaternion."""
+    """Return the sides of a claim with ``q**(-1)`` for the formula of an inverse quaternion, ``q*/|q|^2``."""
     inner = [inverse_of(side, source) for side in sides]
     minus = negated(number(1))
     return [side if q is None else Node("power", None, (q, minus)) for side, q in zip(sides, inner, strict=True)]

@@ -135,7 +135,8 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     if is_condition or _has_own_angle(left, right, generic) or _has_open_derivative(left, right, known):
         return NamedFormula(text(left), left, right, solve=None)
     defined = {name for quantities in letters for name, _ in quantities} & (known - {"pi", "t"})
-    if not claim.hypotheses and not defined and (_is_open_rate(left, right) or _is_open_rate(right, left)):
+    is_open_rate = _is_open_rate(left, right) or _is_open_rate(right, left)
+    if not claim.hypotheses and not defined and is_open_rate and not _has_hidden_zero(claim, left, right):
         return NamedFormula(text(left), left, right, solve=None)
     is_moving = any(is_derivative(node) for side in (left, right) for _, node in walk(side))
     if not claim.hypotheses and left.kind == "name" and _has_own_letters(_letters_by_definition(claim, left, right)):
@@ -169,6 +170,18 @@ def related_formula(claim: Claim) -> NamedFormula | None:
         _has_own_letters(letters) and _depends_on_own_letters(claim)
     )
     return NamedFormula(text(left), left, right, solve=None) if is_open else None
+
+
+def _has_hidden_zero(claim: Claim, left: Node, right: Node) -> bool:
+    """Return whether one side is zero for all values of its letters, but is not written as 0, such as ``2*y - y - y``.
+
+    ``diff(x**2, t) == 0`` states that x is constant. With a hidden zero, it is an attempt at an identity.
+    """
+    try:
+        sides = [claim.interpreter().read(side) for side in (left, right) if side != number(0)]
+        return any(not is_matrix(value) and normal_form(value) == 0 for value in sides)
+    except (InputError, TooLarge):
+        return False
 
 
 def _says_something(claim: Claim, left: Node, right: Node) -> bool:

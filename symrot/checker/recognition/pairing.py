@@ -49,8 +49,8 @@ MOST = 6
 def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] = ()) -> list[dict[str, str | None]]:
     """Return renamings of a known formula's names ``known`` to names ``own`` of a claim, the most similar ones first.
 
-    ``angles`` are those names of the claim that occur in sines and cosines. A renaming gives each known name the name
-    of a quantity of the claim, or None for one name that the claim lacks.
+    ``angles`` are those names of the claim that occur in sines and cosines. A renaming maps each known name to a name
+    of the claim; if the claim has one name fewer, it maps one known name to None.
     """
     if abs(len(known) - len(own)) > 1:
         return []

@@ -137,6 +137,8 @@ def read_events(events: Any) -> tuple[Event, ...]:
     """
     if isinstance(events, str | Event) or hasattr(events, "keys"):
         events = [events]
+    if not isinstance(events, Iterable):
+        raise InputError(f'events: expected formulas as text, such as ["omega_3", "t - 1"], got {number.show(events)}')
     checked = []
     for place, entry in enumerate(events):
         where = f"events[{place}]"
@@ -212,8 +214,9 @@ def guard_library_source(
 ) -> str:
     """Return the C source of a library that locates the zeros of formulas along a motion.
 
-    The formulas may be guards, at whose zeros functions such as sign switch. They contain t, omega, q and parameters of
-    ``quantities``, the kernel that computes omega and q from the states. ``states`` are the names of the states;
+    A formula may be a guard: where it is zero, a function such as sign changes its value. The formulas contain t,
+    omega, q and parameters. ``quantities`` is the program that computes omega and q from the states, with the same
+    parameters. ``states`` are the names of the states;
     ``edges`` and ``scales`` are those of :func:`symrot.propagation.compiled_models.error_blocks`.
     """
     from symrot.codegen.printing.event_source import event_definitions
