@@ -115,7 +115,7 @@ def test_functions_of_the_file_and_choices_are_read():
         ("static", "/\\\n* */ static", "backslash"),
         ("< 0.0", "< 0.0 < 1.0", "'?'"),
         ("cos(t)", "cos(t", "expected"),
-        ("cos(t)", "(" * 300 + "t" + ")" * 300, "nested"),
+        ("cos(t)", "(" * 300 + "t" + ")" * 300, "200 levels of brackets"),
     ],
 )
 def test_what_is_not_understood_is_refused(old, new, said):
@@ -133,8 +133,8 @@ BLOCKS = (GENERATED / "euler_zxz_body_rates.c").read_text(encoding="utf-8")
         ("symrot_sin(psi)", "symrot_cos(psi)", "the same"),
         ("symrot_sin(psi)", "symrot_sin(phi)", "has a value"),
         ("symrot_sin(psi)", "symrot_tan(psi)", "<math.h>"),
-        (" + symrot_far(theta)", "", "of each angle"),
-        ("symrot_far(theta)", "symrot_far(omega_1)", "of each angle"),
+        (" + symrot_far(theta)", "", "for each argument"),
+        ("symrot_far(theta)", "symrot_far(omega_1)", "for each argument"),
         ("symrot_far(theta)", "symrot_near(theta)", "symrot_far"),
         ("beyond += ", "beyond -= ", "'+'"),
         ("beyond == 0 ? start : end", "beyond == 0 ? end : start", "'start'"),

@@ -276,7 +276,7 @@ def test_another_start_has_its_own_modes():
     ids=["emit", "angles", "another torque"],
 )  # fmt: skip
 def test_who_cannot_follow_switches_says_so(use):
-    with pytest.raises(InputError, match=r"expected .*(switches|jumps? or bends?)"):
+    with pytest.raises(InputError, match=r"expected .*(switches|jumps? or (bends?|a kink))"):
         use(scene("-sign(omega_3)"))
 
 

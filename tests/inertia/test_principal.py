@@ -172,8 +172,8 @@ def test_moments_that_no_body_has_are_refused(moments, sentence):
 @pytest.mark.parametrize(
     ("inertia", "sentence"),
     [
-        ([[1, 0], [0, 1]], "3x3"),
-        (5, "3x3"),
+        ([[1, 0], [0, 1]], "3 rows of 3"),
+        (5, "3 rows of 3"),
         ([[1, 2, 0], [0, 1, 0], [0, 0, 1]], "symmetric"),
         ([[1, "a", 0], [0, 1, 0], [0, 0, 1]], "number"),
         ([[1, float("inf"), 0], [0, 1, 0], [0, 0, 1]], "finite"),

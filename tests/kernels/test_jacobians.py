@@ -138,7 +138,7 @@ def test_fewer_operations_than_differences():
         ("quaternion_dcm", ["q", "q"], "each input once"),
         ("rotation_vector_of_quaternion", ["q"], "arc_ratio"),
         ("t_handle", ["mass"], "states or constants of the equations of motion"),
-        ("t_handle", ["omega", "omega_1"], "each state and constant once"),
+        ("t_handle", ["omega", "omega_1"], "each state and constant at most once"),
         ("quaternion_dcm", "q", "a list of names"),
     ],
 )

@@ -534,6 +534,10 @@ def _marked(tokens: Sequence[Token]) -> Iterator[str]:
             yield name.text
 
 
+SCALARS = ("m", "I", "J", "t")
+"""Letters that no book uses for a vector: masses, moments of inertia and times."""
+
+
 def _by_angle(tokens: Sequence[Token]) -> Iterator[str]:
     """Yield the two letters of a scalar product that is equated to its lengths: F and d for ``F·d = F d cos θ``.
 
@@ -555,8 +559,9 @@ def _by_angle(tokens: Sequence[Token]) -> Iterator[str]:
         has_lengths = {first, second} <= {*names} or first + second in names
         has_cosine = "cos" in names and len(names) <= 4 and first.isalpha() and second.isalpha()
         has_vectors = is_usual_vector(first) and is_usual_vector(second)
+        are_letters = len(first) == len(second) == 1 and not {first, second} & {*SCALARS}
         is_bare = lengths in ([first, second], [second, first], [first + second]) and has_vectors
-        if has_lengths and (is_bare or (has_cosine and (has_vectors or len(first) == len(second) == 1))):
+        if has_lengths and (is_bare or (has_cosine and (has_vectors or are_letters))):
             yield from (first, second)
 
 

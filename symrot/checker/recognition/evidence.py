@@ -351,7 +351,7 @@ def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> b
         return False  # books call moments of inertia by capital letters
     if _is_component_of_rate(named) and any(word in known.name for word in RATES_OF_TOPS):
         return False
-    is_torque = "torque" in known.name and re.fullmatch(r"L(_\w+)?", named.name) is not None
+    is_torque = not matrix and "torque" in known.name and re.fullmatch(r"L(_\w+)?", named.name) is not None
     if is_torque and not any(map(OF_ROLL.fullmatch, names_in(named.formula))):
         return False
     is_multiple = "times" in known.how and words is not None

@@ -11,6 +11,7 @@ from argparse import ArgumentParser
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from math import pi
 from random import Random
 from typing import Any
@@ -24,7 +25,7 @@ from symrot.exercises.exercise import Question
 from symrot.exercises.grading.formulas import GREEK
 from symrot.exercises.grading.grade import KINDS
 from symrot.exercises.grading.mark import Mark
-from symrot.exercises.templates import chosen
+from symrot.exercises.templates import TOPICS
 from symrot.exercises.units import unit_of
 from symrot.proof.notation.printer import formula
 
@@ -232,7 +233,7 @@ def questions(source: Random) -> Iterator[tuple[str, Question]]:
     """Yield the questions of all templates in turn, with other numbers in each round."""
     seed = source.randrange(1000)
     while True:
-        for name in chosen(""):
+        for name in chain(*TOPICS.values()):
             yield from ((name, question) for question in symrot.exercise(name, seed=seed)[0].questions)
         seed += 1
 
