@@ -3,6 +3,7 @@
 import json
 import os
 import shutil
+import signal
 import subprocess
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -22,7 +23,7 @@ class Browser:
     """A running Chromium with one page at a time; use it in a ``with`` statement."""
 
     def __init__(self, size=(1280, 900)):
-        self.profile = TemporaryDirectory(prefix="symrot-browser-")
+        self.profile = TemporaryDirectory(prefix="symrot-browser-", ignore_cleanup_errors=True)
         here_in, self.out = os.pipe()
         self.into, there_out = os.pipe()
         flags = (*FLAGS, f"--window-size={size[0]},{size[1]}", f"--user-data-dir={self.profile.name}")
@@ -30,6 +31,7 @@ class Browser:
         self.process = subprocess.Popen(
             ["bash", "-c", program, BROWSER, *flags, "--remote-debugging-pipe", "about:blank"],
             pass_fds=(here_in, there_out), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            start_new_session=True,
         )  # fmt: skip
         os.close(here_in)
         os.close(there_out)
@@ -43,7 +45,7 @@ class Browser:
         return self
 
     def __exit__(self, *_):
-        self.process.kill()
+        os.killpg(self.process.pid, signal.SIGKILL)  # its helpers too, which would go on to write into the profile
         self.process.wait()
         os.close(self.out)
         os.close(self.into)
