@@ -174,12 +174,15 @@ def _term(residual: Any, piece: Node | None) -> Node | None:
     above, below = residual.as_numer_denom()
     if not below.is_number or not residual.free_symbols:
         return None
+    most = MOST_LETTERS if piece == number(0) else 0 if piece is None else len(text(piece)) // 2  # of a bracketed term
     if above.is_Add:
+        if len(above.free_symbols) > most:
+            return None  # a term with that many names is longer, and factoring takes seconds
         residual = factor(residual) if len(above.args) <= MOST_TERMS else above
     letters = len(as_text(residual))
     if residual.is_Add or letters > MOST_LETTERS:
         return None
-    if residual.has(Add) and piece != number(0) and (piece is None or letters > len(text(piece)) // 2):
+    if residual.has(Add) and letters > most:
         return None
     return read_expression(as_text(residual))
 
