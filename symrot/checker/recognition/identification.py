@@ -329,7 +329,7 @@ def _matched(
         few = known.is_relation or (quantity is not None and len(pairing) <= FEW_SYMBOLS - (view.shape is not None))
         if (known.only_named or few) and not all(_is_usual(*pair) for pair in pairing.items()):
             continue
-        pairs = [(as_text(mine), as_text(other)) for mine, other in pairing.items()]
+        pairs = [(_name(mine), _name(other)) for mine, other in pairing.items()]
         if (few or (known.only_named and view.shape is not None)) and not _keeps_names(pairs):
             continue
         has_units = view.shape == (3, 1) and "product v x n" not in known.name  # v and n are any vectors there
@@ -355,6 +355,12 @@ def _matched(
             continue
         return match
     return None
+
+
+@lru_cache(maxsize=4096)
+def _name(atom: Expr) -> str:
+    """Return the text of a symbol or rate; thousands of renamings of one claim need it."""
+    return as_text(atom)
 
 
 def _keeps_names(pairs: Sequence[tuple[str, str]]) -> bool:
