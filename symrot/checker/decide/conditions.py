@@ -27,8 +27,11 @@ MOMENT = re.compile(r"[ABC]|[IJ]_?([xyz1-3]|([xyz1-3])\2|p|perp|par|parallel|t|s
 PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)", re.ASCII)
 """Names of moments of inertia, and of products of inertia."""
 
-MOST_TERMS, LARGEST_DEGREE = 400, 24
-"""The most terms, and the largest degree, of a residual that is factored."""
+MOST_TERMS, LARGEST_DEGREE, MOST_LETTERS = 400, 24, 20
+"""The most terms, the largest degree and the most letters of a residual that is factored.
+
+The traces of A B C and B A C differ by 36 terms in 27 letters, which take seconds.
+"""
 
 
 def requirements(
@@ -67,6 +70,8 @@ def _shared_factors(ring: FormulaRing, numerators: Sequence[PolyElement]) -> lis
     """
     smallest = min(numerators, key=len)
     if not ring.generators or len(smallest) > MOST_TERMS or max(map(sum, smallest)) > LARGEST_DEGREE:
+        return []
+    if sum(degree > 0 for degree in smallest.degrees()) > MOST_LETTERS:
         return []
     shared = reduce(lambda a, b: a if a.is_ground else a.gcd(b), sorted(numerators, key=len))
     return [] if shared.is_ground else [factor for factor, _ in shared.factor_list()[1]]
