@@ -43,7 +43,7 @@ RECOGNISED = (
     ("H = I_1 omega_1 b_1 + I_2 omega_2 b_2 + I_3 omega_3 b_3", MOMENTUM),
     (r"\mathbf H = I_1\omega_1\mathbf b_1 + I_2\omega_2\mathbf b_2 + I_3\omega_3\mathbf b_3", MOMENTUM),
     ("L = I_x omega_x i + I_y omega_y j + I_z omega_z k", MOMENTUM),
-    (r"\mathbf L = A p\,\mathbf i + B q\,\mathbf j + C r\,\mathbf k", MOMENTUM),
+    (r"\mathbf L = A p\,\mathbf i + B q\,\mathbf j + C r\,\mathbf k", "angular momentum I omega, principal axes"),
     (r"I = \mathbf{n}\cdot\mathbf{I}\cdot\mathbf{n}", AXIS), (r"I_n = \mathbf n\cdot\mathbf I\cdot\mathbf n", AXIS),
     (r"I = \mathbf u\cdot\mathbf J\cdot\mathbf u", AXIS), (r"I = \mathbf n^T\mathbf I\mathbf n", AXIS),
     (r"T = \frac12\boldsymbol\omega\cdot\mathbf I\cdot\boldsymbol\omega", "kinetic energy of rotation"),

@@ -23,13 +23,13 @@ FAULTS = (
     ("R_12 = q_1 q_2 - q_3 q_4", "factor", "R_12 = 2*(q_1*q_2 - q_3*q_4)"),
     ("ψ̇ = (ω₂ sin φ + ω₁ cos φ)/cos θ", "wrong_symbol", "ψ' = (ω₂*sin(φ) + omega_3*cos(φ))/cos(θ)"),
     ("τ = F × r", "sign_of_term", "τ = cross(r, F)"),
-    ("I_zz = m/12 (a^2 + b)", "exponent", "I_zz = m*(a^2 + b^2)/12"),
-    ("I_z = m/12 (a^2 - b^2)", "sign_of_term", "I_z = m*(a^2 + b^2)/12"),
+    ("I_zz = m/12 (a^2 + b)", "exponent", "I_zz = m/12*(a^2 + b^2)"),
+    ("I_z = m/12 (a^2 - b^2)", "sign_of_term", "I_z = m/12*(a^2 + b^2)"),
     ("I = 2m/5 (R_2^5 - R_1^5)/(R_2^2 - R_1^2)", "exponent", "I = 2*m/5*(R_2^5 - R_1^5)/(R_2^3 - R_1^3)"),
     ("p_phi = (I_1 cos^2 theta + I_3 sin^2 theta) phi' + I_3 psi' cos theta", "sin_cos_swap",
      "p_phi = (I_1*sin(theta)^2 + I_3*cos(theta)^2)*phi' + I_3*psi'*cos(theta)"),
-    ("phi' = p + q sin phi + r cos phi tan theta", "factor", "phi' = p + q*sin(phi)*tan(theta) + r*cos(phi)*tan(theta)"),
-    ("T = 1/2 (I_1 w_1^2 + I_2 w_2^2 + I_3 w_2^2)", "wrong_symbol", "T = (I_1*w_1^2 + I_2*w_2^2 + I_3*w_3^2)/2"),
+    ("phi' = p + q sin phi + r cos phi tan theta", "lost_brackets", "phi' = p + (q*sin(phi) + r*cos(phi))*tan(theta)"),
+    ("T = 1/2 (I_1 w_1^2 + I_2 w_2^2 + I_3 w_2^2)", "wrong_symbol", "T = 1/2*(I_1*w_1^2 + I_2*w_2^2 + I_3*w_3^2)"),
     ("L_x = I_xx w_x + I_xy w_y + I_yz w_z", "wrong_symbol", "L_x = I_xx*w_x + I_xy*w_y + I_xz*w_z"),
     ("e_0 = cos((phi + psi)/2) cos(theta)", "half_angle", "e_0 = cos((phi + psi)/2)*cos(theta/2)"),
     ("w_1' = ((I_2 - I_3) w_2 w_3 + M_1)/I_2", "wrong_symbol", "w_1' = ((I_2 - I_3)*w_2*w_3 + M_1)/I_1"),
@@ -45,7 +45,9 @@ FAULTS = (
 @pytest.mark.parametrize(("claim", "code", "repaired"), FAULTS)
 def test_the_part_at_fault_is_named_and_repaired(claim, code, repaired):
     verdict = symrot.check(claim)
-    assert (verdict.verdict, verdict.diagnosis.code) == ("doubtful", code)
+    adds_up = verdict.dimension.status != "inconsistent"  # a sum of terms in different units is false
+    assert verdict.verdict == "doubtful" or (verdict.verdict == "false" and not adds_up)
+    assert verdict.diagnosis.code == code
     assert repaired in [repair.text for repair in verdict.repairs]
     assert symrot.check(repaired).verdict == "recognised"
 
@@ -159,7 +161,7 @@ def test_a_fault_in_an_equation_is_found_from_the_known_relation(claim, code, re
     ("T = 1/2 (A p^2 + B q^2 + C q^2)", "doubtful"),  # a component of omega that occurs twice
     ("J_1 w_1' = w_2 w_3 (J_2 - J_1)", "doubtful"),  # no book writes J_1 for J_3
     ("J_1 w_1' = w_2 w_3 (J_1 - J_3)", "definition"),  # a body with J_1 = J_2
-    ("L = (J_1 w_1, J_2 w_2, J_2 w_3)", "definition"),  # a body with J_2 = J_3
+    ("L = (J_1 w_1, J_1 w_2, J_3 w_3)", "definition"),  # a body with J_1 = J_2; the third axis is usually that of symmetry
     ("I_x = 1/4 m r^2 + 1/9 m h^2", "definition"),  # 1/12 + 1/6^2: about a parallel axis
     ("I_x = 1/4 m r^2 + 1/6 m h^2", "doubtful"),  # 1/6 - 1/12 is no square
     ("p_psi = J_3 psi'", "definition"),  # not the momentum of nutation with another letter

@@ -207,7 +207,8 @@ def test_no_true_claim_of_the_documents_has_units_that_do_not_fit():
     assert sum(status == "consistent" for status in found.values()) > 420
 
 
-LOCAL = {"poinsot": {"p": "kg^(1/2) m"}, "relative_motion": {"r_1": "m", "r_2": "m", "r_3": "m"}}
+LOCAL = {"poinsot": {"p": "kg^(1/2) m"}, "relative_motion": {"r_1": "m", "r_2": "m", "r_3": "m"},
+         "driven_rotation": {"m_1": "rad", "m_2": "rad", "m_3": "rad"}}  # fmt: skip
 """Letters that a page uses in a meaning of its own."""
 QUICK = ("euler_equations", "heavy_top_invariants", "gravity_gradient", "work_and_power", "poinsot", "kinetic_energy")
 
