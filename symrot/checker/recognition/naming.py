@@ -163,20 +163,13 @@ def _near_usual(claim: Claim, named: NamedFormula, readings: Sequence[Identifica
     """
     if claim.context or claim.hypotheses or not all(is_unusual(known) for known in readings):
         return None
-    words, quantity = words_of(named), quantity_name(named)
-    nearby = [near for near in near_formulas(claim, named, lambda known: has_word(known.name, words))
-              if near.code in EXCHANGES and is_in_usual_sequence(near.known.name)]  # fmt: skip
-    nearby.sort(key=lambda near: near.cost + PER_NAME * near.renamed + PER_PLACE * misfit_of(quantity, near.known.name))
-    for near in nearby[:MOST_PROOFS]:
+    exchanged = (near for near in _nearby(claim, named)
+                 if near.code in EXCHANGES and is_in_usual_sequence(near.known.name))  # fmt: skip
+    for near in islice(exchanged, MOST_PROOFS):
         usual = tuple(known for known in _readings(claim, named, near.tree, 1) if not is_unusual(known))
         if usual:
-            return Verdict(
-                "doubtful",
-                diagnosis=Diagnosis(near.code, FAULT_DESCRIPTIONS[near.code]),
-                repairs=(Repair(f"{text(named.side)} == {text(near.tree)}", near.code, near.cost),),
-                recognised_as=usual,
-                notes=(f"{AS_IT_STANDS} {readings[0]}",),
-            )
+            repair = Repair(f"{text(named.side)} == {text(near.tree)}", near.code, near.cost)
+            return _doubtful((repair,), usual, (f"{AS_IT_STANDS} {readings[0]}",))
     return None
 
 
@@ -280,8 +273,7 @@ def _near_by_quantity(claim: Claim, named: NamedFormula) -> Verdict | None:
         other = named._replace(side=side, formula=formula, solve=quantity[1])
         if readings := _readings_of_formula(claim, other, quantity[1](formula), LEAST_SYMBOLS):
             repair = Repair(f"{text(side)} == {text(formula)}", changed.code, changed.cost)
-            diagnosis = Diagnosis(changed.code, FAULT_DESCRIPTIONS[changed.code])
-            return Verdict("doubtful", diagnosis=diagnosis, repairs=(repair,), recognised_as=readings)
+            return _doubtful((repair,), readings)
     return None
 
 
@@ -341,16 +333,30 @@ def _is_norm(side: Node, other: Node) -> bool:
     )
 
 
+def _nearby(claim: Claim, named: NamedFormula) -> list[Near]:
+    """Return the known formulas for the claim's quantity that differ from its formula in one part, likeliest first."""
+    words, plain = words_of(named), quantity_name(named)
+    nearby = near_formulas(claim, named, lambda known: has_word(known.name, words))
+    nearby.sort(key=lambda near: near.cost + PER_NAME * near.renamed + PER_PLACE * misfit_of(plain, near.known.name))
+    return nearby
+
+
+def _doubtful(
+    repairs: tuple[Repair, ...], readings: tuple[Identification, ...], notes: tuple[str, ...] = ()
+) -> Verdict:
+    """Return the verdict "doubtful" with the fault of the first repair; ``readings`` are what that repair gives."""
+    code = repairs[0].code
+    diagnosis = Diagnosis(code, FAULT_DESCRIPTIONS[code])
+    return Verdict("doubtful", diagnosis=diagnosis, repairs=repairs, recognised_as=readings, notes=notes)
+
+
 def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     """Return the verdict "doubtful" if changes of one part make the formula a known one; None if there are none.
 
     The verdict is "recognised" instead if the formula equals a known one without a change, but only for letters of
     certain signs, as ``a*sqrt(1 - x/a^2)`` equals ``sqrt(a^2 - x)`` for a > 0.
     """
-    words = words_of(named)
-    nearby = near_formulas(claim, named, lambda known: has_word(known.name, words))
-    plain = quantity_name(named)
-    nearby.sort(key=lambda near: near.cost + PER_NAME * near.renamed + PER_PLACE * misfit_of(plain, near.known.name))
+    nearby = _nearby(claim, named)
     of_bodies = [near for near in nearby if is_of_body(near.code, near.known.name)]
     shifted = any(near.is_shifted for near in of_bodies if near.cost <= of_bodies[0].cost + AS_NEAR)
     repairs: dict[Node, tuple[Repair, tuple[Identification, ...]]] = {}
@@ -372,14 +378,8 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
             repairs[near.tree] = Repair(f"{text(named.side)} == {text(near.tree)}", near.code, near.cost), readings
     if not repairs:
         return None
-    (first, readings), *_ = repairs.values()
-    diagnosis = Diagnosis(first.code, FAULT_DESCRIPTIONS[first.code])
-    return Verdict(
-        "doubtful",
-        diagnosis=diagnosis,
-        repairs=tuple(repair for repair, _ in repairs.values()),
-        recognised_as=readings,
-    )
+    (_, readings), *_ = repairs.values()
+    return _doubtful(tuple(repair for repair, _ in repairs.values()), readings)
 
 
 def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identification, ...]:
@@ -478,8 +478,7 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
         strangeness = strangeness_of(named, readings[0])
         if nearest is None or strangeness < nearest[0]:
             repair = Repair(f"{text(named.side)} == {text(edit.tree)}", edit.code, edit.cost)
-            diagnosis = Diagnosis(edit.code, FAULT_DESCRIPTIONS[edit.code])
-            nearest = strangeness, Verdict("doubtful", diagnosis=diagnosis, repairs=(repair,), recognised_as=readings)
+            nearest = strangeness, _doubtful((repair,), readings)
         if not any(strangeness):
             break
     return nearest and nearest[1]
