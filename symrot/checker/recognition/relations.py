@@ -289,12 +289,14 @@ def _pendulum() -> Iterator[Relation]:
     """
     bodies = [("a physical pendulum", A, ARM), ("a physical pendulum", MASS * GYRATION**2, ARM),
               ("a simple pendulum (a point mass)", MASS * ARM**2, ARM)]  # fmt: skip
-    for title, name, axis, arm in (("rod about an end", "rod", (1, 1), symbols.L / 2),
-                                   ("ring that hangs from its rim", "ring", (2, 2), symbols.R),
-                                   ("disk that hangs from its rim", "disk", (2, 2), symbols.R)):  # fmt: skip
+    along_x, along_z = Matrix([1, 0, 0]), Matrix([0, 0, 1])
+    for title, name, direction, axis, arm in (  # the direction from the centre of mass to the suspension
+        ("a rod about an end", "rod", along_z, (1, 1), symbols.L / 2),
+        ("a ring that hangs from its rim", "ring", along_x, (2, 2), symbols.R),
+        ("a disk that hangs from its rim", "disk", along_x, (2, 2), symbols.R),
+    ):
         body = solid(name)
-        point = body.center_of_mass + Matrix([arm, 0, 0] if name != "rod" else [0, 0, arm])
-        bodies.append((f"a {title}", body.inertia_about(point)[axis], arm))
+        bodies.append((title, body.inertia_about(body.center_of_mass + arm * direction)[axis], arm))
     for title, moment, arm in bodies:
         potential = -MASS * G * arm * cos(THETA)
         kinetic = moment * DTHETA**2 / 2
