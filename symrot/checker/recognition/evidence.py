@@ -11,6 +11,7 @@ from symrot.checker.context.admission import ANGLES, COMPONENTS, admits_letters,
 from symrot.checker.context.angle_orders import are_roll_pitch_yaw
 from symrot.checker.context.context import Context
 from symrot.checker.recognition.identification import plain_name, unit_of
+from symrot.checker.recognition.known_formulas import CROSS_PRODUCT
 from symrot.checker.recognition.letters import is_atom
 from symrot.checker.recognition.nearby import Near
 from symrot.checker.repair.edits import neighbours
@@ -138,9 +139,6 @@ RATES_OF_AIRCRAFT = {"p": "x1", "q": "y2", "r": "z3"}
 """Rate of an aircraft -> the axis of this component of its angular velocity in the body frame."""
 
 COMPONENTS_OF_OMEGA = tuple(f"omega_{axis}" for axis in "xyz123")
-
-CROSS_PRODUCT = "cross product v x n"
-"""The end of the names of the known cross product and of its components."""
 
 ENTRY = r"[RrACQ]_?([1-3]{2})"
 """Pattern of the names of the entries of a rotation matrix."""

@@ -26,7 +26,7 @@ from symrot.checker.context.admission import admits_letters, admits_name
 from symrot.checker.context.context import read_context
 from symrot.checker.latex.reader import read_latex_formula
 from symrot.checker.recognition.fingerprint import PRIME, Fingerprint, NotInField, Values, fingerprint, values_at
-from symrot.checker.recognition.known_formulas import Known, by_fingerprint, relation_key
+from symrot.checker.recognition.known_formulas import CROSS_PRODUCT, Known, by_fingerprint, relation_key
 from symrot.checker.recognition.relations import OTHERS
 from symrot.checker.recognition.renaming import axes_of, component, is_consistent
 from symrot.checker.units.units import conventional_unit
@@ -332,7 +332,7 @@ def _matched(
         pairs = [(_name(mine), _name(other)) for mine, other in pairing.items()]
         if (few or (known.only_named and view.shape is not None)) and not _keeps_names(pairs):
             continue
-        has_units = view.shape == (3, 1) and "product v x n" not in known.name  # v and n are any vectors there
+        has_units = view.shape == (3, 1) and not known.name.endswith(CROSS_PRODUCT)  # v and n are any vectors there
         if quantity is not None and not (_keeps_rates(pairs) and (not has_units or _keeps_units(pairs))):
             continue
         ordered_by_factor = "quaternion product" in known.name  # in a1*a2 - b1*b2 the numbers distinguish the factors

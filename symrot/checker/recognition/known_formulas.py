@@ -32,9 +32,14 @@ from symrot.inertia.solids import solid
 from symrot.kinematics import attitude, euler, quaternion, rotation_vector
 from symrot.kinematics.rotations import elementary_rotation, skew
 
-__all__ = ["FILE", "Known", "Named", "by_fingerprint", "derived", "ending_of", "page", "relation_key", "stated"]
+__all__ = [
+    "CROSS_PRODUCT", "FILE", "Known", "Named", "by_fingerprint", "derived", "ending_of", "page", "relation_key",
+    "stated",
+]  # fmt: skip
 
 FILE = Path(__file__).with_name("known_formulas.toml")
+CROSS_PRODUCT = "cross product v x n"
+"""The end of the names of the known cross product and of its components."""
 LONGEST = 6000
 LONGEST_DERIVED = 900
 """The most letters of a formula in the file: of a formula with a name of its own, and of a side of a step."""
@@ -132,7 +137,7 @@ def _quaternions() -> Iterator[Named]:
 def _vectors() -> Iterator[Named]:
     yield "skew matrix of a vector, [v] w = v x w", "skew(v1, v2, v3)", skew(symbols.rotation_vector)
     pair = Matrix(symbols.rotation_vector), Matrix(symbols.axis)
-    yield "cross product v x n", "cross(v, n)", pair[0].cross(pair[1])
+    yield CROSS_PRODUCT, "cross(v, n)", pair[0].cross(pair[1])
     for name, title in (("rotation_vector", "rotation vector"), ("rodrigues", "Rodrigues parameters"),
                         ("mrp", "modified Rodrigues parameters")):  # fmt: skip
         chart = attitude.chart(name)
