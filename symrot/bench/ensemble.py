@@ -116,7 +116,9 @@ def _ours(
 
 
 def _batches(integrator: Any, width: int, start: Start) -> BatchEnd:
-    """Return number of steps and last states of an ensemble, computed by heyoka's integrator for batches of ``width``."""
+    """Return number of steps and last states of an ensemble, computed by heyoka's integrator for batches of
+    ``width``.
+    """
     states, steps = np.empty_like(start.y), 0
     for first in range(0, len(start.y), width):
         integrator.set_time(0.0)

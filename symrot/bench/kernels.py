@@ -186,7 +186,9 @@ def _heyoka_drivers(signature: Signature) -> str:
 
 
 def _moving(signature: Signature) -> str:
-    """Return C code that reads all inputs of a batch, adds them up and writes all outputs: the cost of memory access."""
+    """Return C code that reads all inputs of a batch, adds them up and writes all outputs: the cost of memory
+    access.
+    """
     inputs, outputs = ([a for a in signature.arguments if a.role == role] for role in ("in", "out"))
     heads = [f"const double *restrict {a.name}" for a in inputs] + [f"double *restrict {a.name}" for a in outputs]
     total = " + ".join(f"{a.name}[{i}*n + k]" for a in inputs for i in range(a.size))
@@ -262,7 +264,9 @@ def _symrot_text(name: str) -> str:
 
 
 def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
-    """Return the contestants for a kernel, symrot first, and the missing tools; raise AssertionError if outputs differ."""
+    """Return the contestants for a kernel, symrot first, and the missing tools; raise AssertionError if
+    outputs differ.
+    """
     contestants: list[Contestant] = []
     missing: list[str] = []
     signature = kernel_program(name).signature

@@ -39,7 +39,9 @@ FUNCTIONS = ("sin", "cos", "tan", "sqrt", "exp", "log")
 
 
 def _plain_rates(rates: Program) -> Program:
-    """Return the rates as one formula for each output, without named common terms, as equations of motion are printed."""
+    """Return the rates as one formula for each output, without named common terms, as equations of motion are
+    printed.
+    """
     # The other tools look for common terms themselves.
     known: dict[str, Node] = {}
 
@@ -136,7 +138,9 @@ void symrot_repeat(size_t repeats, size_t n, double t, const double *x, const do
 
 
 def _run(step: StepText, text: str) -> Callable[[], tuple[float, Any]]:
-    """Compile one tool's C ``text`` of a step; return a function that returns seconds per step and the states after it."""
+    """Compile one tool's C ``text`` of a step; return a function that returns seconds per step and the states
+    after it.
+    """
     loaded = ctypes.CDLL(
         str(build_cache.build(f"#include <math.h>\n{text}{_driver(step)}", f"bench_{step.name}", FLAGS))
     )

@@ -1,8 +1,8 @@
 """Work-precision studies: time and error of every available method on one scene.
 
 The error is the largest at four instants of the span, each reached by a separate run, against a more precise reference.
-For each power of ten of the error (decade), the table has the fastest run of at most that error; no curve is smoothed or
-extended.
+For each power of ten of the error (decade), the table has the fastest run of at most that error; no curve is
+smoothed or extended.
 """
 
 import hashlib
@@ -169,7 +169,9 @@ def best(runs: Iterable[dict[str, Any]], error: float) -> dict[str, Any] | None:
 
 
 def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str, Any]]:
-    """Return one row of the printed table for each decade of the error: methods, their times and ratios to the fastest."""
+    """Return one row of the printed table for each decade of the error: methods, their times and ratios to
+    the fastest.
+    """
     names = list(dict.fromkeys(run["method"] for run in runs))
     rows = []
     for error in DECADES:

@@ -71,7 +71,9 @@ class Track:
         return non_smooth_torque(propagator(scene, "scipy").plan)
 
     def trajectory(self, states: Floats, motion: Motion | None = None) -> Trajectory:
-        """Return the ``states`` as a trajectory of ``motion`` (default: the scene's) at the first times of this track."""
+        """Return the ``states`` as a trajectory of ``motion`` (default: the scene's) at the first times of
+        this track.
+        """
         # There are fewer states than times if a method stopped early.
         return Trajectory(motion or self.motion, self.times[: len(states)], states, "", Stats(0, 0, 0, 0.0), "")
 

@@ -33,7 +33,9 @@ class Carried(NamedTuple):
 
 
 def laws() -> list[tuple[str, bool]]:
-    """Return the laws by which one tangent or secant step changes lengths, as pairs (formula, whether it was proven)."""
+    """Return the laws by which one tangent or secant step changes lengths, as pairs (formula, whether it was
+    proven).
+    """
     from sympy import Matrix, eye, symbols
 
     from symrot.exact import is_zero
@@ -96,7 +98,9 @@ SCHEMES = {
 
 
 def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.0, 2.0, 3.0)) -> list[Carried]:
-    """Move the corners of a box along a motion in steps; return growth, strain and error for each step size and scheme."""
+    """Move the corners of a box along a motion in steps; return growth, strain and error for each step size
+    and scheme.
+    """
     points, results = _corners(size), []
     motion = propagator(scene)
     for h in steps:
