@@ -47,10 +47,7 @@ def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
 
 
 def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> list[ArrayFault]:
-    """Return the formulas that are one edit away from ``formula``, each with its values at the test points.
-
-    They are sorted by ``total``, for a look-up by value.
-    """
+    """Return the formulas that are one edit away from ``formula``, with their values, sorted by ``total``."""
     # other faults of scalar formulas are sought part by part, in the module `parts`
     edits = _edits(formula, numeric, letters) if has_arrays(formula, numeric) else _brackets(formula)
     faults = []

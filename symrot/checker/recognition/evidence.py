@@ -163,24 +163,19 @@ def has_diameter(known: Identification) -> bool:
 
 
 def is_of_body(code: str, known: str) -> bool:
-    """Return whether a fault ``code`` of a moment of inertia may only mean that the formula is for another body.
-
-    An example is another factor than in the moment of inertia ``known``.
-    """
+    """Return whether a fault such as a wrong factor may only mean that a moment of inertia is for another body."""
     return code in ("factor", "missing_term", "extra_term") and known.startswith("moment of inertia of")
 
 
 def misfit_of(name: str, known: str) -> float:
-    """Return a sort key for known formulas, larger if the formula's name fits worse to the name of a quantity.
-
-    For omega_3, it is larger for "first component ..".
-    """
+    """Return a sort key of a known formula, larger if the formula's name fits worse to the name of a quantity."""
     sequence = _rank_of_sequence(known) / (2 * len(USUAL_SEQUENCES))
+    # "first component .." does not fit to omega_3
     return _misplaced(name, known) + any(body in known for body in RARE) + sequence
 
 
 def has_word(known: str, words: Sequence[str] | None) -> bool:
-    """Return whether ``known``, the name of a known formula, has one of several words; always True if ``words`` is None."""
+    """Return whether ``known``, the name of a known formula, has one of several words. True if ``words`` is None."""
     # "velocity" does not stand for "angular velocity"
     return words is None or any(re.search(f"(?<!angular ){re.escape(word)}", known) for word in words)
 
@@ -328,10 +323,7 @@ def names_in(formula: Node) -> set[str]:
 
 
 def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> bool:
-    """Return whether a claim may mean a known formula, judged by its quantity's name and the units of its symbols.
-
-    ``matrix`` says whether the formula is a matrix or vector.
-    """
+    """Return whether a claim may mean a known formula, judged by its quantity's name and the units of its symbols."""
     words = words_of(named)
     if words is None and "inertia" in known.name and named.name[:1].islower():
         return False  # books call moments of inertia by capital letters
@@ -374,14 +366,12 @@ def is_unusual(known: Identification) -> bool:
 
 
 def keeps_places(named: NamedFormula, known: Identification) -> bool:
-    """Return whether a claim's names agree with a known formula in axis, matrix entry, angle and reference point.
-
-    The name R_12 contradicts "entry 13 of the rotation matrix".
-    """
+    """Return whether a claim's names agree with a known formula in axis, matrix entry, angle and reference point."""
     momentum = re.match(r"momentum of (\w+)", known.name)
     angle = re.fullmatch(r"[pP]_?(?:var)?(phi|theta|psi)", named.name)
     if momentum and angle and MOMENTA[angle[1]] != momentum[1]:
         return False
+    # R_12 contradicts entry 13
     entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(ENTRY, named.name)
     if entry and own and own[1] not in (entry[1], entry[1][::-1]):
         return False
@@ -448,7 +438,7 @@ def fits_context(context: Context, named: NamedFormula, known: Identification, l
 
 
 def words_of(named: NamedFormula) -> tuple[str, ...] | None:
-    """Return words such as "moment of inertia" for I_zz, one of which a known formula for the quantity has in its name.
+    """Return words such as "moment of inertia" for I_zz: the names of known formulas for it have one of them.
 
     Return None if any name will do.
     """
@@ -466,7 +456,7 @@ def quantity_name(named: NamedFormula) -> str:
 
 
 def _misplaced(name: str, known: str) -> int:
-    """Return how many contradictions, 0 to 2, there are between the names of a quantity and of a known formula.
+    """Return how often the name of a quantity contradicts that of a known formula.
 
     omega_3 contradicts "first component in the space frame" twice.
     """
@@ -481,13 +471,11 @@ def _misplaced(name: str, known: str) -> int:
 
 
 def strangeness_of(named: NamedFormula, known: Identification) -> tuple[int, int, int]:
-    """Return a sort key of a known formula, larger if a claim less probably means it.
-
-    It counts wrong components and frames, symbols of another axis, and renamed symbols.
-    """
+    """Return a sort key of a known formula, larger if a claim less probably means it."""
     axes = [[next((n for n, axis in enumerate(AXES) if name[-1] in axis), None) for name in pair]
             for pair in known.mapping.items()]  # fmt: skip
     moved = sum(None not in pair and pair[0] != pair[1] for pair in axes)
+    # wrong components and frames, symbols of another axis, renamed symbols
     return _misplaced(quantity_name(named), known.name), moved, len(known.mapping)
 
 

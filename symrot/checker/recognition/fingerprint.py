@@ -1,8 +1,8 @@
 """Fingerprints of formulas: hashes that do not depend on the names of symbols.
 
-Formulas are evaluated in the field of 2^61 - 1 elements, where equal functions have equal values. The signature of an
-atom (a symbol, function or derivative) is the value of the formula where this atom has one number and all other atoms
-have another. The sorted signatures are the fingerprint.
+Formulas are evaluated modulo the prime 2^61 - 1, where equal functions have equal values. The signature of an atom
+(a symbol, function or derivative) is the value of the formula where this atom has one number and all other atoms have
+another. The sorted signatures are the fingerprint.
 """
 
 from collections.abc import Mapping, Sequence
@@ -110,10 +110,8 @@ def _pseudorandom(value: int) -> int:
 
 
 def _circle_point(argument: Expr, known: dict[Expr, int]) -> tuple[int, int]:
-    """Return field elements (c, s), with c^2 + s^2 = 1, as cosine and sine of a sum of multiples of symbols.
-
-    ``known`` has the field element of each symbol.
-    """
+    """Return numbers (c, s) modulo ``PRIME``, with c^2 + s^2 = 1, as cosine and sine of an angle."""
+    # the angle is a sum of multiples of symbols; the theorems for sums and multiples of angles hold
     total = (1, 0)
     for term in sympy.Add.make_args(sympy.expand(argument)):
         coefficient, angle = term.as_coeff_Mul()
@@ -150,10 +148,7 @@ class Fingerprint:
     idle: tuple[Expr, ...] = ()  # atoms in the formula that do not change its value
 
     def rows(self, order: Sequence[int]) -> list[Values]:
-        """Return the signature of each atom, with its values in ``order`` and divided by a common factor.
-
-        So a multiple of the formula has the same signatures.
-        """
+        """Return the signature of each atom, in the given order of entries; multiples of a formula have the same."""
         total = [sum(column) % PRIME for column in zip(*self.signatures, strict=True)]
         # the first entry whose values have a nonzero sum
         below = _inverse(next((total[n] for n in order if total[n]), 1))
@@ -196,9 +191,9 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
 
 
 def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | None:
-    """Return the fingerprint of a formula from the first pair of numbers in ``DRAWS``, without a search for idle atoms.
+    """Return the fingerprint of a formula at the first pair of numbers in ``DRAWS``.
 
-    Return None if a value is undefined, or equal at two points.
+    Return None if a value is undefined or an atom does not change it.
     """
     raised, others = DRAWS[0]
     point = dict.fromkeys(written, others)
@@ -215,10 +210,7 @@ def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | No
 
 
 def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], written: Sequence[Expr]) -> Values:
-    """Return the signature of ``atom`` in a formula that is undefined where two atoms are equal, as x/(A - B) is.
-
-    It is a sum of values at points with three different numbers.
-    """
+    """Return the signature of ``atom`` in a formula such as x/(A - B), undefined where two atoms are equal."""
     raised, others = DRAWS[0]
     second, _ = DRAWS[1]
     # one point for each other atom: it has the second number, all the rest the third
@@ -226,6 +218,7 @@ def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], 
     defined = [values for point in points if (values := _defined(entries, point)) is not None]
     if not defined:
         raise NotInField
+    # a sum does not depend on the order of the atoms
     return tuple(sum(column) % PRIME for column in zip(*defined, strict=True))
 
 

@@ -143,10 +143,7 @@ def _value(formula: Any) -> Any:
 
 
 def _in_new_names(tree: Node, source: str, define: Sequence[tuple[str, Node]] = ()) -> Any:
-    """Return the SymPy value of a tree, whose names become real symbols, functions of time, or the values in ``define``.
-
-    ``source`` is the text of the tree, for messages.
-    """
+    """Return the SymPy value of a tree: names become symbols, functions of time, or their values in ``define``."""
     # a name becomes a function of time if its rate occurs; define has names with their formulas, such as vectors
     tree = with_natural_base(tree) if has_natural_base([tree]) else tree
     quantities: dict[str, Any] = {letter: Symbol(letter, real=True) for letter in letters_of_quantities([tree])}
@@ -233,7 +230,7 @@ def identified(
 
 
 def _changes(match: Identification) -> tuple[int, int, int]:
-    """Return the sort key of a match: (number of rearrangements, renamed symbols, symbols with another first letter)."""
+    """Return the sort key of a match: numbers of rearrangements, renamed symbols, symbols with another first letter."""
     others = sum(mine.lstrip("d")[0].lower() != new[0].lower() for mine, new in match.mapping.items())
     return bool(match.how) + match.how.count(" and "), len(match.mapping), others
 
@@ -353,10 +350,8 @@ def _name(atom: Expr) -> str:
 
 
 def _keeps_names(pairs: Sequence[tuple[str, str]]) -> bool:
-    """Return whether names that a known formula shares with a claim mean the same quantity in both.
-
-    ``pairs`` are (known name, name in the claim): [(I, J), (J, I)] gives False.
-    """
+    """Return whether names that a known formula shares with a claim mean the same quantity in both."""
+    # pairs (I, J) and (J, I) exchange two names
     names = [(plain_name(mine), plain_name(other)) for mine, other in pairs]
     new = {other for _, other in names}
     return all(mine == other or mine not in new for mine, other in names)
@@ -373,10 +368,7 @@ def _keeps_rates(pairs: Sequence[tuple[str, str]]) -> bool:
 
 
 def _keeps_units(pairs: Sequence[tuple[str, str]]) -> bool:
-    """Return whether books use each letter of a claim for quantities with the unit of its known symbol.
-
-    ``pairs`` are (known name, name in the claim): [("v_1", "omega")] gives False.
-    """
+    """Return whether books use each letter of a claim for quantities with the unit of its known symbol."""
     # a symbol without unit may have any letter; x, y, z may be the components of any vector
     with_unit = [(mine, other) for mine, other in pairs if UNIT_OF_NAME.get(mine) != "1"]
     return all(agree_in_unit(mine, other) for mine, other in with_unit) and all(
@@ -455,10 +447,7 @@ def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, 
 def _likeliest(
     atoms: Sequence[Expr], others: Sequence[Expr], known: Mapping[Expr, tuple[str, str | None]]
 ) -> list[Expr]:
-    """Return ``others`` reordered so that each symbol fits the one at the same position in ``atoms``.
-
-    ``known`` has the text and the unit of each symbol.
-    """
+    """Return ``others`` reordered so that each symbol fits the one at the same position in ``atoms``."""
     # for many symbols the caller cannot try all orders, and begins with this one
     rest, ordered = list(others), []
     names = {plain_name(known[atom][0]) for atom in atoms}
@@ -485,25 +474,20 @@ def unit_of(name: str) -> str | None:
 
 
 def agree_in_unit(known: str, own: str) -> bool:
-    """Return whether the symbol ``own`` of a claim may have the unit of the ``known`` symbol of a formula.
-
-    It may if a unit is not known.
-    """
+    """Return whether the symbol ``own`` of a claim may have the unit of the symbol ``known`` of a formula."""
     unit, conventional = UNIT_OF_NAME.get(known), unit_of(own)
+    # books use some letters for different quantities
     return unit is None or conventional is None or conventional == unit
 
 
 def _factor(
     theirs: Sequence[Expr],
     own: Sequence[Expr],
-    pairing: dict[Expr, Expr],
+    pairing: dict[Expr, Expr],  # known symbol -> symbol of the claim
     idle: Sequence[Expr],  # symbols in own that do not change its value
     factors: Sequence[Rational],
 ) -> Rational | None:
-    """Return the factor k with own = k * theirs at a random point, or None if there is none among ``factors``.
-
-    ``pairing`` maps known symbols to those of the claim.
-    """
+    """Return the factor k with own = k * theirs at a random point, or None if there is none among ``factors``."""
     for draw in range(MOST_DRAWS):
         point = {mine: pow(7 + 2 * draw, 40 + n * n, PRIME) for n, mine in enumerate(pairing)}
         try:

@@ -351,10 +351,8 @@ def _selected(
 
 
 def ending_of(name: str) -> str:
-    """Return ", squared" or ", acos" and the like at the end of a known formula's name; "" if the name has no such end.
-
-    With ", acos", the formula is the cosine of the quantity.
-    """
+    """Return ", squared" or ", acos" and the like at the end of a known formula's name, or "" without such an end."""
+    # the formula then is a function of the quantity: its square, cosine, or half angle's cosine
     ending = re.search(r", (squared|(\S+ )?(acos|asin|atan2))$", name)
     return ending[0] if ending else ""
 

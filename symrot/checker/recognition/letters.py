@@ -28,7 +28,7 @@ MANY = 9
 
 
 def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:
-    """Return the symbols, rates and angles of a claim's formula, with random values that obey the claim's hypotheses.
+    """Return the letters of a claim's formula, with random values that obey the claim's hypotheses.
 
     Return None if the formula has too few values.
     """

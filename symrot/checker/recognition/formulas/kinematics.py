@@ -85,7 +85,7 @@ def _vector_parts() -> Iterator[Named]:
 
 
 def _rates_of_the_matrix() -> Iterator[Named]:
-    """Yield the rates of the rotation matrix and of its transpose, in terms of their entries and omega in either frame."""
+    """Yield the rates of the rotation matrix and of its transpose, from their entries and omega in either frame."""
     # proven for the matrix of a quaternion, whose rates are known
     matrix = Matrix(quaternion.quaternion_to_dcm(Q, "homogeneous"))
     for frame, omega in (("body", Matrix(symbols.omega_b)), ("space", Matrix(symbols.omega_s))):

@@ -1,4 +1,4 @@
-"""Formulas of first courses, from cross products: torque of a force, angular momentum of a point mass, speed of a point."""
+"""Formulas of first courses, from cross products: torque of a force, angular momentum of a point, speed of a point."""
 
 from collections.abc import Iterator
 from typing import Any
