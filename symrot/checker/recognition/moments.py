@@ -17,14 +17,14 @@ FIRST_EQUAL = (("A", "B"), ("I_xx", "I_yy"))
 
 
 def is_symmetric_body(absent: str, letter: str, renaming: dict[str, str | None], times: int) -> bool:
-    """Return whether ``letter`` may stand for two equal moments of inertia, one of which, ``absent``, the claim lacks."""
+    """Return whether ``letter`` may stand for two equal moments of inertia: its own and the absent one."""
     # books write A for A = B; B stands for B = C only if it occurs once, as in A p^2 + B (q^2 + r^2)
     equal = EQUAL_MOMENTS if times == 1 else FIRST_EQUAL
     return any(absent == later and renaming.get(earlier) == letter for earlier, later in equal)
 
 
 def is_shifted_moment(actual: Values, known: Values, letters: Letters) -> bool:
-    """Return whether the values ``actual`` are those of a ``known`` moment of inertia plus m d^2, for a parallel axis."""
+    """Return whether ``actual`` are the values of the moment of inertia ``known`` plus m d^2, for a parallel axis."""
     if any(map(is_matrix, (*actual, *known))) or not all(known):
         return False
     ratios = [value / other for value, other in zip(actual, known, strict=True)]
@@ -48,10 +48,7 @@ def _share(added: Sequence[float], mass: Values, length: Values) -> Fraction | N
 
 
 def _shares(added: Sequence[float], mass: Values, lengths: Sequence[Values]) -> list[Fraction | None]:
-    """Return simple fractions [k, l] for which m (k a^2 + l b^2) was ``added`` to a moment of inertia.
-
-    A None in the list replaces another number.
-    """
+    """Return simple fractions [k, l] for which m (k a^2 + l b^2) was ``added`` to a moment; None replaces others."""
     (first, second, *_), rows = [value / m for value, m in zip(added, mass, strict=True)], [
         (a * a, b * b) for a, b in zip(*lengths, strict=True)
     ]  # fmt: skip

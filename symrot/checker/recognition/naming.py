@@ -1,8 +1,7 @@
 """Verdicts on claims such as ``I_zz == m/12*(a**2 + b**2)``, which only give a formula for a named quantity.
 
 Nothing in such a claim defines the left side; so the right side is compared with the formulas that symrot derives. The
-verdict is "recognised" if it equals one of them, "doubtful" if a single edit makes it equal to one, and "definition"
-otherwise.
+verdict is "recognised" if the two are equal, "doubtful" if a single edit makes them equal, and "definition" otherwise.
 """
 
 import re
@@ -153,7 +152,7 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
 
 
 def _near_usual(claim: Claim, named: NamedFormula, readings: Sequence[Identification]) -> Verdict | None:
-    """Return the verdict "doubtful" on a claim that is known only in an unusual convention, and nearly known in a usual one."""
+    """Return the verdict "doubtful" on a claim that is known in an unusual convention and nearly known in a usual one."""
     if claim.context or claim.hypotheses or not all(is_unusual(known) for known in readings):
         return None
     # such as psi' = (omega_2 sin phi + omega_1 cos phi)/cos theta: true for components in the space frame;
@@ -324,10 +323,7 @@ def _doubtful(
 
 
 def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if changes of one part make the formula a known one; None if there are none.
-
-    The verdict is "recognised" if it equals one for positive letters.
-    """
+    """Return the verdict "doubtful" if changes of one part make the formula a known one; None if there are none."""
     nearby = _nearby(claim, named)
     of_bodies = [near for near in nearby if is_of_body(near.code, near.known.name)]
     shifted = any(near.is_shifted for near in of_bodies if near.cost <= of_bodies[0].cost + AS_NEAR)
@@ -356,7 +352,7 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 
 def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identification, ...]:
-    """Return (known formula,) if ``near.tree`` equals ``near.known`` for some signs of its letters; otherwise ().
+    """Return (known formula,) if ``near.tree`` equals it for some signs of the letters; otherwise ().
 
     ``a*sqrt(1 - x/a^2)`` equals ``sqrt(a^2 - x)`` for a > 0.
     """
@@ -453,10 +449,7 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
 def recognised_edits(
     claim: Claim, named: NamedFormula, letters: Collection[str], most: int
 ) -> Iterator[tuple[Repair, Verdict]]:
-    """Yield single edits of a claim's formula that make it a known one, each as (repair, verdict on the edited formula).
-
-    At most ``most`` edits are tried.
-    """
+    """Yield single edits of a claim's formula that make it a known one, each as (repair, new verdict)."""
     numeric = NumericFilter(claim)
     names = sorted({*numeric.names, *letters} - {*numeric.functions})
     edits = [*single_edits(named.formula, names, numeric.functions, numeric.is_matrix, numeric.moving)]
@@ -480,7 +473,7 @@ def _exchanged(tree: Node, names: Mapping[str, str]) -> Node:
 
 
 def _with_all_terms_added(named: NamedFormula) -> Iterator[Edit]:
-    """Yield the edit of ``a - b - c`` to a + b + c, if the formula should be a number, as the square of a length is."""
+    """Yield the edit of ``a - b - c`` to a + b + c, if the formula should be a number, such as a squared length."""
     negative = [term for term in named.formula.args if term.kind == "neg"]
     if named.solve is None and named.side.kind == "number" and named.formula.kind == "sum" and len(negative) > 1:
         added = sum_of([term.args[0] if term.kind == "neg" else term for term in named.formula.args])
@@ -584,10 +577,7 @@ def _readings_of_formula(
 
 
 def _without_function(value: Any) -> tuple[Any, str]:
-    """Return the argument of a value's outer function, and the end of known formulas' names for this function.
-
-    acos(u) gives (u, ", acos"); other values give "".
-    """
+    """Return the argument of a value's outer function, and the end of known names for it: acos(u) gives (u, ", acos")."""
     if is_matrix(value):
         return value, ""
     # known formulas with roots and inverse functions are stored without them

@@ -59,7 +59,7 @@ SQUARED = ", squared"
 
 
 class Near(NamedTuple):
-    """A candidate for a repair: the claim's formula after one change has the values of a known formula at test points."""
+    """A candidate for a repair: the claim's formula after one change has the values of a known formula."""
 
     cost: float
     code: str  # of the fault that the change corrects
@@ -75,9 +75,9 @@ class Near(NamedTuple):
 
 
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
-    """Return formulas that follow from a claim's formula by one change and may be known ones, the nearest first.
+    """Return known formulas that a claim may mean and meets after one change, the nearest first.
 
-    ``fits`` tells which known formulas may be meant.
+    ``fits`` tells which ones it may mean.
     """
     if sum(1 for _ in walk(named.formula)) > MOST_NODES:
         return []
@@ -195,7 +195,7 @@ class Search(NamedTuple):
     values: Values
 
     def matching(self, part: Part) -> Iterator[Variant]:
-        """Yield the variants of a part that have the values ``part.needed``, which make the whole formula the known one."""
+        """Yield the variants of a part with the values ``part.needed``, which make the whole formula right."""
         values = self.variants.get(part.path, [])
         (first, *_) = part.needed
         if is_matrix(first) or not values:
@@ -230,7 +230,7 @@ def _search(claim: Claim, named: NamedFormula, letters: Letters, values: Values)
 
 
 def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near] | None:
-    """Return the single changes of the claim's formula that give it the values of ``known``, as candidates for a repair.
+    """Return the single changes of the claim's formula that give it the values of ``known``.
 
     Return None if it has these values already.
     """
@@ -347,7 +347,7 @@ def _repaired(formula: Node, path: Path, change: Change) -> Node:
 
 
 def _with_other_products(known: Known, own: Sequence[PointOfLetters]) -> Iterator[Values]:
-    """Yield the values of a known formula at the points ``own`` with the other sign of its products of inertia, if any."""
+    """Yield the values of a formula at the points ``own`` with the other sign of its products of inertia."""
     names = [name for name in _names(known) if PRODUCT_OF_INERTIA.fullmatch(name)]
     if names:
         changed = [{**point.symbols, **{name: -point.symbols[name] for name in names}} for point in own]
@@ -357,7 +357,7 @@ def _with_other_products(known: Known, own: Sequence[PointOfLetters]) -> Iterato
 
 
 def _views(known: Known, values: Values) -> Iterator[Values]:
-    """Yield the ``values`` of a known formula as they are and, for a matrix, transposed, doubled and with permuted rows."""
+    """Yield ``values`` of a known formula as they are and, for a matrix, transposed, doubled, with permuted rows."""
     yield values
     if not is_matrix(values[0]):
         return
@@ -383,10 +383,8 @@ UNITS = {"[kg]": 1.37, "[m]": 1.61, "[s]": 0.83}
 
 
 def _has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], letters: Letters) -> bool:
-    """Return whether a claim's formula has another unit than ``known``, if its letters have the known symbols' units.
-
-    ``nodes`` gives the letter of each known symbol.
-    """
+    """Return whether a claim's formula has another unit than ``known``, if its letters have the known symbols' units."""
+    # nodes: known symbol -> letter of the claim
     scales = {node: _scale(UNIT_OF_NAME.get(mine)) for mine, node in nodes.items()}
     if None in scales.values() or any(atom not in scales for atom in letters.atoms):
         return False
@@ -421,7 +419,7 @@ def _has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], l
 
 
 def _scale(unit: str | None) -> float | None:
-    """Return the factor by which the number of a quantity changes in the units of ``UNITS``; None for an unknown unit."""
+    """Return the factor by which the number of a quantity changes in the units of ``UNITS``, or None if not known."""
     if unit is None:
         return None
     # with factors f for m and g for s, the factor for m/s^2 is f/g^2
@@ -436,7 +434,7 @@ def _renamed(tree: Node, nodes: dict[str, Node]) -> Node:
 
 
 def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters) -> Values | None:
-    """Return the values that the claim's formula should have if its quantity has the values ``target`` of ``known``.
+    """Return the values that the claim's formula should have if its quantity has the values ``target``.
 
     Return None if a value does not exist.
     """

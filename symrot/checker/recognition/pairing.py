@@ -47,9 +47,9 @@ MOST = 6
 
 
 def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] = ()) -> list[dict[str, str | None]]:
-    """Return dictionaries from the names ``known`` of a known formula to the names ``own`` of a claim, the best first.
+    """Return the most plausible renamings of the names ``known`` of a known formula to the names ``own`` of a claim.
 
-    One known name may be mapped to None.
+    One may become None.
     """
     if abs(len(known) - len(own)) > 1:
         return []
@@ -72,9 +72,9 @@ def _rank(renaming: dict[str, str | None]) -> tuple[int, int, bool, int]:
 
 
 def renaming_of_product(own: Sequence[str]) -> dict[str, str | None] | None:
-    """Return the names of a claim for q0 .. q3, p0 .. p3 of a quaternion product: a1 for q0, a2 for p0.
+    """Return the claim's names for the components of a quaternion product: a1 for q0, a2 for p0.
 
-    Return None if the names have another form.
+    Return None for names of another form.
     """
     places = {(match[1], match[2]): name for name in own if (match := NUMBERED.fullmatch(name))}
     letters, numbers = sorted({letter for letter, _ in places}), sorted({number for _, number in places})
@@ -88,10 +88,7 @@ def renaming_of_product(own: Sequence[str]) -> dict[str, str | None] | None:
 
 
 def _absent_of_product(known: str, renaming: dict[str, str | None]) -> str | None:
-    """Return the name that the claim would have for a component of a quaternion product: c2 if c1 and a2 occur.
-
-    Return None for other names.
-    """
+    """Return the name of a component of a quaternion product that the claim lacks: c2 if it has c1 and a2."""
     if re.fullmatch("[qp][0-3]", known) is None:
         return None
     beside = renaming.get(("p" if known[0] == "q" else "q") + known[1])
@@ -113,9 +110,7 @@ def _without_mark(name: str) -> tuple[str, str]:
 
 
 def _numbered_angle(known: str, mine: str, other: str) -> str:
-    """Return the name of the angle or rate ``known`` if the angle or rate ``mine`` is called ``other``, such as theta_1.
-
-    Return "" for other names.
+    """Return the name of the angle ``known`` if the angle ``mine`` is called ``other``, or "" for other names.
 
     Examples
     --------
@@ -207,10 +202,7 @@ def is_fitting(known: str, own: str, is_angle: bool) -> bool:
 
 
 def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]:
-    """Return a name for the known symbol that the claim lacks, and whether it continues names of the claim.
-
-    After Omega_1 and Omega_2, it is Omega_3.
-    """
+    """Return a name for a symbol that the claim lacks, and whether it continues a series, as Omega_3 does."""
     for mine, other in renaming.items():
         if other is not None and (numbered := _numbered_angle(known, mine, plain_name(other))):
             return numbered, True

@@ -1,7 +1,7 @@
 """Faults of single parts of a formula: the value that a part should have, and the short change that gives it.
 
-The values that the whole formula should have are known at test points. They are carried from a sum to its terms, from a
-product to its factors, and so on; each part is compared with its needed value. The result remains to be proven.
+The values that the whole formula should have are known at test points. They determine the values of the terms of a sum,
+the factors of a product, and so on. A change that gives a part its needed values remains to be proven.
 """
 
 import math
@@ -58,7 +58,7 @@ Values = tuple[Any, ...]
 
 
 class Part(NamedTuple):
-    """A part of a claim's formula, with its values and those it needs at the test points for the formula to be right."""
+    """A part of a claim's formula, with its values and its needed values at the test points."""
 
     path: Path
     node: Node
@@ -77,7 +77,7 @@ class Change(NamedTuple):
 
 @dataclass(frozen=True)
 class Letters:
-    """The symbols and rates of a formula, and the angles in its circular functions, with their values at test points."""
+    """The symbols and rates of a formula, and the angles in its sines and cosines, with values at test points."""
 
     atoms: Mapping[Node, Values]
     angles: Mapping[Node, Values]
@@ -171,7 +171,8 @@ def _wrong_row(values: Values, needed: Values) -> int | None:
 def _row_of_matrix(
     tree: Node, points: Sequence[Point], values: Values, needed: Values, row: int
 ) -> Iterator[tuple[Path, Node, Values | None]]:
-    """Yield (path, entry, needed values) for each entry in a ``row`` of the matrix that multiplies a column in ``tree``."""
+    """Yield (path, entry, needed values) for each entry in a row of the matrix that multiplies a column."""
+    # tree is the product of the matrix and the column
     place, matrix = next(((n, part) for n, part in enumerate(tree.args) if matrix_entries(part)), (0, tree))
     others = [part for n, part in enumerate(tree.args) if n != place]
     columns = values_of(product(others), points) if place < len(tree.args) - 1 else None
