@@ -1,8 +1,8 @@
 """Fingerprints of formulas: hashes that do not depend on the names of symbols.
 
 Formulas are evaluated modulo the prime 2^61 - 1, where equal functions have equal values. The signature of an atom
-(a symbol, function or derivative) is the value of the formula where this atom has one number and all other atoms have
-another. The sorted signatures are the fingerprint.
+(a symbol, function or derivative) is the formula's value where this atom has one number and all others have another.
+The sorted signatures are the fingerprint.
 """
 
 from collections.abc import Mapping, Sequence
@@ -191,10 +191,7 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
 
 
 def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | None:
-    """Return the fingerprint of a formula at the first pair of numbers in ``DRAWS``.
-
-    Return None if a value is undefined or an atom does not change it.
-    """
+    """Return the fingerprint of a formula for the first two numbers in ``DRAWS``, or None if some value is undefined."""
     raised, others = DRAWS[0]
     point = dict.fromkeys(written, others)
     here = _defined(entries, point)  # 1/(x - y) has no value here
@@ -204,7 +201,7 @@ def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | No
     for atom in written:
         row = _defined(entries, {**point, atom: raised})
         if row is None or row == here:
-            return None
+            return None  # here the atom may be idle: the caller finds out
         rows.append(row)
     return Fingerprint(tuple(written), tuple(rows))
 

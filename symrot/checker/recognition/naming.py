@@ -152,7 +152,7 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
 
 
 def _near_usual(claim: Claim, named: NamedFormula, readings: Sequence[Identification]) -> Verdict | None:
-    """Return the verdict "doubtful" on a claim that is known in an unusual convention and nearly known in a usual one."""
+    """Return the verdict "doubtful" on a claim known in an unusual convention and nearly known in a usual one."""
     if claim.context or claim.hypotheses or not all(is_unusual(known) for known in readings):
         return None
     # such as psi' = (omega_2 sin phi + omega_1 cos phi)/cos theta: true for components in the space frame;
@@ -352,10 +352,8 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 
 def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identification, ...]:
-    """Return (known formula,) if ``near.tree`` equals it for some signs of the letters; otherwise ().
-
-    ``a*sqrt(1 - x/a^2)`` equals ``sqrt(a^2 - x)`` for a > 0.
-    """
+    """Return (known formula,) if ``near.tree`` equals it for some signs of the letters; otherwise ()."""
+    # a*sqrt(1 - x/a^2) equals sqrt(a^2 - x) for a > 0
     ending = ending_of(near.known.name)
     if named.solve is None or ending not in ("", SQUARED):
         return ()
@@ -473,7 +471,7 @@ def _exchanged(tree: Node, names: Mapping[str, str]) -> Node:
 
 
 def _with_all_terms_added(named: NamedFormula) -> Iterator[Edit]:
-    """Yield the edit of ``a - b - c`` to a + b + c, if the formula should be a number, such as a squared length."""
+    """Yield the edit of ``a - b - c`` to a + b + c, for a formula that should be a positive number."""
     negative = [term for term in named.formula.args if term.kind == "neg"]
     if named.solve is None and named.side.kind == "number" and named.formula.kind == "sum" and len(negative) > 1:
         added = sum_of([term.args[0] if term.kind == "neg" else term for term in named.formula.args])
@@ -577,7 +575,7 @@ def _readings_of_formula(
 
 
 def _without_function(value: Any) -> tuple[Any, str]:
-    """Return the argument of a value's outer function, and the end of known names for it: acos(u) gives (u, ", acos")."""
+    """Return the argument and the name of a value's outer function: (u, ", acos") for acos(u)."""
     if is_matrix(value):
         return value, ""
     # known formulas with roots and inverse functions are stored without them

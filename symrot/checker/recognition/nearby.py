@@ -383,7 +383,7 @@ UNITS = {"[kg]": 1.37, "[m]": 1.61, "[s]": 0.83}
 
 
 def _has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], letters: Letters) -> bool:
-    """Return whether a claim's formula has another unit than ``known``, if its letters have the known symbols' units."""
+    """Return whether a claim's formula has another unit than ``known`` when its letters have their usual units."""
     # nodes: known symbol -> letter of the claim
     scales = {node: _scale(UNIT_OF_NAME.get(mine)) for mine, node in nodes.items()}
     if None in scales.values() or any(atom not in scales for atom in letters.atoms):

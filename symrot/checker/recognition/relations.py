@@ -143,9 +143,9 @@ def without_common_powers(difference: Expr) -> Expr:
 
 
 def _common_powers(formula: Expr) -> dict[Expr, int] | None:
-    """Return the powers of symbols and functions in all terms of a formula: {a: 1, b: -1} for ``a*c/b + a/b``.
+    """Return the powers of symbols that divide all terms of a formula, or None if it has roots.
 
-    Return None for roots or other divisors.
+    ``a*c/b + a/b`` gives {a: 1, b: -1}.
     """
     if isinstance(formula, Add):
         terms = [_common_powers(term) for term in formula.args]
@@ -166,7 +166,7 @@ def _common_powers(formula: Expr) -> dict[Expr, int] | None:
     if isinstance(formula, Pow):
         inner = _common_powers(formula.base)
         if inner is None or not formula.exp.is_Integer or (formula.exp < 0 and formula.base.is_Add):
-            return None
+            return None  # a root, or a sum as a divisor
         return {part: power * int(formula.exp) for part, power in inner.items()}
     return {} if formula.is_number else {formula: 1}
 
