@@ -438,9 +438,9 @@ def fits_context(context: Context, named: NamedFormula, known: Identification, l
 
 
 def words_of(named: NamedFormula) -> tuple[str, ...] | None:
-    """Return words for a quantity, one of which names of formulas for it have, or None if any name will do.
+    """Return words such as "moment of inertia" for I_zz, one of which names of known formulas for it contain.
 
-    I_zz gives ("moment of inertia", ..).
+    None if any will do.
     """
     words = next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, quantity_name(named))), None)
     if words and any(node.kind == "call" and node.value == "cross" for _, node in walk(named.formula)):

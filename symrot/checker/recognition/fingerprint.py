@@ -191,7 +191,7 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
 
 
 def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | None:
-    """Return the fingerprint of a formula for the first two numbers in ``DRAWS``, or None if some value is undefined."""
+    """Return the fingerprint of a formula for the first two numbers in ``DRAWS``, or None if a value is undefined."""
     raised, others = DRAWS[0]
     point = dict.fromkeys(written, others)
     here = _defined(entries, point)  # 1/(x - y) has no value here

@@ -143,9 +143,9 @@ def without_common_powers(difference: Expr) -> Expr:
 
 
 def _common_powers(formula: Expr) -> dict[Expr, int] | None:
-    """Return the powers of symbols that divide all terms of a formula, or None if it has roots.
+    """Return the powers of symbols that divide all terms of a formula: {a: 1, b: -1} for ``a*c/b + a/b``.
 
-    ``a*c/b + a/b`` gives {a: 1, b: -1}.
+    Return None for roots.
     """
     if isinstance(formula, Add):
         terms = [_common_powers(term) for term in formula.args]

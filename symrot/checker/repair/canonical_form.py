@@ -48,7 +48,10 @@ def _base_and_exponent(factor: Node) -> tuple[Node, Fraction]:
 
 
 def with_ordered_products(tree: Node, is_matrix: Callable[[Node], bool]) -> Node:
-    """Return a tree with sorted vectors and no scalars in dot and cross products: ``-m*cross(a, v)``."""
+    """Return a tree with sorted vectors and no scalars in dot and cross products.
+
+    ``cross(m*v, a)`` becomes ``-m*cross(a, v)``.
+    """
     args = tuple(with_ordered_products(child, is_matrix) for child in tree.args)
     made = replace(tree, args=args)
     if tree.kind != "call" or tree.value not in ("dot", "cross"):
@@ -69,10 +72,7 @@ def with_ordered_products(tree: Node, is_matrix: Callable[[Node], bool]) -> Node
 
 
 def terms_of_equation(left: Node, right: Node, is_matrix: Callable[[Node], bool]) -> frozenset[tuple[Node, Fraction]]:
-    """Return the terms of ``left - right``, each with its coefficient: (a, 1), (b, -2) for ``4*b - 2*a == 0``.
-
-    They are empty if both sides are equal.
-    """
+    """Return the terms of ``left - right``, each with its coefficient: (a, 1), (b, -2) for ``4*b - 2*a == 0``."""
     totals: dict[Node, Fraction] = {}
     for side, sign in ((left, 1), (right, -1)):
         whole = canonical(side, is_matrix)
@@ -80,7 +80,7 @@ def terms_of_equation(left: Node, right: Node, is_matrix: Callable[[Node], bool]
             core, size = _without_number(term)
             totals[core] = totals.get(core, Fraction(0)) + sign * size
     terms = sorted(((core, size) for core, size in totals.items() if size), key=lambda pair: text(pair[0]))
-    # divided by the first coefficient, so that multiples of an equation give the same terms
+    # empty for equal sides; divided by the first coefficient, so that multiples of an equation give the same terms
     return frozenset((core, size / terms[0][1]) for core, size in terms)
 
 

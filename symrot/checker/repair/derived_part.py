@@ -1,4 +1,4 @@
-"""The correction of a claim's matrix, derived from the rest of the claim: the only matrix with which the claim holds."""
+"""The correction of a claim's matrix, derived from the rest of the claim: the only matrix that makes it true."""
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace

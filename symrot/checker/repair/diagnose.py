@@ -1,7 +1,7 @@
 """The diagnosis of a claim that is not true: a search for true formulas near it, by a numeric test and a proof.
 
 A candidate with one or two edits must be true at two points in double precision; then the exact engine decides it. The
-work is bounded by counts, not by time, so that every run gives the same repairs.
+work is bounded by counts, not by time: every run gives the same repairs.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence

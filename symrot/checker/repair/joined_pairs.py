@@ -75,12 +75,12 @@ def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
     """Return (left/right,) at the first test point, and the factor by which each edit divides it, by its index.
 
-    Empty unless both sides are nonzero scalars.
+    Empty if a side is zero.
     """
     point = numeric.points[0]
     left, right = (entries_of(side) for side in numeric.sides(point, ()))
     if len(left) != 1 or len(right) != 1 or not left[0] or not right[0]:
-        return (), {}
+        return (), {}  # a matrix, or zero
     whole = left[0] / right[0]
     effects: dict[int, Values] = {}
     for number, change in enumerate(changes):

@@ -1,7 +1,7 @@
 """Repairs that replace one part of a formula by the value that makes the claim true, written as a short formula.
 
-The claim is solved numerically for one part (a term, a factor or a symbol) at two points. Its needed values are looked
-up among all short products of symbols and functions of the claim, however long the claim's formula is.
+The claim is solved numerically for one part (a term, a factor or a symbol) at two points. The result is looked up among
+the values of all short products of symbols and functions of the claim.
 """
 
 from bisect import bisect_left
@@ -130,7 +130,7 @@ class Vocabulary:
         return values[0] / values[1]
 
     def find(self, values: Values) -> Iterator[tuple[Entry, Fraction]]:
-        """Yield (product, ratio) for each product whose rational multiple has ``values``, the shortest products first."""
+        """Yield (product, ratio) for each product whose rational multiple has ``values``; short products come first."""
         if not all(values):
             return
         key = self._key(values)
@@ -229,10 +229,7 @@ def _candidate(numeric: NumericFilter, place: str, path: Path, made: Node, edit:
 
 
 def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: Values) -> Values | None:
-    """Return the values at the test points of an unknown in ``made``, a part of the claim, that make the claim true.
-
-    Return None without a solution.
-    """
+    """Return the values at the test points of the unknown in ``made`` that make the claim true, or None."""
     # the unknown is the node HOLE in made, which replaces the part at path of a side or definition
     tree = replaced(numeric.tree_at(place), path, lambda _: made)
     if place not in SIDES and not numeric.sensible(place, tree):
