@@ -47,10 +47,7 @@ def check_claim(claim: Claim, repair: bool = True) -> Verdict:
 
 
 def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict | None]:
-    """Return the verdicts on a claim in its usual interpretation, and in another one if the claim is true only there.
-
-    The second one may be None.
-    """
+    """Return the verdict on a claim in its usual interpretation, and that in another one if only this is true."""
     start = perf_counter()
     verdict: Verdict | None = None
     try:
@@ -184,7 +181,7 @@ def _was_near_relation(claim: Claim) -> bool:
 
 
 def _near_relation(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return ``verdict``, on a false claim, with repairs that turn the claim into a known relation, if there are any."""
+    """Return ``verdict``, on a false claim, with repairs that turn the claim into a known relation, if any."""
     from symrot.checker.recognition.naming import verdict_near_relation
 
     nearest = verdict_near_relation(claim)

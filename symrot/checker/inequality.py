@@ -1,7 +1,7 @@
 """Verdicts on inequalities such as ``x^2 + 1 > 0``, and on the inequalities between moments of inertia.
 
 An inequality is true if the difference of its sides is proven to have one sign, and false if it has the other sign at
-an exact point. An inequality such as ``omega > 2`` is a condition, about which nothing is claimed.
+an exact point. One such as ``omega > 2`` is a condition, about which nothing is claimed.
 """
 
 from collections.abc import Iterator, Mapping

@@ -107,7 +107,7 @@ def _is_polynomial(claim: Claim, letter: Node) -> bool:
 
 
 def _exponents(side: Node, letter: Node) -> Sequence[Any] | None:
-    """Return the power of a letter in each term of a sum: [2, 1, 0] for ``x^2 + 3 x + 5``, None for other terms."""
+    """Return the power of a letter in each term of a sum: [2, 1, 0] for ``x^2 + 3 x + 5``; None for others."""
     exponents = []
     for term in side.args if side.kind == "sum" else (side,):
         bare = term.args[0] if term.kind == "neg" else term

@@ -177,7 +177,7 @@ def _is_unknown(reading: tuple[Reading, Verdict]) -> bool:
 
 
 def _beside_units(verdict: Verdict, source: str) -> Verdict:
-    """Return "definition" for a text with letters and numbers with units, such as ``F = m a = 6 N``, else ``verdict``."""
+    """Return "definition" for a text such as ``F = m a = 6 N``, with letters and units; otherwise ``verdict``."""
     unit = "" if verdict.recognised_as else unit_beside_letters(source)
     # an end such as 2 kg * 3 m/s^2 = 6 N is decided by itself; if it is false, the text is false
     beginning, end = numeric_end(source) if unit or verdict.verdict == "false" else ("", "")
@@ -366,10 +366,7 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Ve
 
 
 def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim such as ``L = T - V`` after ``I = m L^2``, with L_1 for the earlier L.
-
-    Others keep their ``verdict``.
-    """
+    """Return the verdict on a claim such as ``L = T - V`` after ``I = m L^2``, with L_1 for the earlier L."""
     assert claim.relation is not None
     _, left, right = claim.relation
     name, others = str(left.value), {own for own, tree in claim.define if left in [node for _, node in walk(tree)]}
@@ -381,7 +378,7 @@ def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
     define = tuple((own, with_names(tree, {name: f"{name}_1"})) for own, tree in claim.define)
     other = check_claim(replace(claim, define=define), repair=False)
     if other.verdict == "false":
-        return verdict
+        return verdict  # two meanings do not help
     note = f"{name} is read as another quantity than in {' and '.join(sorted(others))}; as the same, the line is false"
     return replace(other, notes=(*other.notes, note))
 
@@ -429,7 +426,7 @@ def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
 
 
 def _with_inverse(source: str, place: str, typed: str) -> str:
-    """Return an equation's text with ``q**(-1)`` on the side ``place``, if the claim has an inverse quaternion there."""
+    """Return an equation with ``q**(-1)`` at ``place``, "left" or "right", if the typed claim has it there."""
     relation = _relation_of(source)
     if relation is None or relation[0] != "==":
         return source
@@ -573,10 +570,7 @@ def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], 
 
 
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
-    """Return the verdicts on the equations of a chain ``name = a = b``, where ``a = b`` may be no identity.
-
-    ``name = b`` is decided instead.
-    """
+    """Return the verdicts on the equations of a chain ``name = a = b``, with ``name = b`` for a false ``a = b``."""
     named = named_formula(line[0]) if len(line) > 1 else None
     if named is None or line[0].relation is None or line[0].relation[1] != named.side:
         return list(verdicts)

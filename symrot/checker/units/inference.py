@@ -218,7 +218,7 @@ class UnitInference:
         return value
 
     def total(self, values: Sequence[Value], what: str) -> Value:
-        """Require that the terms of a sum have the same dimension, and return it; ``what`` names the sum in messages."""
+        """Require that the terms of a sum have the same dimension, and return it; ``what`` names the sum."""
         dimension = values[0]
         for number, value in enumerate(values[1:], start=2):
             dimension = self.same(dimension, value, f"term 1 of {what} is {{0}}, term {number} is {{1}}")
