@@ -47,7 +47,10 @@ def check_claim(claim: Claim, repair: bool = True) -> Verdict:
 
 
 def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict | None]:
-    """Return the verdict on a claim in its usual interpretation, and that in another one if only this is true."""
+    """Return (verdict, None) for a claim in its usual interpretation.
+
+    If only another interpretation makes the claim true, its verdict is in place of the None.
+    """
     start = perf_counter()
     verdict: Verdict | None = None
     try:

@@ -1,7 +1,7 @@
 """Faults of single parts of a formula: the value that a part should have, and the short change that gives it.
 
 The needed values of the whole formula at test points are known. They determine those of the terms of a sum, the factors
-of a product, and so on. A change that gives a part its needed values remains to be proven.
+of a product, and so on. A change that gives a part these values remains to be proven.
 """
 
 import math
