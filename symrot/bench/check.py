@@ -2,11 +2,8 @@
 
     python -m symrot.bench.check [GROUP ..] [--list]
 
-Naming claims give a formula for a quantity that only its name identifies, as in ``I = 2/5 m r^2``. Conditional claims
-need conditions on their symbols, as in ``sqrt(x**2) == x``. Typical claims are other formulas that people type.
-
-The seconds are processor time, which a busy machine changes little. The start of Python, the import of SymPy and the
-shortest claim are measured by themselves and subtracted. ``--list`` prints every claim with its time and its verdict.
+A naming claim is like ``I = 2/5 m r^2``, a conditional one like ``sqrt(x**2) == x``. The times of Python's start,
+SymPy's import and the shortest claim are subtracted.
 """
 
 import json

@@ -58,10 +58,8 @@ def _seconds(run: Callable[[], Any]) -> float:
 
 
 def measure(rounds: int) -> list[tuple[str, str, list[float]]]:
-    """Time several motions in closed form.
-
-    Return for each its name, its regime (which formula applies), and six times, s. The times are the least ones of all
-    rounds: set-up, omega and attitude, omega alone, attitude alone, one sample, set-up with omega and attitude.
+    """Time several motions in closed form; return for each its name, its regime (which formula applies), and six times,
+    s.
     """
     t = np.linspace(0.0, SPAN, SAMPLES)
     one = t[:1]
@@ -82,6 +80,7 @@ def measure(rounds: int) -> list[tuple[str, str, list[float]]]:
                 ],
             )
         )
+    # The least times of all rounds, in the order of the functions above.
     best = [[float("inf")] * 6 for _ in runs]
     for _ in range(rounds):
         for (_, _, functions), row in zip(runs, best, strict=True):

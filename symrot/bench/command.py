@@ -1,8 +1,7 @@
 """The command ``symrot bench``: a table of its modes, each of which is chosen by an option of the command line.
 
-A mode takes the parsed options and a callback for progress messages; it returns a :class:`ModeReport`. The modules of a
-mode are imported only when it runs. To add a mode, write a function here or in its own module and add a row to
-:data:`MODES`.
+A mode takes the parsed options and a callback for progress messages; it returns a :class:`ModeReport`. To add a mode,
+write its function and add a row to :data:`MODES`.
 """
 
 from argparse import ArgumentParser, Namespace
@@ -27,11 +26,9 @@ class ModeReport(NamedTuple):
 
 
 class Mode(NamedTuple):
-    """A mode of ``symrot bench``: the option that chooses it, its help text, accepted options, and its function.
+    """A mode of ``symrot bench``: the option that chooses it, its help text, accepted options, and its function."""
 
-    ``option`` is "" for the mode that studies one scene.
-    """
-
+    # "" for the mode that studies one scene
     option: str
     about: str
     takes: frozenset[str]  # names of the other options that the mode accepts

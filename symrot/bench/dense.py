@@ -2,14 +2,8 @@
 
     python -m symrot.bench.dense [--samples 20000] [--rounds 15] [--motion NAME]
 
-The motions are those of :mod:`symrot.bench.taylor`. symrot is called as a user calls it, ``propagator(t)``; heyoka by
-``propagate_grid``, and by ``propagate_until`` with ``c_output``, whose continuous output is then evaluated at all times
-at once. The array of times is made before the clock starts. Both run at several tolerances. The error of a run is the
-error of its last sample against a series in 40 digits; the table also has the largest difference of its samples from
-the samples of symrot's run with the tightest tolerance. Each run of heyoka is compared with the fastest run of symrot
-whose error is not larger. Runs alternate; the result is the median of the processor time.
-
-heyoka is optional: ``pip install heyoka``.
+heyoka runs by ``propagate_grid`` and by ``propagate_until`` with ``c_output``. Each run is compared with symrot's
+fastest run of at most its error, which is measured at the last sample against 40 digits.
 """
 
 import argparse
@@ -40,9 +34,8 @@ class Sampled(NamedTuple):
 
 
 def _heyoka(problem: Problem, tolerance: float, times: Floats) -> dict[str, Callable[[], Floats]]:
-    """Return heyoka's two methods of sampling a motion at ``times``, as functions that return the samples, by name.
-
-    The dict is empty if heyoka is not installed.
+    """Return heyoka's methods of sampling a motion at ``times`` by name, as functions; empty if heyoka is not
+    installed.
     """
     try:
         import heyoka

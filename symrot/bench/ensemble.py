@@ -2,15 +2,8 @@
 
     python -m symrot.bench.ensemble [--rounds 9] [--orders] [--motion NAME] [--many 4096]
 
-The motions are listed in :mod:`symrot.bench.taylor`; the initial states of an ensemble differ by about a tenth. There
-are 8 trajectories over the whole span, and 4096 trajectories over a twentieth of it. heyoka compiles the same
-right-hand side with its constants as numbers. It runs in batches of 4 and of 8; the 4096 trajectories also run through
-``ensemble_propagate_until`` and its batch form with one thread. Runs are interleaved; the least processor time counts,
-since wall-clock time grows with other work on the machine. The error is the largest error of all trajectories (of 4096,
-only the first 16 are compared) against heyoka in long double, which is checked against a series in 40 digits. For each
-power of ten, the table has the fastest run with at most that error.
-
-``--orders`` compares orders of symrot's own series instead. heyoka is needed: ``pip install heyoka``.
+The error is the largest of the trajectories against heyoka in long double, itself checked in 40 digits. ``--orders``
+compares orders of symrot's series instead.
 """
 
 import argparse
@@ -45,20 +38,14 @@ class Start(NamedTuple):
     exact: Floats
 
     def error(self, states: Floats) -> float:
-        """Return the largest error of all end states, one number; row k of ``states`` is the end state of trajectory k.
-
-        Only the first trajectories have an exact end state and are compared.
-        """
+        """Return the largest error of the end states, whose row k belongs to trajectory k."""
+        # Only the first trajectories have an exact end state.
         pairs = zip(states[: len(self.exact)], self.exact, strict=True)
         return float(max(self.problem.largest_error(computed, exact) for computed, exact in pairs))
 
 
 def prepare(name: str, n: int, stop: float, problem: Any) -> Start:
-    """Return an ensemble of ``n`` initial states near a motion's initial state, which is the first of them.
-
-    ``name`` is the motion, ``problem`` its equations, and ``stop`` the end time, s. The other initial states are
-    random.
-    """
+    """Return an ensemble of ``n`` initial states: a motion's own one first, then random states near it."""
     random = np.random.default_rng(1)
     y = np.tile(np.array(problem.y0), (n, 1))
     rates = problem.blocks[1]
@@ -69,10 +56,7 @@ def prepare(name: str, n: int, stop: float, problem: Any) -> Start:
 
 
 def _references(problem: Any, y: Floats, stop: float) -> Floats:
-    """Return the end states at the time ``stop`` of trajectories from the initial states ``y``, as a reference.
-
-    They are computed by heyoka in long double.
-    """
+    """Return the end states at time ``stop`` from the initial states ``y``, computed by heyoka in long double."""
     import heyoka
 
     real = np.longdouble
@@ -132,9 +116,8 @@ def _ours(
 
 
 def _batches(integrator: Any, width: int, start: Start) -> BatchEnd:
-    """Return the number of steps and the last states of an ensemble, computed by heyoka's batch integrator.
-
-    A batch has ``width`` trajectories; one batch is computed after another.
+    """Return number of steps and last states of an ensemble, computed by heyoka's integrator for batches of
+    ``width``.
     """
     states, steps = np.empty_like(start.y), 0
     for first in range(0, len(start.y), width):
@@ -147,11 +130,7 @@ def _batches(integrator: Any, width: int, start: Start) -> BatchEnd:
 
 
 def _ensemble(propagate: Any, integrator: Any, width: int, start: Start) -> BatchEnd:
-    """Return steps and last states of an ensemble, computed by heyoka's ensemble function in one thread.
-
-    ``propagate`` is this function of heyoka, and ``width`` the number of trajectories that ``integrator`` computes at
-    once.
-    """
+    """Return steps and last states of an ensemble, computed by heyoka's ensemble function in one thread."""
 
     def begin(integrator: Any, i: int) -> Any:
         if width == 1:
@@ -162,6 +141,7 @@ def _ensemble(propagate: Any, integrator: Any, width: int, start: Start) -> Batc
             integrator.state[:] = start.y[i * width : (i + 1) * width].T
         return integrator
 
+    # The integrator computes ``width`` trajectories at once.
     results = propagate(integrator, start.stop, len(start.y) // width, begin, max_workers=1)
     states = np.vstack([one[0].state.T if width > 1 else one[0].state[None] for one in results])
     if width == 1:
@@ -191,11 +171,9 @@ def _heyoka(start: Start, tolerances: Sequence[float], many: bool) -> list[Batch
 
 
 def measure(start: Start, rounds: int, many: bool = False) -> list[Run]:
-    """Time all contestants on an ensemble, and return their runs with times and errors.
-
-    With ``many``, heyoka also runs through its own ensemble functions, which are made for thousands of trajectories.
-    """
+    """Time all contestants on an ensemble, and return their runs with times and errors."""
     ours, theirs = [10.0 ** (-k / 4) for k in range(4, 57)], [10.0 ** (-k / 2) for k in range(6, 33)]
+    # With ``many``, heyoka's ensemble functions run too, which are made for thousands of trajectories.
     return raced([*_ours(start, ours), *_heyoka(start, theirs, many)], start.error, rounds, process_time)
 
 

@@ -2,18 +2,8 @@
 
     python -m symrot.bench.kernels [--rounds 63] [--many 1000000] [--kernels NAME ..] [--jacobians] [--count]
 
-With ``--jacobians``, each kernel also computes the derivatives of its outputs by angles, quaternion and angular
-velocity, which each tool derives itself. With ``--count``, nothing is timed: the program only counts operations, and
-ends after a few seconds.
-
-A contestant is one tool's version of a kernel. Each is timed on one sample at a time, on a batch that fits in the
-cache, and on a batch of 10^6 samples. All contestants alternate in one run, on one thread, on the same memory, and
-their results are compared. For batches of 10^6, the rounds alternate between several blocks of memory: the place of a
-block's pages in the processor's caches is random, and changes the time of the same machine code by up to 8 %. All C is
-compiled with the same compiler and flags; heyoka's machine code, with its sines of 3.5 ulp, is linked to the same
-loops. CasADi's own evaluation is called from Python. The row "moves only" reads all inputs of a batch, adds them up and
-writes all outputs. It shows roughly the time that memory access alone takes for a batch of 10^6; a kernel with a longer
-loop, which processes fewer samples at once, can be a few percent faster.
+A contestant is one tool's version of a kernel, timed on single samples, a batch in the cache (shape ``cached``) and a
+large batch (``many``). All alternate in one thread on the same memory.
 """
 
 import argparse
@@ -61,11 +51,7 @@ SHAPES = ("one", "cached", "many")
 
 @dataclass
 class Contestant:
-    """One tool's version of a kernel: its operations, and its times per sample, s, for each shape of input.
-
-    The shapes are ``one`` (a single sample at a time), ``cached`` (a batch that fits in the processor's cache) and
-    ``many`` (a batch that does not).
-    """
+    """One tool's version of a kernel: its operations, and its times per sample, s, for each shape of input."""
 
     name: str
     operations: Counter[str]
@@ -94,14 +80,11 @@ def _samples(name: str, count: int) -> list[Floats]:
 
 @cache
 def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Floats]:
-    """Return arrays for inputs and outputs that all contestants share; samples are rows, or columns in a batch.
-
-    The outputs follow the inputs in one block, which begins on a page boundary and has been written completely. With
-    ordinary allocation, their distance modulo a page and the kind of pages would differ in each run, and every second
-    vector would lie across two cache lines. ``place`` is the number of the block; all blocks contain the same values.
-    """
+    """Return arrays for inputs and outputs that all contestants share; samples are rows, or columns in a batch."""
     samples = np.concatenate(_samples(name, count))
     size = sum(a.size for a in kernel_program(name).signature.arguments if a.role == "out")
+    # One block from a page boundary, since the distance of inputs and outputs modulo a page changes the time. Place in
+    # the caches is random and matters by up to 8 %, so there are several equal blocks, numbered ``place``.
     memory = np.empty((len(samples) + size) * count + PAGE)
     memory = memory[-memory.ctypes.data % PAGE // memory.itemsize :]
     apart = np.split(memory[: (len(samples) + size) * count], [samples.size])
@@ -116,10 +99,7 @@ def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Float
 
 
 def _addresses(name: str, shape: str, count: int, place: int) -> Any:
-    """Return the addresses of the arguments of the kernel ``name`` in the memory that all contestants share.
-
-    The other arguments are those of :func:`_block`, which reserves this memory.
-    """
+    """Return the addresses of the kernel's arguments in the shared memory (:func:`_block`)."""
     addresses, offsets = [], {"in": 0, "out": 0}
     for argument in kernel_program(name).signature.arguments:
         block = _block(name, shape, count, place)[argument.role == "out"]
@@ -130,15 +110,13 @@ def _addresses(name: str, shape: str, count: int, place: int) -> Any:
 
 
 def _drivers(signature: Signature, batch: bool) -> str:
-    """Return C functions that call a one-sample function and a batch function many times, so that they can be timed.
-
-    If a tool has no batch function (``batch`` is false), a loop over its one-sample function is added.
-    """
+    """Return C functions that call a one-sample function and a batch function many times, so that they can be timed."""
     inputs = [a for a in signature.arguments if a.role == "in"]
     outputs = [a for a in signature.arguments if a.role == "out"]
     every = [*inputs, *outputs]
     apart = [sum(a.size for a in (inputs if each in inputs else outputs)) for each in every]
     one = ", ".join(f"{'' if a.is_scalar else '&'}a[{i}][{apart[i]}*k]" for i, a in enumerate(every))
+    # A tool without a batch function gets a loop over its one-sample function.
     lines = [] if batch else _batch_of_one(c_name(signature.name), inputs, outputs)
     parameters = [f"{'const ' if a in inputs else ''}double {'' if a.is_scalar else '*'}{a.name}" for a in every]
     lines += [f"static __attribute__((noinline)) void single({', '.join(parameters)})", "{",
@@ -208,9 +186,8 @@ def _heyoka_drivers(signature: Signature) -> str:
 
 
 def _moving(signature: Signature) -> str:
-    """Return C code that reads every input and writes every output of a batch; between them it computes only a sum.
-
-    Its time shows how long the memory access of a kernel takes.
+    """Return C code that reads all inputs of a batch, adds them up and writes all outputs: the cost of memory
+    access.
     """
     inputs, outputs = ([a for a in signature.arguments if a.role == role] for role in ("in", "out"))
     heads = [f"const double *restrict {a.name}" for a in inputs] + [f"double *restrict {a.name}" for a in outputs]
@@ -224,12 +201,11 @@ def _moving(signature: Signature) -> str:
 
 
 def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], float]:
-    """Return a function of ``place`` that times ``run(repeats, place)`` and returns seconds per sample.
-
-    ``place`` is the number of the memory block that holds inputs and outputs. One repeat handles ``samples`` samples;
-    ``repeats`` is chosen so large that the clock measures the time accurately.
+    """Return a function of ``place``, a memory block's number, that times ``run(repeats, place)`` and returns s per
+    sample.
     """
     repeats, elapsed = 1, 0.0
+    # so many repeats that the clock measures the time accurately
     while elapsed < SHORTEST:  # the first runs start with cold caches
         repeats *= 2 if elapsed else 1
         began = perf_counter()
@@ -245,10 +221,8 @@ def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], f
 
 
 def _runs(name: str, loaded: ctypes.CDLL, shapes: Sequence[str], many: int) -> dict[str, Callable[[int], float]]:
-    """Return a timing function for each of ``shapes``; it takes a memory block's number and returns s per sample.
-
-    The shapes are ``one`` (a single sample), ``cached`` (a batch that fits in the cache) and ``many`` (a batch of
-    ``many`` samples). The functions call the compiled library ``loaded``; ``name`` is the kernel.
+    """Return, by shape of input, functions that take a memory block's number and return s per sample of a compiled
+    kernel.
     """
     runs = {}
     for shape in shapes:
@@ -268,13 +242,9 @@ def _call(function: Any, count: int, addresses: Sequence[Any], repeats: int, pla
 def _in_c(
     name: str, text: str, many: int, shapes: Sequence[str] = SHAPES, prepare: Callable[[Any], object] = id
 ) -> tuple[dict[str, Callable[[int], float]], Floats]:
-    """Compile a kernel; return its timing functions for ``shapes``, and its outputs for a small batch.
-
-    The small batch, of ``CACHED`` samples, serves to compare the tools' results; a large batch has ``many`` samples.
-    ``text`` is the C text with its drivers (see :func:`_drivers`). ``prepare`` is called with the loaded library, for
-    tools whose functions need a set-up.
-    """
+    """Compile a kernel with its drivers; return its timing functions by shape, and its outputs for a small batch."""
     loaded = ctypes.CDLL(str(build_cache.build(text, f"bench_{name}", FLAGS)))
+    # for tools whose functions need a set-up
     prepare(loaded)
     runs = _runs(name, loaded, shapes, many)
     runs["cached"](0)
@@ -294,9 +264,8 @@ def _symrot_text(name: str) -> str:
 
 
 def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
-    """Return the contestants for the kernel ``name`` (one per tool, symrot first), and the names of the missing tools.
-
-    ``many`` is the number of samples in the largest batch. Raise AssertionError if the outputs of two tools differ.
+    """Return the contestants for a kernel, symrot first, and the missing tools; raise AssertionError if
+    outputs differ.
     """
     contestants: list[Contestant] = []
     missing: list[str] = []
@@ -329,19 +298,17 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
     except ImportError:
         missing.append("CasADi")
     try:
-        code = heyoka_code(name)
+        code = heyoka_code(name)  # its sines have errors of up to 3.5 ulp
         add("heyoka", Counter(), *_in_c(name, _heyoka_drivers(signature), many, prepare=lambda c: c.symrot_take(*code)))
     except ImportError:
         missing.append("heyoka")
+    # Roughly the time of memory access alone; a kernel that handles fewer samples at once can be a few percent faster.
     contestants.append(Contestant(FLOOR, Counter(), _in_c(name, _moving(signature), many, SHAPES[1:])[0]))
     return contestants, missing
 
 
 def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[int], float]], Floats]:
-    """Return the timing functions of CasADi's own evaluation, which maps a function over samples, and its outputs.
-
-    ``function`` is CasADi's function for the kernel ``name``. Only the batch that fits in the cache is timed.
-    """
+    """Return timing functions of CasADi's own evaluation of ``function``, and its outputs for the small batch."""
     import casadi
 
     def run(count: int) -> Callable[[int, int], object]:
@@ -349,6 +316,7 @@ def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[int],
         return lambda repeats, place: [mapped(inputs) for _ in range(repeats)]
 
     outputs = np.array(function.map(CACHED)(casadi.DM(np.concatenate(_samples(name, CACHED)))))
+    # Only the batch that fits in the cache is timed.
     return {"cached": _timed(run(CACHED), CACHED)}, outputs
 
 
@@ -378,12 +346,10 @@ def _casadi_text(name: str, function: Any) -> str:
 
 
 def measure(contestants: Sequence[Contestant], rounds: int) -> None:
-    """Time all contestants in rounds, and append the times to ``seconds`` of each contestant.
-
-    The order changes in each round, because the previous contestant fills the caches.
-    """
+    """Time all contestants in rounds, and append the times to ``seconds`` of each contestant."""
     draw = Random(5)
     for number in range(rounds):
+        # The previous contestant fills the caches, so the order changes.
         for contestant in draw.sample(contestants, len(contestants)):
             for shape, run in contestant.runs.items():
                 contestant.seconds[shape].append(run(number % PLACES[shape]))
@@ -411,18 +377,14 @@ def _operations(contestants: Sequence[Contestant]) -> tuple[int, int]:
 
 
 def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
-    """Return, for each shape of input, the ratio of symrot's time to the time of the best other tool.
-
-    The first contestant is symrot. The least times are compared, except for batches of many samples: their speed is
-    limited by memory, which other processes use too. For these, the ratio to each other tool is the median over the
-    rounds, and the largest of these medians is returned.
-    """
+    """Return, by shape of input, the ratio of symrot's time to the best other tool's time."""
     own, others = contestants[0], [c for c in contestants[1:] if c.name != FLOOR]
     ratios = {}
     for shape in SHAPES:
         rivals = [c.seconds[shape] for c in others if c.seconds[shape]]
         mine = own.seconds[shape]
         if mine and shape == "many":
+            # Other processes use the memory too: compare within each round, take the median.
             ratios[shape] = max(float(np.median(np.divide(mine, each))) for each in rivals)
         elif mine:
             ratios[shape] = min(mine) / min(map(min, rivals))
@@ -449,22 +411,14 @@ def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
 
 
 def _missed(name: str, contestants: Sequence[Contestant]) -> list[str]:
-    """Return, as texts, where symrot needs more operations than the best tool, or more than 1.05 times its time.
-
-    The list is empty if there are none.
-    """
+    """Return texts that say where symrot needs more operations, or over 1.05 times the time, of the best tool."""
     mine, best = _operations(contestants)
     over = [f"{name} {shape} {ratio:.3f}" for shape, ratio in _ratios(contestants).items() if ratio > BAR]
     return [f"{name} operations {mine} to {best}"] * (mine > best) + over
 
 
 def counts(name: str) -> tuple[dict[str, Counter[str]], list[str]]:
-    """Return the operations of a kernel as a map from tool to operations by kind, and the names of the missing tools.
-
-    Tools are symrot, the tools that print C code, and CasADi. For a kernel of derivatives the map has a further entry,
-    named OWN_START: CasADi's operations if it differentiates symrot's own program for the values. The entry "CasADi"
-    starts from the textbook's formulas.
-    """
+    """Return a map from tool to its operations on a kernel by kind, and the names of the missing tools."""
     operations, missing = {"symrot": counted(_emitted(name).source, name)}, []
     for tool, make in PEERS_IN_C.items():
         try:
@@ -474,6 +428,7 @@ def counts(name: str) -> tuple[dict[str, Counter[str]], list[str]]:
             missing.append(tool)
     try:
         operations["CasADi"] = casadi_function(name)[1]
+        # CasADi may also differentiate symrot's own program instead of the textbook's formulas.
         if BY in name:
             operations[OWN_START] = casadi_function(name, kernel_program)[1]
     except ImportError:

@@ -2,8 +2,8 @@
 
     python -m symrot.bench.overhead [--rounds 25] [SCENE ...]
 
-For the bare call, all addresses are computed in advance, and the state of the run is reset by copying a few bytes, so
-Python only makes the call. Runs alternate; the results are medians of processor time.
+For the bare call, all addresses are computed before, and the run is reset by copying a few bytes. Results are medians
+of processor time of alternating runs.
 """
 
 import argparse
@@ -66,9 +66,9 @@ def _bare_exact(propagate: Propagator, times: "np.ndarray[tuple[int], np.dtype[n
 
 
 def measure(name: str, method: str, samples: int, rounds: int) -> tuple[float, float] | None:
-    """Return the seconds of ``propagator(t)`` and of the bare C call; None if the method cannot compute the scene.
+    """Return the median seconds of ``propagator(t)`` and of the bare C call.
 
-    ``name`` is the scene, ``samples`` the number of times in ``t``; the seconds are medians over ``rounds``.
+    None if the method cannot compute the scene.
     """
     try:
         propagate = propagator(name, method)

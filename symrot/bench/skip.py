@@ -1,10 +1,7 @@
 """The gain of specialised kernels: cost of each motion with the most general kernel and with the scene's own kernel.
 
-The general kernel has a full inertia tensor, the full attitude and all kinds of torque that can act together; the
-constants of a torque that the motion lacks are zero. Both kernels compute the same motion by Taylor series at the same
-tolerance. Their final states must agree; otherwise the table says so and the command fails. Nanoseconds are per
-evaluation of the rates in C, in a loop over many states; microseconds are for the whole motion. The last column is the
-time of `auto`, which uses a closed form if there is one.
+The general kernel has a full inertia tensor, the attitude and every kind of torque. Both kernels must reach the same
+final state. Nanoseconds are per evaluation of the rates in C, microseconds per motion; the last column is `auto`.
 """
 
 import ctypes
@@ -50,10 +47,8 @@ Progress = Callable[[str], object]
 
 
 def rungs() -> dict[str, tuple[str, Scene]]:
-    """Return the motions for which a general and a specialised kernel are compared, the most general motion first.
-
-    The result maps the name of a motion to (description, scene), as read from the file ``LADDER``. A specialised kernel
-    omits what is zero or constant in its scene, such as products of inertia along principal axes.
+    """Return the motions for which both kernels are compared, by name: (description, scene), the most general one
+    first.
     """
     scenes = {}
     for name, entry in read_toml(LADDER, LADDER.name).items():
@@ -73,24 +68,18 @@ def _nothing(kind: str) -> Torque:
 
 
 def general_plan(scene: Scene) -> Plan:
-    """Return a plan for ``scene`` without simplifications, with every kind of torque; absent kinds have zero torques.
-
-    A plan lists the equations of motion to compute. This one uses a full inertia tensor and no symmetry of the body. To
-    the torques of the scene it adds a zero torque of each kind that the scene lacks. The kernel of this plan is
-    compared with that of the scene's own plan, to measure what the simplifications save.
-    """
+    """Return a plan for ``scene`` without simplifications: full inertia tensor, no symmetry, every kind of torque."""
     kinds = {torque.kind for torque in scene.torques}
     left_out = ABOUT_POINT if kinds & set(ABOUT_CENTRE) else ABOUT_CENTRE
+    # Kinds that the scene lacks get a zero torque.
     lacking = [kind for kind in TORQUE_KINDS if kind not in kinds and kind != "expression" and kind not in left_out]
     whole = replace(scene, torques=(*scene.torques, *map(_nothing, lacking)))
     return Plan(whole, general_structure(whole), ())
 
 
 def measure(name: str | None = None, quick: bool = False, say: Progress = lambda text: None) -> dict[str, Any]:
-    """Measure the time that specialised kernels save, for the scene ``name`` or (None) for a list of motions.
-
-    A specialised kernel is the one for a scene's own zeros and symmetries. The result is data for JSON; ``quick`` takes
-    fewer repetitions.
+    """Measure the time that specialised kernels save, for the scene ``name`` or a list of motions; return data for
+    JSON.
 
     Raises
     ------
@@ -115,10 +104,7 @@ def measure(name: str | None = None, quick: bool = False, say: Progress = lambda
 
 
 def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[], object]]]:
-    """Return a row of the table without its times, and the functions that must be timed to complete it, by column.
-
-    ``about`` is the description of the motion.
-    """
+    """Return a row of the table without its times, and by column the functions that must be timed."""
     plans = {"general": general_plan(scene), "own": make_plan(scene)}
     row: dict[str, Any] = {"motion": about}
     runs: dict[str, Callable[[], object]] = {}

@@ -2,11 +2,8 @@
 
     python -m symrot.bench.start [ROUNDS] [SCENE]
 
-Whole processes are timed, as seen from the shell, with the installed ``symrot`` script if there is one. Every round
-runs ``python -c 'import numpy'`` and then a warm ``symrot run``; the result is the median of their ratios, so that a
-change in the machine's speed affects both. A cold start has an empty cache of kernels. It is timed in every tenth
-round, together with its unavoidable parts: an import of SymPy, and a compiler run for the scene's own library (kernel
-and stepper) with symrot's flags.
+The result is the median ratio to ``python -c 'import numpy'`` in the same round. Starts with an empty cache are timed
+in every tenth round.
 """
 
 import os

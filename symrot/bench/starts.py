@@ -3,23 +3,7 @@
     python -m symrot.bench.starts [--rounds 300] [SCENE ...]
     python -m symrot.bench.starts --ensembles [--most 100000] [--rounds 5] [SCENE ...]
 
-The first table has a row for each scene and method. Its times are in microseconds. A call gets a new angular velocity,
-a new attitude, or both. The columns are:
-
-- the time to read the initial state; to plan the motion, if the scene's structure has been planned before; to compute
-  the parameters of the compiled functions; to set up the motion (constants of a closed form, or the arguments of a
-  stepper);
-- the motion itself, in C, in a call with both a new angular velocity and a new attitude;
-- a whole call for 101 times: with a new angular velocity, with a new attitude, and with both;
-- the overhead, which is the time of a call minus the time of its motion, in two columns: in the first, the larger of
-  the overheads of the call with a new angular velocity and of the call with a new attitude; in the second, the overhead
-  of the call with both;
-- the most expensive call of a stepper while C does no work. On a loaded machine Python is slower after a long motion;
-  this column is free of that effect.
-
-The second table has microseconds per trajectory of 101 samples, in closed form and by steps, for ensembles that vary
-only initial states, or both initial states and constants. It also names the method that ``auto`` chooses. All times are
-medians of processor time.
+The first table has microseconds per call, the second per trajectory of 101 samples. All are medians of processor time.
 """
 
 import argparse
@@ -125,10 +109,7 @@ def _start(scene: Scene) -> tuple[Floats, Floats]:
 
 
 def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int) -> tuple[float, float, float]:
-    """Time two functions alternately; return the median of each, and the median of the difference one minus other.
-
-    All are in microseconds. A slow change of the machine's speed affects both runs and cancels in the difference.
-    """
+    """Time two functions alternately; return the medians, us, of each and of their difference."""
     times = np.empty((rounds, 3))
     for k in range(rounds):
         began = process_time_ns()
@@ -136,19 +117,18 @@ def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int
         between = process_time_ns()
         other()
         times[k, :2] = between - began, process_time_ns() - between
+    # A slow change of the machine's speed affects both and cancels.
     times[:, 2] = times[:, 0] - times[:, 1]
     first, second, more = np.median(times, axis=0).tolist()
     return first / 1e3, second / 1e3, more / 1e3
 
 
 class _Row(NamedTuple):
-    """One motion's times, in microseconds: the whole calls of the propagator, and the times of the parts of one call.
-
-    The calls get a new angular velocity, a new attitude, or both.
-    """
+    """One motion's times, us: whole calls of the propagator, and the parts of one call."""
 
     parts: tuple[float, ...]  # to read the initial state, plan, bind parameters, set up the motion
     motion: float  # the motion itself, with both changed
+    # with a new angular velocity, a new attitude, and both
     calls: tuple[float, ...]
     python: tuple[float, ...]  # the part of each call that is not the motion itself
     idle: float  # the most expensive call of a stepper while nothing is done in C
@@ -174,11 +154,8 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
         return one.exact if motion.choice.method == "exact" else one.stepping
 
     def whole(start: dict[str, Any]) -> tuple[float, float, float]:
-        """Return three times in microseconds for a call of the scene's propagator: of call, motion and rest.
-
-        The motion is the part of the call in C: the steps or the closed form, from the start on. The rest is everything
-        else in the call, such as reading the initial state. ``start`` has the new initial state as keyword arguments of
-        the propagator: ``omega``, ``quaternion`` or both.
+        """Return three times, us, of a propagator's call with a new initial state: the call, its motion in C, and the
+        rest.
         """
         initial = read_start(scene, start.get("omega"), start.get("quaternion"))
         own = propagate.motion_from(initial)
@@ -209,11 +186,9 @@ def _row(propagate: Propagator, rounds: int) -> _Row:
 
 
 def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
-    """Return the microseconds that C takes for the constants of a closed form, computed anew for each initial state.
-
-    It is zero for a stepper, which has no such constants.
-    """
+    """Return the microseconds that C takes for the constants of a closed form from a new initial state."""
     if motion.choice.method != "exact":
+        # a stepper has no such constants
         return 0.0
     if motion.form.library == "spin_up":
         return _spin_up_in_c(motion.exact._source, times, rounds)
@@ -235,17 +210,14 @@ def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
 
 
 def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
-    """Return the microseconds that C takes for the constants of the motion of a body driven about its symmetry axis.
-
-    ``source`` is the closed form of this motion. Time for its table of Taylor polynomials is included only if samples
-    near resonance need this table.
-    """
+    """Return the microseconds that C takes for the constants of the motion of a body driven about its symmetry axis."""
     functions, total = spin_up_compiled.functions(), 0.0
     record, table = functions.record(), np.empty(spin_up_compiled.TABLE)
     arguments = source._numbers, functions.limits(*spin_up_compiled.limits())
     omega, quaternion = np.empty((SAMPLES, 3)), np.empty((SAMPLES, 4))
     samples = len(times), address(times), address(omega), address(quaternion)
     lacking = source._known[2] is not None
+    # The table of Taylor polynomials counts only if samples near resonance need it.
     for room in (None, table) if lacking else (None,):
         place = address(room), ctypes.addressof(record)
         total += _median(lambda place=place: functions.prepare(source._axis, *arguments, *place), rounds)  # type: ignore[misc]
@@ -255,10 +227,9 @@ def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
 
 
 def changed_starts(scenes: list[str], rounds: int) -> None:
-    """Print a table of the times of a propagator's calls with an initial state that differs from the scene's.
-
-    A row is a scene with a method; the columns are explained in the module's text.
-    """
+    """Print a table of the times of propagator calls with a new initial state, a row for each scene and method."""
+    # us: read the initial state, plan, bind the parameters, set up the motion; the motion in C; whole calls; overhead
+    # with one of omega and attitude changed (the larger) and with both; a stepper's call without work in C
     heads = ("read", "plan", "bind", "set up", "motion", "omega", "attitude", "both", "Python", "of both", "no C")
     print(f"{'us of a changed start':28}{'method':>8}" + "".join(f"{head:>9}" for head in heads))
     for name in scenes:

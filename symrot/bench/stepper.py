@@ -2,9 +2,8 @@
 
     python -m symrot.bench.stepper [--tolerance 1e-9] [--stop 1000] [--rounds 15]
 
-Times are compared as ratios within one run, since other work on the machine affects all of them. The handwritten
-program is compiled with the flags of symrot's kernels, and again with ``-O3`` instead of ``-O2``; the faster version
-counts. The error is the difference from the handwritten program in long double at a tolerance of 1e-17.
+Times are ratios within one run. The handwritten stepper is compiled with ``-O2`` and ``-O3``; in long double at a
+tolerance of 1e-17 it is the reference.
 """
 
 import argparse
@@ -42,10 +41,7 @@ class Measurement(NamedTuple):
 
 
 def measure(tolerance: float, stop: float, rounds: int) -> list[Measurement]:
-    """Return one measurement per contestant, in the order symrot, by hand -O2, by hand -O3, SciPy.
-
-    The motion ends at the time ``stop``, s; each contestant is timed ``rounds`` times at one tolerance.
-    """
+    """Return one measurement per contestant: symrot, by hand with -O2, by hand with -O3, SciPy."""
     kernel = text_by_hand("free_body.c")
     by_hand = kernel + text_by_hand("stepper_by_hand.c")
     a, b, c = MOMENTS

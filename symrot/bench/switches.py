@@ -1,8 +1,9 @@
 """Error, steps and time of motions with switched torques, compared with closed forms at tolerances 1e-6 to 1e-12.
 
-There are three motions: a wheel that dry friction stops and releases; a body whose angle oscillates along parabolas
-under a relay; and a body with a thruster that fires for 10 ms in each of 1000 seconds. Run the module as ``python -m
-symrot.bench.switches``.
+    python -m symrot.bench.switches
+
+Dry friction stops and releases a wheel; a relay makes a body oscillate; a thruster fires for 10 ms in each of 1000
+seconds.
 """
 
 import math
@@ -27,23 +28,19 @@ ROUNDS = 3
 
 
 class Problem(NamedTuple):
-    """A test problem: a torque about axis 3 (N m), the end time (s), the initial omega_3 (rad/s), and the solution.
-
-    ``solution`` returns omega_3 at given times.
-    """
+    """A test problem: a torque about axis 3, N m, the end time, s, the initial omega_3, rad/s, and the solution."""
 
     torque: str
     parameters: dict[str, float]
     stop: float
     omega: float
+    # returns omega_3, rad/s, at given times
     solution: Callable[[Floats], Floats]
 
 
 def _friction(times: Floats) -> Floats:
-    """Return omega_3, at ``times``, of a wheel that starts at rest under the torque 2 sin t - sign(omega_3).
-
-    Friction holds the wheel until t = pi/6; from then on it rotates until it stops.
-    """
+    """Return omega_3, at ``times``, of a wheel that starts at rest under the torque 2 sin t - sign(omega_3)."""
+    # Friction holds the wheel until t = pi/6; from then on it rotates until it stops.
     loose = math.asin(0.5)
     slip = np.maximum(times, loose)
     rise: Floats = (2.0 * (math.cos(loose) - np.cos(slip)) - (slip - loose)) / MOMENT
@@ -81,11 +78,7 @@ def scene(problem: Problem) -> Scene:
 
 
 def _measured(problem: Problem, method: str, tolerance: float) -> tuple[float, Any, float]:
-    """Return the error of a method on a test problem, the statistics of its steps, and its least time, s.
-
-    The error is the largest difference from the exact solution, at the samples and midway between them. It is divided
-    by the largest value of the solution and by the tolerance: 1 is an error as large as the tolerance.
-    """
+    """Return error, in units of the tolerance, step statistics and least time, s, of a method on a test problem."""
     made = propagator(scene(problem), method, tolerance)
     times = np.linspace(0.0, problem.stop, 1001)
     least, motion = math.inf, made(times)
@@ -94,6 +87,7 @@ def _measured(problem: Problem, method: str, tolerance: float) -> tuple[float, A
         motion = made(times)
         least = min(least, perf_counter() - began)
     between = 0.5 * (times[1:] + times[:-1])
+    # The largest difference, at the samples and midway, is divided by the largest value of the solution.
     size = max(float(np.abs(problem.solution(times)).max()), 1e-300)
     errors = [
         float(np.abs(motion.omega[:, 2] - problem.solution(times)).max()),

@@ -2,15 +2,8 @@
 
     python -m symrot.bench.taylor [--rounds 7] [--quick] [--orders] [--motion NAME]
 
-Each contestant runs at several tolerances; handwritten RK4 and DOP853 with a fixed step run with several numbers of
-steps. Runs are interleaved, and the least time of each counts. The error of a run is the error of its last state
-against a Taylor series in 40 digits. The table has a row for each power of ten of the error (a decade) with the fastest
-run of at most that error, so no curve is smoothed or extended. ``best heyoka`` is heyoka's fastest setting in each row:
-default, fast math, high accuracy or compact; ``--quick`` runs only the default. Handwritten loops are compared with the
-faster of symrot's two methods, in the decades in which methods of low order are at their best. ``--orders`` compares
-orders of symrot's own series instead.
-
-heyoka is optional: ``pip install heyoka``.
+Errors are those of the last state against 40 digits. For each power of ten of the error (decade), the table has the
+fastest run of at most that error.
 """
 
 import argparse
@@ -92,10 +85,7 @@ class Run(NamedTuple):
 
 
 class SteppedProblem(Problem):
-    """One motion of the comparison, with the compiled libraries of symrot's steppers for it.
-
-    The motion has ``scale`` times the span that the table of motions gives.
-    """
+    """One motion over ``scale`` times its span, with the compiled libraries of symrot's steppers for it."""
 
     def __init__(self, name: str, scale: float) -> None:
         super().__init__(scene(name))
@@ -112,15 +102,12 @@ class SteppedProblem(Problem):
         return [*self.p, *invariant_parameters(self.kernel, self.plan)]
 
     def largest_error(self, state: Iterable[Any], exact: Floats) -> float:
-        """Return the largest error of the components of ``state`` against the state ``exact``.
-
-        Errors of angular velocities are relative to the exact |omega|. The error is infinite if a component is not
-        finite.
-        """
+        """Return the largest error of ``state`` against ``exact``; infinite if ``state`` is not finite."""
         computed, worst = np.array([float(value) for value in state]), 0.0
         if not np.isfinite(computed).all():
             return math.inf
         for low, high, scale in zip(self.blocks[:-1], self.blocks[1:], self.scales, strict=True):
+            # Errors of angular velocities are relative to the exact abs(omega).
             size = scale or float(np.linalg.norm(exact[low:high]))
             worst = max(worst, float(abs(computed[low:high] - exact[low:high]).max()) / size)
         return worst
@@ -134,11 +121,9 @@ def scene(name: str) -> Scene:
 
 
 def reference(name: str, scale: float = 1.0) -> Floats:
-    """Return the exact last state of the motion ``name`` over ``scale`` times its span.
-
-    It is read from :data:`REFERENCES` if ``scale`` is 1, otherwise computed now.
-    """
+    """Return the exact last state of the motion ``name`` over ``scale`` times its span."""
     stored = tomllib.loads(REFERENCES.read_text(encoding="utf-8")).get(name)
+    # REFERENCES has the motions with scale 1.
     return (
         np.array([float(value) for value in stored])
         if stored and scale == 1.0
@@ -147,14 +132,12 @@ def reference(name: str, scale: float = 1.0) -> Floats:
 
 
 def compute_reference(name: str, scale: float = 1.0) -> list[Any]:
-    """Return the last state of the motion ``name`` over ``scale`` times its span, by Taylor series in 40 digits.
-
-    It is computed from the rounded parameters that all contestants use.
-    """
+    """Return the last state of a motion over ``scale`` times its span, by Taylor series in 40 digits."""
     import mpmath
 
     problem = SteppedProblem(name, scale)
     with mpmath.workdps(DIGITS):
+        # from the rounded parameters that all contestants use
         return ExactPath(problem.plan, problem.kernel, (problem.p, problem.y0)).state(mpmath.mpf(problem.stop))
 
 
@@ -181,10 +164,8 @@ TimedRun = Callable[[], StepsAndState]
 def _stepper(
     follow: Callable[..., Any], path: Any, p: Sequence[float], problem: SteppedProblem, tolerance: float
 ) -> TimedRun:
-    """Return a function that runs one of symrot's steppers, which is set up only once, as in a propagator.
-
-    ``follow`` sets up the stepper, from the library at ``path`` and the parameters ``p``.
-    """
+    """Return a function that runs a symrot stepper over a motion and returns its steps and last state."""
+    # set up once, as in a propagator
     motion, times = follow(path, p, problem.y0, 0.0, tolerance), np.array([problem.stop])
 
     def task() -> StepsAndState:
@@ -195,10 +176,7 @@ def _stepper(
 
 
 def _heyoka(problem: SteppedProblem, tolerance: float, settings: dict[str, bool]) -> TimedRun | None:
-    """Return a function that runs heyoka on the rates of ``problem``, with their parameters compiled as numbers.
-
-    ``settings`` are heyoka's own, such as ``fast_math``. Return None if heyoka is not installed.
-    """
+    """Return a function that runs heyoka on the rates of ``problem``; None if heyoka is not installed."""
     run = heyoka_integrator(problem.kernel.rates, problem.parameters, problem.y0, tolerance, settings)
     if run is None:
         return None
@@ -211,10 +189,7 @@ def _heyoka(problem: SteppedProblem, tolerance: float, settings: dict[str, bool]
 
 
 def _by_hand(library_: Any, method: str, problem: SteppedProblem, steps: int) -> TimedRun:
-    """Return a function that runs a loop in C that was written by hand, with a fixed number of steps.
-
-    ``method`` is ``rk4`` or ``dop853``; ``library_`` is the loaded library that contains the loop.
-    """
+    """Return a function that runs a handwritten C loop with a fixed number of steps; ``method`` is rk4 or dop853."""
     function = getattr(library_, f"symrot_{method}")
     real = ctypes.c_double
     function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
@@ -229,10 +204,7 @@ def _by_hand(library_: Any, method: str, problem: SteppedProblem, steps: int) ->
 
 
 def _loops(problem: SteppedProblem) -> list[tuple[str, float, TimedRun]]:
-    """Return (name, steps, function) for each loop that was written by hand in C, with several numbers of steps.
-
-    The function runs the loop over the motion and returns its steps and last state.
-    """
+    """Return (name, steps, function) for each handwritten C loop, with several numbers of steps."""
     text = "\n".join(
         (
             problem.kernel.source,
@@ -270,11 +242,9 @@ def _contestants(problem: SteppedProblem, settings: bool) -> list[tuple[str, flo
 
 
 def measure(name: str, rounds: int = 9, settings: bool = False, scale: float = 1.0) -> list[Run]:
-    """Time all contestants on one motion, and return their runs; ``scale`` multiplies the span of the motion.
-
-    With ``settings``, heyoka runs in all its settings; otherwise only in the default.
-    """
+    """Time all contestants on one motion over ``scale`` times its span; return their runs."""
     problem, exact = SteppedProblem(name, scale), reference(name, scale)
+    # With ``settings``, heyoka runs in all its settings; otherwise only in the default.
     return raced(_contestants(problem, settings), partial(problem.largest_error, exact=exact), rounds)
 
 
@@ -282,13 +252,10 @@ def raced(
     tasks: Sequence[tuple[str, float, Callable[[], tuple[int, Any]]]], error: Callable[[Any], float], rounds: int,
     clock: Callable[[], float] = perf_counter,
 ) -> list[Run]:  # fmt: skip
-    """Return the runs of several contestants (name, tolerance, task), timed alternately with ``clock``.
-
-    A task returns its number of steps and its last states; ``error`` is a function that returns the error of these
-    states.
-    """
+    """Return the runs of several contestants (name, tolerance, task), timed alternately with ``clock``."""
     runs = []
     for name, tolerance, task in tasks:
+        # a task returns its number of steps and its last states
         steps, states = task()
         runs.append(Run(name, tolerance, steps, error(states), []))
     gc.disable()
@@ -312,11 +279,7 @@ def best_of(runs: Iterable[Run], error: float, names: Sequence[str]) -> Run | No
 
 
 def _print_table(name: str, runs: list[Run]) -> dict[str, list[float]]:
-    """Print the table of one motion; return, for each column, the times of another program divided by those of symrot.
-
-    The columns are named by the other program or method, such as ``heyoka``; each has one ratio per power of ten of the
-    error.
-    """
+    """Print the table of one motion; return, by other program, the ratios of its times to symrot's."""
     stop = MOTIONS[name]["span"]["t"][1]
     present = list(dict.fromkeys(run.name for run in runs))
     peers = [n for n in present if n.startswith("heyoka")]
@@ -334,6 +297,7 @@ def _print_table(name: str, runs: list[Run]) -> dict[str, list[float]]:
     ]
     columns = [column for column in columns if set(column[1]) & set(present)]
     print(f"{'  error <=':10}{'taylor ms':>12}" + "".join(f"{title:>14} ms{'ratio':>8}" for title, *_ in columns))
+    # one ratio per decade
     ratios: dict[str, list[float]] = {title: [] for title, *_ in columns}
     for decade in DECADES:
         fastest = best_of(runs, decade, ["taylor"])

@@ -1,17 +1,9 @@
-"""Measurement of the errors of functions that kernels call, in units in the last place (ulp).
+"""Measurement of the errors of functions that kernels call, in units in the last place (ulp), against mpmath.
 
     python -m symrot.bench.ulps [--points 20000]
 
-The functions are those with a removable singularity, and the sines, cosines and arc tangents of batches. Each function
-is taken from emitted C and compiled with and without fused operations, in double and in float. It is measured in two
-forms: the form for one sample (``one``), which calls the C library, and the form for batches (``batch``), which has no
-branch. The reference is mpmath at 60 digits. Test points have all magnitudes from the smallest normal number to the
-function's reach; some lie on both sides of the threshold below which a series is used, and next to multiples of pi/2.
-
-The reach is the largest |x| that is tested: any finite number for one sample, and the range of ``symrot_math.h`` for a
-batch, which calls the form for one sample outside this range. The function tangent_gap, (sin x - x cos x)/x^3, is
-measured in ulp up to pi, before its first zero, and for larger x in units of 2^-53/x^2 (float: 2^-24/x^2). It decreases
-as cos(x)/x^2, and its relative error has no bound near its zeros, which are not floating-point numbers.
+The functions come from emitted C in two forms, for one sample (``one``) and without branches for batches (``batch``).
+The reach is the largest tested abs(x).
 """
 
 import argparse
@@ -46,10 +38,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Function:
-    """A function that kernels call: its exact value in mpmath, its reach, and whether it has a form for batches.
-
-    The reach is the largest |x| that is tested.
-    """
+    """A function that kernels call: its exact value in mpmath, its reach, and its forms."""
 
     name: str
     exact: Callable[..., Any]
@@ -136,13 +125,10 @@ FUNCTIONS = (
 
 
 def _points(function: Function, real: Real, form: str, count: int) -> Floats:
-    """Return test arguments, one column per point; for a function of two arguments, a point has two components.
-
-    ``real`` is double or float; ``form`` is ``one`` or ``batch``, which have different ranges; ``count`` is
-    approximate.
-    """
+    """Return about ``count`` test arguments of a function, one column per point."""
     draw = np.random.default_rng(3)
     far = float(FAR[real.precision])
+    # the forms for one sample and for batches have different ranges
     reach = min(function.reach, REACH[real.precision] if form == "one" else far)
     kind = np.float32 if real.suffix else np.float64
     sizes = np.exp(draw.uniform(np.log(LEAST[real.precision]), np.log(reach), count // 4))
@@ -152,6 +138,7 @@ def _points(function: Function, real: Real, form: str, count: int) -> Floats:
         angles = np.concatenate([[0.0], sizes[sizes < pi], draw.uniform(0, pi, count - len(sizes))])
         return np.array([np.sin(angles), np.cos(angles)]).astype(kind).astype(float)
     turns = np.rint(draw.uniform(1, min(reach, far) * 2 / pi, count // 4)) * (pi / 2)
+    # the thresholds below which a series is used, and multiples of pi/2 before them
     splits = [float(each.split) ** 0.5 for each in REMOVABLE.values()]
     around = [split + np.arange(-40, 41) * float(np.spacing(kind(split))) for split in splits]
     wide = draw.uniform(-min(reach, far), min(reach, far), count // 4)
@@ -162,14 +149,11 @@ def _points(function: Function, real: Real, form: str, count: int) -> Floats:
 
 
 def _directions(real: Real, count: int, kind: Any) -> Floats:
-    """Return ``count`` test arguments y and x of the arc tangent, as two rows of numbers of the type ``kind``.
-
-    The points are unit vectors in all directions, vectors of all magnitudes and ratios, and points near the lines y =
-    x/2, y = x and y = 2 x.
-    """
+    """Return about ``count`` test arguments y and x of the arc tangent, as two rows."""
     draw, third = np.random.default_rng(4), count // 3
     low, high = np.log(LEAST[real.precision]), np.log(REACH[real.precision])
     angles = draw.uniform(-pi, pi, third)
+    # near the lines y = x/2, y = x and y = 2 x
     around = [np.stack([sizes, sizes]) for sizes in np.exp(draw.uniform(-3, 3, (2, third // 2)))]
     around[0][0] *= 0.5 + draw.integers(-9, 10, third // 2) * float(np.finfo(kind).eps)
     around[1][0] *= 1 + draw.integers(-9, 10, third // 2) * float(np.finfo(kind).eps)
@@ -197,12 +181,12 @@ def _text(function: Function) -> str:
 
 
 def _ulps(computed: float, exact: Any, real: Real, x: float = 0.0) -> float:
-    """Return the distance between ``computed`` and ``exact`` in units in the last place of ``exact``.
-
-    ``real`` is the precision. If x is not 0, the unit is 2^-53/x^2 instead (2^-24/x^2 for float). This suits a function
-    of x that decreases as 1/x^2 and has zeros, where its own last place is no measure.
+    """Return the distance of ``computed`` from ``exact`` in units in the last place of ``exact``, or in units of
+    2^-53/x^2 if x is not 0.
     """
     digits, least = DIGITS[real.precision]
+    # tangent_gap, (sin x - x cos x)/x^3, decreases as cos(x)/x^2: near its zeros, which are no floating-point numbers,
+    # its relative error has no bound. In float, the unit is 2^-24/x^2.
     if x:
         return abs(float((computed - exact) / max(ldexp(1.0, -digits) / x / x, ldexp(1.0, least))))
     if not exact:
@@ -212,9 +196,7 @@ def _ulps(computed: float, exact: Any, real: Real, x: float = 0.0) -> float:
 
 
 def measured(points: int = 20_000, contraction: Sequence[str] = tuple(CONTRACTION)) -> Iterator[Measured]:
-    """Yield the largest error of each tested function, for each form, precision and contraction.
-
-    The forms of a function are the one for a single sample and the one for batches.
+    """Yield the largest error of each tested function, for each form (one sample or batch), precision and contraction.
 
     Parameters
     ----------

@@ -31,18 +31,15 @@ def _function(name: str) -> Any:
 
 
 def heyoka_code(name: str) -> tuple[Any, Any, Any]:
-    """Return the addresses of three C functions that heyoka compiles for a kernel, as numbers.
-
-    The first computes one sample from plain arrays. The other two compute samples of a batch, whose arrays hold all
-    samples of one component side by side: the second one sample per call, the third ``LANES`` samples per call.
-
-    heyoka's object code is linked without change; its sines come from the library that heyoka has loaded.
+    """Return the addresses of heyoka's C functions of a kernel: for one sample, and for one or ``LANES`` samples of a
+    batch.
 
     Raises
     ------
     ImportError
         If heyoka is not installed, or its library cannot be located on this system.
     """
+    # The object code is linked without change; its sines come from the library that heyoka has loaded.
     states = _function(name).llvm_states
     if not _LOADED.exists():
         raise ImportError(
@@ -57,9 +54,8 @@ def heyoka_code(name: str) -> tuple[Any, Any, Any]:
 
 
 def _linked(directory: Path, index: int, code: bytes) -> Any:
-    """Link heyoka's object code into a shared library in ``directory``; return the address of its function.
-
-    ``index`` numbers the libraries, so that each has a file of its own.
+    """Link heyoka's object code into the shared library number ``index`` in ``directory``; return the address of its
+    function.
     """
     (directory / f"{index}.o").write_bytes(code)
     made = directory / f"{index}.so"

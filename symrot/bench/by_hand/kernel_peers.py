@@ -1,9 +1,7 @@
 """Kernels for comparison, generated from textbook formulas by SymPy, SymForce, CasADi and heyoka, or written by hand.
 
-Each tool gets the formulas as textbooks print them. It does not get the intermediate quantities by which symrot's own
-definitions abbreviate repeated subexpressions, because finding these is part of the tool's work. If the kernel has
-derivatives, each tool differentiates the formulas itself. C code is compiled with the flags of symrot's kernels. A tool
-that is not installed is skipped, and the report names it.
+Each tool gets the formulas as textbooks print them; it shares subexpressions and differentiates by itself. C code is
+compiled with the flags of symrot's kernels. A tool that is not installed is skipped.
 """
 
 import re
@@ -80,11 +78,11 @@ TEXTBOOK: dict[str, Callable[[], list[sympy.Expr]]] = {
 
 
 def derivatives_of(name: str) -> tuple[str, list[tuple[str, str]]]:
-    """Return the kernel that the kernel ``name`` extends by derivatives, and these derivatives.
-
-    A derivative is a pair of names (output, input). A kernel without derivatives gives its own name and an empty list.
+    """Return the kernel that the kernel ``name`` extends by derivatives, and the list of these derivatives as pairs
+    (output, input).
     """
     entries = [output.split(BY) for output in _outputs(kernel_program(name).signature) if BY in output]
+    # A kernel without derivatives gives its own name and an empty list.
     return name.split(BY)[0], [(output, variable) for output, variable in entries]
 
 
@@ -116,11 +114,9 @@ def input_names(name: str) -> list[str]:
 
 
 def textbook_program(name: str) -> Program:
-    """Return the textbook formulas of the kernel ``name`` as a program (named formulas that can be printed as C).
-
-    Common subexpressions are not shared, since each tool shares them in its own way.
-    """
+    """Return the textbook formulas of the kernel ``name`` as a program, without shared subexpressions."""
     signature = kernel_program(name).signature
+    # Each tool shares common subexpressions in its own way.
     return Program(signature, (), tuple(zip(_outputs(signature), map(to_node, textbook(name)), strict=True)))
 
 
@@ -129,12 +125,11 @@ def _outputs(signature: Signature) -> list[str]:
 
 
 def _program(name: str, common: Sequence[tuple[Any, Any]], results: Sequence[Any]) -> str:
-    """Return a program of the kernel ``name`` that computes the common terms first and then the results.
-
-    ``common`` are pairs (symbol, value) from another tool, such as SymPy's ``cse``, and ``results`` the outputs in
-    these symbols. Nothing is simplified further, so that the operations are those of the tool.
+    """Return C text of the kernel ``name`` that computes common terms (pairs of symbol and value) first and then the
+    results.
     """
     signature = kernel_program(name).signature
+    # Nothing is simplified further, so that the operations are those of the tool (such as SymPy's ``cse``).
     temporaries = tuple((str(symbol), products(to_node(value))) for symbol, value in common)
     outputs = tuple(zip(_outputs(signature), (products(to_node(value)) for value in results), strict=True))
     return c_function(Program(signature, temporaries, outputs), "static inline ")
@@ -183,12 +178,10 @@ PEERS_IN_C: dict[str, Callable[[str], str | None]] = {"by hand": by_hand, "SymPy
 
 
 def counted(text: str, name: str) -> Counter[str]:
-    """Return the number of operations of each kind in the C function of the kernel ``name`` in ``text``.
-
-    Equal operations count only once. The C code is parsed by :mod:`symrot.certificates.readback`.
-    """
+    """Return the number of operations of each kind in the C function of the kernel ``name`` in ``text``."""
     text = re.sub(r"^#include.*\n", "", text, flags=re.MULTILINE)
     counts: Counter[str] = Counter()
+    # Equal operations are one node, so they count once.
     for node in read_kernel(text, c_name(name)).nodes:
         if node[0] in _COUNTED:
             counts[_COUNTED[node[0]]] += 1
@@ -198,12 +191,9 @@ def counted(text: str, name: str) -> Counter[str]:
 
 
 def casadi_function(name: str, program: Callable[[str], Program] = textbook_program) -> tuple[Any, Counter[str]]:
-    """Return CasADi's function of one vector for a kernel, and its number of operations by kind.
+    """Return CasADi's function of a kernel's inputs (one vector), and its number of operations by kind.
 
-    The components of the vector are all inputs of the kernel. The function returns the values and, if ``name`` is a
-    kernel with derivatives, the same derivatives as the kernel. Three functions are made, in which CasADi
-    differentiates in forward mode, in reverse mode, and in the mode that it chooses; the one with the fewest
-    operations is returned. Common subexpressions are computed once.
+    It returns the values and the kernel's derivatives.
 
     Parameters
     ----------
@@ -220,6 +210,7 @@ def casadi_function(name: str, program: Callable[[str], Program] = textbook_prog
     base, entries = derivatives_of(name)
     formulas = program(base).evaluate(values, functions, float)
     outputs, rows, variables = casadi.vertcat(*formulas.values()), list(formulas), input_names(name)
+    # CasADi differentiates in the mode it chooses, forward and in reverse; the one with the fewest operations counts.
     ways = [casadi.jacobian(outputs, x)]
     if entries:
         ways += [

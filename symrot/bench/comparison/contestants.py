@@ -1,10 +1,7 @@
 """Contestants of a work-precision study: symrot's methods, SciPy's methods, and heyoka with several settings.
 
-For one tolerance, a contestant prepares a function that computes the motion from its start to a given time and returns
-the states at that time and the number of steps. Work that a user does once (deriving, compiling) is part of the
-preparation, which is not timed. All functions are called from Python, as users call them. SciPy gets the NumPy kernel
-that symrot emits for the scene, rewritten for one state at a time with Python floats and :mod:`math`, which halves its
-time.
+For one tolerance, a contestant prepares a function that computes the motion up to a given time and returns the last
+state and the number of steps. The preparation (deriving, compiling) is not timed. All functions are called from Python.
 """
 
 from collections.abc import Callable, Sequence
@@ -37,26 +34,23 @@ ADAPTIVE = tuple(float(Fraction(1, 10**k)) for k in range(2, 14))  # SciPy takes
 
 
 class Contestant(NamedTuple):
-    """One contestant of a work-precision study: a method with its settings, which gives one curve of time and error.
-
-    ``group`` is the name that selects the contestant in ``--methods``; ``missing`` returns why it cannot take part, or
-    an empty text; ``prepare`` returns the timed function for a tolerance.
-    """
+    """A method with its settings, which gives one curve of time and error in a work-precision study."""
 
     name: str
+    # the name that selects the contestant in --methods
     group: str
     about: str
     tolerances: tuple[float, ...]
+    # returns why the contestant cannot take part, or an empty text
     missing: Callable[[Problem], str]
+    # returns the timed function for a tolerance
     prepare: Callable[[Problem, float], Run]
     quick: bool = True  # whether the contestant is part of a quick study
 
     def at(self, tolerances: Sequence[float]) -> "Contestant":
-        """Return the contestant, restricted to those of the ``tolerances`` that are not below its smallest one.
-
-        A closed form has no tolerance and is returned unchanged.
-        """
+        """Return the contestant with those ``tolerances`` that are not below its smallest tolerance."""
         least = self.tolerances[-1]
+        # A closed form has no tolerance and is returned unchanged.
         return self._replace(tolerances=tuple(t for t in tolerances if t >= least)) if least else self
 
 
@@ -64,16 +58,15 @@ class Contestant(NamedTuple):
 
 
 def _exact(problem: Problem, tolerance: float) -> Run:
-    """Return the function that is timed for the closed form: from an end time, s, to (state, number of steps).
-
-    A closed form takes no steps, so the number is 0. Each call also computes the constants of the closed form from the
-    initial state. ``tolerance`` has no effect.
+    """Return the timed function for the closed form: from an end time, s, to (state, 0), since a closed form takes no
+    steps.
     """
     form, attitude = exact_form(problem.scene), len(problem.names) > 3
     assert form is not None
 
     def run(stop: float) -> EndState:
         at = np.array([stop - problem.start])
+        # The constants of the closed form are computed from the initial state in each call.
         omega, quaternion = form.motion(problem.scene).evaluate(at, quaternion=attitude)
         return State(omega[0], None if quaternion is None else quaternion[0]), 0  # type: ignore[index]
 
@@ -85,13 +78,10 @@ def _no_form(problem: Problem) -> str:
 
 
 def _symrot(method: str) -> Callable[[Problem, float], Run]:
-    """Return the function ``prepare`` of the contestant that uses one of symrot's methods, such as ``"taylor"``.
-
-    ``prepare(problem, tolerance)`` makes a propagator, which is not timed, and returns the function that is timed: from
-    an end time, s, to the state there and the number of steps.
-    """
+    """Return the function ``prepare`` of the contestant that uses one of symrot's methods, such as ``"taylor"``."""
 
     def prepare(problem: Problem, tolerance: float) -> Run:
+        # Not timed. The function ``run`` is timed: from an end time, s, to the state there and the number of steps.
         propagate = propagator(problem.scene, method, tolerance)
 
         def run(stop: float) -> EndState:
@@ -104,10 +94,7 @@ def _symrot(method: str) -> Callable[[Problem, float], Run]:
 
 
 def _last(trajectory: Any) -> Any:
-    """Return the end state of a trajectory with one sample: the integrated states at this sample.
-
-    For a closed form, which integrates nothing, it is the state of the body (angular velocity and quaternion).
-    """
+    """Return the integrated states at the only sample of a trajectory, or the body's state if it is a closed form."""
     if trajectory.method != "exact":
         return trajectory.y[:, 0]
     y = trajectory.y[:, 0]

@@ -1,8 +1,7 @@
 """Reference motions, computed to 40 digits by Taylor series in mpmath; for free bodies, over any number of periods.
 
-The angular velocity of a free body is periodic, and every period adds the same rotation: with period P and ``R = q(P)
-q(0)^-1`` the attitude is ``q(t + n P) = R^n q(t)``. So the series of one period give the motion after a million
-periods. This computation shares no code or formula with the closed form that it tests.
+Every period P of a free body adds the same rotation: ``q(t + n P) = R^n q(t)`` with ``R = q(P) q(0)^-1``. So the series
+of one period suffice for a million. No code is shared with the tested closed form.
 """
 
 from collections.abc import Callable, Sequence
@@ -44,10 +43,7 @@ def as_mpf(value: Any) -> Any:
 
 
 def exact_parameters(parameters: Parameters, plan: Plan) -> dict[str, Fraction]:
-    """Return the exact parameters of a kernel by name, such as (C - B)/A, from the exact constants of the scene.
-
-    ``parameters`` are pairs (name, formula in the constants); ``plan`` has the values of the constants.
-    """
+    """Return the exact parameters of a kernel by name, such as ``(C - B)/A``, from the exact constants in ``plan``."""
     values = {"pi": number.PI, **plan.constants}
     return {name: Fraction(evaluate(node, values, EXACT_FUNCTIONS)) for name, node in parameters}
 
@@ -122,12 +118,10 @@ class ExactPath:
         return [mpmath.polyval(one[::-1], step) for one in series]
 
     def state(self, t: Any, on_step: Callable[[Any], object] = lambda now: None) -> list[Any]:
-        """Return the integrated states at the time ``t``, not before the start; mpmath must be set to 40 digits.
-
-        ``on_step`` is called after each step with the time reached; an exception that it raises ends the computation.
-        """
+        """Return the integrated states at the time ``t``, not before the start; mpmath must be set to 40 digits."""
         while self._end[0] < t:
             self._advance()
+            # An exception that on_step raises ends the computation.
             on_step(self._end[0])
         low, high = 0, len(self.pieces)
         while high - low > 1:

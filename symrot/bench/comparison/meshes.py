@@ -2,12 +2,8 @@
 
     python -m symrot.bench.comparison.meshes [--triangles 1000000] [--rounds 3]
 
-The mesh is an ellipsoid, written by trimesh. A run is a call of :func:`symrot.mesh`: it reads the file, tests the
-surface, and integrates. The least processor time counts. The error is that of the moments of inertia against those of
-the same polyhedron in integers (:func:`symrot.exchange.volume_moments.exact_moments`), for a mesh with a hundredth of
-the triangles; for the whole mesh it is the bound that symrot states.
-
-trimesh is needed: ``pip install 'symrot[mesh]'``.
+A run is a call of :func:`symrot.mesh` on an ellipsoid that trimesh wrote (``pip install 'symrot[mesh]'``). The error is
+that against the same polyhedron in integers.
 """
 
 import argparse

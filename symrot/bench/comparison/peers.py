@@ -19,9 +19,8 @@ FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log", "tan", "sinh", "cosh", "tanh", 
 
 
 def heyoka_system(rates: Program, parameters: Mapping[str, float]) -> list[Any]:
-    """Return the right-hand side dy/dt in heyoka's form: pairs (variable, formula), with parameters as numbers in it.
-
-    ``rates`` is the program that symrot derived for dy/dt; ``parameters`` are its parameters' values by name.
+    """Return the right-hand side dy/dt in heyoka's form: pairs (variable, formula), with the parameters' values
+    inserted.
     """
     import heyoka
 
@@ -36,10 +35,9 @@ def heyoka_integrator(
     rates: Program, parameters: Mapping[str, float], start: Sequence[float], tolerance: float,
     settings: dict[str, bool], began: float = 0.0,
 ) -> Callable[[float], tuple[Any, int]] | None:  # fmt: skip
-    """Return a function that runs heyoka to a given end time, s, and returns the last state and the number of steps.
+    """Return a function that runs heyoka to an end time, s, and returns last state and number of steps.
 
-    ``rates`` is the program for dy/dt with the values ``parameters``, ``start`` the initial state and ``began`` its
-    time, s; ``settings`` are options of heyoka such as ``fast_math``. If heyoka is not installed, return None.
+    None if heyoka is not installed.
     """
     try:
         import heyoka
@@ -57,10 +55,8 @@ def heyoka_integrator(
 
 
 def scalar_kernel(program: Program) -> Callable[..., Any]:
-    """Return the NumPy function that symrot emits for dy/dt as ``f(t, y, p)`` for SciPy, for one state (a list).
-
-    Python floats and :mod:`math` replace zero-dimensional arrays. This halves the time; an expert would do it too.
-    """
+    """Return the NumPy function that symrot emits for dy/dt as ``f(t, y, p)`` for one state (a list)."""
+    # Python floats and math replace zero-dimensional arrays. This halves SciPy's time; an expert would do it too.
     text = numpy_source(program, UNNAMED).replace("import numpy as np", "import math\n\nimport numpy as np")
     text = re.sub(r"np\.empty\(\((\d+), \*np\.shape\(y\)\[1:\]\)\)", r"np.empty(\1)", text)
     for name in ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh"):

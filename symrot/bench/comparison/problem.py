@@ -34,13 +34,11 @@ class State(NamedTuple):
 
 
 class Problem:
-    """A scene with its kernel and the numbers of its parameters, for a comparison of methods.
-
-    ``plan`` may differ from the scene's own plan; for example, it may be the most general plan.
-    """
+    """A scene with its kernel and the numbers of its parameters, for a comparison of methods."""
 
     def __init__(self, scene: Scene, plan: Plan | None = None) -> None:
         self.scene = scene
+        # A reference uses the most general plan instead of the scene's own.
         self.plan = make_plan(scene) if plan is None else plan
         if not self.plan.states:
             raise InputError(f"{scene.name}: expected a scene with states to integrate; every state of it is constant")
@@ -76,7 +74,7 @@ class Problem:
     def state(self, y: Sequence[Any] | Floats, t: float) -> State:
         """Return the state of the body (omega and quaternion) at time ``t`` from the integrated states ``y``.
 
-        If a number in ``y`` is not finite, omega is nan.
+        Omega is nan if ``y`` is not finite.
         """
         values = np.array([[float(value) for value in y]])
         if not np.isfinite(values).all():
@@ -86,14 +84,11 @@ class Problem:
 
     @staticmethod
     def error(state: State, exact: State, least: float = 0.0) -> float:
-        """Return the larger of two errors of a state: the relative error of omega, or the attitude error in rad.
-
-        ``state`` is computed by a method, ``exact`` is the reference. For a body slower than ``least``, rad/s, the
-        first error is relative to ``least``: a body that is nearly at rest before a pulse may rotate at 1e-40 rad/s,
-        where relative errors are meaningless.
-        """
+        """Return the relative error of omega or the attitude error in rad, whichever is larger."""
         if not np.isfinite(state.omega).all():
             return math.inf
+        # A body nearly at rest before a pulse may rotate at 1e-40 rad/s, where relative errors are meaningless: for
+        # bodies slower than ``least``, rad/s, the error is relative to ``least``.
         size = max(float(np.linalg.norm(exact.omega)), least) or 1.0
         worst = float(np.linalg.norm(state.omega - exact.omega)) / size
         if state.quaternion is None or exact.quaternion is None:
@@ -104,11 +99,7 @@ class Problem:
 
     @staticmethod
     def worst(states: Sequence[State], exact: Sequence[State]) -> float:
-        """Return the largest error of a method at several times.
-
-        ``states`` are computed by the method, ``exact`` are those of the reference. See :meth:`error` for the error at
-        one time.
-        """
+        """Return the largest error (:meth:`error`) of computed ``states`` against the reference states ``exact``."""
         largest = max(float(np.linalg.norm(state.omega)) for state in exact)
         return max(
             Problem.error(computed, expected, REST * largest) for computed, expected in zip(states, exact, strict=True)

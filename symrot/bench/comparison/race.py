@@ -53,9 +53,8 @@ def seconds_of(run: Callable[[], object], repeats: int = 1) -> float:
 
 
 def rounds_for(seconds: float, rounds: int) -> int:
-    """Return the number of rounds, ``rounds`` or fewer, in which a run that takes ``seconds`` is timed.
-
-    A run of more than :data:`SLOW` s is timed in at most :data:`SLOW_ROUNDS` rounds.
+    """Return the number of rounds in which a run of ``seconds`` is timed: ``rounds``, or at most :data:`SLOW_ROUNDS`
+    for slow runs.
     """
     return rounds if seconds < SLOW else min(rounds, SLOW_ROUNDS)
 
@@ -65,10 +64,7 @@ def _repeats(seconds: float) -> int:
 
 
 def work_ahead(measured: Iterable[Measured], rounds: int) -> float:
-    """Return an estimate of the time, s, of all timed rounds of all ``measured`` methods; their first runs are over.
-
-    The time of the first run of a method is the estimate for each of its runs.
-    """
+    """Return an estimate of the time, s, of all timed rounds of all ``measured`` methods, from their first runs."""
     return sum(one.first * _repeats(one.first) * rounds_for(one.first, rounds) for one in measured)
 
 
@@ -77,9 +73,9 @@ def race(
     rounds: int,
     turn: Callable[[int], object] = lambda number: None,
 ) -> None:
-    """Time all runs alternately, and append the measured seconds to the :class:`Measured` entry of each run.
+    """Time all runs alternately, and append the measured seconds to each run's entry.
 
-    ``entries`` are pairs (entry, function to be timed). ``turn`` is called with the number of a round before it begins.
+    ``entries`` are pairs (entry, function to be timed).
     """
     collecting = gc.isenabled()
     gc.disable()

@@ -1,26 +1,8 @@
 """Reference states of a scene's motion, computed by several independent methods, and their differences.
 
-===========================  =====================  ============================  ==========================
-reference                    equations              method                        arithmetic
-===========================  =====================  ============================  ==========================
-``taylor``                   the scene's own        Taylor series of order 32     mpmath, 40 digits
-``dop853 in long double``    most general: full     Dormand-Prince, fixed steps,  the C compiler's long
-                             tensor, no shortcut    halved until nothing changes  double, where it is longer
-``closed form``              (no equations)         theta functions               double-double, double
-``extrapolated midpoints``   the scene's own        Gragg's rule, order 16,       long double
-                                                    steps halved as above
-===========================  =====================  ============================  ==========================
-
-No reference steps over a narrow pulse of a torque. Enclosures (intervals that contain all values of the torque within a
-step) limit the steps of the Taylor series. They also limit the steps of the stepper with which the scene is normally
-computed. The methods with fixed steps end a step at each time at which that stepper does, so they resolve the same
-pulses.
-
-The first available reference is used, and the others are compared with it. If references contradict each other, an
-error is raised; errors of methods below the difference between references are meaningless. The last reference is
-computed only if just one of the others is available, as for torques without a Taylor series. All references start from
-the exact numbers of the scene, so that the rounding of parameters counts as an error of a method. References that take
-minutes are stored in the cache of kernels.
+The methods are the rows of :data:`REFERENCES`. The first available reference is used, and the others are compared with
+it; a contradiction raises an error. All start from the exact numbers of the scene, and none steps over a narrow pulse
+of a torque.
 """
 
 import ctypes
@@ -108,9 +90,9 @@ class _Unavailable(Exception):
 
 
 def reference(problem: Problem, say: Progress = lambda text: None, seconds: float = MOST_SECONDS) -> Reference:
-    """Compute reference states of a scene's motion, against which methods are measured, and compare several references.
+    """Compute the reference states of a scene's motion by several methods, and compare them.
 
-    ``say`` is called with progress messages. A reference that would take more than ``seconds`` is left out.
+    References that would take more than ``seconds`` are left out.
 
     Raises
     ------
@@ -122,6 +104,7 @@ def reference(problem: Problem, say: Progress = lambda text: None, seconds: floa
     paths: list[tuple[str, list[State]]] = []
     skipped = []
     for name, compute in REFERENCES:
+        # needed only if just one other reference is available, as for torques without a Taylor series
         if compute is _extrapolated and len(paths) > 1:
             continue
         say(f"reference: {name} ..")
@@ -149,11 +132,7 @@ def reference(problem: Problem, say: Progress = lambda text: None, seconds: floa
 
 
 def _taylor(problem: Problem, say: Progress, seconds: float) -> list[State]:
-    """Return the reference states by Taylor series in 40 digits, computed now or loaded from the cache.
-
-    ``say`` is called with progress messages. ``_Unavailable`` is raised if the torque is not smooth, or if the
-    computation would take more than ``seconds``.
-    """
+    """Return the reference states by Taylor series in 40 digits, computed now or loaded from the cache."""
     import mpmath
 
     rough = non_smooth_torque(problem.plan)
@@ -166,6 +145,7 @@ def _taylor(problem: Problem, say: Progress, seconds: float) -> list[State]:
     stored = cache.fetch(key)
     with mpmath.workdps(DIGITS):
         if stored is None:
+            # Enclosures of the torque limit the steps, so that no step misses a narrow pulse.
             path = _series(problem, say, seconds)
             stored = json.dumps([[mpmath.nstr(value, DIGITS) for value in state] for state in path])
             cache.store(key, stored)
@@ -174,15 +154,13 @@ def _taylor(problem: Problem, say: Progress, seconds: float) -> list[State]:
 
 
 def _series(problem: Problem, say: Progress, seconds: float) -> list[list[Any]]:
-    """Return the integrated states at the times of comparison by Taylor series, one row for each time.
-
-    ``_Unavailable`` is raised as soon as the whole motion is expected to take more than ``seconds``.
-    """
+    """Return the integrated states at the times of comparison by Taylor series, one row for each time."""
     path, clock = ExactPath(problem.plan, problem.kernel), process_time()
 
     def watch(now: Any) -> None:
         spent = process_time() - clock
         whole = spent * max(1.0, float((problem.stop - problem.start) / (now - problem.start)))
+        # The series is given up as soon as the whole motion is expected to take more than ``seconds``.
         if whole > 2.0 * seconds or spent > seconds:
             raise _Unavailable(f"about {whole:.0f} s of work, more than the {seconds:.0f} s allowed")
         say(f"reference: Taylor series in {DIGITS} digits, {spent:.0f} of about {whole:.0f} s")
@@ -224,28 +202,20 @@ def longer(source: str) -> str:
 
 
 def _long_double(problem: Problem, say: Progress, seconds: float) -> list[State]:
-    """Return the reference states by DOP853 in long double with fixed steps, from the most general equations.
-
-    ``_Unavailable`` is raised if that takes more than ``seconds``, or if the machine has no long double.
-    """
+    """Return the reference states by DOP853 in long double with fixed steps, from the most general equations."""
     general = Problem(problem.scene, Plan(problem.scene, general_structure(problem.scene), ()))
     return _converged(general, "dop853", (HEADER, BY_HAND / "fixed_step.c"), seconds)
 
 
 def _extrapolated(problem: Problem, say: Progress, seconds: float) -> list[State]:
-    """Return the reference states by extrapolated midpoint rules with fixed steps, from the scene's own equations.
-
-    ``_Unavailable`` is raised if the rates cannot be computed in long double, or if no accurate result is reached
-    within about ``seconds`` of processor time.
-    """
+    """Return the reference states by extrapolated midpoint rules with fixed steps, from the scene's own equations."""
     return _converged(problem, "extrapolation", (BY_HAND / "extrapolation.c",), seconds)
 
 
 def _converged(general: Problem, name: str, files: Sequence[Path], seconds: float) -> list[State]:
-    """Return the reference states by fixed steps in long double, which are halved until the result stops changing.
+    """Return the reference states by fixed steps in long double, shortened until the result stops changing.
 
-    ``name`` is the method and ``files`` are the C files that contain it. ``_Unavailable`` is raised if this takes more
-    than ``seconds``, or if there is no C compiler or no long double that is longer than double.
+    ``files`` are the C files with the method ``name``.
     """
     if cache.missing():
         raise _Unavailable("no C compiler")
@@ -274,12 +244,11 @@ def _converged(general: Problem, name: str, files: Sequence[Path], seconds: floa
 
 
 def _grid(problem: Problem) -> list[float]:
-    """Return times at which a fixed step must end, so that no step misses a narrow pulse; empty if there are no pulses.
-
-    They are the ends of the steps of symrot's dop853, which are so short that bounds of the torque exclude a missed
-    pulse. Without them a fixed step could miss a pulse narrower than the step, and a step of half its length could miss
-    it too; then both would agree on a wrong result.
+    """Return times at which a fixed step must end, so that no step misses a narrow pulse; empty if there are
+    no pulses.
     """
+    # The steps of symrot's dop853 are so short that bounds of the torque exclude a missed pulse. Otherwise a step and
+    # its half could both miss a pulse, and agree on a wrong result.
     motion = stepped_motion(problem.plan, Choice("dop853", ""), GRID_TOLERANCE)
     if formula_deviations(problem.plan, problem.kernel) is None:
         return []
@@ -298,12 +267,9 @@ def _grid(problem: Problem) -> list[float]:
 def _fixed_steps(
     general: Problem, name: str, files: Sequence[Path], fewest: int, grid: Sequence[float]
 ) -> Callable[[int], Any]:
-    """Return a function that takes a number of steps and returns the integrated states at the times of comparison.
+    """Return a function from a number of steps to the integrated states at the times of comparison.
 
-    The states, of the problem ``general``, are computed by the method ``name`` in the C ``files``. A step ends at each
-    time in ``grid``. The intervals between these times get steps in proportion to their lengths, but at least
-    ``steps/fewest`` each, rounded up. ``fewest`` is the number of steps with which the caller begins: then each
-    interval gets at least one step, and each time the caller doubles the number, at least twice as many.
+    A step ends at each time in ``grid``.
     """
     parts = [
         general.kernel.source,
@@ -319,6 +285,8 @@ def _fixed_steps(
 
     def follow(steps: int) -> Any:
         y, began, path = start.copy(), general.start, []
+        # Each interval gets at least one step if ``steps`` is ``fewest``, and more whenever the caller raises
+        # ``steps``.
         least = math.ceil(steps / fewest) if grid else 1
         for end in sorted({*grid, *general.ends} - {general.start}):
             share = max(least, round(steps * (end - began) / whole))

@@ -2,13 +2,8 @@
 
     python -m symrot.bench.comparison.sensitivities [--rounds 7] [--settings default fast compact] [--motion NAME ..]
 
-Both integrate the motion and its derivatives by the same variables as one system of equations, which symrot derives;
-heyoka differentiates it itself. The runs alternate, each from the same initial state to the same last time, and the
-median of the times counts. A run of symrot is a call of its propagator from Python, a run of heyoka the call of
-``propagate_until``. The error of a run is the largest error of the last derivatives by one variable, divided by the
-largest of them; the reference is a difference quotient of two motions of 40 digits, with an error near 1e-18.
-
-heyoka is optional: ``pip install heyoka``. Its compiler takes seconds to minutes for each setting but ``compact``.
+Both integrate the motion with its derivatives as one system of equations. The error is the largest against a difference
+quotient of two motions in 40 digits.
 """
 
 import argparse
@@ -58,15 +53,13 @@ STATES = 7
 
 
 def reference(case: Case, variable: str) -> Floats:
-    """Return the derivatives of the seven states at the last time by one variable, from motions of 40 digits.
-
-    They are kept in the cache of kernels, because they take about half a minute.
-    """
+    """Return the derivatives of the seven states at the last time by one variable, from motions of 40 digits."""
     import mpmath
 
     scene = motion_scene(case.motion)
     value = Fraction(scene.value(variable))
     key = f"derivatives {DIGITS} {ORDER} {TAIL} {STEP} {variable} {case.duration}\n{scene.to_toml()}"
+    # They take about half a minute, so the cache of kernels stores them.
     stored = cache.fetch(key)
     if stored is not None:
         return np.array(json.loads(stored))

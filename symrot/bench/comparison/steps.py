@@ -2,9 +2,8 @@
 
     python -m symrot.bench.comparison.steps [--rounds 31] [--scenes NAME ..] [--count]
 
-Each tool gets the rates of the scene as the equations of motion state them, without symrot's common terms, applies the
-method to them and shares common terms in its own way. All C is compiled with the same flags; the contestants alternate
-in one run, on the same states, and their results are compared.
+Each tool gets the rates of the scene without common terms and shares terms in its own way. The contestants alternate on
+the same states, and their results are compared.
 """
 
 import argparse
@@ -40,10 +39,10 @@ FUNCTIONS = ("sin", "cos", "tan", "sqrt", "exp", "log")
 
 
 def _plain_rates(rates: Program) -> Program:
-    """Return the rates as one formula for each output, without named common terms, as equations of motion are printed.
-
-    The other tools then look for common terms themselves.
+    """Return the rates as one formula for each output, without named common terms, as equations of motion are
+    printed.
     """
+    # The other tools look for common terms themselves.
     known: dict[str, Node] = {}
 
     def explicit(node: Node) -> Node:
@@ -120,10 +119,7 @@ PEERS: dict[str, Callable[[StepText], tuple[str, Counter[str]]]] = {"SymForce": 
 
 
 def _driver(step: StepText) -> str:
-    """Return a C function that makes one step from each of n states, and repeats all this a given number of times.
-
-    It is appended to the text of each tool's step, so that all are timed in the same loop.
-    """
+    """Return a C function that makes one step from each of n states, and repeats all this a given number of times."""
     signature = step_signature(step.certified.rates, step.name)
     size = signature.argument("next").size
     called = ["t", f"x + {size}*k", *(["p"] if any(a.name == "p" for a in signature.arguments) else []), "dt",
@@ -142,9 +138,8 @@ void symrot_repeat(size_t repeats, size_t n, double t, const double *x, const do
 
 
 def _run(step: StepText, text: str) -> Callable[[], tuple[float, Any]]:
-    """Compile one tool's step, and return a function that returns seconds per step, and the states after the steps.
-
-    ``text`` is the C text of the step; ``step`` describes its arguments.
+    """Compile one tool's C ``text`` of a step; return a function that returns seconds per step and the states
+    after it.
     """
     loaded = ctypes.CDLL(
         str(build_cache.build(f"#include <math.h>\n{text}{_driver(step)}", f"bench_{step.name}", FLAGS))
@@ -205,10 +200,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _times(step: StepText, texts: dict[str, str], rounds: int) -> dict[str, float]:
-    """Return the least seconds per step by tool; raise AssertionError if two tools' states after a step differ.
-
-    ``texts`` are the C texts of the step by tool; each is timed ``rounds`` times.
-    """
+    """Return the least seconds per step by tool; raise AssertionError if two tools' states after a step differ."""
     runs = {tool: _run(step, text) for tool, text in texts.items()}
     results = {tool: np.array(run()[1]) for tool, run in runs.items()}
     for tool, result in results.items():

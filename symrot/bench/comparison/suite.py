@@ -1,11 +1,8 @@
 """The benchmark suite: a work-precision study of one motion of each kind, with figures and a table.
 
-``symrot bench --suite`` writes into a folder (default ``generated/bench``): ``suite.png`` with the ratios of
-other programs' times to symrot's, ``motions.png`` with the curves of each motion, ``suite.json`` with every study, and
-``suite.md`` with the table. The seconds depend on the machine, so ``--check`` does not compare these files.
-
-The files are written together after the last motion. Until then, finished studies are stored in ``unfinished.json``;
-after an interruption the same command continues from there.
+``symrot bench --suite`` writes into a folder (default ``generated/bench``) ``suite.png`` with ratios of times,
+``motions.png`` with curves, ``suite.json`` with every study and ``suite.md`` with the table. After an interruption the
+same command continues from ``unfinished.json``.
 """
 
 import json
@@ -77,10 +74,7 @@ def run(
     tolerances: Sequence[float] = (),
     rounds: int | None = None,
 ) -> tuple[dict[str, Any], list[str]]:
-    """Study all motions of the suite, write the files, and return the results as data for JSON and as lines of text.
-
-    ``directory`` is the folder of the files; the other arguments are those of
-    :func:`~symrot.bench.comparison.work_precision.study`.
+    """Study all motions of the suite, write the files, and return the results as data and as lines of text.
 
     Raises
     ------
@@ -124,10 +118,7 @@ def run(
 
 
 def _compact(results: Mapping[str, Any]) -> str:
-    """Return the results of the suite as JSON text with one line for each motion, for comparison line by line.
-
-    Numbers are rounded to four significant digits.
-    """
+    """Return the results of the suite as JSON text, one motion a line, with numbers of four significant digits."""
     studies = results["studies"].items()
     rows = ",\n".join(f"{json.dumps(name)}: {json.dumps(_short(one), ensure_ascii=False)}" for name, one in studies)
     rest = ",\n".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in results.items() if key != "studies")
@@ -143,13 +134,12 @@ def _short(value: Any, name: str = "") -> Any:
 
 
 def summary(studies: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return, for each other program, the median and the smallest ratio of its time to symrot's time over all motions.
-
-    ``studies`` are the results of work-precision studies by name of the motion. There is one ratio for each motion and
-    each power of ten of the error.
+    """Return the median and the smallest ratio of each other program's time to symrot's time, over all studies and
+    errors.
     """
     rows = []
     for peer in PEERS:
+        # one ratio for each motion and each power of ten of the error
         ratios = [
             ratio
             for one in studies.values()
@@ -168,10 +158,7 @@ def _cell(one: Mapping[str, Any], peer: str) -> str:
 
 
 def _ratio(middle: float, least: float) -> str:
-    """Return the text of a median ratio, with the smallest ratio in brackets, such as ``12 (3.4)``.
-
-    Ratios from 10 on are printed without decimals, the others with one.
-    """
+    """Return the text of a median ratio and the smallest ratio: ``(12.3, 3.4)`` gives ``"12 (3.4)"``."""
     return " ".join(
         form.format(f"{value:.{0 if value >= 10 else 1}f}") for form, value in (("{}", middle), ("({})", least))
     )

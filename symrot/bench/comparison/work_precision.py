@@ -1,12 +1,8 @@
 """Work-precision studies: time and error of every available method on one scene.
 
-Each contestant runs at several tolerances. The motion is compared with a more precise reference
-(:mod:`symrot.bench.comparison.reference`) at four instants of the span, each reached by a separate run; the error is
-the largest of the four differences. Runs over the whole span are timed alternately
-(:mod:`symrot.bench.comparison.race`).
-
-For each power of ten of the error, such as 1e-9, the table has the time of the fastest run whose error is at most that
-large; no curve is smoothed or extended. Powers of ten below the difference between two references are left out.
+The error is the largest at four instants of the span, each reached by a separate run, against a more precise reference.
+For each power of ten of the error (decade), the table has the fastest run of at most that error; no curve is
+smoothed or extended.
 """
 
 import hashlib
@@ -127,11 +123,7 @@ def digest(problem: Problem) -> str:
 def _entries(
     problem: Problem, contestants: Sequence[Contestant], effort: Effort, exact: Sequence[State], say: Progress
 ) -> tuple[list[Entry], list[dict[str, str]]]:
-    """Return every run of every contestant with its error, and the skipped contestants with the reasons.
-
-    A run is a contestant at one tolerance. ``exact`` are the reference states at the times of comparison; ``effort``
-    limits the number of tolerances.
-    """
+    """Return every run (a contestant at one tolerance) with its error, and the skipped contestants with the reasons."""
     entries: list[Entry] = []
     skipped = []
     for contestant in contestants:
@@ -171,26 +163,21 @@ def _entry(problem: Problem, contestant: Contestant, tolerance: float, exact: Se
 
 
 def best(runs: Iterable[dict[str, Any]], error: float) -> dict[str, Any] | None:
-    """Return the fastest of the runs whose error is at most ``error``, or None if there is no such run.
-
-    Each of the ``runs`` has the entries ``error`` and ``seconds``.
-    """
+    """Return the fastest of the runs whose error is at most ``error``, or None if there is no such run."""
     good = [run for run in runs if run["error"] <= error]
     return min(good, key=lambda run: float(run["seconds"]), default=None)
 
 
 def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str, Any]]:
-    """Return one row of the printed table for each power of ten of the error (decade).
-
-    A row is a dict with the error, the fastest method, its time in s, and for each method its time, the ratio to the
-    fastest, and its tolerance. ``floor`` is the difference between the reference solutions, which cannot judge smaller
-    errors: decades below it are left out.
+    """Return one row of the printed table for each decade of the error: methods, their times and ratios to
+    the fastest.
     """
     names = list(dict.fromkeys(run["method"] for run in runs))
     rows = []
     for error in DECADES:
         fastest_runs = {name: run for name in names if (run := best((r for r in runs if r["method"] == name), error))}
         if not fastest_runs or error < floor:
+            # The reference cannot judge errors below ``floor``, the difference between reference solutions.
             continue
         fastest = min(fastest_runs, key=lambda name: float(fastest_runs[name]["seconds"]))
         least = float(fastest_runs[fastest]["seconds"])
@@ -207,16 +194,12 @@ def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str
 
 
 def against(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return, for each other program (peer), the median and the least ratio of its time to symrot's time.
-
-    ``rows`` are those of :func:`decades`, so there is one ratio for each decade of the error. The results are given for
-    symrot's steppers and for all its methods. If heyoka ran with several settings, its fastest setting at each decade
-    counts as one more peer.
-    """
+    """Return, for each other program, the median and least ratio of its time to symrot's over all decades."""
     peers = list(dict.fromkeys(name for row in rows for name in row["methods"] if name not in (*OURS, "symrot scipy")))
     settings = [name for name in peers if name.startswith("heyoka")]
     asked = [(name, (name,)) for name in peers]
     if len(settings) > 1:
+        # heyoka's fastest setting at each decade counts as one more program
         asked.append(("heyoka, best setting", tuple(settings)))
     comparisons = []
     for title, names in asked:
@@ -232,10 +215,7 @@ def against(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _ratios(rows: Sequence[dict[str, Any]], ours: Sequence[str], theirs: Sequence[str]) -> dict[str, float]:
-    """Return, for each decade of the error, the fastest time of ``theirs`` divided by the fastest time of ``ours``.
-
-    ``ours`` and ``theirs`` are names of methods. A decade that one of the two sides does not reach is left out.
-    """
+    """Return, for each decade that both reach, the least time of methods ``theirs`` divided by that of ``ours``."""
     ratios = {}
     for row in rows:
         sides = [[row["methods"][name]["seconds"] for name in names if name in row["methods"]]

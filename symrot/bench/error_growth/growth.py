@@ -71,11 +71,10 @@ class Track:
         return non_smooth_torque(propagator(scene, "scipy").plan)
 
     def trajectory(self, states: Floats, motion: Motion | None = None) -> Trajectory:
-        """Return the computed ``states`` as a trajectory, at the first ``len(states)`` of the times in ``self.times``.
-
-        There are fewer states than times if a method stopped early. ``motion`` is the motion that the states belong to;
-        without it, it is ``self.motion``, the motion of the scene from which this track was made.
+        """Return the ``states`` as a trajectory of ``motion`` (default: the scene's) at the first times of
+        this track.
         """
+        # There are fewer states than times if a method stopped early.
         return Trajectory(motion or self.motion, self.times[: len(states)], states, "", Stats(0, 0, 0, 0.0), "")
 
     def curve(self, method: str, trajectory: Trajectory) -> Curve:
@@ -159,14 +158,13 @@ def _rk4(normalised: bool) -> Callable[[Track, Floats], Trajectory | None]:
 
 
 class Method(NamedTuple):
-    """A method for computing a motion: name, description, limits of the motion's length, and the function that runs it.
-
-    The limits are the largest numbers of revolutions for which the method is run, by default and with ``--long``.
-    """
+    """A method for computing a motion, with the largest numbers of revolutions for which it is run."""
 
     name: str
     about: str
+    # by default
     most: float
+    # with --long
     most_long: float
     run: Callable[[Track, Floats], Trajectory | None]
 
@@ -183,10 +181,7 @@ METHODS = (
 
 
 def growth(track: Track, long: bool = False, say: Callable[[str], object] = lambda text: None) -> list[Curve]:
-    """Return the error curves of all methods that can compute this motion.
-
-    With ``long``, each method is run for more revolutions. ``say`` is called with progress messages.
-    """
+    """Return the error curves of all methods that can compute this motion, for more revolutions if ``long``."""
     curves = []
     for method in METHODS:
         say(f"{track.scene.name}: {method.name} ..")
@@ -199,11 +194,8 @@ def growth(track: Track, long: bool = False, say: Callable[[str], object] = lamb
 
 
 def exponent(revolutions: Floats, errors: Floats) -> float:
-    """Return the exponent k of errors that grow as t^k, by a fit of their logarithms after :data:`FROM` revolutions.
-
-    Errors above 0.5 are not used, since such a motion has nothing in common with the exact one. Return nan if fewer
-    than four points are left.
-    """
+    """Return the exponent k of errors that grow as t^k; nan from fewer than four points."""
+    # A motion with an error above 0.5 has nothing in common with the exact one.
     chosen = (revolutions >= FROM) & np.isfinite(errors) & (errors > 0.0) & (errors < 0.5)
     if int(chosen.sum()) < 4:
         return math.nan

@@ -1,9 +1,7 @@
-"""Points of a body that are moved step by step: tangent steps enlarge the body, secant steps do not.
+"""Points moved step by step: tangent steps enlarge a body, secant steps do not.
 
-``r + h (omega x r)`` is longer than r, because the step is perpendicular to r: ``|r'|^2 = |r|^2 + h^2 |omega x r|^2``.
-For r perpendicular to the axis, the length grows by the factor ``sqrt(1 + (omega h)^2)``. The secant joins two points
-of the circle: ``r' = r + h omega x (r + r')/2`` keeps the length exactly. For every report these laws are proven
-(:func:`laws`) and compared with a step-by-step computation.
+The tangent step ``r' = r + h omega x r`` lengthens r, since ``|r'|^2 = |r|^2 + h^2 |omega x r|^2``. The secant step
+``r' = r + h omega x (r + r')/2`` keeps the length.
 
 Source: Chen, Rigid Body Rotation, slides 25-27.
 """
@@ -23,14 +21,9 @@ Floats = NDArray[np.float64]
 
 
 class Carried(NamedTuple):
-    """How much a body grows and deforms if its points are moved in steps of ``h`` by one of four schemes.
+    """How much a body grows and deforms if its points are moved in steps by one scheme."""
 
-    ``scheme`` is the name of the scheme. "tangent" moves a point r to ``r + h omega x r``, along the tangent of its
-    circle, which enlarges the body; "tangent, rescaled" then restores the length of r. "secant (midpoint)" moves r to
-    ``r' = r + h omega x (r + r')/2``, along a chord of the circle, which preserves its length. "rotation" rotates r
-    exactly.
-    """
-
+    # tangent step; tangent step, then r rescaled to its length; secant step; exact rotation
     scheme: str
     h: float  # s
     growth: float  # largest |r| at the end divided by largest |r| at the start
@@ -40,10 +33,8 @@ class Carried(NamedTuple):
 
 
 def laws() -> list[tuple[str, bool]]:
-    """Return the laws by which one step changes lengths, as pairs (formula, whether it was proven).
-
-    A length is the distance of a point from the fixed point. A tangent step moves the point from r to r' = r + h omega
-    x r, a secant step to r' = r + h omega x (r + r')/2.
+    """Return the laws by which one tangent or secant step changes lengths, as pairs (formula, whether it was
+    proven).
     """
     from sympy import Matrix, eye, symbols
 
@@ -107,10 +98,8 @@ SCHEMES = {
 
 
 def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.0, 2.0, 3.0)) -> list[Carried]:
-    """Move the corners of a box along a motion in steps; return growth, strain and error for each step size and scheme.
-
-    ``stop`` is the end time, s; ``steps`` are the step sizes h, s; ``size`` are the edges of the box. The schemes move
-    a point along the tangent of its path, r' = r + h omega x r, or along the secant, r' = r + h omega x (r + r')/2.
+    """Move the corners of a box along a motion in steps; return growth, strain and error for each step size
+    and scheme.
     """
     points, results = _corners(size), []
     motion = propagator(scene)
@@ -134,11 +123,7 @@ def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.
 
 
 def _strain(first: Floats, last: Floats) -> float:
-    """Return the strain of a set of points, from all distances between them before (``first``) and after (``last``).
-
-    It is the largest ratio of a distance after to the distance before, divided by the least ratio, minus 1. A uniform
-    change of size thus has the strain zero.
-    """
+    """Return the strain of points: the largest ratio of a distance after to before, divided by the least, minus 1."""
     pairs = np.triu_indices(len(first), 1)
     before, after = (np.linalg.norm(each[pairs[0]] - each[pairs[1]], axis=1) for each in (first, last))
     ratios = after[before > 0.0] / before[before > 0.0]

@@ -2,11 +2,8 @@
 
     symrot bench --stability [SCENE] [--long] [--plot FILE.png] [--json]
 
-Without a scene, a free plate (moments 1, 3, 4) is followed for 1e5 revolutions (``--long``: 1e6), with medians over
-three starts; with a scene, the scene's motion is followed over its span. The reference has 30 digits and shares no code
-with any method (:mod:`symrot.bench.comparison.exact_path`). Then claims of textbooks are tested, by three comparisons:
-Euler angles and the quaternion as integrated state, near gimbal lock and through it; the quaternion with and without
-renormalisation; points moved along tangents and along secants.
+Without a scene, a free plate (moments 1, 3, 4) is followed for 1e5 revolutions, with ``--long`` 1e6. The reference has
+30 digits and shares no code with any method.
 """
 
 import math
@@ -146,16 +143,14 @@ def _curve(
 
 
 def passes() -> list[dict[str, Any]]:
-    """Compute motions that pass near gimbal lock, with three choices of the integrated state; return steps and errors.
-
-    The state is the quaternion, Euler angles whose sequence is switched, or Euler angles of one sequence.
-    """
+    """Return steps and errors of motions that pass near gimbal lock, for three choices of the integrated state."""
     t, rows = np.linspace(-3, 8, 45), []
     for distance in PASSES:
         attitude = {"sequence": SEQUENCE, "angles": ["1/5", distance, "3/10"]}
         scene = _scene("pass by gimbal lock", {"principal": [1, "6/5", 2]}, (0, "2/5", 1), attitude)
         exact = propagator(scene, "exact")(t)
         row: dict[str, Any] = {"distance": float(scene_distance(distance))}
+        # quaternion, Euler angles whose sequence is switched, Euler angles of one sequence
         for name, options in (("quaternion", {}), ("switching", {"state": SEQUENCE}),
                               ("angles", {"state": SEQUENCE, "switching": False})):  # fmt: skip
             try:
@@ -266,9 +261,8 @@ def _point_lines(results: Any) -> list[str]:
 
 
 def report(scene: str | None, long: bool, plot: Path | None, say: Callable[[str], object]) -> Any:
-    """Return the report on numerical stability of a scene, or of the free plate if ``scene`` is None.
-
-    ``long`` and ``say`` are those of :func:`stability`. If ``plot`` is a path, the report is also drawn into that file.
+    """Return the report on numerical stability of a scene (None: the free plate); draw it into ``plot`` if that is a
+    path.
 
     Raises
     ------

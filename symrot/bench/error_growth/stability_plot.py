@@ -59,12 +59,10 @@ def _rates(axes: Any, data: Any) -> None:
 
 
 def _smoothed(values: Any, linear: bool) -> Any:
-    """Return the errors for the plot: if ``linear``, the largest error up to each time, otherwise the errors as given.
-
-    The largest error is smoother, because an error that changes its sign is small near its zeros.
-    """
+    """Return the largest error up to each time if ``linear``, otherwise the errors ``values`` unchanged."""
     if not linear:
         return values
+    # This is smoother, because an error that changes its sign is small near its zeros.
     largest = np.fmax.accumulate(values)
     largest[np.isnan(values)] = np.nan
     return largest
@@ -104,12 +102,10 @@ def _curves(axes: Any, data: Any, what: str) -> None:
 
 
 def _slopes(axes: Any, at: Any, powers: tuple[float, ...]) -> None:
-    """Draw lines that grow as the ``powers`` of the time, such as t and t^2, for comparison with the errors.
-
-    ``at`` are the times; the lines start at the size of rounding errors.
-    """
+    """Draw lines that grow as the ``powers`` of the time, such as t and t^2, for comparison with the errors."""
     names = {0.5: "$t^{1/2}$", 1.0: "$t$", 1.5: "$t^{3/2}$", 2.0: "$t^2$"}
     for power in powers:
+        # the size of rounding errors
         start = 2e-15 if power < 1.2 else 3e-14
         line = start * (at / at[0]) ** power
         axes.plot(at, line, color=GREY, linewidth=0.7, linestyle=(0, (1, 2)), zorder=1)

@@ -1,7 +1,7 @@
 """The ``objects`` section of a certificate: whether compiled object code performs the roundings of the C text.
 
-The section names compilers and their versions, so it describes one machine. It is therefore written only on request,
-and left out when certificates are compared byte for byte.
+The section names compilers of one machine, so it is written only on request and ignored when certificates are
+compared.
 """
 
 from collections.abc import Iterable, Sequence
@@ -126,11 +126,8 @@ MEANS = (
 def _object(
     source: Path, text: str, functions: Sequence[str], compiler: str, version: str, flags: tuple[str, ...]
 ) -> dict[str, Any]:
-    """Compile a C file with one compiler and one set of flags; return the entry of this object file for a certificate.
-
-    ``text`` is the content of ``source``, ``functions`` are the functions to compare with it, and ``version`` is what
-    the compiler says about itself.
-    """
+    """Compile a C file with one compiler and its flags, and return the certificate's entry about this object file."""
+    # only ``functions`` are compared with the C text
     with TemporaryDirectory(prefix="symrot-") as directory:
         target = Path(directory) / f"{source.stem}.o"
         compile_object(compiler, flags, source, target)

@@ -1,6 +1,6 @@
-"""Claims (equations to be checked): first as syntax trees, then as formulas of SymPy.
+"""Claims: equations to be checked, as syntax trees and as SymPy formulas.
 
-A claim keeps its syntax trees because the search for its fault edits them.
+The search for the fault of a false claim edits the trees.
 """
 
 from collections.abc import Mapping, Sequence
@@ -150,11 +150,10 @@ class Claim:
         return self.sources.get("claim") or relation_text(self.relation)
 
     def label(self, key: str) -> str:
-        """Return the place of an error for messages: the id of the claim and the key of its text, as in "C3: define R".
-
-        Keys are "claim" for the equation, "given" for hypotheses, "define NAME" for definitions, "value" and
-        "printed_value" for numbers. The result is "" if the claim has no id, as when a user typed it.
+        """Return where a text of the claim stands in a file, as in ``"C3: define R"``; empty if the claim has no
+        id.
         """
+        # a claim that a user typed has no id; keys are claim, given, define NAME, value and printed_value
         return f"{self.id}: {key}" if self.id else ""
 
     def with_relation(self, relation: Relation, **changes: Any) -> "Claim":

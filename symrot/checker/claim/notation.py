@@ -60,9 +60,8 @@ class TypedNotation:
         return plain.replace("real_part(", "Re(").replace("imaginary_part(", "Im(")
 
     def _spelled(self, node: Node, parent: str = "") -> Node:
-        """Return a tree with names as the user typed them, primes for rates, and ``[..]`` for matrices.
-
-        ``parent`` is the kind of the node above the tree; empty for a whole formula.
+        """Return a tree in the user's spelling, such as ``q'`` for ``diff(q(t), t)``, and ``[..]`` for
+        ``Matrix([..])``.
         """
         if is_derivative(node):
             name = str(node.args[0].value)
@@ -75,6 +74,7 @@ class TypedNotation:
         if node.kind == "call" and node.value == "qmul":
             factors = [self._spelled(factor, "call") for factor in node.args]
             return Node("name", " ⊗ ".join(f"({text(f)})" if f.kind in BOUND_LOOSELY else text(f) for f in factors))
+        # inside a call, a power or an index, brackets alone would be ambiguous
         if node.kind == "call" and node.value == "Matrix" and parent not in ("call", "power", "index"):
             return self._spelled(node.args[0], "list")
         if node.kind == "number":
@@ -118,10 +118,9 @@ class TypedNotation:
 
 
 def with_formulas(source: str, formula: Callable[[Node], str], signs: Mapping[str, str]) -> str:
-    """Rewrite a condition in SymPy syntax, such as ``0 <= x <= pi and y > 0``, and return its text.
+    """Return a condition such as ``0 <= x <= pi and y > 0`` in another notation; unchanged if unreadable.
 
-    ``formula`` writes each formula. ``signs`` maps a sign in SymPy syntax to the sign to write, as ``==`` to ``=``.
-    An unreadable condition stays unchanged.
+    ``formula`` writes formulas, ``signs`` translates ``==``.
     """
     pieces = SIGN.split(source)
     try:
@@ -153,10 +152,8 @@ END = Node("name", "")
 
 
 def _is_number_power(node: Node) -> bool:
-    """Return whether a tree is a power with a number as exponent, such as x^3.
-
-    With a slash after it, as in x^3/2, it might be read as x^(3/2).
-    """
+    """Return whether a tree is a power with a number as exponent, such as x^3."""
+    # such a power needs brackets before a slash: x^3/2 might be read as x^(3/2)
     return node.kind == "power" and node.args[1].kind == "name" and str(node.args[1].value) in ("1", "3", "5", "7", "9")
 
 

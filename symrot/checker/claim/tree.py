@@ -1,8 +1,6 @@
 """The tree of a claim's text: the formula as it is written, with positions, before any simplification. No SymPy.
 
-Sums and products are flat lists and keep their order, since edits of a formula (a sign, a factor, the order of a
-product) are edits of their members. ``a - b`` is a sum whose second term is ``neg``; ``a/b`` is a product whose second
-factor is ``inv``.
+Sums and products are flat lists in written order: ``a - b`` is a sum with a ``neg``, ``a/b`` a product with an ``inv``.
 
 =========  =======================  ==================================
 kind       value                    args
@@ -119,9 +117,9 @@ _BINDING = {"sum": SUM, "neg": SUM, "product": PRODUCT, "inv": PRODUCT, "power":
 
 
 def text(node: Node, binding: int = 0) -> str:
-    """Return the text of a tree, with as few brackets as its meaning allows; parsing it gives the same tree again.
+    """Return the text of a tree, with no more brackets than its meaning needs.
 
-    ``binding`` is the rank of the operation around the tree, such as a product; a sum in a product gets brackets.
+    ``binding`` is the rank of the operation around it: a sum in a product gets brackets.
     """
     own = _BINDING.get(node.kind, ATOM)
     if node.kind == "number" and node.value.denominator != 1:

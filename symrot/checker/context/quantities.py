@@ -1,7 +1,7 @@
 """The quantities that words such as "moment of inertia about the centre" mean, with their synonyms.
 
-Each quantity also tells which known formulas are for it: by phrases in the names of the formulas, and by a pattern for
-the symbols that stand for the quantity in them, such as E_k for the kinetic energy.
+Each quantity tells which known formulas are for it: by phrases in their names, and by symbols, such as E_k for the
+kinetic energy.
 """
 
 import re
@@ -271,11 +271,8 @@ def plain_words(text: str) -> str:
 
 
 def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str]:
-    """Return the place of an axis in words, such as "about an end", and the words without it.
-
-    The place is empty if the words name none. Besides points of a body, the axes in LINES count as places, such as
-    "about a diameter". ``formulas`` are names of bodies, such as "a disk": with them, only axes of these bodies count
-    (a rod has no diameter); without them, all do.
+    """Return the place of an axis that words state, such as "about an end", and the other words; the place may be
+    empty.
 
     Examples
     --------
@@ -283,6 +280,7 @@ def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str
     ('about an end', 'of a rod')
     """
     titled = [(title, phrases) for title, phrases, _ in PLACES]
+    # an axis such as "about a diameter" counts as a place, if one of the bodies named in ``formulas`` has it
     lines = [(title, phrases) for title, (phrases, bodies) in LINES.items() if not formulas or {*bodies} & {*formulas}]
     places = [
         (match, title)
@@ -306,10 +304,7 @@ _END_OF_PLACE = r"(?![\w-])(?! (?:of|in|through|perpendicular|normal|parallel|al
 
 
 def unused_words(words: str) -> str:
-    """Return the words with a meaning in ``words``, without articles, prepositions and the like.
-
-    ``words`` are what remains of the user's words once symrot has used the rest. If the result is not empty, symrot
-    does not understand all that the user wrote.
+    """Return the words in ``words`` that mean something, without articles, prepositions and the like.
 
     Examples
     --------
