@@ -194,12 +194,10 @@ class Constants:
         return Loops(evaluate, constants, ctypes.addressof(constants))
 
     def omega_rows(self, one: Any, other: Any) -> list[Any]:
-        """Return the entries of the matrix `omega` of axial.h, row by row; its product with three numbers is omega_b.
-
-        The three numbers are the damped cosine and sine of the angle by which the transverse angular velocity has
-        rotated in the body, and the rate about the driven axis. ``one`` and ``other`` are the initial rates, rad/s,
-        about the two axes that follow the driven axis in cyclic order.
-        """
+        """Return the entries, row by row, of the matrix of axial.h whose product with three numbers is omega_b."""
+        # the numbers: damped cosine and sine of the angle by which the transverse angular velocity has rotated in the
+        # body, and the rate about the driven axis; one, other: initial rates, rad/s, about the axes that follow it
+        # cyclically
         rows: list[list[Any]] = [[0.0] * 3 for _ in range(3)]
         rows[self.axis][2] = 1.0
         rows[self.axis - 2][:2] = one, -other

@@ -91,10 +91,8 @@ class AxialMotion:
         )
 
     def _angle(self, t: Floats, share: Fraction) -> tuple[Floats, Floats]:
-        """Return sine and cosine of ``share`` times the angle of rotation about the driven axis, at the times ``t``, s.
-
-        Half the angle gives the attitude; the share (C - A)/A gives the rotation of the transverse angular velocity.
-        """
+        """Return sine and cosine of ``share`` times the angle of rotation about the driven axis, at the times ``t``."""
+        # half the angle gives the attitude, (C - A)/A times it the rotation of the transverse angular velocity
         turning = self._known.get(share)
         if turning is None:
             turning = self._known[share] = Turning(share, self._rate, self._push, self._decay)
