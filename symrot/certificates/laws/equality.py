@@ -214,8 +214,7 @@ class _EqualityProver:
     def _is_limit_or_formula(
         self, function: FunctionWithLimit, arguments: tuple[Quotient, ...], then: Quotient, other: Quotient
     ) -> bool:
-        """Return whether ``then`` and ``other``, a conditional's branches, are the limit and formula of
-        ``function``."""
+        """Return whether ``then`` is the limit of ``function`` at zero, and ``other`` its formula."""
         reader = _Formulas(self.fractions)
         reader.values.update(zip(function.arguments, arguments, strict=True))
         return then == reader.read(function.limit) and other == reader.read(function.formula)
