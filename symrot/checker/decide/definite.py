@@ -10,12 +10,12 @@ MOST_TERMS_OF_SQUARE = 40
 
 
 def surely_nonnegative(value: Expr) -> bool:
-    """Return whether the form of a real formula shows that it is never negative: True for ``x**2 + abs(y)``.
-
-    Its square roots are assumed to be real. False means only that the form does not show it.
+    """Return whether the form of a real formula shows that it is never negative, as that of ``x**2 + abs(y)``
+    does.
     """
     if value.is_nonnegative or isinstance(value, Abs | sympy.exp):
         return True
+    # square roots are real here
     if isinstance(value, Pow) and value.exp.is_Rational:
         even = value.exp.q == 1 and value.exp.p % 2 == 0
         return bool(even or value.exp.q % 2 == 0 or surely_nonnegative(value.base))

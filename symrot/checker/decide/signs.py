@@ -145,20 +145,18 @@ def _size(formula: Expr) -> Expr | None:
 
 
 def _by_absolute_values(formula: Expr) -> bool:
-    """Return whether absolute values make a formula nonnegative, as |x| + |y| - |x + y| is by the triangle inequality.
-
-    Two methods are tried. If the only negative term is -c|u| and the other terms have a nonnegative sum v, the formula
-    is nonnegative where v^2 - c^2 u^2 is, so this difference of squares is examined in place of the formula. Second,
-    each term c|e| in the formula or the difference is replaced by c*e or by -c*e, which are not larger. If one of the
-    results is nonnegative, the answer is True.
+    """Return whether absolute values make a formula nonnegative, as |x| + |y| - |x + y| is by the triangle
+    inequality.
     """
     terms = Add.make_args(formula)
     negative = [term for term in terms if term.could_extract_minus_sign()]
     if len(negative) == 1:
         coefficient, inner = negative[0].as_coeff_Mul()
         rest = formula - negative[0]
+        # v - c|u| with v >= 0 is nonnegative where v^2 - c^2 u^2 is
         if isinstance(inner, Abs) and surely_nonnegative(rest):
             return _without_absolute(sympy.expand(rest**2 - coefficient**2 * inner.args[0] ** 2))
+    # terms c|e| are replaced by c*e or -c*e, which are not larger: it suffices that one result is nonnegative
     return _without_absolute(formula)
 
 
@@ -194,9 +192,8 @@ def _by_roots(formula: Expr, strict: bool) -> bool:
 
 
 def _by_squares(formula: Expr, strict: bool) -> bool:
-    """Return whether a polynomial of degree two is a sum of squares plus terms that are nonnegative by their signs.
-
-    With ``strict`` it must be positive.
+    """Return whether a quadratic polynomial is a sum of squares and nonnegative terms; with ``strict``, whether it
+    is positive.
     """
     try:
         poly = Poly(formula)
@@ -214,10 +211,7 @@ def _sign(unknown: Expr) -> int:
 
 
 def _gram(poly: Poly) -> list[list[Rational]]:
-    """Return the symmetric matrix of a quadratic polynomial in the vector (1, x, y, ..) of its unknowns x, y, ...
-
-    For x^2 + 4 x it is [[0, 2], [2, 1]].
-    """
+    """Return the symmetric matrix of a quadratic polynomial in (1, x, y, ..): [[0, 2], [2, 1]] for x^2 + 4 x."""
     size = len(poly.gens) + 1
     gram = [[S.Zero] * size for _ in range(size)]
     for powers, coefficient in poly.terms():
@@ -231,12 +225,11 @@ def _gram(poly: Poly) -> list[list[Rational]]:
 def _is_definite(gram: Sequence[Sequence[Rational]], strict: bool, sign: Callable[[int], int]) -> bool:
     """Return whether a quadratic form is never negative (and never zero if ``strict``), by completing squares.
 
-    ``gram`` is the matrix of the form in (1, u0, u1, ..). ``sign(n)`` is 1 if the unknown with the index n is known to
-    be nonnegative, else 0. Linear terms with a coefficient >= 0 in such an unknown are left out: they only increase the
-    value.
+    ``gram`` is its symmetric matrix.
     """
     rows = [list(row) for row in gram]
     for place in range(1, len(rows)):
+        # a linear term with a coefficient >= 0 in a nonnegative unknown only increases the value
         if rows[0][place] > 0 and sign(place - 1) > 0:
             rows[0][place] = rows[place][0] = S.Zero
     for place in reversed(range(1, len(rows))):
