@@ -97,7 +97,7 @@ def expanded(pieces: Sequence[Token], source: str, where: str = "") -> list[Toke
 
 
 def with_spelled_functions(pieces: Sequence[Token]) -> tuple[list[Token], list[str]]:
-    """Return tokens with commands for functions that are written as letters, and the names of these functions.
+    r"""Return tokens with commands for functions that are written as letters, and the names of these functions.
 
     Examples
     --------
