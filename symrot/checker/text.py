@@ -536,7 +536,7 @@ def _on_parts(
 def _with_fitting_line(
     claims: Sequence[Claim], lines: Sequence[tuple[str, Collection[str], Verdict]], notation: Notation, verdict: Verdict
 ) -> Verdict:
-    """Return the verdict on lines that contradict each other, with the single edit after which they fit together."""
+    """Return the verdict on equations that contradict each other, with the single edit that makes them fit together."""
     if len(lines) != len(claims) or len(lines) > MOST_LINES or any(claim.hypotheses for claim in claims):
         return verdict
     from symrot.checker.recognition.naming import recognised_edits  # it takes longer to import than most checks
