@@ -31,7 +31,7 @@ INVERSES = {"sin": "asin", "cos": "acos", "tan": "atan", "exp": "log", "log": "e
 
 
 class NamedFormula(NamedTuple):
-    """A claim such as ``k^2 = I/m`` as a formula for a quantity that the claim does not define.
+    """A claim such as ``k^2 = I/m``, split into a quantity that it does not define (k) and a formula for it.
 
     Attributes
     ----------

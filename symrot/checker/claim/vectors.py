@@ -57,7 +57,9 @@ class Vector:
 
     @property
     def components(self) -> Node:
-        """The tree of its components: ``Matrix([a_x, a_y, a_z])``, or the numbers 0 and 1 for a coordinate axis."""
+        """The tree of the vector's components: ``Matrix([a_x, a_y, a_z])``, or the numbers 0 and 1 for a
+        coordinate axis.
+        """
         if self.is_axis:
             place = "xyz".index(self.name) if self.place is None else self.place
             return _matrix([number(int(place == other)) for other in range(3)])
@@ -68,7 +70,9 @@ class Vector:
 
     @property
     def is_axis(self) -> bool:
-        """Whether it is the unit vector of a coordinate axis: x, y or z with a hat, or i, j or k of a basis."""
+        """Whether the vector is the unit vector of a coordinate axis: x, y or z with a hat, or i, j or k of a
+        basis.
+        """
         return self.place is not None or (self.unit and self.name in ("x", "y", "z"))
 
     def _entry(self, name: str) -> Node:
@@ -106,7 +110,7 @@ def is_components(name: str, tree: Node) -> bool:
 
 
 def without_marks(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[list[Node], dict[str, bool]]:
-    """Return the sides of a claim without the marks of vectors, and the vectors (True for one with a hat).
+    """Return a claim's sides without the marks of vectors, and the marked vectors (True for one with a hat).
 
     Parameters
     ----------

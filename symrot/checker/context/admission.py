@@ -137,7 +137,9 @@ def _has_axes(name: str, axes: str) -> bool:
 
 
 def _is_along(name: str, line: str) -> bool:
-    """Return whether the formula named ``name`` is for an axis along a ``line`` of its body: "about a diameter"."""
+    """Return whether the formula named ``name`` is for an axis along a ``line`` of its body, such as "about a
+    diameter".
+    """
     _, bodies = LINES[line]
     axis = re.search(r", ([xyz]) axis", name)
     return any(
@@ -148,8 +150,8 @@ def _is_along(name: str, line: str) -> bool:
 
 
 def _where_else(place: str, line: str, name: str) -> str:
-    """Return words for the axis of a formula: its ``place``, or "about another axis" if the stated ``line`` goes
-    through it.
+    """Return words for the axis of a formula: its ``place``, or "about another axis" if ``line`` goes through this
+    place too.
     """
     _, bodies = LINES[line]
     places = [own for body, (own, _) in bodies.items() if body in bodies_of_formula(name)]
@@ -262,7 +264,7 @@ def plain(name: str) -> str:
 
 
 def guesses(context: Context, name: str, stated: str) -> list[str]:
-    """Return the words in a derived formula's name that neither the context nor ``stated`` has.
+    """Return the words in a derived formula's name that neither the context nor ``stated`` contains.
 
     ``stated`` are words that the claim's quantity implies, "moment of inertia" for I.
     """
@@ -300,7 +302,7 @@ def is_place(words: str) -> bool:
 
 @lru_cache(maxsize=20_000)
 def _tokens(text: str) -> tuple[str, ...]:
-    """Return the words of a text in one spelling, without those, such as "of", that tell no formulas apart."""
+    """Return the words of a text in one spelling, without words such as "of"."""
     return tuple(
         word
         for word in re.findall(r"[\w'/^-]+", plain_words(text).replace("-frame", " frame"))

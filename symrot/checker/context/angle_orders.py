@@ -53,10 +53,9 @@ def has_order(sequence: str) -> bool:
 
 
 def are_roll_pitch_yaw(sequence: str, places: Mapping[str, int]) -> bool:
-    """Return whether phi, theta and psi are the angles about x, y and z (roll, pitch and yaw), as in books on
-    aircraft.
+    """Return whether phi, theta and psi are the angles about x, y and z, as books on aircraft use them.
 
-    True for sequences such as ZXZ.
+    Also True for sequences such as ZXZ.
     """
     # ZXZ has no roll, pitch and yaw, so that the usage of these books restricts nothing
     axes = {"phi": "X", "theta": "Y", "psi": "Z"}

@@ -352,10 +352,8 @@ def _name(tree: Node) -> str | None:
 
 
 def _frame_in(words: str) -> tuple[str, str]:
-    """Return the frame that words state, and the other words: "velocity in the body frame" gives "body" and
-    "velocity".
-
-    The frame may be empty.
+    """Return the frame that words state, if any, and the other words: "velocity in the body frame" gives "body"
+    and "velocity".
     """
     for frame, pattern in _FRAME_WORDS:
         if match := re.search(rf"\b{pattern}(?![\w-])", words):

@@ -1,8 +1,7 @@
 """Verdicts in a context, which states the meanings of names: a claim about a quantity is then decided.
 
-The name of a known formula, such as "moment of inertia of a rod about an end", is a list of words. A claim means this
-formula if its context or its quantity states each word. It is true if it equals such a formula, and false if it
-differs from all of them.
+A claim means a known formula, such as the "moment of inertia of a rod about an end", if its context or its quantity
+states each word of this name. It is true if it equals such a formula, and false if it differs from all of them.
 """
 
 import re
@@ -387,7 +386,7 @@ def _by_meant_formulas(
 
 
 def _transposed(decisions: Sequence[tuple[Meant, Decision]]) -> Iterator[tuple[Meant, Decision]]:
-    """Yield the transpose of each known rotation matrix, with the decision on the matrix."""
+    """Yield the transpose of each known rotation matrix, with the decision on the matrix itself."""
     for candidate, decision in decisions:
         # known matrices map body components to space components; the author may mean the inverse map
         if candidate.known.name.startswith("rotation matrix"):
@@ -433,7 +432,7 @@ def _is_transposed(target: Any, value: Any) -> bool:
 
 
 def _is_open(decision: Decision) -> bool:
-    """Return whether two formulas may be equal, by a decision: undecided, or equal for some signs of the symbols."""
+    """Return whether a decision leaves open that two formulas are equal: it is undecided, or depends on signs."""
     if decision.verdict == "conditional":
         # equal for special values only, such as equal moments of inertia: the formulas differ
         return any(requirement.signs or not requirement.zeros for requirement in decision.requires)
@@ -504,7 +503,9 @@ def _diagnosed(
 
 
 def _neatness(repair: Repair) -> tuple[bool, int]:
-    """Return a sort key of a repair, by which repairs of one fault come before those of two, and short before long."""
+    """Return a sort key for repairs: repairs of one fault come before repairs of two faults, and short ones before
+    long ones.
+    """
     return repair.code == "two_faults", len(repair.text)
 
 
@@ -549,7 +550,7 @@ def _root(square: Expr) -> Expr:
 
 
 def _unused_rates(mapping: Mapping[Expr, Expr], own: set[Expr]) -> dict[Expr, Expr]:
-    """Return ``diff(phi(t), t)`` for dphi, and so on, for the angle rates that ``mapping`` does not replace.
+    """Return ``{dphi: diff(phi(t), t)}`` for the angle rates that ``mapping`` does not replace.
 
     Empty if the claim has no derivatives.
     """

@@ -535,7 +535,7 @@ def _with_shorter_powers(equation: Equation, lefts: Sequence[Expr], rights: Sequ
 
 
 def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
-    """Return formulas that must not be zero, by their texts, without those that need not be stated."""
+    """Return the formulas that must not be zero, by their texts, without those that need not be stated."""
     remaining = {}
     for text, form in nonzero.items():
         value = normal_form(form) if form.is_Add and _pieces(form) < MOST_PIECES else form
@@ -551,7 +551,7 @@ MOST_PIECES = 60
 
 
 def _shorter(first: Expr, second: Expr) -> Expr:
-    """Return that one of two formulas for the same divisor which is easier to read."""
+    """Return the more readable one of two formulas for the same divisor."""
     few, many = sorted((first, second), key=_pieces)
     if _pieces(many) > MUCH_LARGER * _pieces(few):
         # a much larger formula is not even written as text

@@ -215,9 +215,8 @@ class Hypotheses:
         raise InputError(f"the hypotheses hold at no real point{divisors}: {reason}")
 
     def entails(self, numerators: Iterable[PolyElement]) -> bool:
-        """Return whether the hypotheses imply that all ``numerators``, those of left - right, provably vanish.
-
-        Then the claim follows. The result is False without hypotheses.
+        """Return whether the hypotheses provably make all ``numerators`` of left minus right zero; False without
+        hypotheses.
         """
         target = self.constraints.ring
         return self.present and all(vanishes_on(self.constraints, poly.set_ring(target)) for poly in numerators)

@@ -1,7 +1,7 @@
 """Conditions on signs as text, as a book writes them: ``0 <= x <= pi`` instead of ``x >= 0 and pi - x >= 0``.
 
-A condition is a pair (formula, sign) with the sign ``">= 0"``, ``"> 0"`` or ``"!= 0"``. Conditions that follow from
-others are dropped. The text holds exactly where the conditions hold and their formulas have values.
+A condition is a pair (formula, sign) with the sign ``">= 0"``, ``"> 0"`` or ``"!= 0"``. Those that follow from others
+are dropped. The text holds exactly where the conditions hold and their formulas have values.
 """
 
 import re
@@ -237,9 +237,7 @@ class _Range:
     high_closed: bool = True
 
     def narrow(self, root: Expr, closed: bool, above: bool) -> None:
-        """Add a bound of the quantity: a lower one if ``above``, otherwise an upper one, which it may equal if
-        ``closed``.
-        """
+        """Add a lower (``above``) or an upper bound of the quantity, which the quantity may equal if ``closed``."""
         name = "low" if above else "high"
         known = getattr(self, name)
         tighter = known is None or ((root - known) if above else (known - root)).is_positive
@@ -441,7 +439,7 @@ class _Conditions:
 
     def grants(self, quantity: Expr, own: _Range) -> bool:
         """Return whether a cosine lies in the range ``own`` anyway, so that this need not be printed; False for
-        others.
+        other quantities.
         """
         if not isinstance(quantity, cos):
             return False

@@ -60,7 +60,9 @@ class Substitution:
 
 
 def decided(equation: Equation, substitution: Substitution) -> Decision | None:
-    """Return the decision on an equation whose letters ``substitution`` replaces by formulas; None if it fails."""
+    """Return the decision on an equation whose letters ``substitution`` replaces by formulas; None if there is
+    none.
+    """
     try:
         return decide_equation(Equation(*_sides(equation, substitution)))
     except (InputError, TooLarge):

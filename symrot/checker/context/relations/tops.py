@@ -144,7 +144,7 @@ def _formulas(load: Expr) -> dict[str, Expr]:
 def _of_steady_precession(
     names: Mapping[Expr, str], values: Mapping[Expr, Expr], sides: Sequence[Expr], load: Expr
 ) -> Iterator[Substitution]:
-    """Yield the condition of steady precession with the rate of precession that a claim gives, such as m g l/(C
+    """Yield the condition of steady precession with a claim's formula for the rate of precession, such as m g l/(C
     omega_3).
     """
     for side, formula in (sides, sides[::-1]):
