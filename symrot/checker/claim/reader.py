@@ -43,13 +43,13 @@ LONGEST_TEXT = 20_000
 MOST_PIECES = 5_000
 MOST_READINGS = 6
 MOST_DOUBTS = 40
-"""The most readings of one text that are tried, and the most places with two readings that are looked at."""
+"""The most readings of one text, and the most ambiguous places of a text that are examined."""
 
 DOT_OF_PRODUCTS = ("(", None, None, ")", "·", "(", None, None, ")")
 """The tokens of ``(R a)·(R b)``, with None in place of each name."""
 
 FIRST_AND_LAST = ("i", "f")
-"""Indices of the first and last value of a quantity."""
+"""Indices that mark the first (initial) and the last (final) value of a quantity."""
 
 Relation = tuple[str, Node, Node]
 

@@ -23,10 +23,11 @@ __all__ = [
 
 MARK = "\N{RIGHTWARDS ARROW}"
 BASES = (("i", "j", "k"), *(tuple(f"e{mark}{axis}" for axis in axes) for mark in ("_", "") for axes in ("123", "xyz")))
-"""Names of the vectors of a basis: these are the axes if a text has two of them, and, but for i, no other vector."""
+"""Names of basis vectors, which mean the axes if a text has two of them; all but i, j and k then allow no other
+vectors."""
 
 AXES = ("xyz", "123", "1234", "0123")
-"""The last letters of the names of the components of vectors; of four for a quaternion."""
+"""Endings of the names of a vector's components, "xyz" for a_x, a_y and a_z; the four digits are for quaternions."""
 
 TENSOR = re.compile(r"[IJ](_[A-Za-z]\w*)?", re.ASCII)
 """The names of inertia tensors."""

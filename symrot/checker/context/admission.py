@@ -36,13 +36,13 @@ _STOP = frozenset({
     "formula", "theorem", "principal", "components", "component", "unit", "dq/dt", "omega", "b", "e", "b^-1", "=",
     "i", "squared", "acos", "asin", "atan2", "2", "without", "minus", "sign", "physical",
 })  # fmt: skip
-"""Words in the names of derived formulas that distinguish no formulas for one quantity."""
+"""Words in the names of derived formulas that do not tell formulas for one quantity apart."""
 
 
 COMPONENTS = {
     "first": "x1Ap", "second": "y2Bq", "third": "z3Cr", "scalar": "04sw", "x": "x1Ap", "y": "y2Bq", "z": "z3Cr",
 }  # fmt: skip
-"""A component or an axis of a known formula -> the last letters of names for it; p, q and r are aircraft rates."""
+"""Maps a component or an axis to the endings of names for it; p, q and r are the rates of an aircraft."""
 
 INDICES = frozenset("xyz0123")
 ANGLES = ("phi", "theta", "psi")
@@ -125,7 +125,7 @@ def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
 TOPS = ("symmetric top", "heavy top", "fast top", "sleeping top")
 GYRATION = "radius of gyration"
 DIRECTIONS = {"axial moment of inertia": "z", "transverse moment of inertia": "xy"}
-"""Title of a quantity -> the axes of a round body that it is about."""
+"""Maps the title of a moment of inertia to the axes of a round body about which it may be."""
 
 
 def _has_axes(name: str, axes: str) -> bool:

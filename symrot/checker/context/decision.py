@@ -54,13 +54,13 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["in_context"]
 
 MOST_ASSIGNMENTS = 24
-"""The most ways of assigning the letters of a claim to the symbols of a derived formula that are decided."""
+"""The most assignments of a claim's letters to the symbols of a derived formula that are decided."""
 
 MOST_CHOICES = 10_000
-"""The most ways of choosing a symbol for each letter that are tried, whether or not they keep the axes together."""
+"""The most choices of symbols for letters that are tried, before it is known whether they suit the axes."""
 
 MOST_DIAGNOSED = 4
-"""The most ways of assigning letters for which the fault of a claim is sought."""
+"""The most assignments of letters for which the fault of a claim is sought."""
 
 MOST_COSTLY = 2.0
 """The cost of a repair that is a derived formula as a whole."""
@@ -92,7 +92,7 @@ USUAL: tuple[tuple[str, str], ...] = (
     ("I_zz", "I_?(zz|z|33|3)"), ("I_xy", "I_?(xy|12)"), ("I_xz", "I_?(xz|13|zx)"), ("I_yz", "I_?(yz|23)"),
     ("q([0-3])", r"q_?[0-3]"), ("rho", "rho"), ("e", "e"),
 )  # fmt: skip
-"""Symbol of derived formulas -> the letters that are certainly meant as that symbol, where a claim has it."""
+"""Pairs of patterns: symbols of derived formulas, and the letters that books use for them."""
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from symrot.exact.ring.ring import FormulaRing
 __all__ = ["Constraints", "constraints_of", "distinct_factors", "occurring"]
 
 MOST_TERMS, MOST_UNKNOWNS, LARGEST_DEGREE = 40, 4, 12
-"""Bounds on a polynomial that is factored; of a larger one only unknowns that divide every term are split off."""
+"""The most terms, the most unknowns and the largest degree of a polynomial that is factored."""
 
 
 @dataclass(frozen=True)

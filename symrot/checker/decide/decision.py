@@ -57,10 +57,10 @@ from symrot.exact.ring.roots import is_positive_where_defined, written
 __all__ = ["Equation", "decide_equation", "for_positive_bases", "is_large"]
 
 MUCH_LARGER = 5
-"""A formula with more than this many times the pieces of another one certainly has the longer text."""
+"""The ratio of sizes from which on the larger formula certainly has the longer text."""
 
 MOST_ON_THE_CUT = 4
-"""The most symbols of a formula with atan2 that is examined at points where some of them are zero."""
+"""The most symbols of a claim with atan2 that is examined at points with simple coordinates."""
 
 
 @dataclass(frozen=True)

@@ -34,10 +34,10 @@ from symrot.exact.ring.ring import FormulaRing
 __all__ = ["Hypotheses"]
 
 FEW = 24
-"""The number of points that are drawn before proofs are tried, which cost more."""
+"""The number of points that are drawn before proofs, which take longer, are tried."""
 
 CANDIDATES = 8
-"""The number of points where the sides differ; the one with the shortest numbers becomes the counterexample."""
+"""The number of points at which the sides differ before the shortest becomes the counterexample."""
 
 OTHER_VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (2, 1), (1, 2), (-1, 1), (3, 1), (-1, 3), (5, 7), (-3, 2)))
 """Values for symbols that occur in no hypothesis."""

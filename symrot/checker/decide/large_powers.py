@@ -24,13 +24,13 @@ from symrot.exact.intervals import DIGITS, enclosure
 __all__ = ["LARGEST_DEGREE", "ShorterPowers", "degree_of", "point_of_difference", "shorter_powers"]
 
 LARGEST_DEGREE = 240
-"""The largest degree of a side in its symbols, sines and cosines; a formula of larger degree is not expanded."""
+"""The largest degree in symbols, sines and cosines of a formula that is expanded."""
 
 LARGEST_EXPANDED = 64
-"""Powers are replaced if their exponent, times the degree of their base, is larger."""
+"""The largest product of an exponent and the degree of its base for which a power is not replaced."""
 
 HIGHEST_OF_BASE = 4
-"""The highest power of one base that another base is compared with."""
+"""The highest power of a base that is compared with another base."""
 
 MOST_POINTS = 500
 MOST_BASES = 12
@@ -41,7 +41,7 @@ LONGEST_WHOLE_NUMBER = 40
 """The most digits of a whole number that is written exactly."""
 
 DIGITS_WRITTEN = (10, 20, 30, 40, 50)
-"""Numbers of digits for other numbers, of which the smallest that shows a difference of the sides is used."""
+"""Numbers of digits for a pair of values, from which the first is used that shows a difference."""
 
 
 # -- the degree of formulas -------------------------------------------------------------------------------------------

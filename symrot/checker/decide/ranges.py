@@ -26,10 +26,10 @@ from symrot.exact.size import pieces
 __all__ = ["condition_texts", "follow", "positive_symbols", "range_text", "with_domain"]
 
 MOST_PIECES = 80
-"""A formula with more symbols and operations is written as it is."""
+"""The most symbols and operations of a formula that is simplified."""
 
 Sign = tuple[Expr, str]
-"""(formula, sign): the condition that the formula is ``"> 0"``, ``">= 0"`` or ``"!= 0"``."""
+"""A condition (formula, sign): the formula is ``"> 0"``, ``">= 0"`` or ``"!= 0"``."""
 
 
 def range_text(signs: Sequence[Sign], divided: bool = True) -> str:
@@ -65,7 +65,7 @@ def condition_texts(conditions: Iterable[Any]) -> tuple[str, ...]:
 
 
 _EMPTY_RANGE = re.compile(r"^(.+) < (\w+) < \1$")
-"""A range without a number, such as ``0 < x < 0``; two conditions that contradict each other are easier to read."""
+"""A range without a number, such as ``0 < x < 0``, which is easier to read as two conditions."""
 
 
 def positive_symbols(conditions: Iterable[Any]) -> dict[Expr, Expr]:

@@ -17,7 +17,7 @@ from symrot.errors import InputError
 __all__ = ["claims_of_reading"]
 
 MOST_EQUATIONS = 30
-"""The most equations in one text, lines and links of chains."""
+"""The most equations in one text; ``a = b = c`` counts as two."""
 
 
 def claims_of_reading(

@@ -24,7 +24,7 @@ __all__ = ["Substitution", "by_substitution", "decided"]
 MOST_SUBSTITUTIONS = 200
 MOST_READINGS = 4
 OPEN = ("definition", "doubtful", "false", "undecided")
-"""Verdicts that a true reading overrules."""
+"""Verdicts that a true interpretation of a claim overrules."""
 GUESSED = "guessed, not stated"
 
 
