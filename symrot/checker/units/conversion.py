@@ -254,7 +254,7 @@ def _read(plain: str, way: _Way) -> Measured | None:
 
 
 def numeric_end(source: str) -> tuple[str, str]:
-    """Return the beginning of a chain of equations, and its end of two or more numbers with units; both may be "".
+    """Return (beginning, end) of a chain of equations that ends with several numbers with units, or two empty texts.
 
     Examples
     --------
