@@ -272,7 +272,7 @@ class Derivation(PrintedPage):
     ) -> bool:
         """Return whether ``display``, the form printed for a side, was parsed and proven equal to ``side``.
 
-        If it is not, it is only a label.
+        A form that cannot be parsed is only a label, and gives False.
 
         Raises
         ------

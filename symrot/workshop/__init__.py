@@ -1,2 +1,2 @@
-"""The functions behind the commands: they emit, certify, audit and bound kernels, print derivations, check the
+"""The functions behind the commands that emit, certify, audit and bound kernels, print derivations, check the
 install."""

@@ -1,7 +1,6 @@
 """The mathematical font of pages in HTML: a subset of STIX Math, so that brackets stretch in any browser."""
 
 from base64 import b64encode
-
 from functools import cache
 from pathlib import Path
 

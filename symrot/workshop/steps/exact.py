@@ -36,17 +36,13 @@ class _Form(NamedTuple):
     title: str
     derivation: str
     # (name, unit and meaning, value) of each number in p
-    # (name, unit and meaning, value) of each number in p
     parameters: tuple[tuple[str, str, Fraction], ...]
     # definitions of constants, in C
     tables: tuple[str, ...]
     # arguments of the C function that prepares a motion
-    # arguments of the C function that prepares a motion
     arguments: tuple[str, ...]
     # indices of the body axes that the closed form calls e1, e2, e3
-    # indices of the body axes that the closed form calls e1, e2, e3
     named: tuple[int, int, int]
-    # returns the motion for an initial omega and quaternion, and for parameters that are doubles
     # returns the motion for an initial omega and quaternion, and for parameters that are doubles
     motion: Motions
 
