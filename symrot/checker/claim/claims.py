@@ -123,7 +123,7 @@ class Claim:
         return definitions
 
     def with_definitions(self, value: Any) -> Any:
-        """Return a SymPy value with the formulas of :attr:`defining` in place of names: ``cos(alpha)`` for c1."""
+        """Return a SymPy value with the formulas that hypotheses define in place of names: ``cos(alpha)`` for c1."""
         interpreter = self.interpreter()
         for name, tree in self.defining.items():
             value = value.xreplace({interpreter.read(Node("name", name)): interpreter.read(tree)})
@@ -131,7 +131,7 @@ class Claim:
 
     @property
     def expanded(self) -> "Claim":
-        """The claim with the formulas of :attr:`defining` in place of names, without the defining hypotheses."""
+        """The claim with the formulas that hypotheses define in place of names, without these hypotheses."""
         definitions = self.defining
         if self.relation is None or not definitions:
             return self

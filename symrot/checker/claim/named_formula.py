@@ -24,14 +24,14 @@ __all__ = [
 
 Solve = Callable[[Node], Node]
 MARKED = ("_prime", "_dot", "_star")
-"""Endings of names with a mark that makes them depend on another quantity: ``theta'`` and ``z*``."""
+"""Endings of names such as ``theta'`` and ``z*``, whose marks say that they depend on theta and z."""
 
 INVERSES = {"sin": "asin", "cos": "acos", "tan": "atan", "exp": "log", "log": "exp"}
-"""Function of a quantity -> the function that solves for the quantity."""
+"""Maps a function to its inverse, which solves for its argument."""
 
 
 class NamedFormula(NamedTuple):
-    """A claim such as ``k^2 = I/m`` as a formula for a quantity that the claim does not define.
+    """A claim such as ``k^2 = I/m``, split into a quantity that it does not define (k) and a formula for it.
 
     Attributes
     ----------

@@ -145,10 +145,10 @@ def notation_of(reading: Reading) -> TypedNotation:
 
 
 BOUND_LOOSELY = ("sum", "neg", "product")
-"""The kinds of trees that need brackets as factors of a product of quaternions."""
+"""Kinds of trees that need brackets in a product of quaternions."""
 
 END = Node("name", "")
-"""A stand-in for the factor after the last one."""
+"""Stands in for the missing factor after the last factor of a product."""
 
 
 def _is_number_power(node: Node) -> bool:

@@ -36,13 +36,13 @@ _STOP = frozenset({
     "formula", "theorem", "principal", "components", "component", "unit", "dq/dt", "omega", "b", "e", "b^-1", "=",
     "i", "squared", "acos", "asin", "atan2", "2", "without", "minus", "sign", "physical",
 })  # fmt: skip
-"""Words in the names of derived formulas that distinguish no formulas for one quantity."""
+"""Words in the names of derived formulas that do not tell formulas for one quantity apart."""
 
 
 COMPONENTS = {
     "first": "x1Ap", "second": "y2Bq", "third": "z3Cr", "scalar": "04sw", "x": "x1Ap", "y": "y2Bq", "z": "z3Cr",
 }  # fmt: skip
-"""A component or an axis of a known formula -> the last letters of names for it; p, q and r are aircraft rates."""
+"""Maps a component or an axis to the endings of names for it; p, q and r are the rates of an aircraft."""
 
 INDICES = frozenset("xyz0123")
 ANGLES = ("phi", "theta", "psi")
@@ -125,7 +125,7 @@ def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
 TOPS = ("symmetric top", "heavy top", "fast top", "sleeping top")
 GYRATION = "radius of gyration"
 DIRECTIONS = {"axial moment of inertia": "z", "transverse moment of inertia": "xy"}
-"""Title of a quantity -> the axes of a round body that it is about."""
+"""Maps the title of a moment of inertia to the axes of a round body about which it may be."""
 
 
 def _has_axes(name: str, axes: str) -> bool:
@@ -137,7 +137,9 @@ def _has_axes(name: str, axes: str) -> bool:
 
 
 def _is_along(name: str, line: str) -> bool:
-    """Return whether the formula named ``name`` is for an axis along a ``line`` of its body: "about a diameter"."""
+    """Return whether the formula named ``name`` is for an axis along a ``line`` of its body, such as "about a
+    diameter".
+    """
     _, bodies = LINES[line]
     axis = re.search(r", ([xyz]) axis", name)
     return any(
@@ -148,8 +150,8 @@ def _is_along(name: str, line: str) -> bool:
 
 
 def _where_else(place: str, line: str, name: str) -> str:
-    """Return words for the axis of a formula: its ``place``, or "about another axis" if the stated ``line`` goes
-    through it.
+    """Return words for the axis of a formula: its ``place``, or "about another axis" if ``line`` goes through this
+    place too.
     """
     _, bodies = LINES[line]
     places = [own for body, (own, _) in bodies.items() if body in bodies_of_formula(name)]
@@ -262,7 +264,7 @@ def plain(name: str) -> str:
 
 
 def guesses(context: Context, name: str, stated: str) -> list[str]:
-    """Return the words in a derived formula's name that neither the context nor ``stated`` has.
+    """Return the words in a derived formula's name that neither the context nor ``stated`` contains.
 
     ``stated`` are words that the claim's quantity implies, "moment of inertia" for I.
     """
@@ -300,7 +302,7 @@ def is_place(words: str) -> bool:
 
 @lru_cache(maxsize=20_000)
 def _tokens(text: str) -> tuple[str, ...]:
-    """Return the words of a text in one spelling, without those, such as "of", that tell no formulas apart."""
+    """Return the words of a text in one spelling, without words such as "of"."""
     return tuple(
         word
         for word in re.findall(r"[\w'/^-]+", plain_words(text).replace("-frame", " frame"))

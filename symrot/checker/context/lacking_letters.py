@@ -25,9 +25,9 @@ from symrot.exact.printing import as_text
 __all__ = ["with_lacking_letters"]
 
 LEAST_LETTERS = 2
-"""The fewest letters that a formula has in common with the formula that is meant."""
+"""The fewest letters that a claim's formula must share with a derived one."""
 MOST_ASSIGNMENTS = 6
-"""The most ways of assigning the letters of a claim to the symbols of one derived formula."""
+"""The most assignments of a claim's letters to the symbols of one derived formula."""
 
 Assignments = Callable[[Known, Any, set[Expr]], Iterator[Mapping[Expr, Expr]]]
 

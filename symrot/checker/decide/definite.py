@@ -6,7 +6,7 @@ from sympy import Abs, Add, Expr, Mul, Pow
 __all__ = ["surely_nonnegative"]
 
 MOST_TERMS_OF_SQUARE = 40
-"""The most terms of a sum that is factored to see if it is a square."""
+"""The most terms of a sum that is factored, since it may be a square."""
 
 
 def surely_nonnegative(value: Expr) -> bool:

@@ -1,7 +1,7 @@
 """Conditions on signs as text, as a book writes them: ``0 <= x <= pi`` instead of ``x >= 0 and pi - x >= 0``.
 
-A condition is a pair (formula, sign) with the sign ``">= 0"``, ``"> 0"`` or ``"!= 0"``. Conditions that follow from
-others are dropped. The text holds exactly where the conditions hold and their formulas have values.
+A condition is a pair (formula, sign) with the sign ``">= 0"``, ``"> 0"`` or ``"!= 0"``. Those that follow from others
+are dropped. The text holds exactly where the conditions hold and their formulas have values.
 """
 
 import re
@@ -26,10 +26,10 @@ from symrot.exact.size import pieces
 __all__ = ["condition_texts", "follow", "positive_symbols", "range_text", "with_domain"]
 
 MOST_PIECES = 80
-"""A formula with more symbols and operations is written as it is."""
+"""The most symbols and operations of a formula that is simplified."""
 
 Sign = tuple[Expr, str]
-"""(formula, sign): the condition that the formula is ``"> 0"``, ``">= 0"`` or ``"!= 0"``."""
+"""A condition (formula, sign): the formula is ``"> 0"``, ``">= 0"`` or ``"!= 0"``."""
 
 
 def range_text(signs: Sequence[Sign], divided: bool = True) -> str:
@@ -65,7 +65,7 @@ def condition_texts(conditions: Iterable[Any]) -> tuple[str, ...]:
 
 
 _EMPTY_RANGE = re.compile(r"^(.+) < (\w+) < \1$")
-"""A range without a number, such as ``0 < x < 0``; two conditions that contradict each other are easier to read."""
+"""A range without a number, such as ``0 < x < 0``, which is easier to read as two conditions."""
 
 
 def positive_symbols(conditions: Iterable[Any]) -> dict[Expr, Expr]:
@@ -237,9 +237,7 @@ class _Range:
     high_closed: bool = True
 
     def narrow(self, root: Expr, closed: bool, above: bool) -> None:
-        """Add a bound of the quantity: a lower one if ``above``, otherwise an upper one, which it may equal if
-        ``closed``.
-        """
+        """Add a lower (``above``) or an upper bound of the quantity, which the quantity may equal if ``closed``."""
         name = "low" if above else "high"
         known = getattr(self, name)
         tighter = known is None or ((root - known) if above else (known - root)).is_positive
@@ -441,7 +439,7 @@ class _Conditions:
 
     def grants(self, quantity: Expr, own: _Range) -> bool:
         """Return whether a cosine lies in the range ``own`` anyway, so that this need not be printed; False for
-        others.
+        other quantities.
         """
         if not isinstance(quantity, cos):
             return False

@@ -17,10 +17,10 @@ LARGEST_DEGREE = 20
 """The highest degree of a polynomial whose real roots are counted."""
 
 MOST_UNKNOWNS = 12
-"""The most unknowns of a sum that is written as a sum of squares."""
+"""The most unknowns of a polynomial that is written as a sum of squares."""
 
 RANGES = {sympy.sin: (-1, 1), sympy.cos: (-1, 1), sympy.tanh: (-1, 1), sympy.cosh: (1, None), sympy.exp: (0, None)}
-"""Function -> its range over the real numbers; None stands for no bound."""
+"""Maps a function to its range over the real numbers, with None for no bound."""
 
 Bounds = tuple[Expr | None, Expr | None]
 

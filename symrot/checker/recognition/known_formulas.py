@@ -351,7 +351,7 @@ def _selected(
 
 
 def ending_of(name: str) -> str:
-    """Return ", squared" or ", acos" and the like at the end of a known formula's name, or "" without such an end."""
+    """Return the end of a known formula's name that names a function, such as ", squared" or ", acos"; otherwise ""."""
     # the formula then is a function of the quantity: its square, cosine, or half angle's cosine
     ending = re.search(r", (squared|(\S+ )?(acos|asin|atan2))$", name)
     return ending[0] if ending else ""

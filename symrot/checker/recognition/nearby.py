@@ -196,7 +196,7 @@ class Search(NamedTuple):
     values: Values
 
     def matching(self, part: Part) -> Iterator[Variant]:
-        """Yield the variants of a part with the values ``part.needed``, which make the whole formula right."""
+        """Yield the changes of a part that give it the values ``part.needed``, which make the whole formula right."""
         values = self.variants.get(part.path, [])
         (first, *_) = part.needed
         if is_matrix(first) or not values:

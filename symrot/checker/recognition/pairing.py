@@ -177,11 +177,8 @@ def _extended(
 
 @lru_cache(maxsize=20_000)
 def is_fitting(known: str, own: str, is_angle: bool) -> bool:
-    """Return whether ``known`` in a known formula and ``own`` in a claim may name the same quantity.
-
-    ``is_angle``: the claim has the name in sines.
-    """
-    name = plain_name(own)
+    """Return whether ``known`` in a known formula and ``own`` in a claim may name the same quantity."""
+    name = plain_name(own)  # is_angle: the claim has it in sines or cosines
     if known == name:
         return True
     unit = UNIT_OF_NAME.get(known)

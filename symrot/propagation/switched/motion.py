@@ -38,10 +38,10 @@ class SwitchedPropagator(Propagator):
         return SwitchedMotion(plan, choose_method(plan, self._method), self.tolerance)
 
 
-@final
 # In sliding motion (dry friction at rest, relay control), the mode takes the value that keeps the guard at zero, until
 # this value leaves the range of the function. Source: A. F. Filippov, Differential Equations with Discontinuous
 # Righthand Sides, Kluwer 1988, sections 4 and 8.
+@final
 class SwitchedMotion(MotionInParts):
     """Motion under torques with switching functions (sign, abs, ..), computed in smooth intervals between switches."""
 

@@ -17,7 +17,7 @@ from symrot.errors import InputError
 __all__ = ["claims_of_reading"]
 
 MOST_EQUATIONS = 30
-"""The most equations in one text, lines and links of chains."""
+"""The most equations in one text; ``a = b = c`` counts as two."""
 
 
 def claims_of_reading(
@@ -72,7 +72,9 @@ def claims_of_reading(
 
 
 def _with_signs_of_products(assume: Sequence[str], stated: Context) -> tuple[list[str], Context]:
-    """Return the hypotheses without those such as ``I_xy = ∫ x y dm``, and a context that includes their signs."""
+    """Return the hypotheses without those such as ``I_xy = ∫ x y dm``, and the context with the sign that these
+    state.
+    """
     others = []
     for source in assume:
         readings = latex_readings(source) if is_latex(source) else readings_of(source, "given")

@@ -228,7 +228,9 @@ def _shapes(vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> di
 
 
 def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> Quaternions:
-    """Return the quaternions, matrices and columns in a relation, and the relation with their scalar products."""
+    """Return the quaternions, matrices and columns in a relation, and the relation with ``dot(a, b)`` for columns
+    a and b.
+    """
     known = {name for name, _ in define}
     names = {vector.name for vector in vectors}
     generic = {*matrices_of_entries(define)}

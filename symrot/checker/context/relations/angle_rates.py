@@ -23,7 +23,7 @@ __all__ = ["substitutions_of_entries", "substitutions_of_rates"]
 
 FRAMES = ("body", "space")
 COMPONENT = re.compile(r"(?:omega|w|Omega)_?([1-3xyz])(?:_prime)?|([pqr])")
-"""A component of the angular velocity; its groups are the index and the letter of an aircraft's rate."""
+"""A component of the angular velocity, with the groups index, and letter of an aircraft's rate."""
 
 AXES = {letter: axis for axis, letters in enumerate(("1xp", "2yq", "3zr")) for letter in letters}
 USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
