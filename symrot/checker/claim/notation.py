@@ -118,14 +118,15 @@ class TypedNotation:
 
 
 def with_formulas(source: str, formula: Callable[[Node], str], signs: Mapping[str, str]) -> str:
-    """Return a condition such as ``0 <= x <= pi and y > 0`` in another notation; unchanged if unreadable.
-
-    ``formula`` writes formulas, ``signs`` translates ``==``.
+    """Return a condition such as ``0 <= x <= pi and y > 0`` in another notation, with ``signs`` for signs such as
+    ``==``.
     """
     pieces = SIGN.split(source)
     try:
+        # ``formula`` returns the text of a formula in this notation
         formulas = [formula(read_expression(piece)) for piece in pieces[::2]]
     except InputError:
+        # an unreadable condition stays unchanged
         return source
     between = [signs.get(sign.strip(), sign.strip()) for sign in pieces[1::2]] + [""]
     return " ".join(f"{each} {sign}".strip() for each, sign in zip(formulas, between, strict=True))

@@ -117,10 +117,8 @@ _BINDING = {"sum": SUM, "neg": SUM, "product": PRODUCT, "inv": PRODUCT, "power":
 
 
 def text(node: Node, binding: int = 0) -> str:
-    """Return the text of a tree, with no more brackets than its meaning needs.
-
-    ``binding`` is the rank of the operation around it: a sum in a product gets brackets.
-    """
+    """Return the text of a tree, with no more brackets than its meaning needs: ``x*(y + z)``."""
+    # ``binding`` is the rank of the operation around the tree: a sum in a product gets brackets
     own = _BINDING.get(node.kind, ATOM)
     if node.kind == "number" and node.value.denominator != 1:
         own = PRODUCT

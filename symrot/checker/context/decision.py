@@ -1,7 +1,7 @@
 """Verdicts in a context, which states the meanings of names: a claim about a quantity is then decided.
 
 A claim means a known formula, such as the "moment of inertia of a rod about an end", if its context or its quantity
-states each word of this name. It is true if it equals such a formula, and false if it differs from all of them.
+states each word of this name. It is true if it equals such a formula, false if it differs from all.
 """
 
 import re

@@ -254,7 +254,7 @@ class _ClaimCase(Case):
     @property
     def lacks_evidence(self) -> bool:
         """Whether the search for a counterexample must go on."""
-        # conditions on the signs of roots make a claim true, but they are derived without its hypotheses
+        # known conditions on the signs of roots end the search; under hypotheses it goes on, since they ignore these
         return self.counterexample is None and (bool(self.ring.hypotheses) or self.branches is None)
 
     def within_domain(self, search: Search) -> Search:
