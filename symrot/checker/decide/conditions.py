@@ -27,7 +27,7 @@ PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)",
 """Names of moments of inertia, and of products of inertia."""
 
 MOST_TERMS, LARGEST_DEGREE, MOST_LETTERS = 400, 24, 20
-"""The most terms, the largest degree and the most letters of a residual that is factored.
+"""The most terms, the largest degree and the most letters of a residual (left minus right) that is factored.
 
 The difference of the traces of A B C and B A C has 48 terms in 27 letters; factoring it takes seconds.
 """

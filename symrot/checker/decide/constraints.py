@@ -1,8 +1,7 @@
 """The real points at which a claim is to hold, as polynomial constraints on the generators (unknowns) of its ring.
 
-Hypotheses, ``sin^2 + cos^2 - 1`` of angles, and ``root^n - base`` of roots are zero; divisors are not. A generator is
-``free`` if it may have every value that these constraints allow. Constraints on other generators, such as tanh(x),
-are not used.
+Hypotheses, ``sin^2 + cos^2 - 1`` of angles, and ``root^n - base`` of roots are zero; divisors are not. A ``free``
+generator may have every value that these constraints allow. Constraints on others, such as tanh(x), are not used.
 """
 
 from collections.abc import Iterator, Sequence
@@ -20,7 +19,7 @@ from symrot.exact.ring.ring import FormulaRing
 __all__ = ["Constraints", "constraints_of", "distinct_factors", "occurring"]
 
 MOST_TERMS, MOST_UNKNOWNS, LARGEST_DEGREE = 40, 4, 12
-"""Bounds on a polynomial that is factored; of a larger one only unknowns that divide every term are split off."""
+"""The most terms, the most unknowns and the largest degree of a polynomial that is factored."""
 
 
 @dataclass(frozen=True)

@@ -57,10 +57,10 @@ from symrot.exact.ring.roots import is_positive_where_defined, written
 __all__ = ["Equation", "decide_equation", "for_positive_bases", "is_large"]
 
 MUCH_LARGER = 5
-"""A formula with more than this many times the pieces of another one certainly has the longer text."""
+"""The ratio of sizes from which on the larger formula certainly has the longer text."""
 
 MOST_ON_THE_CUT = 4
-"""The most symbols of a formula with atan2 that is examined at points where some of them are zero."""
+"""The most symbols of a claim with atan2 that is examined at points with simple coordinates."""
 
 
 @dataclass(frozen=True)
@@ -254,7 +254,7 @@ class _ClaimCase(Case):
     @property
     def lacks_evidence(self) -> bool:
         """Whether the search for a counterexample must go on."""
-        # conditions on the signs of roots make a claim true, but they are derived without its hypotheses
+        # known conditions on the signs of roots end the search; under hypotheses it goes on, since they ignore these
         return self.counterexample is None and (bool(self.ring.hypotheses) or self.branches is None)
 
     def within_domain(self, search: Search) -> Search:
@@ -535,7 +535,7 @@ def _with_shorter_powers(equation: Equation, lefts: Sequence[Expr], rights: Sequ
 
 
 def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
-    """Return formulas that must not be zero, by their texts, without those that need not be stated."""
+    """Return the formulas that must not be zero, by their texts, without superfluous ones."""
     remaining = {}
     for text, form in nonzero.items():
         value = normal_form(form) if form.is_Add and _pieces(form) < MOST_PIECES else form
@@ -551,7 +551,7 @@ MOST_PIECES = 60
 
 
 def _shorter(first: Expr, second: Expr) -> Expr:
-    """Return that one of two formulas for the same divisor which is easier to read."""
+    """Return the more readable one of two formulas for the same divisor."""
     few, many = sorted((first, second), key=_pieces)
     if _pieces(many) > MUCH_LARGER * _pieces(few):
         # a much larger formula is not even written as text

@@ -34,10 +34,10 @@ from symrot.exact.ring.ring import FormulaRing
 __all__ = ["Hypotheses"]
 
 FEW = 24
-"""The number of points that are drawn before proofs are tried, which cost more."""
+"""The number of points that are drawn before proofs, which take longer, are tried."""
 
 CANDIDATES = 8
-"""The number of points where the sides differ; the one with the shortest numbers becomes the counterexample."""
+"""The number of points at which the sides differ before the shortest becomes the counterexample."""
 
 OTHER_VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (2, 1), (1, 2), (-1, 1), (3, 1), (-1, 3), (5, 7), (-3, 2)))
 """Values for symbols that occur in no hypothesis."""
@@ -215,9 +215,8 @@ class Hypotheses:
         raise InputError(f"the hypotheses hold at no real point{divisors}: {reason}")
 
     def entails(self, numerators: Iterable[PolyElement]) -> bool:
-        """Return whether the hypotheses imply that all ``numerators``, those of left - right, provably vanish.
-
-        Then the claim follows. The result is False without hypotheses.
+        """Return whether the hypotheses provably make all ``numerators`` of left minus right zero; False without
+        hypotheses.
         """
         target = self.constraints.ring
         return self.present and all(vanishes_on(self.constraints, poly.set_ring(target)) for poly in numerators)

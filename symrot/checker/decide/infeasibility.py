@@ -22,7 +22,7 @@ __all__ = ["Infeasibility", "infeasibility_proof", "vanishes_on"]
 
 MOST_CASES = 40
 MOST_ROUNDS = 6
-"""The most cases of a proof, and the most rounds of splitting in one case."""
+"""The most cases of a proof, and the most Groebner bases in one case."""
 
 MOST_PRODUCTS = 150_000
 """The most products of terms in all Groebner bases of one proof."""

@@ -24,13 +24,13 @@ from symrot.exact.intervals import DIGITS, enclosure
 __all__ = ["LARGEST_DEGREE", "ShorterPowers", "degree_of", "point_of_difference", "shorter_powers"]
 
 LARGEST_DEGREE = 240
-"""The largest degree of a side in its symbols, sines and cosines; a formula of larger degree is not expanded."""
+"""The largest degree in symbols, sines and cosines of a formula that is expanded."""
 
 LARGEST_EXPANDED = 64
-"""Powers are replaced if their exponent, times the degree of their base, is larger."""
+"""The largest product of an exponent and the degree of its base for which a power is not replaced."""
 
 HIGHEST_OF_BASE = 4
-"""The highest power of one base that another base is compared with."""
+"""The highest power of a base that is compared with another base."""
 
 MOST_POINTS = 500
 MOST_BASES = 12
@@ -41,7 +41,7 @@ LONGEST_WHOLE_NUMBER = 40
 """The most digits of a whole number that is written exactly."""
 
 DIGITS_WRITTEN = (10, 20, 30, 40, 50)
-"""Numbers of digits for other numbers, of which the smallest that shows a difference of the sides is used."""
+"""Numbers of digits for a pair of values, from which the first is used that shows a difference."""
 
 
 # -- the degree of formulas -------------------------------------------------------------------------------------------
@@ -61,8 +61,9 @@ def _size(formula: Expr) -> int:
 
 
 def _base_multiples(formulas: Sequence[Expr]) -> Mapping[Expr, Fraction]:
-    """Return the largest number of which the coefficients of each symbol in angles are multiples, by symbol."""
-    # 1/2 for x in sin(x/2) and sin(3*x)
+    """Return, by symbol, the largest number of which its coefficients in angles are multiples: 1/2 for sin(x/2)
+    and sin(3*x).
+    """
     arguments = {
         node.args[0]
         for formula in formulas
@@ -76,7 +77,7 @@ def _base_multiples(formulas: Sequence[Expr]) -> Mapping[Expr, Fraction]:
 def _degree(node: Expr, known: dict[Expr, int], bases: Mapping[Expr, Fraction]) -> int:
     """Return an upper bound on the degree of a formula's numerator plus that of its denominator.
 
-    ``known`` stores results; ``bases`` is explained in :func:`_multiple`.
+    ``known`` stores results; ``bases`` are those of :func:`_base_multiples`.
     """
     if node not in known:
         below = [_degree(part, known, bases) for part in node.args]
@@ -94,7 +95,7 @@ def _degree(node: Expr, known: dict[Expr, int], bases: Mapping[Expr, Fraction]) 
 
 
 def _multiple(argument: Expr, bases: Mapping[Expr, Fraction]) -> int:
-    """Return about the degree of the sine of an angle in sines and cosines of its symbols: 5 for 3*x + y/2."""
+    """Return an estimate of the degree of an angle's sine in sines and cosines of its symbols: 5 for 3*x + y/2."""
     total = 0
     for term in argument.as_ordered_terms() if argument.is_Add else [argument]:
         number, atom = term.as_coeff_Mul()

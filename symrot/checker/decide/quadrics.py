@@ -23,7 +23,7 @@ SIMPLE = tuple(
 """Values that coordinates may have, the simplest first."""
 
 TRIES = 60
-"""The most simple points tried on one quadric, and the most lines tried through one point of it."""
+"""The most simple points that are tried on a quadric, and the most lines through one of them."""
 
 
 def rational_square_root(value: Any) -> Any:

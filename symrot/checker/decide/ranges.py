@@ -1,7 +1,7 @@
-"""Conditions on signs as text, as a book writes them: ``0 <= x <= pi`` instead of ``x >= 0 and pi - x >= 0``.
+"""Conditions on signs as text, as a book writes them: ``0 <= x <= pi`` for ``x >= 0 and pi - x >= 0``.
 
-A condition is a pair (formula, sign) with the sign ``">= 0"``, ``"> 0"`` or ``"!= 0"``. Conditions that follow from
-others are dropped. The text holds exactly where the conditions hold and their formulas have values.
+A condition is a pair (formula, sign); signs are ``">= 0"``, ``"> 0"`` and ``"!= 0"``. Conditions that follow from
+others are dropped. The text holds where the conditions hold and their formulas have values.
 """
 
 import re
@@ -26,10 +26,10 @@ from symrot.exact.size import pieces
 __all__ = ["condition_texts", "follow", "positive_symbols", "range_text", "with_domain"]
 
 MOST_PIECES = 80
-"""A formula with more symbols and operations is written as it is."""
+"""The most symbols and operations of a formula that is simplified."""
 
 Sign = tuple[Expr, str]
-"""(formula, sign): the condition that the formula is ``"> 0"``, ``">= 0"`` or ``"!= 0"``."""
+"""A condition (formula, sign): the formula is ``"> 0"``, ``">= 0"`` or ``"!= 0"``."""
 
 
 def range_text(signs: Sequence[Sign], divided: bool = True) -> str:
@@ -65,7 +65,7 @@ def condition_texts(conditions: Iterable[Any]) -> tuple[str, ...]:
 
 
 _EMPTY_RANGE = re.compile(r"^(.+) < (\w+) < \1$")
-"""A range without a number, such as ``0 < x < 0``; two conditions that contradict each other are easier to read."""
+"""A range without a number, such as ``0 < x < 0``, which is easier to read as two conditions."""
 
 
 def positive_symbols(conditions: Iterable[Any]) -> dict[Expr, Expr]:
@@ -237,21 +237,19 @@ class _Range:
     high_closed: bool = True
 
     def narrow(self, root: Expr, closed: bool, above: bool) -> None:
-        """Add a bound of the quantity: a lower one if ``above``, otherwise an upper one, which it may equal if
-        ``closed``.
-        """
+        """Add a lower (``above``) or an upper bound of the quantity, which the quantity may equal if ``closed``."""
         name = "low" if above else "high"
         known = getattr(self, name)
+        # a weaker bound than the known one changes nothing
         tighter = known is None or ((root - known) if above else (known - root)).is_positive
         if tighter:
             setattr(self, name, root)
             setattr(self, f"{name}_closed", closed)
-        # a weaker bound changes nothing
         elif known == root:
             setattr(self, f"{name}_closed", closed and getattr(self, f"{name}_closed"))
 
     def sign_of(self, root: Expr) -> tuple[int, bool]:
-        """Return the sign of q - root for q in this range, and whether it may vanish: (1, True) for root 2 in q >=
+        """Return the sign of q - root for q in this range, and whether it may vanish: (1, True) for q >= 2, root
         2.
         """
         for bound, closed, sign in ((self.low, self.low_closed, 1), (self.high, self.high_closed, -1)):
@@ -406,15 +404,13 @@ class _Conditions:
         return True
 
     def _excludes(self, formula: Expr) -> bool:
-        """Return whether the ranges imply ``formula != 0``.
-
-        A range that ends at the zero of the formula loses this end: x >= 0 becomes x > 0.
-        """
+        """Return whether the ranges imply ``formula != 0``, after a range that ends at its zero has lost this end."""
         bound = _bound(formula)
         if bound.root == 0 and isinstance(bound.quantity, sin | cos) and self._angle_excludes(bound.quantity):
             return True
         if any(self._lies_between(bound, factors, direction) for factors, direction, _ in self.products):
             return True
+        # x >= 0 becomes x > 0
         own = self.ranges.get(bound.quantity)
         if own is None:
             if not isinstance(bound.quantity, sin | cos):
@@ -441,7 +437,7 @@ class _Conditions:
 
     def grants(self, quantity: Expr, own: _Range) -> bool:
         """Return whether a cosine lies in the range ``own`` anyway, so that this need not be printed; False for
-        others.
+        other quantities.
         """
         if not isinstance(quantity, cos):
             return False

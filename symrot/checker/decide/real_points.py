@@ -20,14 +20,14 @@ __all__ = ["ATTEMPTS", "RealPoint", "real_points", "value_at"]
 
 ATTEMPTS = 120
 RATIONAL = 60
-"""The most points that are drawn; after the first ``RATIONAL`` of them irrational roots are allowed too."""
+"""The most points that are drawn, and the number of points that are drawn before irrational roots are allowed."""
 
 MOST_STEPS = 60
 MOST_TERMS = 300
 """The most steps of one drawing, and the most terms of its equations."""
 
 MOST_BARREN = 3
-"""The number of times that a quadric may fail to give a point before it is no longer tried."""
+"""The number of failures after which a quadric is not tried any more."""
 
 LARGEST_EXTENSION = 8
 """The largest degree of a field of algebraic numbers."""
@@ -35,8 +35,8 @@ LARGEST_EXTENSION = 8
 LARGEST_NORM, MOST_NORMS = 24, 400
 """The largest norm of a polynomial that is factored over such a field, and the largest sum of norms in a search.
 
-The norm is the degree of the polynomial times the degree of the field. Factoring one of norm 24 takes a fifth of a
-second, one of norm 64 six seconds.
+The norm is the degree of the polynomial times the degree of the field. A norm of 24 takes a fifth of a second, a
+norm of 64 six seconds.
 """
 
 
@@ -374,4 +374,4 @@ _ORDERS: tuple[Sequence[_Step], ...] = (
     (_Drawing.factor, _Drawing.univariate, _Drawing.quadric, _Drawing.substitution, _Drawing.guess),
     (_Drawing.factor, _Drawing.univariate, _Drawing.guess),
 )
-"""Orders in which steps are tried, one for each attempt: most systems can be solved in one of them."""
+"""Orders of steps, one for each attempt: in one of them, most systems can be solved."""
