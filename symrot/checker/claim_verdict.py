@@ -49,7 +49,7 @@ def check_claim(claim: Claim, repair: bool = True) -> Verdict:
 def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict | None]:
     """Return (verdict, None) for a claim in its usual interpretation.
 
-    If only another interpretation makes the claim true, its verdict is in place of the None.
+    If only another interpretation makes the claim true, its verdict replaces the None.
     """
     start = perf_counter()
     verdict: Verdict | None = None
@@ -97,8 +97,8 @@ def _ended() -> str:
 def unfinished() -> Decision:
     """Return the decision "undecided" for a claim that would need more processor time than the limit allows."""
     reason = (
-        f"stopped, since SymPy needs more than {MOST_SECONDS} s of processor time for these formulas; a faster "
-        "machine may decide, and so may a claim with a letter in place of one of the inner functions"
+        f"SymPy needs more than {MOST_SECONDS} s of processor time; "
+        "a faster machine may decide it, and so may a letter in place of an inner function"
     )
     return Decision("undecided", reason=reason)
 

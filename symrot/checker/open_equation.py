@@ -30,6 +30,7 @@ def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:
     if claim.relation is None or not claim.implied or claim.hypotheses or claim.define or claim.has_parts:
         return verdict
     _, left, right = claim.relation
+    # an equation of two letters, a = b
     if all(map(is_name_or_rate, (left, right))) and left != right:
         both = " and ".join(notation.formula(side) for side in (left, right))
         reason = f"nothing here says what {both} are: it may be a condition, or another name for one quantity"

@@ -56,7 +56,7 @@ def with_minus_sign(claim: Claim) -> Claim:
 
 
 def in_claim(verdict: Verdict) -> Verdict:
-    """Return the verdict on the original claim from that on the claim of :func:`with_minus_sign`."""
+    """Return the verdict on a claim from that on the equivalent claim of :func:`with_minus_sign`."""
     return brought_back(verdict, _changed, NOTE)
 
 

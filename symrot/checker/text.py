@@ -242,10 +242,7 @@ def _on_measured(
 def _on_units(
     measured: Measured, source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool
 ) -> Verdict:
-    """Return the verdict on one reading of a text whose numbers have units, which ``measured`` describes.
-
-    The other arguments are those of :func:`verdict_on_text`.
-    """
+    """Return the verdict on one interpretation, ``measured``, of a text whose numbers have units."""
     reading = readings_of(measured.text)[0]
     lines = claims_of_reading(reading, measured.text, assume, units)
     notation = notation_of(reading)
@@ -315,10 +312,7 @@ def _on_inequality(
     reading: Reading, notation: Notation, source: str, assume: Sequence[str], units: Mapping[str, str] | None,
     stated: Context,
 ) -> Verdict:  # fmt: skip
-    """Return the verdict on a reading that consists of one inequality.
-
-    The arguments are those of :func:`verdict_on_reading`.
-    """
+    """Return the verdict on an interpretation of a text as one inequality."""
     (chain,) = reading.lines
     (sign,) = chain.signs
     equation = replace(reading, lines=(replace(chain, signs=("==",)),))
@@ -536,7 +530,7 @@ def _on_parts(
 def _with_fitting_line(
     claims: Sequence[Claim], lines: Sequence[tuple[str, Collection[str], Verdict]], notation: Notation, verdict: Verdict
 ) -> Verdict:
-    """Return the verdict on lines that contradict each other, with the single edit after which they fit together."""
+    """Return the verdict on equations that contradict each other, with the single edit that makes them fit together."""
     if len(lines) != len(claims) or len(lines) > MOST_LINES or any(claim.hypotheses for claim in claims):
         return verdict
     from symrot.checker.recognition.naming import recognised_edits  # it takes longer to import than most checks

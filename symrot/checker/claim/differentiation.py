@@ -21,9 +21,10 @@ __all__ = ["as_functions", "is_rule"]
 
 
 def as_functions(claim: Claim) -> Claim | None:
-    """Return a claim with ``diff(x(t), t)`` in place of ``diff(x, q)``.
+    """Return a claim with functions of time for the letters that it differentiates: ``diff(x(t), t)`` for
+    ``diff(x, q)``.
 
-    None if it differentiates no such letter x, or has hypotheses or several variables.
+    None if there are no such letters.
     """
     assert claim.relation is not None
     sign, *sides = claim.relation
@@ -36,6 +37,7 @@ def as_functions(claim: Claim) -> Claim | None:
     moving = {*names, *functions, *dict(claim.define), *(str(variable.value) for variable in variables)}
     letters = [_letters(derivative.args[0]) for derivative in derivatives]
     names |= {name for inner in letters if moving.isdisjoint(inner) for name in inner} - {"pi"}
+    # no rule of differentiation: hypotheses, several variables, or (below) both t and another variable
     if claim.hypotheses or len(variables) != 1 or not names:
         return None
     # the variable is renamed to t: a rule of differentiation does not depend on its name, unless t is also in the claim

@@ -35,7 +35,8 @@ __all__ = ["BUILT_IN", "ROTATIONS", "inverted"]
 LARGEST_MATRIX = 12
 
 ROTATIONS = {f"R{bar}{axis}": axis.upper() for bar in ("", "_") for axis in "xyz"}
-"""Function -> the axis of its rotation. R_x with an underscore is a symbol, unless an angle in brackets follows."""
+"""Maps a function to the axis of its rotation. Without brackets, R_x is a symbol; with an angle, R_x(a) is a
+function."""
 
 
 def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] | None = None) -> Any:
@@ -418,4 +419,5 @@ BUILT_IN: Mapping[str, tuple[int, int, Callable[[Scope, Node], Any]]] = {
     "vector_part": (1, 1, _vector_part),
     "dcm_of": (1, 4, _dcm_of),
 }
-"""Name -> (fewest arguments, most arguments, evaluation)."""
+"""Maps the name of a function to the smallest and the largest number of its arguments, and the function that
+evaluates it."""

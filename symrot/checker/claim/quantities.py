@@ -12,12 +12,12 @@ __all__ = [
 ]  # fmt: skip
 
 OTHER_MEANINGS = {"I": "the imaginary unit", "E": "the number e = 2.718.."}
-"""Letters that name a quantity in books on mechanics, and a number in SymPy -> the number in words."""
+"""Maps each letter that is a quantity in mechanics, and a number in SymPy, to words for the number."""
 
 OF_NUMBERS = frozenset(BUILT_IN) - {
     "sqrt", "abs", "diff", "integrate", "Matrix", "diag", "hstack", "cross", "dot", "skew", "trace", "det", "transpose",
 }  # fmt: skip
-"""Functions of which a moment of inertia or an energy is no argument."""
+"""Functions whose argument is never a moment of inertia or an energy."""
 
 USUAL_QUANTITIES = frozenset("mMgGhlLrRvFkTVUKJHNpqsabdcw")
 

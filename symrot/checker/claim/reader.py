@@ -2,7 +2,7 @@
 
 It reads SymPy syntax, such as ``left == right`` with ``Matrix([[..], [..]])``, and formulas as people type them, such
 as ``2x``, ``sin^2 x`` and ``ω₁``. Typed formulas may have several readings (interpretations), the usual one first.
-Where it cannot read a text, it raises InputError with the position.
+InputError tells the position where a text is unreadable.
 """
 
 import re
@@ -43,13 +43,13 @@ LONGEST_TEXT = 20_000
 MOST_PIECES = 5_000
 MOST_READINGS = 6
 MOST_DOUBTS = 40
-"""The most readings of one text that are tried, and the most places with two readings that are looked at."""
+"""The most readings of one text, and the most ambiguous places of a text that are examined."""
 
 DOT_OF_PRODUCTS = ("(", None, None, ")", "·", "(", None, None, ")")
 """The tokens of ``(R a)·(R b)``, with None in place of each name."""
 
 FIRST_AND_LAST = ("i", "f")
-"""Indices of the first and last value of a quantity."""
+"""Indices that mark the first (initial) and the last (final) value of a quantity."""
 
 Relation = tuple[str, Node, Node]
 
@@ -129,7 +129,7 @@ class Reading:
 
     @property
     def relation(self) -> Relation:
-        """The relation of a text that has exactly one, as (sign, left, right); of a longer text, the first one."""
+        """The first relation of the text, as (sign, left, right); most texts have only one."""
         return self.lines[0].links[0]
 
 
@@ -158,7 +158,8 @@ class _Text:
     def read(
         self, whole: bool, as_sympy: bool, flips: Collection[tuple[str, int]] = (), one_side: bool = False
     ) -> Reading:
-        """Return one reading of the text, in which the ambiguous places ``flips`` have their less usual meaning.
+        """Return the reading (interpretation) of the text in which the ambiguous places ``flips`` have their less
+        usual meaning.
 
         Parameters
         ----------
@@ -236,7 +237,7 @@ class _Text:
     def words(
         self, alone: Collection[str], flips: Collection[tuple[str, int]], vectors: Collection[str]
     ) -> tuple[dict[str, tuple[str, ...]], list[str], list[Doubt]]:
-        """Return a map from words to their letters, such as mgl to (m, g, l), notes on them, and the ambiguous
+        """Return the words that are products of names, as mgl is of m, g and l, notes on them, and the ambiguous
         words.
         """
         words: dict[str, tuple[str, ...]] = {}
@@ -319,10 +320,7 @@ class _Text:
         return tokens
 
     def with_indices(self, tokens: list[Token], flips: Collection[tuple[str, int]], doubts: list[Doubt]) -> list[Token]:
-        """Return tokens in which ``ωp`` on the left of an equation is one name, omega_p, not ω times p.
-
-        New ambiguous places are added to ``doubts``.
-        """
+        """Return tokens with the name omega_p for ``ωp`` on the left of an equation, where it is not ω times p."""
         padded = [None, *tokens]
         for place in range(len(tokens) - 3, -1, -1):
             before, first, second, after = padded[place], *tokens[place : place + 3]
@@ -580,7 +578,7 @@ def with_time(node: Node, names: Collection[str]) -> Node:
 
 
 def readings_of(source: str, where: str = "", declared: Declared | None = None) -> list[Reading]:
-    """Return the readings of a claim, the usual one first.
+    """Return the readings (interpretations) of a claim, the usual one first.
 
     Raises
     ------
@@ -622,7 +620,7 @@ def _readings(text: _Text, one_side: bool) -> Iterable[Reading]:
 
 
 def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
-    """Yield the readings of a text that is not SymPy syntax: the usual one first.
+    """Yield the readings (interpretations) of a text that is not SymPy syntax: the usual one first.
 
     If ``required``, an unreadable text raises InputError.
     """
@@ -634,9 +632,9 @@ def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
 
 
 def each_reading(read: Callable[[Collection[tuple[str, int]]], Reading]) -> Iterator[Reading]:
-    """Yield the readings of a text that ``read(flips)`` returns: the usual one first.
+    """Yield the readings (interpretations) of a text that ``read(flips)`` returns: the usual one first.
 
-    ``flips`` are keys of ambiguous places that get their less usual meaning.
+    ``flips`` are keys of ambiguous places with their less usual meaning.
     """
     usual = read(())
     yield usual
@@ -652,21 +650,20 @@ def each_reading(read: Callable[[Collection[tuple[str, int]]], Reading]) -> Iter
 
 
 def distinct_readings(readings: Iterable[Reading]) -> list[Reading]:
-    """Return at most MOST_READINGS readings with different trees, the usual one first, with a note if others were
-    dropped.
-    """
+    """Return at most MOST_READINGS readings (interpretations) with different trees, the usual one first."""
     by_trees: dict[Any, Reading] = {}
     for reading in readings:
         by_trees.setdefault(reading.lines, reading)
     usual, *others = by_trees.values()
     if len(others) >= MOST_READINGS:
+        # the user learns that some are dropped
         note = f"the text has more readings than the {MOST_READINGS} that are decided here; brackets leave fewer"
         usual = replace(usual, notes=(*usual.notes, note))
     return [usual, *others[: MOST_READINGS - 1]]
 
 
 def _only(readings: Sequence[Reading], source: str, where: str, rates: bool = False) -> Reading:
-    """Return the usual reading of a text, or raise InputError if the text is ambiguous."""
+    """Return the usual reading (interpretation) of a text, or raise InputError if the text is ambiguous."""
     usual = readings[0]
     # with ``rates``, x' is always the rate of x, and no prime is ambiguous
     doubts = [doubt for doubt in usual.doubts if not (rates and doubt.key[0] == "prime")]
@@ -737,7 +734,9 @@ def read_relation(source: str, where: str = "", declared: Declared | None = None
 
 
 def _strict(text: _Text, one_side: bool) -> tuple[Reading | None, InputError | None]:
-    """Return the reading of a text as SymPy syntax, or None, and the error of an unreadable text, or None."""
+    """Return the reading (interpretation) of a text as SymPy syntax, or None, and the error of an unreadable text,
+    or None.
+    """
     try:
         strict = text.read(whole=True, as_sympy=True, one_side=one_side)
     except InputError as reason:

@@ -90,7 +90,7 @@ def _is_name_of(name: Node, matrix: Node) -> bool:
 
 
 def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return the names that are added to vectors or matrices, so that they must have the same shape: a in
+    """Return the names that are added to a vector or matrix, each with its shape: (3, 1) for a in
     ``a + cross(w, r)``.
     """
     added: dict[str, Shape] = {}
@@ -121,7 +121,7 @@ def _without_mass(tree: Node) -> Node:
 
 
 def multiplied_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return the names that must be vectors since a matrix times them is one, each with the shape (3, 1)."""
+    """Return the names that must be vectors since a matrix times the name is a vector, each with the shape (3, 1)."""
     columns: dict[str, Shape] = {}
     for side, other in (relation[1:], relation[:0:-1]):
         name = str(side.value).removesuffix("_dot") if side.kind == "name" else ""

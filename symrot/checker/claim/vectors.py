@@ -23,10 +23,11 @@ __all__ = [
 
 MARK = "\N{RIGHTWARDS ARROW}"
 BASES = (("i", "j", "k"), *(tuple(f"e{mark}{axis}" for axis in axes) for mark in ("_", "") for axes in ("123", "xyz")))
-"""Names of the vectors of a basis: these are the axes if a text has two of them, and, but for i, no other vector."""
+"""Names of basis vectors, which mean the axes if a text has two of them; all but i, j and k then allow no other
+vectors."""
 
 AXES = ("xyz", "123", "1234", "0123")
-"""The last letters of the names of the components of vectors; of four for a quaternion."""
+"""Endings of the names of a vector's components, "xyz" for a_x, a_y and a_z; the four digits are for quaternions."""
 
 TENSOR = re.compile(r"[IJ](_[A-Za-z]\w*)?", re.ASCII)
 """The names of inertia tensors."""
@@ -57,7 +58,9 @@ class Vector:
 
     @property
     def components(self) -> Node:
-        """The tree of its components: ``Matrix([a_x, a_y, a_z])``, or the numbers 0 and 1 for a coordinate axis."""
+        """The tree of the vector's components: ``Matrix([a_x, a_y, a_z])``, or the numbers 0 and 1 for a
+        coordinate axis.
+        """
         if self.is_axis:
             place = "xyz".index(self.name) if self.place is None else self.place
             return _matrix([number(int(place == other)) for other in range(3)])
@@ -68,7 +71,7 @@ class Vector:
 
     @property
     def is_axis(self) -> bool:
-        """Whether it is the unit vector of a coordinate axis: x, y or z with a hat, or i, j or k of a basis."""
+        """Whether the vector is a coordinate axis: x, y or z with a hat, or i, j or k of a basis."""
         return self.place is not None or (self.unit and self.name in ("x", "y", "z"))
 
     def _entry(self, name: str) -> Node:
@@ -106,7 +109,7 @@ def is_components(name: str, tree: Node) -> bool:
 
 
 def without_marks(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[list[Node], dict[str, bool]]:
-    """Return the sides of a claim without the marks of vectors, and the vectors (True for one with a hat).
+    """Return a claim's sides without the marks of vectors, and the marked vectors (True for one with a hat).
 
     Parameters
     ----------
@@ -150,11 +153,11 @@ def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vect
 
 def _axes(name: str, used: Collection[str]) -> str:
     """Return the endings of the names of a vector's components: "xyz", or "123" if the claim has ``a_1``."""
-    # R_x means a rotation about x
     numbers = [n for n in "01234" if f"{name}_{n}" in used or (n in "04" and f"{name}{n}" in used)]
     if {"0", "4"} & {*numbers} and {"1", "2", "3"} & {*numbers}:
         # of a quaternion
         return "0123" if "0" in numbers else "1234"
+    # R_x means a rotation about x
     return "123" if numbers or name == "R" else "xyz"
 
 

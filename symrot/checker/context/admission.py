@@ -36,13 +36,13 @@ _STOP = frozenset({
     "formula", "theorem", "principal", "components", "component", "unit", "dq/dt", "omega", "b", "e", "b^-1", "=",
     "i", "squared", "acos", "asin", "atan2", "2", "without", "minus", "sign", "physical",
 })  # fmt: skip
-"""Words in the names of derived formulas that distinguish no formulas for one quantity."""
+"""Words in the names of derived formulas that do not tell formulas for one quantity apart."""
 
 
 COMPONENTS = {
     "first": "x1Ap", "second": "y2Bq", "third": "z3Cr", "scalar": "04sw", "x": "x1Ap", "y": "y2Bq", "z": "z3Cr",
 }  # fmt: skip
-"""A component or an axis of a known formula -> the last letters of names for it; p, q and r are aircraft rates."""
+"""Maps a component or an axis to the endings of names for it; p, q and r are the rates of an aircraft."""
 
 INDICES = frozenset("xyz0123")
 ANGLES = ("phi", "theta", "psi")
@@ -125,7 +125,7 @@ def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
 TOPS = ("symmetric top", "heavy top", "fast top", "sleeping top")
 GYRATION = "radius of gyration"
 DIRECTIONS = {"axial moment of inertia": "z", "transverse moment of inertia": "xy"}
-"""Title of a quantity -> the axes of a round body that it is about."""
+"""Maps the title of a moment of inertia to the axes of a round body about which it may be."""
 
 
 def _has_axes(name: str, axes: str) -> bool:
@@ -137,7 +137,9 @@ def _has_axes(name: str, axes: str) -> bool:
 
 
 def _is_along(name: str, line: str) -> bool:
-    """Return whether the formula named ``name`` is for an axis along a ``line`` of its body: "about a diameter"."""
+    """Return whether the formula named ``name`` is for an axis along a ``line`` of its body, such as "about a
+    diameter".
+    """
     _, bodies = LINES[line]
     axis = re.search(r", ([xyz]) axis", name)
     return any(
@@ -148,8 +150,8 @@ def _is_along(name: str, line: str) -> bool:
 
 
 def _where_else(place: str, line: str, name: str) -> str:
-    """Return words for the axis of a formula: its ``place``, or "about another axis" if the stated ``line`` goes
-    through it.
+    """Return words for the axis of a formula: its ``place``, or "about another axis" if ``line`` goes through this
+    place too.
     """
     _, bodies = LINES[line]
     places = [own for body, (own, _) in bodies.items() if body in bodies_of_formula(name)]
@@ -189,11 +191,9 @@ OPEN_PLACES = tuple(title for title, _, phrases in PLACES if not phrases)
 
 
 def admits_letters(context: Context, name: str, mapping: Mapping[str, str], letters: Iterable[str]) -> bool:
-    """Return whether a claim's letters can mean the symbols of a derived formula, by the words of the context.
-
-    ``mapping`` has the letter for each renamed symbol.
-    """
+    """Return whether a claim's letters can mean the symbols of a derived formula, by the words of the context."""
     sequence = sequence_of(name)
+    # ``mapping`` has the letter for each renamed symbol; other letters mean the symbol of the same name
     pairs = [(plain(known), plain(new)) for known, new in mapping.items()]
     renamed = {new for _, new in pairs}
     parts = {part for new in renamed for part in (re.sub(r"_?[xyz1-3]$", "", new), matrix_of(new))}
@@ -262,10 +262,10 @@ def plain(name: str) -> str:
 
 
 def guesses(context: Context, name: str, stated: str) -> list[str]:
-    """Return the words in a derived formula's name that neither the context nor ``stated`` has.
-
-    ``stated`` are words that the claim's quantity implies, "moment of inertia" for I.
+    """Return the words in a derived formula's name that neither the context nor the claim's quantity (``stated``)
+    implies.
     """
+    # "moment of inertia z axis" is stated by I_zz
     words = [stated, context.frame, context.sequence, "moment of inertia" if "inertia" in stated else ""]
     for meaning in context.meanings:
         words += [*meaning.quantity.phrases, *meaning.quantity.formulas, meaning.place, meaning.rest, meaning.frame]
@@ -300,7 +300,7 @@ def is_place(words: str) -> bool:
 
 @lru_cache(maxsize=20_000)
 def _tokens(text: str) -> tuple[str, ...]:
-    """Return the words of a text in one spelling, without those, such as "of", that tell no formulas apart."""
+    """Return the words of a text in one spelling, without words such as "of"."""
     return tuple(
         word
         for word in re.findall(r"[\w'/^-]+", plain_words(text).replace("-frame", " frame"))

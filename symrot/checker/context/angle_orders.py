@@ -17,17 +17,17 @@ FAMILIES: tuple[tuple[str, str, str], ...] = (
     ("phi", "theta", "psi"), ("alpha", "beta", "gamma"), ("yaw", "pitch", "roll"),
     ("theta_1", "theta_2", "theta_3"), ("q_1", "q_2", "q_3"),
 )  # fmt: skip
-"""Three letters that books use together for the angles of a sequence, in the usual order."""
+"""Triples of letters that books use for the first, second and third angle."""
 
 SPELLINGS = {"varphi": "phi", "vartheta": "theta", "Phi": "phi", "Theta": "theta", "Psi": "psi", "heading": "yaw",
              "bank": "roll"}  # fmt: skip
-"""Another way of writing an angle -> its letter."""
+"""Maps another name of an angle to its usual letter."""
 
 AXIS_OF_ANGLE = {"yaw": "Z", "pitch": "Y", "roll": "X"}
 PLACE_OF_ANGLE = {
     "precession angle": 0, "precession rate": 0, "angle of the axis": 1, "nutation rate": 1, "spin angle": 2,
 }  # fmt: skip
-"""Title of a quantity in words -> the place of the angle in a sequence, from 0."""
+"""Maps the title of a quantity to the position of its angle in a sequence, from 0."""
 
 
 @dataclass(frozen=True)
@@ -53,11 +53,7 @@ def has_order(sequence: str) -> bool:
 
 
 def are_roll_pitch_yaw(sequence: str, places: Mapping[str, int]) -> bool:
-    """Return whether phi, theta and psi are the angles about x, y and z (roll, pitch and yaw), as in books on
-    aircraft.
-
-    True for sequences such as ZXZ.
-    """
+    """Return whether phi, theta and psi can be roll, pitch and yaw: the angles about x, y and z."""
     # ZXZ has no roll, pitch and yaw, so that the usage of these books restricts nothing
     axes = {"phi": "X", "theta": "Y", "psi": "Z"}
     return has_order(sequence) or all(

@@ -170,11 +170,11 @@ BODIES: tuple[Kind, ...] = (
     Kind("gyroscope", ("wheel", "gyroscopic wheel", "rotor"),
          ("a level axle", "steady precession", "of a top", "fast top")),
 )  # fmt: skip
-"""Every body that words can name; the longest phrase in a text decides which one it is. The phrases for an ellipsoid
-and other words with a vowel have the article "a", as names are compared without "an"."""
+"""Every body that words can name; the longest matching phrase decides. All phrases have the article "a", also before
+a vowel."""
 
 ALONE = (" about one axis", " about the z axis")
-"""The ends of names of formulas for rotation about a fixed axis, which no body in general motion has."""
+"""Endings of the names of formulas for rotation about a fixed axis."""
 
 _FORMULA_PHRASES = tuple(
     sorted({phrase for kind in BODIES for phrase in kind.formulas}, key=lambda phrase: (-len(phrase), phrase))
@@ -196,13 +196,14 @@ _NOUNS = {
     "tube": ("tube radius",), "base": ("base",), "apex": ("apex",), "bottom": ("bottom radius",),
     "top": ("top radius",), "a": ("length",), "b": ("width", "breadth"), "c": ("height", "thickness", "depth"),
 }  # fmt: skip
-"""Name of a dimension of a shape -> the nouns for it, as in "of height h"; a diameter has "diameter" for "radius"."""
+"""Maps a dimension of a body to nouns for it, as in "of height h"; a noun with "radius" may also have "diameter"."""
 
 _SIDES: dict[str, tuple[tuple[str, Fraction], ...]] = {
     "ellipsoid": ((r"(?:half|semi)-?\s?ax[ei]s", Fraction(1)), (r"diameters|full axes", Fraction(1, 2))),
     "other": ((r"(?:half|semi)[- ]?(?:sides?|edges?|ax[ei]s)", Fraction(2)), ("sides?|edges?", Fraction(1))),
 }  # fmt: skip
-"""Shape -> the nouns for a list of its dimensions, each with the dimension in units of its letter."""
+"""Maps the form of a body to nouns for a list of its dimensions, each with the factor by which a letter is
+multiplied."""
 
 _HARMLESS = re.compile(
     r"\b(uniform|homogeneous|rigid|solid|(of |with )?(constant|uniform) density|(of |with |and )?mass( [a-zA-Z]\b)?"
@@ -225,7 +226,7 @@ _DIRECTIONS: tuple[tuple[tuple[str, ...], str, str], ...] = (
     ((*_FLAT, *_ROUND), rf"(?:perpendicular|normal) to (?:plane of )?{_FACES}", "z"),
     ((*_FLAT, *_ROUND), rf"(?:parallel to|lying in|in) (?:plane of )?{_FACES}", "xy"),
 )
-"""Kinds of bodies, or shapes -> words for the direction of an axis through them -> the axes of that direction."""
+"""Kinds or forms of bodies, words for the direction of an axis through them, and the axes with this direction."""
 
 _PLANE = re.compile(
     r",? ?\b(?:that )?(?:lying |lies |placed |is )?in (?:plane (?:of )?)?"

@@ -43,7 +43,7 @@ FRAMES = {
     "body": ("body", "body frame", "body axes", "body-fixed", "b", "moving"),
     "space": ("space", "space frame", "space axes", "space-fixed", "s", "inertial", "inertial frame", "fixed"),
 }
-"""A frame -> the words for it."""
+"""Maps a frame to words for it."""
 
 _FRAME_WORDS = (("body", r"in (the )?body( frame| axes)?"), ("space", r"in (the )?(space|inertial)( frame| axes)?"))
 
@@ -51,7 +51,7 @@ SEQUENCE_WORDS = {
     "yaw-pitch-roll": "ZYX", "aerospace": "ZYX", "aircraft": "ZYX", "tait-bryan": "ZYX", "roll-pitch-yaw": "xyz",
     "rpy": "xyz", "ypr": "ZYX", "euler": "ZXZ",
 }  # fmt: skip
-"""Usual name of a sequence of angles -> the sequence."""
+"""Maps a usual name, such as yaw-pitch-roll, to the sequence of Euler angles."""
 
 RATES = ("rad/s", "rad/s^2", "W", "m/s", "m/s^2", "")
 """The units of quantities that may be rates."""
@@ -352,10 +352,8 @@ def _name(tree: Node) -> str | None:
 
 
 def _frame_in(words: str) -> tuple[str, str]:
-    """Return the frame that words state, and the other words: "velocity in the body frame" gives "body" and
-    "velocity".
-
-    The frame may be empty.
+    """Return the frame that words state, if any, and the other words: "velocity in the body frame" gives "body"
+    and "velocity".
     """
     for frame, pattern in _FRAME_WORDS:
         if match := re.search(rf"\b{pattern}(?![\w-])", words):
@@ -364,7 +362,8 @@ def _frame_in(words: str) -> tuple[str, str]:
 
 
 _NO_AXIS_OF = ("", r"(?! (?:in|through|perpendicular|normal|parallel|at)\b)")
-"""What may not follow a phrase, by whether it ends with "axis": an axis in the plane is not the axis of a body."""
+"""What may not follow a phrase that ends with "axis" (second pattern): "axis in the plane" is not the axis of a
+body."""
 
 
 def _quantity(plain: str, words: str, prefix: str) -> tuple[Quantity, str]:
@@ -455,9 +454,8 @@ def read_sequence(words: str, prefix: str = "") -> str:
 
 
 def _with_case(letters: str, kinds: Sequence[str]) -> str:
-    """Return three axes in upper case if ``kinds`` says that they move, in lower case if it says that they are fixed.
-
-    Empty for contradicting words.
+    """Return three axes in upper case if ``kinds`` says that they move, in lower case if fixed; empty for
+    contradicting words.
     """
     fixed = {kind in ("space", "extrinsic", "fixed") for kind in kinds}
     if len(fixed) > 1:

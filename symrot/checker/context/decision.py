@@ -1,8 +1,7 @@
-"""Verdicts in a context, which states the meanings of names: a claim about a quantity is then decided.
+"""Verdicts on claims about a quantity in a context, which states the meanings of names.
 
-The name of a known formula, such as "moment of inertia of a rod about an end", is a list of words. A claim means this
-formula if its context or its quantity states each word. It is true if it equals such a formula, and false if it
-differs from all of them.
+A claim means a known formula, such as the "moment of inertia of a rod about an end", if its context or its quantity
+states each word of this name. It is true if it equals such a formula, false if it differs from all.
 """
 
 import re
@@ -55,13 +54,13 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["in_context"]
 
 MOST_ASSIGNMENTS = 24
-"""The most ways of assigning the letters of a claim to the symbols of a derived formula that are decided."""
+"""The most assignments of a claim's letters to the symbols of a derived formula that are decided."""
 
 MOST_CHOICES = 10_000
-"""The most ways of choosing a symbol for each letter that are tried, whether or not they keep the axes together."""
+"""The most choices of symbols for letters that are tried, before it is known whether they suit the axes."""
 
 MOST_DIAGNOSED = 4
-"""The most ways of assigning letters for which the fault of a claim is sought."""
+"""The most assignments of letters for which the fault of a claim is sought."""
 
 MOST_COSTLY = 2.0
 """The cost of a repair that is a derived formula as a whole."""
@@ -93,7 +92,7 @@ USUAL: tuple[tuple[str, str], ...] = (
     ("I_zz", "I_?(zz|z|33|3)"), ("I_xy", "I_?(xy|12)"), ("I_xz", "I_?(xz|13|zx)"), ("I_yz", "I_?(yz|23)"),
     ("q([0-3])", r"q_?[0-3]"), ("rho", "rho"), ("e", "e"),
 )  # fmt: skip
-"""Symbol of derived formulas -> the letters that are certainly meant as that symbol, where a claim has it."""
+"""Pairs of patterns: symbols of derived formulas, and the letters that books use for them."""
 
 
 @dataclass(frozen=True)
@@ -330,7 +329,7 @@ def _true(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _false(verdict: Verdict, decision: Decision) -> Verdict:
-    """Return the verdict "false" on a claim, with the counterexample at which it differs from the formula that it
+    """Return the verdict "false" on a claim, with the point at which the claim differs from the formula that it
     means.
     """
     return replace(verdict, verdict="false", counterexample=decision.counterexample, reason="")
@@ -387,7 +386,7 @@ def _by_meant_formulas(
 
 
 def _transposed(decisions: Sequence[tuple[Meant, Decision]]) -> Iterator[tuple[Meant, Decision]]:
-    """Yield the transpose of each known rotation matrix, with the decision on the matrix."""
+    """Yield the transpose of each known rotation matrix, with the decision on the matrix itself."""
     for candidate, decision in decisions:
         # known matrices map body components to space components; the author may mean the inverse map
         if candidate.known.name.startswith("rotation matrix"):
@@ -433,7 +432,7 @@ def _is_transposed(target: Any, value: Any) -> bool:
 
 
 def _is_open(decision: Decision) -> bool:
-    """Return whether two formulas may be equal, by a decision: undecided, or equal for some signs of the symbols."""
+    """Return whether a decision leaves open that two formulas are equal: it is undecided, or depends on signs."""
     if decision.verdict == "conditional":
         # equal for special values only, such as equal moments of inertia: the formulas differ
         return any(requirement.signs or not requirement.zeros for requirement in decision.requires)
@@ -504,7 +503,9 @@ def _diagnosed(
 
 
 def _neatness(repair: Repair) -> tuple[bool, int]:
-    """Return a sort key of a repair, by which repairs of one fault come before those of two, and short before long."""
+    """Return a sort key for repairs: repairs of one fault come before repairs of two faults, and short ones before
+    long ones.
+    """
     return repair.code == "two_faults", len(repair.text)
 
 
@@ -549,7 +550,7 @@ def _root(square: Expr) -> Expr:
 
 
 def _unused_rates(mapping: Mapping[Expr, Expr], own: set[Expr]) -> dict[Expr, Expr]:
-    """Return ``diff(phi(t), t)`` for dphi, and so on, for the angle rates that ``mapping`` does not replace.
+    """Return ``{dphi: diff(phi(t), t)}`` for the angle rates that ``mapping`` does not replace.
 
     Empty if the claim has no derivatives.
     """

@@ -25,9 +25,9 @@ from symrot.exact.printing import as_text
 __all__ = ["with_lacking_letters"]
 
 LEAST_LETTERS = 2
-"""The fewest letters that a formula has in common with the formula that is meant."""
+"""The fewest letters that a claim's formula must share with a derived one."""
 MOST_ASSIGNMENTS = 6
-"""The most ways of assigning the letters of a claim to the symbols of one derived formula."""
+"""The most assignments of a claim's letters to the symbols of one derived formula."""
 
 Assignments = Callable[[Known, Any, set[Expr]], Iterator[Mapping[Expr, Expr]]]
 
@@ -35,10 +35,8 @@ Assignments = Callable[[Known, Any, set[Expr]], Iterator[Mapping[Expr, Expr]]]
 def with_lacking_letters(
     named: NamedFormula, value: Any, meant: Iterator[tuple[Known, Any]], assignments: Assignments
 ) -> Verdict | None:
-    """Return the verdict "doubtful" if a claim's formula is a derived one without a term or factor, or None.
-
-    ``meant`` are the derived formulas that the context states.
-    """
+    """Return the verdict "doubtful" if a claim's formula is a derived one without a term or factor, or None."""
+    # ``meant`` are the derived formulas that the context states word by word
     own = {*atoms_of([value])} - {time}
     if is_matrix(value) or len(own) < LEAST_LETTERS:
         return None

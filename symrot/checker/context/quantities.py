@@ -162,10 +162,10 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("unit vector along the axis", ("axis of rotation", "unit axis", "rotation axis"),
              ("axis of",), "n[123]", "1"),
 )  # fmt: skip
-"""Every quantity that words can name; the longest phrase in a text decides which one it is."""
+"""Every quantity that words can name; the longest matching phrase decides."""
 
 AMBIGUOUS = {"moment": "'moment of inertia' or 'torque'", "rate": "a rate with its quantity, as in 'rate of spin'"}
-"""Words that name more than one quantity -> what to write instead."""
+"""Maps words that name more than one quantity to what should be written instead."""
 
 CENTRE, END, CORNER, RIM, SURFACE = (
     "about the centre of mass", "about an end", "about a corner", "about a point of the rim",
@@ -190,7 +190,7 @@ PLACES: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
     ("about the fixed point", ("pivot", "fixed point", "point o", "o", "pivot o"), ()),
     ("about the fixed axis", ("fixed axis", "one axis"), ("about one axis",)),
 )  # fmt: skip
-"""A place of an axis: its title, the words for it after "about", and the words for it in names of formulas."""
+"""Points through which axes go: the title, words for it after "about", and words for it in names of formulas."""
 
 ROUND = (
     "a cylinder", "a hollow cylinder", "a thin tube", "a annulus", "a cone", "a frustum", "a disk", "a ring", "a torus",
@@ -231,14 +231,14 @@ LINES: dict[str, tuple[tuple[str, ...], dict[str, tuple[str, str]]]] = {
         ("base", "base line", "base edge"), {"a plate": (CORNER, "xy"), "a triangular plate": (CORNER, "x")}
     ),
 }  # fmt: skip
-"""A line as an axis: its title -> the words for it after "about", and for each body that has such a line, the place in
-the names of derived formulas, and the axes there that are such lines. The other bodies have no such line."""
+"""Lines that serve as axes: the title, and words for it after "about". For each body with such a line follow its
+point in the names of formulas, and the axes that lie along it."""
 
 UNUSED = frozenset({
     "a", "an", "the", "of", "its", "their", "any", "some", "this", "that", "is", "are", "and", "in", "by",
     "constant", "unit", "axes", "axis", "component", "with",
 })  # fmt: skip
-"""Words that say nothing that the check could use or miss."""
+"""Words without a meaning that the check needs."""
 
 _SPELLINGS = (
     (r"∫|\\int|\bint\b", " integral of "), (r"\bcenter", "centre"), (r"\bdisc\b", "disk"), (r"φ|\\varphi|\\phi", "phi"),
@@ -298,7 +298,7 @@ def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str
 
 
 _BEFORE_PLACE = r"(through|about|hung at|hung from|at)(?: (?:any|some|one|either)(?: of)?(?! axis))?"
-"""The words before a place; "one axis" is the fixed axis of a body, and not its own axis."""
+"""Words before the place of an axis; "one axis" means the fixed axis of a body, not its own."""
 
 _END_OF_PLACE = r"(?![\w-])(?! (?:of|in|through|perpendicular|normal|parallel|along|at|inclined|tilted)\b)"
 

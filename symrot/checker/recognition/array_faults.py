@@ -47,7 +47,7 @@ def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
 
 
 def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> list[ArrayFault]:
-    """Return the formulas that are one edit away from ``formula``, with their values, sorted by ``total``."""
+    """Return the edits that undo a usual fault of a formula, each with the values of the edited formula."""
     # other faults of scalar formulas are sought part by part, in the module `parts`
     edits = _edits(formula, numeric, letters) if has_arrays(formula, numeric) else _brackets(formula)
     faults = []
@@ -55,7 +55,7 @@ def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> lis
         values = values_of(edit.tree, letters.points)
         if values is not None:
             faults.append(ArrayFault(_total(values), edit, values))
-    return sorted(faults, key=lambda fault: fault.total)
+    return sorted(faults, key=lambda fault: fault.total)  # for a look-up by value
 
 
 def matching(faults: Sequence[ArrayFault], needed: Values) -> Iterator[Edit]:
@@ -102,7 +102,7 @@ def _brackets(formula: Node) -> Iterator[Edit]:
 
 
 def _always(node: Node) -> Callable[[Node], Node]:
-    """Return a constant function of trees, whose value is always ``node``."""
+    """Return a function that returns ``node`` for every argument."""
     return lambda _: node
 
 
@@ -130,7 +130,7 @@ def _conjugates(formula: Node) -> Iterator[Edit]:
 
 
 def _factors(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[Edit]:
-    """Yield edits that multiply a vector or matrix term by one more scalar: ``sin(phi)*a`` for a."""
+    """Yield edits that multiply a vector or matrix term by one more scalar: ``sin(phi)*a`` for ``a``."""
     scalars = [*_scalars(formula, numeric, letters)]
     kinds = {path: node.kind for path, node in walk(formula)}
     for path, node in walk(formula):

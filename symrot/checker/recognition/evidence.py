@@ -168,7 +168,7 @@ def is_of_body(code: str, known: str) -> bool:
 
 
 def misfit_of(name: str, known: str) -> float:
-    """Return a sort key of a known formula, larger if the formula's name fits worse to the name of a quantity."""
+    """Return a number that is larger the worse a known formula's name fits the name of a quantity."""
     sequence = _rank_of_sequence(known) / (2 * len(USUAL_SEQUENCES))
     # "first component .." does not fit to omega_3
     return _misplaced(name, known) + any(body in known for body in RARE) + sequence
@@ -181,9 +181,9 @@ def has_word(known: str, words: Sequence[str] | None) -> bool:
 
 
 def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether a claim's formula is more likely ``near`` with a fault than another formula that is right.
+    """Return whether a claim's formula is more likely a known formula with a fault than another formula that is right.
 
-    Only then is the verdict "doubtful".
+    Only then is it "doubtful".
     """
     letters, words = names_in(named.formula), words_of(named)
     quantities = len(quantities_in(named.formula))
@@ -238,7 +238,7 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
 
 
 def _is_stated(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether the context of a claim says that its quantity is the one of the known formula ``near``."""
+    """Return whether the context of a claim says that its quantity is the one for which ``near`` is a formula."""
     meaning = claim.context.meaning_of(quantity_name(named))
     return meaning is not None and any(phrase in near.known.name for phrase in meaning.quantity.formulas)
 
@@ -283,7 +283,7 @@ def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
 
 
 def _is_entry_of_matrix(named: NamedFormula, near: Near) -> bool:
-    """Return whether a quantity such as R_12 is named as the entry of a rotation matrix that ``near`` gives."""
+    """Return whether the name of a quantity, such as R_12, is that matrix entry for which ``near`` is the formula."""
     # a single product may be an entry of another matrix
     own, entry = re.fullmatch(ENTRY, named.name), re.match(r"entry ([1-3]{2}) of the rotation matrix", near.known.name)
     return own is not None and entry is not None and own[1] == entry[1] and has_terms(named.formula)
@@ -357,7 +357,7 @@ def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
 
 
 def is_unusual(known: Identification) -> bool:
-    """Return whether a claim is a known formula only with omega_1 or p as components in the space frame."""
+    """Return whether a claim is a known formula only if its omega_1 or p is a component in the space frame."""
     # books use omega_1, and p, q, r, for components in the body frame
     components = [new for old, new in known.mapping.items() if old in COMPONENTS_OF_OMEGA]
     return "space frame" in known.name and any(

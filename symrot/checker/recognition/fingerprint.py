@@ -148,7 +148,7 @@ class Fingerprint:
     idle: tuple[Expr, ...] = ()  # atoms in the formula that do not change its value
 
     def rows(self, order: Sequence[int]) -> list[Values]:
-        """Return the signature of each atom, in the given order of entries; multiples of a formula have the same."""
+        """Return the signatures with values in the given order, scaled: multiples of a formula have the same ones."""
         total = [sum(column) % PRIME for column in zip(*self.signatures, strict=True)]
         # the first entry whose values have a nonzero sum
         below = _inverse(next((total[n] for n in order if total[n]), 1))

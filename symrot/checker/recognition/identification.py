@@ -294,7 +294,7 @@ def _matched(
     quantity: str | None,
     fits: Callable[[Identification], bool],
 ) -> Identification | None:
-    """Return the identification of a formula as the formula ``known``, if the equality is proven; otherwise None.
+    """Return the identification of a formula with ``known`` if the two are proven equal; otherwise None.
 
     Parameters
     ----------

@@ -52,7 +52,7 @@ class Known:
     source: str
     text: str
     scaled: bool = False  # multiples of the formula have the same name
-    only_named: bool = False  # as short as C*omega_3: recognised only if the claim names the quantity
+    only_named: bool = False  # such as C*omega_3: only for a named quantity, in the letters of books
     is_relation: bool = False  # the left side of an equation minus the right side
 
     @property
@@ -242,7 +242,7 @@ def _torques() -> Iterator[Named]:
 
 
 def _letters_of_books(torque: Matrix) -> list[dict[Symbol, Symbol]]:
-    """Return substitutions of the letters of books in the torque of the gravity gradient; [{}] for other torques."""
+    """Return the letters of books for the torque of the gravity gradient, as substitutions; [{}] for other torques."""
     named = {symbol.name: symbol for symbol in torque.free_symbols}
     if "mean_motion" not in named:
         return [{}]
@@ -310,7 +310,7 @@ def _solved() -> Iterator[Named]:
 
 
 def _related() -> Iterator[Named]:
-    """Yield the relations of mechanics, each with its name and source, as a difference that is zero."""
+    """Yield the relations of mechanics, each with its name and source, as a difference that must be zero."""
     for relation in relations():
         yield f"relation for {relation.title}", relation.source, primitive(relation.difference)
 
@@ -351,7 +351,7 @@ def _selected(
 
 
 def ending_of(name: str) -> str:
-    """Return ", squared" or ", acos" and the like at the end of a known formula's name, or "" without such an end."""
+    """Return the end of a known formula's name that names a function, such as ", squared" or ", acos"; otherwise ""."""
     # the formula then is a function of the quantity: its square, cosine, or half angle's cosine
     ending = re.search(r", (squared|(\S+ )?(acos|asin|atan2))$", name)
     return ending[0] if ending else ""

@@ -17,7 +17,7 @@ FIRST_EQUAL = (("A", "B"), ("I_xx", "I_yy"))
 
 
 def is_symmetric_body(absent: str, letter: str, renaming: dict[str, str | None], times: int) -> bool:
-    """Return whether ``letter`` may stand for two equal moments of inertia: its own and the absent one."""
+    """Return whether ``letter`` in a claim may stand for two equal moments of inertia, its own and ``absent``."""
     # books write A for A = B; B stands for B = C only if it occurs once, as in A p^2 + B (q^2 + r^2)
     equal = EQUAL_MOMENTS if times == 1 else FIRST_EQUAL
     return any(absent == later and renaming.get(earlier) == letter for earlier, later in equal)
@@ -48,7 +48,7 @@ def _share(added: Sequence[float], mass: Values, length: Values) -> Fraction | N
 
 
 def _shares(added: Sequence[float], mass: Values, lengths: Sequence[Values]) -> list[Fraction | None]:
-    """Return simple fractions [k, l] for which m (k a^2 + l b^2) was ``added`` to a moment; None replaces others."""
+    """Return the simple fractions [k, l] for which m (k a^2 + l b^2) was ``added`` to a moment of inertia."""
     (first, second, *_), rows = [value / m for value, m in zip(added, mass, strict=True)], [
         (a * a, b * b) for a, b in zip(*lengths, strict=True)
     ]  # fmt: skip
@@ -59,6 +59,7 @@ def _shares(added: Sequence[float], mass: Values, lengths: Sequence[Values]) -> 
     shares = ((first * d - b * second) / below, (a * second - first * c) / below)
     fits = all(near(value / m, shares[0] * p + shares[1] * q)
                for value, m, (p, q) in zip(added, mass, rows, strict=True))  # fmt: skip
+    # None in place of a number that is no simple fraction
     return [rational([share]) for share in shares] if fits else [None]
 
 

@@ -168,7 +168,7 @@ def _near_usual(claim: Claim, named: NamedFormula, readings: Sequence[Identifica
 
 
 def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | None:
-    """Return the verdict on a claim ``omega = [matrix] q_dot`` by its matrix alone, or None on other claims."""
+    """Return the verdict on a claim ``omega = [matrix] q_dot`` by its matrix alone, or None for other claims."""
     factors = named.formula.args if named.formula.kind == "product" else ()
     is_map = len(factors) == 2 and factors[0].value == "Matrix" and (is_atom(factors[1]) or is_derivative(factors[1]))
     if not is_map or len(matrix_entries(factors[0])) <= MOST_COMPONENTS:
@@ -241,7 +241,7 @@ def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 
 def _near_by_quantity(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if a change beside the quantity gives a known formula, as k^2 for k in ``k = I/m``.
+    """Return the verdict "doubtful" if a change on the quantity's side, such as k to k^2, gives a known formula.
 
     Otherwise return None.
     """
@@ -316,7 +316,7 @@ def _nearby(claim: Claim, named: NamedFormula) -> list[Near]:
 def _doubtful(
     repairs: tuple[Repair, ...], readings: tuple[Identification, ...], notes: tuple[str, ...] = ()
 ) -> Verdict:
-    """Return the verdict "doubtful" with the fault of the first repair; ``readings`` are what that repair gives."""
+    """Return the verdict "doubtful" with repairs, and the known formulas ``readings`` that the first of them gives."""
     code = repairs[0].code
     diagnosis = Diagnosis(code, FAULT_DESCRIPTIONS[code])
     return Verdict("doubtful", diagnosis=diagnosis, repairs=repairs, recognised_as=readings, notes=notes)

@@ -75,9 +75,9 @@ class Near(NamedTuple):
 
 
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
-    """Return known formulas that a claim may mean and meets after one change, the nearest first.
+    """Return changes of a claim's formula after which it may be a known formula, the cheapest first.
 
-    ``fits`` tells which ones it may mean.
+    ``fits`` selects the known formulas.
     """
     if sum(1 for _ in walk(named.formula)) > MOST_NODES:
         return []
@@ -130,7 +130,8 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
 
 
 def has_root_of_sum(formula: Node) -> bool:
-    """Return whether a formula has the root of a sum: its fingerprint may differ from an equal formula's by a sign."""
+    """Return whether a formula has the root of a sum."""
+    # fingerprints of equal formulas with such roots may differ by a sign
     roots = (node.args[0] for _, node in walk(formula) if node.kind == "call" and node.value == "sqrt")
     return any(node.kind == "sum" for root in roots for _, node in walk(root))
 
@@ -195,7 +196,7 @@ class Search(NamedTuple):
     values: Values
 
     def matching(self, part: Part) -> Iterator[Variant]:
-        """Yield the variants of a part with the values ``part.needed``, which make the whole formula right."""
+        """Yield the changes of a part that give it the values ``part.needed``, which make the whole formula right."""
         values = self.variants.get(part.path, [])
         (first, *_) = part.needed
         if is_matrix(first) or not values:
@@ -419,7 +420,7 @@ def _has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], l
 
 
 def _scale(unit: str | None) -> float | None:
-    """Return the factor by which the number of a quantity changes in the units of ``UNITS``, or None if not known."""
+    """Return the factor from a quantity's number in SI units to that in ``UNITS``; None for an unknown unit."""
     if unit is None:
         return None
     # with factors f for m and g for s, the factor for m/s^2 is f/g^2

@@ -49,7 +49,7 @@ MOST = 6
 def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] = ()) -> list[dict[str, str | None]]:
     """Return the most plausible renamings of the names ``known`` of a known formula to the names ``own`` of a claim.
 
-    One may become None.
+    One name may become None.
     """
     if abs(len(known) - len(own)) > 1:
         return []
@@ -103,7 +103,7 @@ NUMBERED = re.compile("([a-z])_?([1-9])")
 
 
 def _without_mark(name: str) -> tuple[str, str]:
-    """Return a name without the bar or prime over it, and this mark: z and _bar for ``z_bar``."""
+    """Return a name and the mark over it: ("z", "_bar") for ``z_bar``."""
     mark = re.search("(_bar|_prime)*$", name)
     assert mark is not None
     return name[: mark.start()], mark[0]
@@ -177,11 +177,8 @@ def _extended(
 
 @lru_cache(maxsize=20_000)
 def is_fitting(known: str, own: str, is_angle: bool) -> bool:
-    """Return whether ``known`` in a known formula and ``own`` in a claim may name the same quantity.
-
-    ``is_angle``: the claim has the name in sines.
-    """
-    name = plain_name(own)
+    """Return whether ``known`` in a known formula and ``own`` in a claim may name the same quantity."""
+    name = plain_name(own)  # is_angle: the claim has it in sines or cosines
     if known == name:
         return True
     unit = UNIT_OF_NAME.get(known)

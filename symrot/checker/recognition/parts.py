@@ -255,14 +255,14 @@ def is_superfluous(part: Part) -> bool:
 
 
 def is_multiple(part: Part) -> bool:
-    """Return whether one number other than 1 times the values of a part gives its needed values at all points."""
+    """Return whether a part has its needed values after multiplication by one number, the same at all points."""
     ratios = [_ratio(needed, value) for value, needed in zip(part.values, part.needed, strict=True)]
     first = ratios[0]
     return first is not None and abs(first - 1) > CLOSE and all(r is not None and near(r, first) for r in ratios)
 
 
 def multiples(part: Part) -> Iterator[Change]:
-    """Yield the change of a part's sign or numeric factor, if there is one, that gives the part its right values."""
+    """Yield the change of a part's sign or numeric factor that gives the part its needed values, if there is one."""
     ratio = rational(tuple(_ratio(b, a) or 0.0 for a, b in zip(part.values, part.needed, strict=True)))
     if ratio is None or ratio == 1 or (ratio < 0 and ratio != -1) or part.node.kind == "neg":
         return

@@ -66,9 +66,9 @@ def solved_claims(left: Node, right: Node, atoms: Sequence[Node]) -> Iterator[Na
 
 
 def put_back(left: Node, right: Node, named: NamedFormula, tree: Node) -> tuple[Node, Node] | None:
-    """Return the sides ``left`` and ``right`` with the one term replaced in which ``tree`` differs from ``named``.
+    """Return ``left`` and ``right`` with the one changed term that turned the solved equation ``named`` into ``tree``.
 
-    Otherwise return None.
+    None for other changes.
     """
     # tree is the repaired formula of the solved equation
     before, after = _terms(named.formula), _terms(tree)

@@ -47,10 +47,7 @@ def _fit(choice: Sequence[tuple[Identification, dict[str, str]]]) -> bool:
 
 
 def misplaced(lines: Sequence[tuple[str, Collection[str], Verdict]]) -> int:
-    """Return how many equations are known only for another component than their name says.
-
-    An example is ``I_2 = ..`` for the x axis.
-    """
+    """Return how many equations have the name of one component and the formula of another: I_2 with that of I_1."""
     return sum(
         name[-1:] in AXIS_OF and bool(verdict.recognised_as)
         and not any(AXIS_OF[name[-1]] == AXIS_OF[place] for k in verdict.recognised_as for place in _places(k.name))

@@ -72,7 +72,7 @@ def with_ordered_products(tree: Node, is_matrix: Callable[[Node], bool]) -> Node
 
 
 def terms_of_equation(left: Node, right: Node, is_matrix: Callable[[Node], bool]) -> frozenset[tuple[Node, Fraction]]:
-    """Return the terms of ``left - right``, each with its coefficient: (a, 1), (b, -2) for ``4*b - 2*a == 0``."""
+    """Return the terms of ``left - right`` with coefficients that begin with 1: (a, 1), (b, -2) for ``2*a == 4*b``."""
     totals: dict[Node, Fraction] = {}
     for side, sign in ((left, 1), (right, -1)):
         whole = canonical(side, is_matrix)

@@ -51,7 +51,10 @@ def derived_part(claim: Claim, place: str) -> Node | None:
 
 
 def _scaled(claim: Claim, factors: Sequence[Node], matrix: Node) -> Node | None:
-    """Return the product of ``factors`` with the entries of the claim's right side in its matrix, or None."""
+    """Return ``factors``, scalars and a matrix, with the entries that make their product equal to the right side.
+
+    None if there are none.
+    """
     values, shape = flatten(claim.equation.right)
     if shape != flatten(claim.interpreter().read(matrix))[1]:
         return None
@@ -72,7 +75,7 @@ def _scaled(claim: Claim, factors: Sequence[Node], matrix: Node) -> Node | None:
 def _largest_factor(entries: Sequence[Expr]) -> Any:
     """Return the largest rational number that leaves integer coefficients when all entries are divided by it.
 
-    It is 1 for irrational ones.
+    It is 1 for irrational coefficients.
     """
     numbers = [entry.as_coeff_Mul()[0] for entry in entries if entry != 0]
     if not numbers or not all(value.is_Rational for value in numbers):
@@ -81,7 +84,7 @@ def _largest_factor(entries: Sequence[Expr]) -> Any:
 
 
 def _with_entries(claim: Claim, matrix: Node, entries: Sequence[Expr]) -> Node | None:
-    """Return the written-out matrix ``matrix`` with other entries; None if it has no place for one that is not zero."""
+    """Return the written-out matrix ``matrix`` with other entries; None if ``diag`` would need one off the diagonal."""
     cells = matrix_entries(matrix)
     if any(entry != 0 and place not in cells for place, entry in enumerate(entries)):
         return None

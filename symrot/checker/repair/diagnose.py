@@ -171,7 +171,7 @@ class _Search:
                     yield Change(place, edit)
 
     def pairs(self, changes: Sequence[Change]) -> Iterator[Candidate]:
-        """Yield candidates with two of the edits ``changes`` that are true at the test points, the cheapest first."""
+        """Yield pairs of the edits ``changes`` that make the claim true at the test points, the cheapest first."""
         cheap = list(changes)[:MOST_PAIRS_OF]
         ordered = sorted(combinations(cheap, 2), key=lambda pair: pair[0].cost + pair[1].cost)
         for first, second in ordered:

@@ -1,7 +1,7 @@
 """The faults that occur in practice (a lost factor, a wrong sign), as edits of a tree; each has a code and a cost.
 
-An edit changes one part of a formula; it costs less if its fault is more likely. Argument ``matrices`` of the functions
-tells whether a node is a matrix.
+An edit changes one part of a formula; it costs less if its fault is more likely. The argument ``matrices`` of the
+functions tells whether a node is a matrix.
 """
 
 import itertools
@@ -340,7 +340,7 @@ def _of_product(node: Node, matrices: Callable[[Node], bool], order: str) -> Ite
 
 
 def _with_roots(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
-    """Yield the edits of a product with a root over its numbers or its other factors: ``2*sqrt(g*h)``."""
+    """Yield the edits of a product with a root over its numbers or its other factors: ``2*sqrt(g*h)`` for ``2*g*h``."""
     if any(map(matrices, node.args)):
         return
     kinds = [any(part.kind in ("name", "call") and part.value != "pi" for _, part in walk(f)) for f in node.args]

@@ -200,7 +200,7 @@ class NumericFilter:
     def holds(self, changes: Sequence[Change]) -> bool:
         """Return whether the claim after ``changes`` is true at the test points.
 
-        False if the budget of evaluations is spent.
+        It is False if the budget of evaluations is spent.
         """
         if not self.affordable():
             return False
@@ -289,10 +289,11 @@ def matrix_entries(tree: Node) -> dict[int, Path]:
 
 
 def pieces(tree: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
-    """Yield (path, node) for the parts of a tree that an edit may multiply or add to: not exponents."""
+    """Yield (path, node) for the parts of a tree that an edit may multiply or add to, such as terms and factors."""
     if tree.kind not in ("list", "inv"):
         yield path, tree
     for place, child in enumerate(tree.args):
+        # exponents, and the variables of derivatives and integrals
         fixed = tree.kind == "power" or (tree.kind == "call" and tree.value in ("diff", "integrate"))
         if not (fixed and place):
             yield from pieces(child, (*path, place))

@@ -123,7 +123,7 @@ class Point:
         return Point(self.symbols, self.functions, {**self.definitions, name: node}, spent=self.spent)
 
     def raised(self, variable: Node) -> "Point":
-        """Return a copy of the point in which ``variable`` is a dual number, so that values have derivatives by it."""
+        """Return a copy of the point at which trees have dual numbers as values, with slopes by ``variable``."""
         # variable: a symbol, f(t), or diff(f(t), t)
         order = 0
         inner = variable

@@ -130,7 +130,7 @@ class Vocabulary:
         return values[0] / values[1]
 
     def find(self, values: Values) -> Iterator[tuple[Entry, Fraction]]:
-        """Yield (product, ratio) for each product whose rational multiple has ``values``; short products come first."""
+        """Yield (product, ratio) for each product that has ``values`` if multiplied by a rational ratio."""
         if not all(values):
             return
         key = self._key(values)
@@ -141,6 +141,7 @@ class Vocabulary:
             entry = self.entries[self.order[place]]
             ratio = _rational([value / other for value, other in zip(values, entry.values, strict=True)])
             if ratio is not None:
+                # short products first
                 matches.append((len(entry.factors), self.order[place], entry, ratio))
             place += 1
         for _, _, entry, ratio in sorted(matches, key=lambda item: item[:2]):

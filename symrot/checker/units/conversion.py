@@ -159,7 +159,7 @@ class Measured:
 
 
 @dataclass(frozen=True)
-class _Way:
+class _Interpretation:
     """One interpretation of a text with units."""
 
     meanings: frozenset[str] = frozenset()  # the units that have their less usual meaning
@@ -189,14 +189,14 @@ def measured_text(source: str) -> Measured | None:
         raise InputError(f"expected units of mechanics, got {match[1]!r}; write a temperature in K")
     names = {name for match in _MEASURED.finditer(plain) for name, _ in _pieces(match[3])}
     usual = frozenset({"Hz"} & names if names & ANGULAR else ())
-    main = _read(plain, _Way(usual))
+    main = _read(plain, _Interpretation(usual))
     if main is None:
         return None
     ways = {
-        "from left to right, with units outside of the fractions before them": _Way(usual, by_whole=False),
-        ONE_PER_SECOND: _Way(usual - {"Hz"}),
-        "with lb for the force lbf": _Way(usual | ({"lb"} & names)),
-        STANDARD_GRAVITY: _Way(usual | ({"g"} & names)),
+        "from left to right, with units outside of the fractions before them": _Interpretation(usual, by_whole=False),
+        ONE_PER_SECOND: _Interpretation(usual - {"Hz"}),
+        "with lb for the force lbf": _Interpretation(usual | ({"lb"} & names)),
+        STANDARD_GRAVITY: _Interpretation(usual | ({"g"} & names)),
     }
     others = ((words, _read(plain, way)) for words, way in ways.items())
     return replace(main, others=tuple((words, other) for words, other in others if other and other != main))
@@ -226,7 +226,7 @@ def numbers_of_latex(source: str) -> str:
     return plain if {*_OTHER_NAME.findall(plain)} <= {*_FUNCTIONS} else ""
 
 
-def _read(plain: str, way: _Way) -> Measured | None:
+def _read(plain: str, way: _Interpretation) -> Measured | None:
     units: dict[str, UnitProduct] = {}
     matches = list(_MEASURED.finditer(plain))
     are_factors = any("*" in match[2] or "/" in match[2] for match in matches)
@@ -254,7 +254,7 @@ def _read(plain: str, way: _Way) -> Measured | None:
 
 
 def numeric_end(source: str) -> tuple[str, str]:
-    """Return the beginning of a chain of equations, and its end of two or more numbers with units; both may be "".
+    """Return (beginning, end) of a chain of equations that ends with several numbers with units, or two empty texts.
 
     Examples
     --------

@@ -24,7 +24,7 @@ TEXT_KEYS = (
 )  # fmt: skip
 LIST_KEYS = ("symbols", "functions", "given", "alternatives", "lost", "editable")
 OTHER_KEYS = ("where", "define", "units")
-"""The keys of a claim, by the type of their value."""
+"""The keys of a claim in a file: texts, lists of texts, and other values."""
 
 FILE_KEYS = ("schema", "claim", "document", "title", "kind", "lost", "note")
 """The keys of a file; the last five describe the document from which its claims come."""

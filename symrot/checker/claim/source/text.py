@@ -66,7 +66,7 @@ def claim_of_relation(
     define: Sequence[tuple[str, Node]] = (), notes: Sequence[str] = (), context: Sequence[Node] = (),
     vectors: Sequence[Vector] = (),
 ) -> Claim:  # fmt: skip
-    """Return the claim of an equation that was read from a text.
+    """Return the claim of an equation in a text.
 
     ``define`` and ``context`` are the definitions and the other formulas of the same text.
 
@@ -228,7 +228,9 @@ def _shapes(vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> di
 
 
 def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> Quaternions:
-    """Return the quaternions, matrices and columns in a relation, and the relation with their scalar products."""
+    """Return the quaternions, matrices and columns in a relation, and the relation with ``dot(a, b)`` for columns
+    a and b.
+    """
     known = {name for name, _ in define}
     names = {vector.name for vector in vectors}
     generic = {*matrices_of_entries(define)}

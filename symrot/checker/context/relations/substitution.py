@@ -24,7 +24,7 @@ __all__ = ["Substitution", "by_substitution", "decided"]
 MOST_SUBSTITUTIONS = 200
 MOST_READINGS = 4
 OPEN = ("definition", "doubtful", "false", "undecided")
-"""Verdicts that a true reading overrules."""
+"""Verdicts that a true interpretation of a claim overrules."""
 GUESSED = "guessed, not stated"
 
 
@@ -60,7 +60,9 @@ class Substitution:
 
 
 def decided(equation: Equation, substitution: Substitution) -> Decision | None:
-    """Return the decision on an equation whose letters ``substitution`` replaces by formulas; None if it fails."""
+    """Return the decision on an equation whose letters ``substitution`` replaces by formulas; None if there is
+    none.
+    """
     try:
         return decide_equation(Equation(*_sides(equation, substitution)))
     except (InputError, TooLarge):

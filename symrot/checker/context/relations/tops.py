@@ -33,7 +33,7 @@ COORDINATES: tuple[tuple[str, Expr], ...] = (
     (r"A|I|[IJ]_?([012tx]|xx|yy|perp)|I_prime", A), (r"C|[JI]|[IJ]_?([3sz]|zz)", C),
     ("m|M", MASS), ("g", GRAVITY), (r"l|ell|h|a|R|d|r|[lrh]_?(G|cm|C)|z_?(G|C|cm)", ARM), ("W|mg", WEIGHT),
 )  # fmt: skip
-"""Pattern of a letter -> the independent quantity that it can be."""
+"""Patterns of letters, each with the independent quantity that the letter can be."""
 MOMENT_LETTERS = {symbol: letters for letters, symbol in COORDINATES if symbol in (A, C)}
 
 QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
@@ -45,7 +45,7 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("dE|E_prime|E_?1", ("energy without the energy of the spin",)), ("L", ("Lagrangian",)),
     ("[VU]_?eff", ("effective potential", "effective potential without the energy of the spin")),
 )  # fmt: skip
-"""Pattern of a letter -> the quantities of a top that it can be."""
+"""Patterns of letters, each with the quantities of a top that the letter can be."""
 
 EVIDENT = ("momentum of precession", "momentum of spin", "effective potential", "spin along the axis")
 """Quantities that, next to the angle theta, only a top has."""
@@ -113,7 +113,7 @@ SYMBOL_OF = {
     "spin along the axis": "omega_3", "momentum of precession": "p_phi", "momentum of spin": "p_psi",
     "momentum of nutation": "p_theta", "kinetic energy": "E_k", "energy": "E_k", "potential energy": "E_k",
 }  # fmt: skip
-"""Title of a quantity -> the symbol that derived formulas use for it."""
+"""Maps the title of a quantity to the symbol that derived formulas use for it."""
 
 
 @cache
@@ -144,7 +144,7 @@ def _formulas(load: Expr) -> dict[str, Expr]:
 def _of_steady_precession(
     names: Mapping[Expr, str], values: Mapping[Expr, Expr], sides: Sequence[Expr], load: Expr
 ) -> Iterator[Substitution]:
-    """Yield the condition of steady precession with the rate of precession that a claim gives, such as m g l/(C
+    """Yield the condition of steady precession with a claim's formula for the rate of precession, such as m g l/(C
     omega_3).
     """
     for side, formula in (sides, sides[::-1]):
