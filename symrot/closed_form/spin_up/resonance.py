@@ -1,7 +1,7 @@
 """Attitude of a driven symmetric body near resonance, by Taylor series at evenly spaced points, in integers.
 
-A body rotates at ``(kappa, 0, x)``, where x is the scaled time (see :mod:`symrot.closed_form.spin_up.motion`). If its axes
-agree with the space axes at x = 0, the attitude is ``alpha = q0 + i q3``, ``beta = q1 + i q2``, with
+A body rotates at ``(kappa, 0, x)``, where x is the scaled time (see :mod:`symrot.closed_form.spin_up.motion`). If its
+axes agree with the space axes at x = 0, the attitude is ``alpha = q0 + i q3``, ``beta = q1 + i q2``, with
 
     2 alpha' = i x alpha - kappa beta,  2 beta' = kappa alpha - i x beta.
 
@@ -82,11 +82,8 @@ class Near:
         return q0, sign * q1, sign * q2, q3
 
     def table(self) -> Floats:
-        """Return the Taylor coefficients as an array of doubles, for NumPy.
-
-        The indices are: the interval of x, the power of the distance from the middle of the interval, and the component
-        of the quaternion.
-        """
+        """Return the Taylor coefficients as an array of doubles: interval of x, power, component of the quaternion."""
+        # powers of the distance from the middle of the interval
         one = 1 << FIXED
         return np.array(
             [[[q0 / one, q1 / one, q2 / one, q3 / one] for q0, q3, q1, q2 in s[: DEGREE + 1]] for s in self._series]
