@@ -367,7 +367,7 @@ def _exposed(directory: Path) -> str:
 
 
 def _shared_group(group: int) -> bool:
-    """Return whether a group, or a group or user unknown to the system, may have members other than the user."""
+    """Return whether a group may have members other than the user; True if the system does not know group or user."""
     import grp
     import pwd
 

@@ -41,7 +41,7 @@ def _refusal(path: Path, reason: Exception) -> InputError:
 
 
 def write(path: Path, content: Callable[[BinaryIO], object]) -> None:
-    """Write a file at ``path`` that is complete or does not exist, by a function that writes into an open binary file.
+    """Write a file at ``path`` completely or not at all; ``content`` writes the bytes into an open binary file.
 
     Raises
     ------

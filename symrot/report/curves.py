@@ -123,9 +123,7 @@ def _long_runs(mask: Mask, fraction: float) -> Mask:
 
 
 def _pieces(values: Floats, hidden: Mask) -> Iterator[tuple[Floats, bool]]:
-    """Yield the parts of a curve that hide an earlier curve and that do not, each with this flag, the longer part
-    first.
-    """
+    """Yield two parts of a curve, the longer first, each with a flag: whether the part hides an earlier curve."""
     grown = hidden.copy()  # both parts share their end points, so that the curve has no gaps
     grown[1:] |= hidden[:-1]
     grown[:-1] |= hidden[1:]

@@ -150,8 +150,8 @@ def _globe(axes: Any, view: Floats, labels: tuple[str, ...], window: Window, fon
 
 
 def _levels(axes: Any, view: Floats, value: Callable[[Floats], Floats], window: Window) -> bool:
-    """Draw level curves of ``value``, a function of direction, on the near side of the sphere; return whether it has
-    any.
+    """Draw level curves of ``value``, a function of direction, on the near side of the sphere; return False if it is
+    constant.
     """
     line = min(window.half, 1.0) * np.linspace(-1.0, 1.0, FINEST)
     x, y = np.meshgrid(window.centre[0] + line, window.centre[1] + line)
@@ -161,7 +161,6 @@ def _levels(axes: Any, view: Floats, value: Callable[[Floats], Floats], window: 
     near_values, beyond = value(near), value(-near)
     both_sides = [near_values, beyond] if window.is_whole else [near_values]
     levels = np.nanquantile(both_sides, np.linspace(0.0, 1.0, CURVES + 2)[1:-1])  # equal areas between curves
-    # a constant function has none
     has_levels = bool(levels[-1] - levels[0] > 1e-9 * abs(levels[-1]))
     if has_levels:
         axes.contour(x, y, near_values, levels=levels, colors=FAINT, linewidths=0.7, zorder=2)

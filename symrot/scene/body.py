@@ -323,8 +323,8 @@ def _placed(parts: Sequence[Part], values: Mapping[str, Any], where: str, source
 
 
 def _about_point(properties: MassProperties, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return a body with the given mass properties, with its inertia about the point of rotation, named by
-    ``values``.
+    """Return a body with the given mass properties, and its inertia about the point of rotation that
+    ``values`` names.
     """
     about, point = values["about"], values["fixed_point"]
     if about == "center_of_mass" and point is not None:

@@ -111,7 +111,7 @@ def _letters_of(trees: Sequence[Node]) -> Iterator[str]:
 
 
 def _depends_on_time(derivative: Node) -> bool:
-    """Return whether a ``derivative`` is by time, and its formula contains a function of time: ``diff(x(t)**2, t)``."""
+    """Return whether a derivative is by the time t and contains a function of time, as ``diff(x(t)**2, t)``."""
     inner, *variables = derivative.args
     return any(v.value == "t" for v in variables) and any(
         node.kind == "call" and node.value != "diff" and _is_name(node) for _, node in walk(inner)

@@ -163,7 +163,8 @@ def _is_over_digit(node: Node) -> bool:
 
 
 def _is_rate_of_name(node: Node) -> bool:
-    """Return whether a derivative is that of a single name by the time t: ``diff(q, t)``, which is printed ``q'``."""
+    """Return whether a derivative is the time derivative of a single name, as ``diff(q, t)`` is."""
+    # it is printed q'
     return node.args[0].kind == "name" and all((a.kind, a.value) == ("name", "t") for a in node.args[1:])
 
 

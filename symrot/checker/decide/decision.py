@@ -535,7 +535,7 @@ def _with_shorter_powers(equation: Equation, lefts: Sequence[Expr], rights: Sequ
 
 
 def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
-    """Return the formulas that must not be zero, by their texts, without those that need not be stated."""
+    """Return the formulas that must not be zero, by their texts, without superfluous ones."""
     remaining = {}
     for text, form in nonzero.items():
         value = normal_form(form) if form.is_Add and _pieces(form) < MOST_PIECES else form

@@ -1,7 +1,7 @@
 """Conditions on signs as text, as a book writes them: ``0 <= x <= pi`` for ``x >= 0 and pi - x >= 0``.
 
-A condition is a pair (formula, sign) with the sign ``">= 0"``, ``"> 0"`` or ``"!= 0"``. Those that follow from others
-are dropped. The text holds where the conditions hold and their formulas have values.
+A condition is a pair (formula, sign); signs are ``">= 0"``, ``"> 0"`` and ``"!= 0"``. Conditions that follow from
+others are dropped. The text holds where the conditions hold and their formulas have values.
 """
 
 import re
