@@ -272,7 +272,7 @@ def _occurring(poly: PolyElement) -> set[int]:
 
 
 def _coordinates(ring: FormulaRing) -> tuple[list[FreeChoice], list[tuple[int, PolyElement]]]:
-    """Return (free, solved): the choices that determine a point, and pairs (variable, hypothesis linear in it)."""
+    """Return (free, solved): the free choices of a point, and pairs (variable, hypothesis that determines it)."""
     fixed: set[int] = set()
     coordinates: list[FreeChoice] = []
     solved: list[tuple[int, PolyElement]] = []

@@ -2,7 +2,6 @@
 
 Formulas in scope are rational functions of symbols, exponentials, unit vectors, and sines and cosines of angles. Their
 normal form is zero if and only if they are zero at all real points (``docs/exact_decisions.md``, sections 1 to 3).
-Others need a counterexample.
 """
 
 from collections.abc import Sequence

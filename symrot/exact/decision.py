@@ -131,7 +131,7 @@ class Case(ABC):
         return (*self.lefts, *self.rights)
 
     def search(self, *searches: Search, places: Sequence[int] | None = None) -> Counterexample | None:
-        """Return the first counterexample that one of ``searches`` returns for one of the entries ``places``, or None.
+        """Return the first counterexample by one of ``searches`` for the entries with the indices ``places``, or None.
 
         Without ``places`` the unproven entries are searched.
         """

@@ -67,9 +67,9 @@ class Cursor:
                 space = False
 
     def inside(self, node: Node, read: Callable[[], Value], closing: str = "'}'") -> Value:
-        """Return the value of ``read`` on the items of ``node``; the cursor moves there and back.
+        """Call ``read`` with the cursor at the start of ``node``, move back, and return its value.
 
-        ``read`` must read all of them.
+        ``read`` must read all items of the node.
         """
         outside = self.items, self.index, self.open_bars
         self.enter(node)

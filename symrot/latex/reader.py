@@ -53,7 +53,7 @@ class _Reader:
     def group(self, opening: Token, closing: str = "}") -> Row:
         """Parse a row of items and the token ``closing``, such as a brace; return the row.
 
-        Its position is that of ``opening``, the token before it.
+        The row gets the position of ``opening``, the token before it.
         """
         row = self.row(closing, closing)
         self.place += 1

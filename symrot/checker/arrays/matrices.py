@@ -83,7 +83,7 @@ def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, .
 
 
 def _inverted_in_order(sides: Sequence[Node]) -> list[str]:
-    """Return the capital letters A and B of ``(A B)^-1 = A^-1 B^-1``, else an empty list."""
+    """Return the capital letters of ``(A B)^-1 = A^-1 B^-1``, whose order is wrong for matrices; else an empty list."""
     for side, other in (sides, sides[::-1]):
         base = side.args[0] if _is_inverse(side) else side
         if base is side or base.kind != "product" or other.kind != "product" or not all(map(_is_inverse, other.args)):

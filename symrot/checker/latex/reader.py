@@ -133,7 +133,7 @@ def _read(
 ) -> "tuple[list[Line], _Interpreter]":  # fmt: skip
     """Return the lines that ``read`` parses from a LaTeX text, and the interpreter that parsed them.
 
-    ``flips`` and ``upper`` choose among its meanings and its signs.
+    ``flips`` and ``upper`` choose among the text's meanings and signs.
     """
     # if a name without a mark turns out to be a vector only late in the text, the text is parsed again
     crossed: frozenset[str] = frozenset()

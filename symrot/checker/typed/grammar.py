@@ -212,7 +212,7 @@ class Parser(PiecesPart):
         return base
 
     def raised(self, base: Node, token: Token, start: int) -> Node:
-        """Return ``base`` with the raised exponent that ``token`` is: the power ``x²``, a transpose or an inverse."""
+        """Return ``base`` with the raised exponent ``token``: the power ``x²``, a transpose or an inverse."""
         self.plain = True
         digits, transposed = token.text.removesuffix("T"), token.text.endswith("T")
         if transposed and digits in ("", "-"):

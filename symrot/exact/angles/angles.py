@@ -1,8 +1,7 @@
 """Angles as rational combinations of atoms (symbols or other factors that are not numbers).
 
-``2*phi - psi/2 + pi/3`` has the linear form ``{phi: 2, psi: -1/2}`` plus ``1/3`` of pi. The base angle of an atom is
-the largest angle of which all its multiples in the formulas are whole multiples (``docs/exact_decisions.md``, section
-4).
+``2*phi - psi/2 + pi/3`` has the linear form ``{phi: 2, psi: -1/2}`` plus ``1/3`` of pi. Each atom has a base angle, of
+which all its angles are whole multiples: theta/6 if theta/2 and theta/3 occur (``docs/exact_decisions.md``, section 4).
 """
 
 from collections.abc import Iterable

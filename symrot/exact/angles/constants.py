@@ -26,7 +26,7 @@ Monomial = tuple[int, ...]
 
 @dataclass(frozen=True)
 class Number:
-    """An algebraic number that is a variable of the ring: a root, or ``2 cos(pi/order)``."""
+    """An algebraic number that is a variable of the polynomial ring: a root, or ``2 cos(pi/order)``."""
 
     place: int  # index of the variable
     degree: int  # bound on the degree that the number adds to the field

@@ -79,7 +79,7 @@ class Dependence:
 
 
 def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr]) -> dict[Root, Dependence]:
-    """Return a map from each square root that is a product of other roots to its expression by them.
+    """Return a map from each square root that is a product of other roots to this product, a :class:`Dependence`.
 
     Parameters
     ----------

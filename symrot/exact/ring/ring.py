@@ -239,9 +239,9 @@ class FormulaRing:
         return radicand
 
     def _dependences(self) -> dict[Root, Dependence]:
-        """Return the square roots that are products of other roots, each with its expression by them.
+        """Return a map from each square root that is a product of other roots to this product.
 
-        The root of a*b may be the product of the roots of a and b.
+        In a ring with the roots of a, b and a*b, the third is such a product.
         """
         places = {root: n for root, n in self.roots.items() if root.index == 2 and not root.power_expression.is_number}
         plain = [root for root in places if not isinstance(root.expression, Abs)]

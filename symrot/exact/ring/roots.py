@@ -1,7 +1,7 @@
 """Roots: each fractional power as a rational factor times variables ``g`` of the ring with a relation ``g^n = P``.
 
 ``sqrt(P/Q)`` is written ``g/|Q|`` with ``g^2 = P*Q``, and squares leave a root as absolute values, ``sqrt(x^2 y) = |x|
-sqrt(y)``. So the variable of a square root is never negative. (``(P/Q)^(1/n)`` is ``g/Q``.)
+sqrt(y)``. So the variable of a square root is never negative. For other roots, ``(P/Q)^(1/n)`` is ``g/Q``.
 """
 
 from collections.abc import Callable, Iterable
