@@ -38,9 +38,9 @@ __all__ = ["decide", "is_zero", "normal_form"]
 
 
 def normal_form(expression: Any, relations: Sequence[Any] = ()) -> Any:
-    """Return the normal form of a formula: exactly 0 if the formula is zero wherever it is defined.
+    """Return the normal form of a formula; it is 0 only if the formula is zero wherever it is defined.
 
-    In the scope of :mod:`symrot.exact.decide`, any other result proves that it is not.
+    The converse holds in this module's scope.
 
     Parameters
     ----------

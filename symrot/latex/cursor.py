@@ -18,7 +18,7 @@ Value = TypeVar("Value")
 class Cursor:
     r"""A position in a row of items of the LaTeX tree, from which the next item is read.
 
-    Spaces, ``\left`` and ``\right`` are skipped; an index or a power is an item after its symbol.
+    Spaces, ``\left`` and ``\right`` are skipped.
 
     Attributes
     ----------
@@ -52,6 +52,7 @@ class Cursor:
     def flatten(self, nodes: Iterable[Node]) -> None:
         space = False
         for node in nodes:
+            # an index or a power is an item after its symbol
             if isinstance(node, Scripts):
                 self.flatten((node.base, *node.scripts))
             elif isinstance(node, Delimited):
@@ -97,7 +98,7 @@ class Cursor:
     def barred(self, read: Callable[[], Value], bar: str) -> Value:
         """Parse a value between two bars, as in ``|x|``, by ``read``, and return it.
 
-        The cursor is after the opening bar; ``bar`` is the closing one.
+        The cursor is after the opening bar.
         """
         outside, self.open_bars = self.open_bars, (*self.open_bars, bar)
         value = read()

@@ -97,10 +97,7 @@ def _places(poly: PolyElement) -> frozenset[int]:
 
 
 def _integral(terms: Iterable[tuple[Monomial, Any]], known: Mapping[int, Number]) -> tuple[int, int]:
-    """Return (multiplier, bits): the factor that makes a sum an algebraic integer, and the size of its conjugates.
-
-    ``terms`` are pairs (powers of the variables, coefficient).
-    """
+    """Return (multiplier, bits): the factor that makes a sum an algebraic integer, and the size of its conjugates."""
     terms = list(terms)
     most = [max(column) for column in zip(*(mono for mono, _ in terms), strict=True)]
     whole = lcm(*(int(c.denominator) for _, c in terms))

@@ -179,9 +179,9 @@ def _imaginary_unit() -> Root:
 
 
 def square_root_of_number(value: Rational) -> tuple[Rational, list[Root]]:
-    """Return (r, roots): the root of a positive rational as r times square roots of primes.
+    """Return (r, roots): the root of a positive rational is r times ``roots`` of primes.
 
-    12/5 gives 2/5 and the roots of 3 and 5.
+    12/5 gives 2/5, sqrt(3) and sqrt(5).
     """
     powers = factorint(int(value.p) * int(value.q))
     outside = prod(prime ** (power // 2) for prime, power in powers.items())
