@@ -1,8 +1,7 @@
 """The cache of compiled C: a library is compiled once, stored for the user, and later loaded without a compiler.
 
 The name of a library contains the checksum of its content, so a damaged one is built again. ``CC`` names the compiler,
-``SYMROT_CACHE`` the cache directory. If that is unusable, a temporary directory replaces it. This module imports
-neither SymPy nor NumPy.
+``SYMROT_CACHE`` the cache directory. If that is unusable, a temporary directory replaces it. No NumPy here.
 """
 
 import os
@@ -367,7 +366,7 @@ def _exposed(directory: Path) -> str:
 
 
 def _shared_group(group: int) -> bool:
-    """Return whether a group, or a group or user unknown to the system, may have members other than the user."""
+    """Return whether a group may have members other than the user; True if the system does not know group or user."""
     import grp
     import pwd
 

@@ -218,9 +218,9 @@ def equations_of_motion(structure: Structure) -> Equations:
 
 
 def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equations:
-    """Return the equations of a motion on which guards, formulas at whose change of sign a torque jumps, stay zero.
+    """Return the equations of a motion that slides along jumps of torques: the formulas whose signs jump stay zero.
 
-    ``held`` pairs torques with modes, which are symbols for these signs.
+    ``held`` pairs each torque with the symbol of its sign.
 
     Raises
     ------

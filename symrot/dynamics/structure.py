@@ -136,8 +136,8 @@ class FormulaTorque(NamedTuple):
 
     @property
     def has_choices(self) -> bool:
-        """Whether a formula contains ``where`` with a branch that fails elsewhere, such as ``where(omega_1 > 0,
-        1/omega_1, 0)``.
+        """Whether a formula has a branch that cannot be evaluated everywhere, as in ``where(omega_1 > 0, 1/omega_1,
+        0)``.
         """
         return bool(self.choices) or any(switch.choices for switch in self.switches)
 

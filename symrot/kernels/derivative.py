@@ -1,7 +1,7 @@
 """Exact derivatives of the formulas of kernels, which reuse quantities that the kernel computes for its values.
 
-A quantity with a name, such as ``angle = sqrt(v . v)``, keeps it in the chain rule; a quotient ``y = a/b`` gives ``(a'
-- y b')/b``, a root ``r`` of a ``a'/(2 r)``. Derivatives stay short, and finite with the values.
+A named quantity, such as ``angle = sqrt(v . v)``, keeps its name in the chain rule; a quotient ``y = a/b`` gives ``(a'
+- y b')/b``, a root ``r = sqrt(a)`` gives ``a'/(2 r)``. Derivatives stay short, and finite where values are.
 """
 
 from collections.abc import Callable, Mapping, Sequence

@@ -167,7 +167,7 @@ def _heavy_top(name: str, body: str) -> Definition:
 
 
 def _weighed(center: Matrix) -> tuple[Matrix, Named]:
-    """Return the vector 2 W r of symbols, for weight W and centre of mass r, and pairs (symbol, formula)."""
+    """Return the vector 2 W r in symbols, for weight W and centre of mass r, and the formulas of the symbols."""
     # The torque is half the vertical times this vector: fewer operations. Zeros stay zeros.
     components = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]
     return Matrix(components), tuple(

@@ -134,9 +134,7 @@ def _rates(frame: str, name: str, sequence: str) -> Definition:
 
 
 def _solved(jacobian: RateMatrix, omega: Matrix) -> tuple[Named, list[Expr]]:
-    """Return pairs (symbol, formula) that divide by the determinant, and the rates of the Euler angles in these
-    symbols.
-    """
+    """Return a quotient as a pair (symbol, formula), and the rates of the Euler angles in terms of this symbol."""
     matrix, determinant = Matrix(jacobian), jacobian.determinant
     # Of the outer angles, this one rotates about a coordinate axis of the frame of omega: its rate follows from one
     # component of omega and the other rate, without a division by the determinant.

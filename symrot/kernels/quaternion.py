@@ -39,8 +39,8 @@ def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
 
 
 def dcm_by_halves(scalar: Expr, axis: Sequence[Expr], doubled: Sequence[Expr]) -> tuple[Named, ImmutableMatrix]:
-    """Return the rotation matrix ``1 + scalar [t] + [t][axis]`` in symbols for t = ``doubled``, after their
-    definitions.
+    """Return (definitions of symbols, matrix): the rotation matrix ``1 + scalar [t] + [t][axis]`` with t =
+    ``doubled``.
     """
     # [v] is the matrix of the cross product with v, t is parallel to the axis; a unit quaternion (q0, u) gives q0, u, 2
     # u.
@@ -129,7 +129,9 @@ def _branch(matrix: Matrix, pivot: int) -> Branch:
 
 
 def _larger(left: Branch, right: Branch) -> Branch:
-    """Return the branch with the larger ``4 q_k^2``, as formulas that choose between two branches at run time."""
+    """Return the branch (formulas for one pivot) with the larger ``4 q_k^2``, as conditionals that are evaluated at run
+    time.
+    """
     (a, row_a), (b, row_b) = left, right
     # A branch is 4 q_k^2 and 4 q_k q_0 to 4 q_k q_3; each formula compares the two squares.
     return select_ge(a, b, a, b), [select_ge(a, b, x, y) for x, y in zip(row_a, row_b, strict=True)]
@@ -193,7 +195,7 @@ def _rotate(towards: str, name: str) -> Definition:
 
 
 def turned(q: Sequence[Expr], vector: Matrix) -> tuple[Named, Matrix]:
-    """Return the vector v rotated by the unit quaternion (q0, u), in symbols, after their definitions."""
+    """Return (definitions of symbols, components): the ``vector`` rotated by the unit quaternion ``q``."""
     scalar, axis = q[0], Matrix([*q][1:])
     # v + q0 h + u x h with h = 2 u x v takes fewer operations than the rotation matrix
     half = Matrix([Symbol(f"twice_cross_{i}", real=True) for i in "123"])

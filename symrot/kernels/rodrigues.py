@@ -44,7 +44,7 @@ _SQUARE = Symbol("square", real=True)  # square of the length of the parameters
 
 
 def _ray(which: Projection) -> tuple[Named, Expr]:
-    """Return s, in symbols after their definitions, such that the quaternion (s, parameters) describes the attitude."""
+    """Return (definitions of symbols, s) such that the quaternion (s, parameters) describes the attitude."""
     if not which.centre:
         return (), Integer(1)
     # (1 - p^2)/2 for modified parameters, 1 for classical ones

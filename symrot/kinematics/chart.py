@@ -77,7 +77,7 @@ class SingularSet:
         return bool(self.values is S.EmptySet)
 
     def points(self) -> tuple[Expr, ...]:
-        """Return the singular values of the variable in one period, in increasing order: all n pi give ``(0, pi)``.
+        """Return the values of the variable in one period at which the chart is singular: all n pi give ``(0, pi)``.
 
         Empty if there are none.
         """
@@ -143,7 +143,8 @@ def zeros_of(equation: Expr, variable: Symbol, domain: Set = S.Reals) -> Set:
 
 @dataclass(frozen=True)
 class Limit:
-    """The limit of the inverse rate matrix at a singular point from one side: which rates grow without bound, how fast.
+    """The limit of the inverse rate matrix at a singular point from one side: which rates grow without bound, and how
+    fast.
 
     Attributes
     ----------

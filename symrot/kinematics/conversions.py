@@ -364,10 +364,7 @@ def _shadow(*s: Array) -> Components:
 
 
 def mrp_shadow(s: Any) -> Array:
-    """Return the shadow ``-s / |s|^2`` of modified Rodrigues parameters: their other set for the same attitude.
-
-    NaN for s = 0.
-    """
+    """Return the shadow ``-s / |s|^2``, the other modified Rodrigues parameters of the same attitude; NaN for s = 0."""
     return _by_components(_shadow, array_of(s, 3, what="a set of modified Rodrigues parameters"), 3)
 
 
@@ -384,13 +381,13 @@ def mrp_switch(s: Any) -> tuple[Array, Mask]:
 
 
 def places(sequence: str) -> tuple[tuple[int, int, int], tuple[int, int, int], int, int]:
-    """Return (axes, order, m, sign) of a sequence: the rotations of ``dcm_sb``, their angles' order, ``e_1 x e_2 = sign
-    e_m``.
+    """Return the axes of the three rotations whose product is ``dcm_sb``, the positions of their angles, and m, sign.
 
     ``"ZYX"`` gives (2, 1, 0), (0, 1, 2), 0, -1.
     """
     axes, intrinsic = parse_sequence(sequence)
     (first, middle, last), order = (axes, (0, 1, 2)) if intrinsic else (axes[::-1], (2, 1, 0))
+    # e_1 x e_2 = sign e_m for the axes of the first two rotations
     return (first, middle, last), order, 3 - first - middle, 1 if (middle - first) % 3 == 1 else -1
 
 

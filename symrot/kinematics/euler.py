@@ -271,9 +271,8 @@ def _rate_jacobian(sequence: str, frame: str, parameters: tuple[Expr, ...]) -> E
 
 @cache
 def sequences_at_lock(sequence: str) -> dict[str, Set]:
-    """Return, for each other sequence, the attitudes in gimbal lock of ``sequence`` at which it locks too.
-
-    Each set has values of one angle, rad.
+    """Return, for each other Euler sequence, the gimbal-lock attitudes of ``sequence`` at which it locks too, as a set
+    of one angle, rad.
     """
     left, _, _ = factors(sequence)
     # In gimbal lock only the sum or difference of the outer angles matters, so one of them is zero. The set is empty

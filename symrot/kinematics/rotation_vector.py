@@ -105,11 +105,6 @@ def jacobian(frame: str = "body", vector: Sequence[Any] | Matrix = symbols.rotat
     -----
     With a = ``|v|`` and K the skew matrix of v, B is the right Jacobian of the exponential map in body components,
     ``1 - (1 - cos a)/a^2 K + (a - sin a)/a^3 K^2``, and its transpose, the left Jacobian, in space components.
-
-    Raises
-    ------
-    InputError
-        If the frame is unknown, or the vector does not have three components.
     """
     vector = expressions(vector, 3, "a rotation vector")
     size = length(vector)

@@ -108,8 +108,8 @@ def _switch(switch: Switch) -> TorqueSwitch:
 
 
 def _prefix(number: int, names: list[str], known: set[str]) -> str:
-    """Return a prefix, empty or such as ``"torque2_"``, with which none of ``names`` is in ``known``; add
-    them there.
+    """Return a prefix, empty or such as ``"torque2_"``, that makes ``names`` differ from ``known``; add the new names
+    to ``known``.
     """
     prefix = ""
     while known & {f"{prefix}{name}" for name in names}:

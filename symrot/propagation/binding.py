@@ -72,7 +72,7 @@ class Binding:
         ]
 
     def __call__(self, plan: Plan) -> list[float]:
-        """Return the parameter values for ``plan``, which may differ from the first plan in its initial state."""
+        """Return the parameter values for ``plan``, a plan of the same scene with any initial state."""
         numbers = self._numbers.copy()
         if self._moving:
             constants = plan.start_constants
@@ -83,7 +83,7 @@ class Binding:
 
 
 class _Moving:
-    """A formula in the numbers of the initial state, evaluated exactly for each one: ``3*omega_1**2``."""
+    """A formula in numbers of the initial state, such as ``3*omega_1**2``, to be evaluated for many initial states."""
 
     def __init__(self, formula: Node) -> None:
         # a monomial in one name is evaluated with integers, which is faster than with Fractions

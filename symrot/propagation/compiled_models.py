@@ -153,9 +153,9 @@ def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected:
 
 
 def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
-    """Return the blocks of states whose errors are measured separately, as edges and scales.
+    """Return (edges, scales) of the blocks of states: ``([0, 3, 7], [0.0, 1.0])`` for omega and quaternion.
 
-    For omega and quaternion: ``([0, 3, 7], [0.0, 1.0])``.
+    The error of a block is divided by its scale, or by its norm if that is 0.
     """
     rates = sum(name.startswith("omega") for name in plan.states)
     count = len(plan.states)
@@ -205,9 +205,9 @@ def _degree(node: Node) -> int:
 
 
 def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[str, float]], Deviations] | None":
-    """Return a function from the parameters of the rates to bounds on torque changes, which limit SciPy's steps.
+    """Return a function from the rates' parameters to bounds on torque changes, which limit SciPy's steps.
 
-    Return None if no step needs a limit.
+    None if no step needs a limit.
     """
     if not has_formulas(plan):
         return None

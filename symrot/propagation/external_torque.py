@@ -251,7 +251,7 @@ def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floa
 
 
 def _check_overshoot(spline: Any, largest: float) -> None:
-    """Raise InputError if a spline exceeds the largest sample 100 times, as for very unevenly spaced samples."""
+    """Raise InputError if a spline exceeds 100 times the largest sample, as for very unevenly spaced samples."""
     starts, gaps = spline.x[:-1], np.diff(spline.x)
     reach = np.max([np.abs(spline(starts + part * gaps)).max(axis=1) for part in (0.25, 0.5, 0.75)], axis=0)
     worst = int(np.argmax(reach))
@@ -285,7 +285,7 @@ def _torque_source(torque: Any, switching: Sequence[float]) -> TorqueSource:
 
 
 def _bits(address: int) -> float:
-    """Return the double with the same 64 bits as an address."""
+    """Return the double with the same 64 bits as an address, so that an array of doubles can hold the address."""
     # kernel parameters are doubles, and one of them has to hold the address
     return ctypes.c_double.from_buffer_copy(ctypes.c_uint64(address)).value
 
@@ -330,8 +330,9 @@ def external_setup(
 ) -> ExternalSetup:
     """Compile kernel, torque and stepper into one library, and return the setup of all motions with this torque.
 
-    ``max_step`` is in s; ``in_space`` means space components.
+    ``in_space``: the torque has space components.
     """
+    # max_step: the longest step, s; switching: times, s, at which the torque jumps
     plan = replace(plan, structure=replace(plan.structure.unreduced(), attitude=True))
     scene_alone = scene_kernel(plan)
     own = len(scene_alone.rate_parameters)
@@ -388,7 +389,7 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
         )  # fmt: skip
 
     def _guarded(self, low: float, high: float, run: Callable[[], Result]) -> Result:
-        """Check that the torque is defined from ``low`` to ``high``, s, then return the result of ``run()``."""
+        """Return the result of ``run()``, after a check that the torque is defined from ``low`` to ``high``, s."""
         source = self._shared.source
         source.check(min(low, self.start), max(high, self.start))
         try:

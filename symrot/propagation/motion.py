@@ -118,7 +118,7 @@ class Setup:
 
     @cached_property
     def moves_clock(self) -> bool:
-        """Whether the stepper resets its clock to 0 during the motion, so that phases such as ``a*t`` keep digits."""
+        """Whether the stepper moves the epoch from which it counts time, so that phases such as ``a*t`` keep digits."""
         return self.allows_time_shift and self.kernel.rates.uses("t")
 
     @cached_property
@@ -148,14 +148,14 @@ class Setup:
         return formula_deviations(self.plan, self.kernel)
 
     def shifted(self) -> tuple[Plan, SceneKernel]:
-        """Return a plan and its kernel that count time from an epoch, a parameter that a stepper can change."""
+        """Return plan and kernel with time counted from an epoch, a parameter that a stepper can change."""
         # time_shifted returns both unchanged if the rates do not depend on time
         is_shifted = self.plan.structure.clock is not None
         return (self.plan, self.kernel) if is_shifted else time_shift.time_shifted(self.plan, self.kernel)
 
     @cached_property
     def on_own_clock(self) -> "Setup":
-        """A copy of the setup whose clock shows 0 at the start, so that times near a late start keep more digits."""
+        """A copy of the setup with time counted from the start of the motion, so that late times keep more digits."""
         plan, kernel = time_shift.time_shifted(self.plan, self.kernel)
         return replace(self, plan=plan, start=0.0, epoch=self.start, load_kernel=lambda: kernel)
 
@@ -180,7 +180,7 @@ class SteppedSetup:
 
     @cached_property
     def on_own_clock(self) -> "SteppedSetup":
-        """A copy whose clock shows 0 at the start of the motion, so that times near a late start keep all digits."""
+        """A copy with time counted from the start of the motion, so that times near a late start keep all digits."""
         setup = self.setup.on_own_clock
         if setup.plan is self.setup.plan:  # the rates do not depend on the time
             return SteppedSetup(setup, self.library)
@@ -212,7 +212,7 @@ class ClosedFormSetup:
 
 # Each method has its own subclass. A Setup holds what a motion shares with those from other initial states.
 class Motion(ABC):
-    """The motion of a scene from one initial state; its clock shows 0 at the scene time ``epoch``."""
+    """The motion of a scene from one initial state; its stepper counts time from ``epoch``, a time of the scene, s."""
 
     # whether a torque without a formula acts on the body
     has_external_torque = False
@@ -233,12 +233,12 @@ class Motion(ABC):
 
     @property
     def start(self) -> float:
-        """Initial time, s, on the clock of the motion; 0 if the clock starts with the motion."""
+        """Initial time, s after the epoch: 0 if the stepper counts time from the start of the motion."""
         return self.setup.start
 
     @property
     def epoch(self) -> float:
-        """Time of the scene, s, at which the clock of the motion shows 0."""
+        """Time of the scene, s, from which the stepper counts time; often 0."""
         return self.setup.epoch
 
     @property
@@ -271,9 +271,9 @@ class Motion(ABC):
         return dict(zip(names, self.setup.quantity_binding(self.plan)[::2], strict=True))
 
     def evaluate(self, t: Floats, states: Floats, names: Sequence[str]) -> Floats:
-        """Return output quantities, such as ``"omega_1 of t"``, at n times, shape (n, len(names)).
+        """Return output quantities, such as ``"omega_1 of t"``, shape (n, len(names)), from n states, shape (n, N).
 
-        ``t`` is on the motion's clock; ``states`` has shape (n, N).
+        The times ``t`` are in s after the epoch.
         """
         columns = [name.removesuffix(" of t") for name in names]
         if set(columns) <= set(self.plan.states):  # every quantity is a state
@@ -298,7 +298,7 @@ class Motion(ABC):
 
     @abstractmethod
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats | tuple[Floats, ...], Stats]:
-        """Return the states at scene times, s, shape (n, N), or two arrays for a closed form, and the cost.
+        """Return the states at times of the scene, s, shape (n, N), or two arrays for a closed form, and the cost.
 
         ``in_order``: the times are finite and never decrease.
         """
@@ -307,17 +307,17 @@ class Motion(ABC):
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
         """Return a function from n times, s, within ``span`` to the states, shape (n, N).
 
-        Times and span are on the motion's clock.
+        Times and span are counted from the epoch.
         """
 
     def integrate(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at scene times in one array, shape (n, N), and the cost of the motion."""
+        """Return the states at times of the scene, s, in one array, shape (n, N), and the cost of the motion."""
         # a closed form has separate arrays for angular velocity and attitude
         states, stats = self.follow(times, in_order)
         return np.concatenate(states, axis=1) if isinstance(states, tuple) else states, stats
 
     def path(self, times: Floats) -> Callable[[Floats], Floats]:
-        """Return a function from n scene times, between the start and ``times``, to the states, shape (n, N)."""
+        """Return a function from n times of the scene, s, to the states, shape (n, N), from the start to ``times``."""
         span = (
             (min(self.start, float(times.min())), max(self.start, float(times.max())))
             if len(times)
@@ -347,11 +347,11 @@ class Motion(ABC):
 
 
 class RestartableMotion(Motion):
-    """A motion that can restart from another initial state of the same structure; nothing is derived again."""
+    """A motion that can restart, without a derivation, from another initial state with equations of the same form."""
 
     @abstractmethod
     def from_start(self, initial: Initial) -> "RestartableMotion":
-        """Return the motion from another initial state of the same structure, which is not checked."""
+        """Return the motion from another initial state with equations of the same form, which is not checked."""
 
 
 class SteppedInC(ABC):
@@ -364,22 +364,22 @@ class SteppedInC(ABC):
 
 
 class ShiftableMotion(RestartableMotion):
-    """An integrated motion whose clock can show 0 at its start, so that times near a late start keep more digits."""
+    """An integrated motion whose time can be counted from its start, so that late times keep more digits."""
 
     @property
     @abstractmethod
     def on_own_clock(self) -> "ShiftableMotion":
-        """The same motion on a clock that shows 0 at the start, so that times near a late start keep all digits."""
+        """The same motion with time counted from its start, so that times near a late start keep all digits."""
 
     @abstractmethod
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times, s, on the motion's clock, shape (n, N), and the cost.
+        """Return the states at times, s after the epoch, shape (n, N), and the cost.
 
         ``in_order``: the times are finite and never decrease.
         """
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at scene times, s, shape (n, N), and the cost.
+        """Return the states at times of the scene, s, shape (n, N), and the cost.
 
         ``in_order``: the times are finite and never decrease.
         """
@@ -393,7 +393,7 @@ class ShiftableMotion(RestartableMotion):
             raise error.later(motion.epoch) from None
 
     def _shifts(self, times: Floats) -> bool:
-        """Return whether all these scene times, s, lie between half the start and twice the start, which is not 0."""
+        """Return whether these times of the scene, s, lie between half and twice the start, which is not 0."""
         if not (self.start and self.setup.allows_time_shift and len(times)):
             return False
         # they keep more digits on a clock that shows 0 at the start
@@ -401,7 +401,7 @@ class ShiftableMotion(RestartableMotion):
 
 
 def on_clock(motion: Motion, times: Floats) -> Motion:
-    """Return the motion on the clock that keeps the most digits of these scene times, s."""
+    """Return the motion with time counted from 0 or from its start, so that these times, s, keep the most digits."""
     # its own clock, or one that shows 0 at the start
     return motion.on_own_clock if isinstance(motion, ShiftableMotion) and motion._shifts(times) else motion
 
@@ -489,7 +489,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def on_own_clock(self) -> "SteppedMotion":
-        """The same motion on a clock that shows 0 at the start, so that times near a late start keep all digits."""
+        """The same motion with time counted from its start, so that times near a late start keep all digits."""
         shared = self._shared.on_own_clock
         return SteppedMotion(shared, shared.setup.plan.from_start(self.plan.scene.initial))
 
@@ -513,21 +513,21 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def _clock(self) -> dop853.Clock:
-        """Function from an epoch, s, to a library of rates that count time from it, and their parameters."""
+        """Function from an epoch, s, to a library whose rates take the time since it, and to their parameters."""
         # the epoch is a time on the clock of the motion
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch)
 
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times, s, on the motion's clock, shape (n, N), and the cost.
+        """Return the states at times, s after the epoch, shape (n, N), and the cost.
 
         ``in_order``: the times are finite and never decrease.
         """
         return self.stepping.sample_sorted(times, in_order)
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function from n times, s, to the states, shape (n, N), by recorded steps.
+        """Return a function from n times, s, within ``span`` to the states, shape (n, N), by recorded steps.
 
-        Times and ``span`` are on the motion's clock.
+        Times and span are counted from the epoch.
         """
         recording = self.stepping.restarted().record(span)
         recording.epoch = self.epoch
@@ -544,18 +544,18 @@ class SciPyMotion(ShiftableMotion):
 
     @cached_property
     def on_own_clock(self) -> "SciPyMotion":
-        """The same motion on a clock that shows 0 at the start, so that times near a late start keep all digits."""
+        """The same motion with time counted from its start, so that times near a late start keep all digits."""
         setup = self.setup.on_own_clock
         return SciPyMotion(setup, setup.plan.from_start(self.plan.scene.initial))
 
     @cached_property
     def _clock(self) -> Callable[[float], Any]:
-        """Function from an epoch, s, to rates in Python that count time from it, and their parameters."""
+        """Function from an epoch, s, to rates in Python that take the time since the epoch, and to their parameters."""
         # the epoch is a time on the clock of the motion
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch, python_rates)
 
     def deviations(self, parameters: Sequence[float]) -> "Deviations | None":
-        """Return bounds on rate changes, by which no step of SciPy misses a pulse; None if no step needs a limit."""
+        """Return bounds on changes of the rates, which limit SciPy's steps; None if no step needs a limit."""
         if self.setup.deviations is None:
             return None
         names = [name for name, _ in self.kernel.rate_parameters]
@@ -571,7 +571,7 @@ class SciPyMotion(ShiftableMotion):
         return Options(self.choice.method, blocks, scales, deviations=deviations, clock=clock)
 
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times, s, on the motion's clock, shape (n, N), and the cost."""
+        """Return the states at times, s after the epoch, shape (n, N), and the cost."""
         from symrot.propagation.steppers import fallback
 
         start = (self.rate_parameters, self.plan.initial_state, self.start)
@@ -579,9 +579,9 @@ class SciPyMotion(ShiftableMotion):
         return fallback.integrate(self.rates, *start, times, self.tolerance, self.options(self.rate_parameters))
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function from n times, s, to the states, shape (n, N), by SciPy's interpolants.
+        """Return a function from n times, s, within ``span`` to the states, shape (n, N), by SciPy's interpolants.
 
-        Times and ``span`` are on the motion's clock.
+        Times and span are counted from the epoch.
         """
         from symrot.propagation.steppers import fallback
 
@@ -592,7 +592,7 @@ class SciPyMotion(ShiftableMotion):
 
 
 class MotionInParts(Motion):
-    """Interface of a motion that is smooth between switches: times at which a torque jumps or bends."""
+    """Interface of a motion under torques that jump or bend at certain times; it is smooth in between."""
 
     @abstractmethod
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
@@ -630,7 +630,7 @@ def stepped_motion(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotio
 
 
 def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotion | SciPyMotion:
-    """Return the integrated motion of a plan, with its clock at 0 at the start if its rates depend on time."""
+    """Return the integrated motion of a plan, with time counted from its start if its rates depend on time."""
     setup = _setup(plan, choice, tolerance)
     timed, steps_in_c = setup.kernel.rates.uses("t"), choice.method in ("taylor", "dop853")
     if not timed:

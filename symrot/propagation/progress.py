@@ -29,7 +29,7 @@ def report(t: float, start: float, stop: float) -> None:
 def within(start: float, stop: float, zero: Callable[[], float] = lambda: 0.0) -> Iterator[None]:
     """Context manager: progress inside the block counts as progress of one motion from ``start`` to ``stop``, s.
 
-    ``zero`` returns the scene time of clock time 0.
+    ``zero()``, s, is added to reported times.
     """
     # a motion that is computed in several parts; of nested blocks, the outermost applies
     token = _whole.set(_whole.get() or (start, stop, zero))

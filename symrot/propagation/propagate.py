@@ -148,7 +148,7 @@ def propagator(
 
 
 def _refuse_sensitivities(scene: Scene, torque: Any, state: str) -> None:
-    """Raise InputError if the motion has no derivatives: in Euler angles, or under torques without smooth formulas."""
+    """Raise InputError for motions without derivatives: Euler angles as state, or a torque without smooth formulas."""
     if state != "quaternion":
         raise InputError(f"sensitivities: expected state='quaternion', the attitude to integrate, got {state!r}")
     if torque is not None:

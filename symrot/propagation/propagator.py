@@ -87,8 +87,9 @@ class Propagator:
 
     @cached_property
     def _by_structure(self) -> dict[Hashable, Motion]:
-        """The first motion for each :func:`symrot.planning.plan.structure_key` of an initial state."""
+        """The first motion for each form of the equations, by :func:`symrot.planning.plan.structure_key`."""
         # initial states with equal keys have equations of the same form
+        # later motions with equations of this form copy it
         return {structure_key(self.scene, self.scene.initial): self._motion}
 
     def _planned(self, initial: Initial | None = None) -> Plan:

@@ -56,7 +56,7 @@ def time_shifted(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
 
 
 class ShiftedParameters:
-    """Values of formulas that contain the epoch: the time at which a stepper has last reset its clock to 0.
+    """Values of formulas that contain the epoch, the time from which a stepper counts; long motions move it.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class ShiftedParameters:
         self._lines = [_line(node) for node in self._formulas]
 
     def parameters(self, epoch: float | Fraction) -> list[float]:
-        """Return the values of all formulas for an epoch, s, on the motion's clock, each rounded once."""
+        """Return the values of all formulas for an epoch, s after ``start``, each computed exactly and rounded once."""
         time = self._start + Fraction(epoch)
         top, bottom, values = time.numerator, time.denominator, {EPOCH: time}
         try:
@@ -127,7 +127,7 @@ def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
 
 
 def compiled(plan: Plan, kernel: SceneKernel) -> Path:
-    """Return the path of the library of kernel and DOP853 stepper for a result of :func:`time_shifted`."""
+    """Return the path of the library (kernel and DOP853 stepper) for plan and kernel from :func:`time_shifted`."""
     return motion_library(plan, kernel)
 
 
@@ -137,7 +137,7 @@ def clock(
     start: float = 0.0,
     make: Callable[[Plan, SceneKernel], Any] = compiled,
 ) -> Callable[[float], tuple[Any, list[float]]]:
-    """Return a function from an epoch, s, to rates that count time from it, and their parameters."""
+    """Return a function from an epoch, s, to rates that take the time since the epoch, and to their parameters."""
 
     # moving(), a plan and kernel as time_shifted returns them, is called on first use; make() turns them into the
     # library for DOP853 or the Python function for SciPy

@@ -188,7 +188,7 @@ def _saved(content: Any) -> SavedTrajectory:
 def _items(content: Any, metadata: dict[str, Any], array: Any) -> list[Labelled]:
     """Return the quantities in an NPZ file with their labels, as the file's ``metadata`` describes them.
 
-    ``array(name)`` is the name of an array.
+    ``array(name)`` names the array of a quantity.
     """
     # the samples of a quantity, or those at an event
     items = []

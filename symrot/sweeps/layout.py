@@ -83,7 +83,7 @@ class Store(Protocol):
 
     @property
     def only_statistics(self) -> str:
-        """A text that describes the statistics if the values of the outputs were removed after them; else empty."""
+        """A description of the statistics if the store has only these, not the values of the outputs; else empty."""
 
     def pending(self) -> list[tuple[int, int]]:
         """Return the pairs (start, stop) of trajectories, one per chunk, whose results are not stored yet."""

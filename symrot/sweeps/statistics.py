@@ -234,7 +234,7 @@ class _Search:
 
 
 def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, int], float]) -> list[_Search]:
-    """Read all values of a column once, to finish ``searches`` or to return them with narrower intervals."""
+    """Read all values once, to finish ``searches`` for given ranks or to return them with narrower intervals."""
     open_searches = []
     for search in searches:
         if search.first == search.last:
@@ -273,9 +273,9 @@ def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, i
 
 
 def _split(search: _Search, counts: NDArray[np.int64], shift: int) -> list[_Search]:
-    """Return searches in those parts, of ``2^shift`` keys, of a search's interval that contain one of its ranks.
+    """Split a search into searches in those parts of its interval that contain one of its ranks.
 
-    ``counts`` are the values per part: with counts 5 and 7, rank 6 becomes rank 1 of the second part.
+    Parts have ``2^shift`` keys. For ``counts`` 5 and 7, rank 6 becomes rank 1 of the second part.
     """
     # rank 0 is the smallest value
     ends = np.cumsum(counts)

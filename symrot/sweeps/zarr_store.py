@@ -142,7 +142,7 @@ class ZarrStore:
 
     @property
     def only_statistics(self) -> str:
-        """A text that describes the statistics if the values of the outputs were removed after them; else empty."""
+        """A description of the statistics if the store has only these, not the values of the outputs; else empty."""
         return str(self._group.attrs.get(REMOVED, ""))
 
     def finish(self, tables: list[Table], only_statistics: str) -> None:

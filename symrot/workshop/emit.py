@@ -25,14 +25,9 @@ class _Texts(NamedTuple):
 
 
 class Emitted(_Texts):
-    """An emitted kernel: its name, its text, and in C its header (empty for other targets).
+    """An emitted kernel: its name, its text, and in C its header.
 
-    In Python and JavaScript the function has the name of the kernel. In C its name is the value of the property
-    ``function``, the kernel's name with the prefix ``symrot_``.
-
-    The property ``certificate`` is the text of the kernel's certificate, which is proven when it is first read. The
-    certificate of a library kernel contains bounds of its rounding errors on the standard ranges of its inputs; the
-    certificate of a scene's kernel contains the bounds that were passed to :func:`emit`.
+    Its certificate is proven when the property ``certificate`` is first read.
 
     Attributes
     ----------
@@ -48,15 +43,16 @@ class Emitted(_Texts):
     True
     """
 
+    # The function has the name of the kernel, in C with the prefix symrot_ (property ``function``). The certificate of
+    # a library kernel contains bounds of its rounding errors on the standard ranges of its inputs; that of a scene's
+    # kernel contains the bounds that were passed to ``emit``.
     text: "KernelText"
     bounds: Mapping[str, Any] | None
 
     @classmethod
     def of(cls, text: "KernelText", target: str, bounds: Mapping[str, Any] | None) -> "Emitted":
-        """Return an :class:`Emitted` with the texts of a kernel in the language ``target``, such as ``"c"``.
-
-        ``bounds`` are the bounds of rounding errors that were passed to :func:`emit`, or None.
-        """
+        """Return the texts of a kernel in the language ``target``, such as ``"c"``."""
+        # ``bounds``: those that were passed to ``emit``, or None
         source, header = text.c(bounds) if target == "c" else (text.source(target), "")
         emitted = cls(text.name, source, header)
         emitted.text, emitted.bounds = text, bounds

@@ -157,13 +157,12 @@ class Claim:
         return f"{self.id}: {key}" if self.id else ""
 
     def with_relation(self, relation: Relation, **changes: Any) -> "Claim":
-        """Return the claim with another equation.
-
-        ``changes`` are new values of other fields. They must not change the values of the definitions, which
-        are reused.
+        """Return the claim with another equation, and with ``changes`` of other fields, which must leave
+        definitions unchanged.
         """
         other = replace(self, relation=relation, **changes)
         if "definitions" in self.__dict__:
+            # computed values of definitions are reused
             other.__dict__["definitions"] = self.definitions
         return other
 
@@ -207,7 +206,7 @@ class Claim:
         )  # fmt: skip
 
     def interpreter(self) -> Interpreter:
-        """Return a new interpreter, which turns further syntax trees that use the names of the claim into SymPy."""
+        """Return a new interpreter that turns further syntax trees with the claim's names into SymPy."""
         known = self.definitions
         return Interpreter(
             values=dict(known.values), functions=set(known.functions), implied=self.implied,
@@ -259,7 +258,7 @@ def relation_text(relation: Relation) -> str:
 
 
 def _differences(left: Any, right: Any, where: str) -> list[Expr]:
-    """Return left - right of a hypothesis that is an equation, as a list: one difference for each entry of a matrix."""
+    """Return the differences left - right of a hypothesis that is an equation, one for each entry of a matrix."""
     try:
         lefts, rights, _ = matched_sides(left, right)
     except ShapeMismatch:
@@ -268,7 +267,9 @@ def _differences(left: Any, right: Any, where: str) -> list[Expr]:
 
 
 def assumed_names(hypotheses: Sequence[Relation], sign: str) -> set[str]:
-    """Return the names x of hypotheses ``x > 0`` (or ``0 < x``). With the sign ``>=``, return those of ``x >= 0``."""
+    """Return the names that hypotheses assume to be positive, as ``x > 0`` does; with the sign ">=", to be
+    nonnegative.
+    """
     mirrored = {">": "<", ">=": "<="}[sign]
     zero = ("number", 0)
     names = set()

@@ -111,7 +111,7 @@ def _letters_of(trees: Sequence[Node]) -> Iterator[str]:
 
 
 def _depends_on_time(derivative: Node) -> bool:
-    """Return whether a ``derivative`` is by time, and its formula contains a function of time: ``diff(x(t)**2, t)``."""
+    """Return whether a derivative is by the time t and contains a function of time, as ``diff(x(t)**2, t)``."""
     inner, *variables = derivative.args
     return any(v.value == "t" for v in variables) and any(
         node.kind == "call" and node.value != "diff" and _is_name(node) for _, node in walk(inner)
@@ -194,10 +194,7 @@ def _says_something(claim: Claim, left: Node, right: Node) -> bool:
 
 
 def _solved_for_vector(claim: Claim, left: Node, right: Node) -> NamedFormula | None:
-    """Return the formula that an equation gives for one of its vectors: v from ``v - u = w x r``.
-
-    None without such a vector.
-    """
+    """Return the formula that an equation gives for one of its vectors, v in ``v - u = w x r``, or None."""
     terms = [*_terms(left), *map(negated, _terms(right))]
     generic = {name for name, tree in claim.define if is_components(name, tree)}
     everywhere = [node.value for term in terms for _, node in walk(term) if node.kind == "name"]
@@ -225,9 +222,8 @@ def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, boo
 
 
 def _letters_by_definition(claim: Claim, left: Node, right: Node) -> list[set[tuple[str, bool]]]:
-    """Return the quantities in ``F == k*x`` after the line ``F = m*a``: {m, a} and {k, x}.
-
-    Both sets are empty if no line defines the left side.
+    """Return the quantities in ``F == k*x`` after the line ``F = m*a``, {m, a} and {k, x}; empty sets without such
+    a line.
     """
     defined = {name: tree for name, tree in claim.define if not is_components(name, tree)}
     if left.value not in defined:
@@ -360,9 +356,8 @@ def _quantities(tree: Node) -> set[tuple[str, bool]]:
 
 
 def solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
-    """Return the only quantity in one side of an equation, and a function that solves for it; or None.
-
-    For ``2*k^2`` these are k, and a function that turns the other side, I, into ``(I/2)^(1/2)``.
+    """Return the only quantity in one side of an equation, k in ``2*k^2``, and a function that solves for it; or
+    None.
     """
     steps: list[Solve] = []
     while not (_is_name(side) or _is_rate(side)):
@@ -392,6 +387,7 @@ def solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
             side = side.args[0]
         else:
             return None
+    # for 2*k^2 the function turns the other side of the equation, I, into (I/2)^(1/2)
     (quantity,) = _quantities(side)
     return quantity, partial(_after, steps)
 

@@ -118,14 +118,15 @@ class TypedNotation:
 
 
 def with_formulas(source: str, formula: Callable[[Node], str], signs: Mapping[str, str]) -> str:
-    """Return a condition such as ``0 <= x <= pi and y > 0`` in another notation; unchanged if unreadable.
-
-    ``formula`` writes formulas, ``signs`` translates ``==``.
+    """Return a condition such as ``0 <= x <= pi and y > 0`` in another notation, with ``signs`` for signs such as
+    ``==``.
     """
     pieces = SIGN.split(source)
     try:
+        # ``formula`` returns the text of a formula in this notation
         formulas = [formula(read_expression(piece)) for piece in pieces[::2]]
     except InputError:
+        # an unreadable condition stays unchanged
         return source
     between = [signs.get(sign.strip(), sign.strip()) for sign in pieces[1::2]] + [""]
     return " ".join(f"{each} {sign}".strip() for each, sign in zip(formulas, between, strict=True))
@@ -162,7 +163,8 @@ def _is_over_digit(node: Node) -> bool:
 
 
 def _is_rate_of_name(node: Node) -> bool:
-    """Return whether a derivative is that of a single name by the time t: ``diff(q, t)``, which is printed ``q'``."""
+    """Return whether a derivative is the time derivative of a single name, as ``diff(q, t)`` is."""
+    # it is printed q'
     return node.args[0].kind == "name" and all((a.kind, a.value) == ("name", "t") for a in node.args[1:])
 
 

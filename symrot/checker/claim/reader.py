@@ -320,10 +320,7 @@ class _Text:
         return tokens
 
     def with_indices(self, tokens: list[Token], flips: Collection[tuple[str, int]], doubts: list[Doubt]) -> list[Token]:
-        """Return tokens in which ``ωp`` on the left of an equation is one name, omega_p, not ω times p.
-
-        New ambiguous places are added to ``doubts``.
-        """
+        """Return tokens with the name omega_p for ``ωp`` on the left of an equation, where it is not ω times p."""
         padded = [None, *tokens]
         for place in range(len(tokens) - 3, -1, -1):
             before, first, second, after = padded[place], *tokens[place : place + 3]

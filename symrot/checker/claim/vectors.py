@@ -71,9 +71,7 @@ class Vector:
 
     @property
     def is_axis(self) -> bool:
-        """Whether the vector is the unit vector of a coordinate axis: x, y or z with a hat, or i, j or k of a
-        basis.
-        """
+        """Whether the vector is a coordinate axis: x, y or z with a hat, or i, j or k of a basis."""
         return self.place is not None or (self.unit and self.name in ("x", "y", "z"))
 
     def _entry(self, name: str) -> Node:
@@ -155,11 +153,11 @@ def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vect
 
 def _axes(name: str, used: Collection[str]) -> str:
     """Return the endings of the names of a vector's components: "xyz", or "123" if the claim has ``a_1``."""
-    # R_x means a rotation about x
     numbers = [n for n in "01234" if f"{name}_{n}" in used or (n in "04" and f"{name}{n}" in used)]
     if {"0", "4"} & {*numbers} and {"1", "2", "3"} & {*numbers}:
         # of a quaternion
         return "0123" if "0" in numbers else "1234"
+    # R_x means a rotation about x
     return "123" if numbers or name == "R" else "xyz"
 
 

@@ -191,11 +191,9 @@ OPEN_PLACES = tuple(title for title, _, phrases in PLACES if not phrases)
 
 
 def admits_letters(context: Context, name: str, mapping: Mapping[str, str], letters: Iterable[str]) -> bool:
-    """Return whether a claim's letters can mean the symbols of a derived formula, by the words of the context.
-
-    ``mapping`` has the letter for each renamed symbol.
-    """
+    """Return whether a claim's letters can mean the symbols of a derived formula, by the words of the context."""
     sequence = sequence_of(name)
+    # ``mapping`` has the letter for each renamed symbol; other letters mean the symbol of the same name
     pairs = [(plain(known), plain(new)) for known, new in mapping.items()]
     renamed = {new for _, new in pairs}
     parts = {part for new in renamed for part in (re.sub(r"_?[xyz1-3]$", "", new), matrix_of(new))}
@@ -264,10 +262,10 @@ def plain(name: str) -> str:
 
 
 def guesses(context: Context, name: str, stated: str) -> list[str]:
-    """Return the words in a derived formula's name that neither the context nor ``stated`` contains.
-
-    ``stated`` are words that the claim's quantity implies, "moment of inertia" for I.
+    """Return the words in a derived formula's name that neither the context nor the claim's quantity (``stated``)
+    implies.
     """
+    # "moment of inertia z axis" is stated by I_zz
     words = [stated, context.frame, context.sequence, "moment of inertia" if "inertia" in stated else ""]
     for meaning in context.meanings:
         words += [*meaning.quantity.phrases, *meaning.quantity.formulas, meaning.place, meaning.rest, meaning.frame]

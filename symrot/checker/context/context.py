@@ -454,9 +454,8 @@ def read_sequence(words: str, prefix: str = "") -> str:
 
 
 def _with_case(letters: str, kinds: Sequence[str]) -> str:
-    """Return three axes in upper case if ``kinds`` says that they move, in lower case if it says that they are fixed.
-
-    Empty for contradicting words.
+    """Return three axes in upper case if ``kinds`` says that they move, in lower case if fixed; empty for
+    contradicting words.
     """
     fixed = {kind in ("space", "extrinsic", "fixed") for kind in kinds}
     if len(fixed) > 1:

@@ -1,7 +1,7 @@
-"""Verdicts in a context, which states the meanings of names: a claim about a quantity is then decided.
+"""Verdicts on claims about a quantity in a context, which states the meanings of names.
 
 A claim means a known formula, such as the "moment of inertia of a rod about an end", if its context or its quantity
-states each word of this name. It is true if it equals such a formula, and false if it differs from all of them.
+states each word of this name. It is true if it equals such a formula, false if it differs from all.
 """
 
 import re
@@ -329,7 +329,7 @@ def _true(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _false(verdict: Verdict, decision: Decision) -> Verdict:
-    """Return the verdict "false" on a claim, with the counterexample at which it differs from the formula that it
+    """Return the verdict "false" on a claim, with the point at which the claim differs from the formula that it
     means.
     """
     return replace(verdict, verdict="false", counterexample=decision.counterexample, reason="")

@@ -35,10 +35,8 @@ Assignments = Callable[[Known, Any, set[Expr]], Iterator[Mapping[Expr, Expr]]]
 def with_lacking_letters(
     named: NamedFormula, value: Any, meant: Iterator[tuple[Known, Any]], assignments: Assignments
 ) -> Verdict | None:
-    """Return the verdict "doubtful" if a claim's formula is a derived one without a term or factor, or None.
-
-    ``meant`` are the derived formulas that the context states.
-    """
+    """Return the verdict "doubtful" if a claim's formula is a derived one without a term or factor, or None."""
+    # ``meant`` are the derived formulas that the context states word by word
     own = {*atoms_of([value])} - {time}
     if is_matrix(value) or len(own) < LEAST_LETTERS:
         return None

@@ -1,8 +1,7 @@
 """The real points at which a claim is to hold, as polynomial constraints on the generators (unknowns) of its ring.
 
-Hypotheses, ``sin^2 + cos^2 - 1`` of angles, and ``root^n - base`` of roots are zero; divisors are not. A generator is
-``free`` if it may have every value that these constraints allow. Constraints on others, such as tanh(x), are not
-used.
+Hypotheses, ``sin^2 + cos^2 - 1`` of angles, and ``root^n - base`` of roots are zero; divisors are not. A ``free``
+generator may have every value that these constraints allow. Constraints on others, such as tanh(x), are not used.
 """
 
 from collections.abc import Iterator, Sequence

@@ -254,7 +254,7 @@ class _ClaimCase(Case):
     @property
     def lacks_evidence(self) -> bool:
         """Whether the search for a counterexample must go on."""
-        # conditions on the signs of roots make a claim true, but they are derived without its hypotheses
+        # known conditions on the signs of roots end the search; under hypotheses it goes on, since they ignore these
         return self.counterexample is None and (bool(self.ring.hypotheses) or self.branches is None)
 
     def within_domain(self, search: Search) -> Search:
@@ -535,7 +535,7 @@ def _with_shorter_powers(equation: Equation, lefts: Sequence[Expr], rights: Sequ
 
 
 def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
-    """Return the formulas that must not be zero, by their texts, without those that need not be stated."""
+    """Return the formulas that must not be zero, by their texts, without superfluous ones."""
     remaining = {}
     for text, form in nonzero.items():
         value = normal_form(form) if form.is_Add and _pieces(form) < MOST_PIECES else form

@@ -10,9 +10,8 @@ MOST_TERMS_OF_SQUARE = 40
 
 
 def surely_nonnegative(value: Expr) -> bool:
-    """Return whether the form of a real formula shows that it is never negative, as that of ``x**2 + abs(y)``
-    does.
-    """
+    """Return whether a real formula is never negative by its form, as ``x**2 + abs(y)`` is."""
+    # False means only that the form does not show it
     if value.is_nonnegative or isinstance(value, Abs | sympy.exp):
         return True
     # square roots are real here

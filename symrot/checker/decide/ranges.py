@@ -1,7 +1,7 @@
-"""Conditions on signs as text, as a book writes them: ``0 <= x <= pi`` instead of ``x >= 0 and pi - x >= 0``.
+"""Conditions on signs as text, as a book writes them: ``0 <= x <= pi`` for ``x >= 0 and pi - x >= 0``.
 
-A condition is a pair (formula, sign) with the sign ``">= 0"``, ``"> 0"`` or ``"!= 0"``. Those that follow from others
-are dropped. The text holds exactly where the conditions hold and their formulas have values.
+A condition is a pair (formula, sign); signs are ``">= 0"``, ``"> 0"`` and ``"!= 0"``. Conditions that follow from
+others are dropped. The text holds where the conditions hold and their formulas have values.
 """
 
 import re
@@ -240,16 +240,16 @@ class _Range:
         """Add a lower (``above``) or an upper bound of the quantity, which the quantity may equal if ``closed``."""
         name = "low" if above else "high"
         known = getattr(self, name)
+        # a weaker bound than the known one changes nothing
         tighter = known is None or ((root - known) if above else (known - root)).is_positive
         if tighter:
             setattr(self, name, root)
             setattr(self, f"{name}_closed", closed)
-        # a weaker bound changes nothing
         elif known == root:
             setattr(self, f"{name}_closed", closed and getattr(self, f"{name}_closed"))
 
     def sign_of(self, root: Expr) -> tuple[int, bool]:
-        """Return the sign of q - root for q in this range, and whether it may vanish: (1, True) for root 2 in q >=
+        """Return the sign of q - root for q in this range, and whether it may vanish: (1, True) for q >= 2, root
         2.
         """
         for bound, closed, sign in ((self.low, self.low_closed, 1), (self.high, self.high_closed, -1)):
@@ -404,15 +404,13 @@ class _Conditions:
         return True
 
     def _excludes(self, formula: Expr) -> bool:
-        """Return whether the ranges imply ``formula != 0``.
-
-        A range that ends at the zero of the formula loses this end: x >= 0 becomes x > 0.
-        """
+        """Return whether the ranges imply ``formula != 0``, after a range that ends at its zero has lost this end."""
         bound = _bound(formula)
         if bound.root == 0 and isinstance(bound.quantity, sin | cos) and self._angle_excludes(bound.quantity):
             return True
         if any(self._lies_between(bound, factors, direction) for factors, direction, _ in self.products):
             return True
+        # x >= 0 becomes x > 0
         own = self.ranges.get(bound.quantity)
         if own is None:
             if not isinstance(bound.quantity, sin | cos):

@@ -75,7 +75,7 @@ def _by_form(formula: Expr, strict: bool) -> bool:
 
 
 def _by_factors(formula: Expr, strict: bool) -> bool:
-    """Return whether the signs of its factors prove that a formula is nonnegative, or positive if ``strict``."""
+    """Return whether the signs of a formula's factors prove it nonnegative, or positive if ``strict``."""
     negative = False
     for factor in formula.args:
         if _one(factor, strict):
@@ -97,9 +97,8 @@ def _one(factor: Expr, strict: bool) -> bool:
 
 
 def _by_range(formula: Expr, strict: bool) -> bool:
-    """Return whether the ranges of its terms prove that a formula is nonnegative, as for ``2 + sin(x)``.
-
-    With ``strict`` it must be proven positive.
+    """Return whether the ranges of a formula's terms prove it nonnegative, or positive if ``strict``: (1, 3) for
+    ``2 + sin(x)``.
     """
     low, _ = _bounds(formula)
     if low is None:
@@ -178,9 +177,8 @@ def _without_absolute(formula: Expr) -> bool:
 
 
 def _by_roots(formula: Expr, strict: bool) -> bool:
-    """Return whether counting real roots proves that a polynomial in one unknown is never negative.
-
-    With ``strict`` it must be proven positive.
+    """Return whether counting real roots proves a polynomial in one unknown nonnegative, or positive if
+    ``strict``.
     """
     symbols = formula.free_symbols
     if len(symbols) != 1 or not formula.is_polynomial(*symbols):

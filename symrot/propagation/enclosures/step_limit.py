@@ -76,7 +76,10 @@ def _inverse(a: Disc) -> Disc:
 
 
 def _sqrt(a: Disc, whole: float) -> Disc:
-    """Return a disc that contains the square roots of a disc; ``whole``, 1/missed share, enlarges it near zero."""
+    """Return a disc that contains the square roots of a disc.
+
+    Near zero, where roots have no series, ``whole`` enlarges it.
+    """
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:
         return Disc(root, a.radius / (root + math.sqrt(a.centre - a.radius)))
@@ -163,7 +166,7 @@ FUNCTIONS: dict[str, Callable[..., Disc]] = {
 
 
 def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
-    """Return a compiled Python function that bounds the deviations of rates, faster than operations on discs."""
+    """Return a compiled Python function that bounds how far rates deviate, faster than with operations on discs."""
     # Arguments: those of Deviations.__call__, then the constant coefficients w and their absolute values a. The
     # logarithms of sizes, which help a Disc where numbers overflow, are left out.
     lines, place = ["def bounds(t, reach, whole, y, radii, w, a):"], 0
@@ -313,7 +316,7 @@ def longest_followed(
     edges: Sequence[int],
     order: int,
 ) -> float:
-    """Return the length of the longest step, at most h, that is proven not to miss more of a torque than allowed.
+    """Return the length of the longest step, at most h, that is proven to miss no more of a torque than ``allowed``.
 
     Parameters
     ----------

@@ -171,7 +171,7 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
 def _searched(
     path: Path, events: Sequence[Event], p: Sequence[float], side: "_Side", start: float, end: float, accuracy: float
 ) -> tuple[SearchResult, IntegrationStopped | ZerosNotSeparated | None]:
-    """Return the events on one side of a motion, and the error that ended the search early, or None."""
+    """Return the events of a motion after its start (or before), and the error that ended the search early or None."""
     # a side is the interval before or after the start
     if end == start:
         return SearchResult([], None, []), None
@@ -188,7 +188,7 @@ def _searched(
 
 
 def _warnings(events: Sequence[Event], doubts: Sequence[tuple[int, float]]) -> Iterator[str]:
-    """Yield a warning for each event in ``doubts``: its formula differs from zero by less than the motion's error."""
+    """Yield a warning for each event in ``doubts``, whose formula comes nearer to zero than the motion's error."""
     # a doubt is (number of the event, time of the extremum, s)
     for number, event in enumerate(events):
         times = [t for each, t in doubts if each == number]
@@ -265,7 +265,7 @@ def _side(motion: Motion, end: float) -> _Side:
 
 
 def _without_residues(pieces: Sequence[Piece], blocks: Sequence[int]) -> Generator[Piece, None, None]:
-    """Yield the pieces of a motion, with states set to zero where only rounding errors are left of them."""
+    """Yield the polynomials of a motion, with states that are zero up to rounding errors set to zero."""
     # Such as the angular velocity of a body that friction has stopped, whose sign must not change again and again. A
     # state is compared with the largest value in its block (omega, attitude).
     count = blocks[-1]

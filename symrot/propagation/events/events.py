@@ -372,7 +372,7 @@ def search(
 
 
 def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: float) -> list[tuple[int, float]]:
-    """Return the doubts, (event, time), that do not lie at one of ``zeros``, each once, in the order of the motion."""
+    """Return the extrema, (event, time), nearer to zero than the motion's error, without those at ``zeros``."""
     # a doubt is an extremum so close to zero that the error of the motion matters
     settled: dict[int, list[float]] = {}
     for zero in zeros:
@@ -381,6 +381,7 @@ def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: fl
     for event, t in sorted(doubts, key=lambda doubt: (doubt[0], abs(doubt[1] - t0))):
         times = settled.setdefault(event, [])
         place = bisect(times, t)
+        # each only once
         if all(abs(t - other) > 4 * NEAR * max(abs(t), abs(other)) for other in times[max(place - 1, 0) : place + 1]):
             times.insert(place, t)
             own.append((event, t))
@@ -417,7 +418,9 @@ def _first_sign(searcher: _Search, number: int, piece: Piece) -> int:
 
 
 def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]], list[list[float]]]:
-    """Join adjacent entries of the same event; return those with zeros to locate now, and those still open."""
+    """Join adjacent intervals that may contain zeros; return those that end before ``last``, and those that
+    reach it.
+    """
     whole: list[list[float]] = []
     open_ones: dict[float, list[float]] = {}
     side = 1.0 if not entries or last >= min(entry[1] for entry in entries) else -1.0
@@ -455,13 +458,16 @@ def _settled(
     searcher: _Search, piece: Piece, events: Sequence[Event], entries: list[list[float]], t0: float, left: list[int],
     zeros: list[EventZero],
 ) -> float | None:  # fmt: skip
-    """Append the zeros in ``entries`` of a piece to ``zeros``; return the time of a terminal event, s, or None."""
+    """Append the zeros in the intervals ``entries`` to ``zeros``; return the time of a terminal event, s, or None."""
     # left counts down, for each event, the zeros after which it ends the motion (0: never)
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     side = 1.0 if last >= first else -1.0
 
     def sign(event: int, t: float, end: float, step: float) -> int:
-        """Return the sign of a formula close to t, on the side ``step`` (1 or -1); 0 if rounding errors are larger."""
+        """Return the sign of an event's formula just after t (``step`` = 1) or before t (``step`` = -1).
+
+        It is 0 if rounding errors are larger.
+        """
         width = 4 * NEAR * max(abs(t), abs(last - first))
         while width < abs(end - t):
             value = searcher.sign(event, t + step * width, piece)
@@ -502,7 +508,7 @@ def stepped(
 ) -> Generator[Piece, None, None]:
     """Integrate a motion from its start to ``end``, s, and yield its polynomials in groups of steps.
 
-    ``records`` and ``broken`` receive the steps and an error.
+    ``records`` gets the steps, ``broken`` an error.
     """
     room = integration.stepper.rows_per_call
     with closing(integration.runs(end)) as runs:

@@ -92,7 +92,7 @@ def fitted(
     states: Callable[[Floats], Floats], edges: Floats, blocks: Sequence[int], scales: Sequence[float], depth: int = 0,
     left: list[int] | None = None, accuracy: float | Floats = 0.0,
 ) -> Piece:  # fmt: skip
-    """Return polynomials that agree with a motion, up to rounding errors, between the given edges.
+    """Return polynomials that agree with a motion, up to rounding errors, between the successive times ``edges``.
 
     Parameters
     ----------

@@ -162,7 +162,7 @@ Numbers = Mapping[str, Fraction]
 def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numbers]) -> dict[str, Fraction]:
     """Return the nonzero derivatives, by one variable, of the exact numbers that ``numbers`` returns for a scene.
 
-    Example: ``{"I_xx": Fraction(2, 5)}`` for ``"body.mass"``.
+    ``{"I_xx": Fraction(2, 5)}`` for the mass of a unit sphere.
 
     Parameters
     ----------
@@ -209,7 +209,7 @@ def slopes(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> 
 
 
 def _quotient(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> dict[str, Fraction]:
-    """Return difference quotients of second order, by name: central, or one-sided where one side is not valid."""
+    """Return difference quotients of second order: central or, where the scene is not valid on one side, one-sided."""
     schemes: tuple[dict[int, Fraction], ...] = (
         # central, then to the right and to the left, for example where the mass would become negative
         {-1: Fraction(-1, 2), 1: Fraction(1, 2)},

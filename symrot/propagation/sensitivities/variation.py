@@ -159,7 +159,7 @@ class Column:
 
     @property
     def restartable(self) -> bool:
-        """Whether this column also holds for other initial states, with a new :meth:`start_from` only."""
+        """Whether only :meth:`start_from` has to be computed again for another initial state."""
         # not for a variable that sets the initial state in another form, such as initial.attitude.angle
         variable = self.variable
         return variable.moved is None or variable.key.startswith("omega") or not any(self.start)
@@ -190,7 +190,7 @@ def columns_of(scene: Scene, variables: Sequence[Variable]) -> list[Column]:
 
 
 def structure_of(scene: Scene, columns: Sequence[Column], varying: Collection[str] = ()) -> Structure:
-    """Return the form of the equations of motion for the derivatives by the variables of ``columns``."""
+    """Return the form of the equations in which each constant that a variable of ``columns`` changes is a parameter."""
     # They become parameters even if they are now zero or one, since derivatives by them are needed; so do constants
     # that differ between the motions of an ensemble (varying). Other zeros and ones simplify the equations.
     moving = {name for column in columns for name in column.constants} | set(varying)
@@ -307,7 +307,7 @@ def motion_library(plan: Plan, rates: Program, depends: Sequence[Sequence[str]])
 
 
 class _Equations:
-    """The compiled equations of a scene's motion, from any initial state, and of its derivatives by ``keys``."""
+    """The compiled equations of a scene's motion, from any initial state, and of its derivatives by variables."""
 
     def __init__(self, scene: Scene, keys: Sequence[str]) -> None:
         require_smooth(scene)
@@ -369,7 +369,7 @@ def _equations(scene: Scene, keys: Sequence[str]) -> _Equations:
 
 
 def _parts(scene: Scene, columns: Sequence[Column], epoch: float = 0.0) -> "list[_Part]":
-    """Return the equations of all columns of derivatives; ``epoch`` is as for :class:`_Part`."""
+    """Return the equations of all columns of derivatives, with time counted from ``epoch``, s."""
     return [_Part(scene, columns[first : first + AT_ONCE], epoch) for first in range(0, len(columns), AT_ONCE)]
 
 
@@ -396,7 +396,7 @@ class _Part:
         self._slopes = [[float(each[name]) for name in names] for each, names in zip(slopes, depends, strict=True)]
 
     def rates(self, time: float, state: Floats) -> list[float]:
-        """Return the time derivatives of the seven states at a time, s, on the clock of the equations."""
+        """Return the time derivatives of the seven states at a time, s after the epoch of the equations."""
         values = dict(zip(self._names, self._values, strict=True)) | dict(zip(STATES, state.tolist(), strict=True))
         return list(self._rates.evaluate({**values, "t": float(time)}, FLOAT_FUNCTIONS, float).values())
 
@@ -432,7 +432,10 @@ class _Part:
 
 
 def _size(scene: Scene, column: Column) -> float:
-    """Return a power of two near the value of a column's variable; 1 for a rotation or a value of zero."""
+    """Return a power of two near the value of a column's variable, which scales its derivatives.
+
+    It is 1 for zero or a rotation.
+    """
     # a column times this number is about as large as the states, so that one error control fits both
     value = abs(float(column.variable.value))
     if column.variable.key.startswith("omega"):

@@ -194,7 +194,7 @@ class FallbackRecording(Recording):
         super().__init__(motion.t0, motion.y0, (low, high), motion.stats())
 
     def edges(self, start: float, end: float) -> list[Floats]:
-        """Return the times at which SciPy's steps from ``start`` to ``end`` meet, one array per segment."""
+        """Return the ends of SciPy's steps from ``start`` to ``end``, s, one array between any two switching times."""
         side = 1.0 if end >= start else -1.0
         chosen = [
             np.sort(np.asarray(solution.ts, dtype=np.float64) * side) * side
@@ -216,7 +216,7 @@ def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
 
 
 class _ShiftedSolution:
-    """SciPy's interpolant of one step, shifted: it takes times on the motion's clock."""
+    """SciPy's interpolant of one step, for times that are ``epoch`` s later than its own."""
 
     def __init__(self, solution: Any, epoch: float) -> None:
         # the interpolant counts time from the epoch, s, on the motion's clock
@@ -286,7 +286,7 @@ class _Integration:
         return inside, states
 
     def solutions(self, end: float) -> list[Piece]:
-        """Return the motion from t0 to ``end`` as pieces (first time, last time, solution), one per segment."""
+        """Return the motion from t0 to ``end`` as pieces (first time, last time, solution) between switching times."""
         self.final, self.pieces = False, []
         if end == self.t0:
             return []
@@ -422,7 +422,7 @@ class _Integration:
                     solver.max_step = longest
 
     def _move_clock(self, clock: Clock, now: float) -> float:
-        """Move the epoch to the present time, ``now`` s after the old epoch, and return this time on the new clock."""
+        """Move the epoch by ``now`` s to the present time, and return the time from the new epoch to the present, s."""
         self.epoch, rest = two_sum(self.epoch, now)
         self.rhs, p = clock(self.epoch)
         self.p = np.array(p, dtype=np.float64)

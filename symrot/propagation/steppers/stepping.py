@@ -143,7 +143,10 @@ def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
 
 
 class Segment(NamedTuple):
-    """Part of a span without switching times inside; ``first`` and ``last`` are its ends for the kernel."""
+    """Interval between switching times, from ``start`` to ``stop``, s.
+
+    ``first`` and ``last``, just inside, are the ends at which torques are evaluated.
+    """
 
     # first and last lie just inside a switching time, where a torque may jump
     start: float
@@ -241,7 +244,7 @@ class SteppedRecording(Recording):
 
 
 class Window(NamedTuple):
-    """The C function of a stepper with the parameters for its present epoch: when its clock was last set to 0."""
+    """The C function and the parameters that a stepper uses until it moves its epoch, the zero of its time."""
 
     # in a long motion the clock is set to 0 now and then, so that times on it have many digits
     step: Callable[..., Any]
@@ -278,7 +281,7 @@ class Run(ctypes.Structure):
 
 
 class Stepper(ABC):
-    """Functions of one loaded library, ``symrot_NAME..``; each subclass defines the parts of its method."""
+    """The C functions of one loaded library with a stepper; each subclass defines the parts of its method."""
 
     name: ClassVar[str]
     # The fields of symrot_run in C: numbers, integers, and vectors of one number per state.

@@ -46,7 +46,7 @@ class Guard(NamedTuple):
 
 
 class RegimeParameters(NamedTuple):
-    """Parameters of the equations of a smooth motion between switches, as functions of the epoch."""
+    """Parameters of the equations of a smooth motion between switches, as functions of the zero of time."""
 
     # the epoch is the scene time at which the clock of the motion shows 0
     rates: ShiftedParameters
@@ -144,9 +144,9 @@ class Regime:
         }
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
-        """Return the parameters for the stepper and those for the search for switches, for given modes.
+        """Return two lists of parameters: for the stepper, and for the library that searches for switches.
 
-        Time is counted from ``zero``.
+        They hold for the values ``modes`` of sign, abs, .. and the zero of time.
         """
         rates, guards, quantities, invariants = self._parameters_under(modes)
         fixed = rates.fixed and guards.fixed and quantities.fixed
@@ -164,7 +164,7 @@ class Regime:
         return {name for name, value in self._inputs(modes, zero, y).items() if value == 0.0}
 
     def attraction(self, modes: Modes, zero: Instant, t: float, y: Floats) -> list[float]:
-        """Return one number per held function, all positive if nearby motions return to the sliding motion."""
+        """Return one number per function sign(x) with x held at zero, all positive if nearby motions return there."""
         # sliding: the arguments of the held functions (sign, ..) stay at zero; t is counted from the instant zero
         names = [f"attraction {k} of t" for k in range(len(self.held))]
         values = {**self._inputs(modes, zero, y), "t": t}
@@ -178,9 +178,9 @@ class Regime:
         return dict((*values, *zip(self.plan.states, y.tolist(), strict=True)))
 
     def rates_since(self, modes: Modes, zero: Instant) -> Callable[[float], list[float]] | None:
-        """Return a function from an epoch, s after ``zero``, to rate parameters for time counted from it.
+        """Return a function from an epoch, s after ``zero``, to the parameters of the rates for times since the epoch.
 
-        None if the rates do not depend on time.
+        None if rates do not depend on time.
         """
         rates = self._parameters_under(modes).rates
         return None if rates.fixed else lambda since: rates.parameters(zero.exact + Fraction(since))
@@ -199,7 +199,7 @@ class Regime:
         return rates, guards, quantities
 
     def active(self, modes: Modes) -> list[bool]:
-        """Return, for each guard, whether its zero ends the smooth motion for the given modes."""
+        """Return, for each guard (argument of sign, abs, ..), whether its zero ends the smooth motion."""
         key = tuple(modes.values())
         if key not in self._active:
             # it does not if its function has no effect, as in an unused branch of where(condition, u, v)

@@ -151,7 +151,8 @@ class SwitchedRun(RunState):
                 )
 
     def _segment(self, regime: Regime, consume: Consumer) -> Guard | None:
-        """Compute the motion up to its next switch, and return the guard that is zero there, or None."""
+        """Compute the motion up to its next switch, and return the guard that is zero there; None without a switch."""
+        # a guard is the argument of a function such as sign or abs
         if self.t != 0.0:
             self._move_clock(self._at(self.t))
         rates, values = regime.bound(self.modes, self.zero)
@@ -251,7 +252,7 @@ class SwitchedRun(RunState):
         return guard
 
     def _coincident(self, regime: Regime, active: list[bool], values: list[float], most: int) -> Guard | None:
-        """Return another guard whose function has to switch at the present time, or None."""
+        """Return the guard of another function (sign, floor, ..) that has to switch at the present time, or None."""
         # Functions that switch at one time do so one after the other; the rates may have no value until the last one
         # has, such as a root of a negative argument.
         h = self.side * SHORT * self.span
@@ -342,7 +343,7 @@ class SwitchedRun(RunState):
         return Chunk(self._at(start), self._at(stop), self.zero, states, piece)
 
     def _located(self, regime: Regime, guard: Guard, t: float) -> Instant:
-        """Return the time of a switch near t, at which a guard is zero, as an :class:`Instant`."""
+        """Return the time near t at which a guard (argument of sign, abs, ..) is zero, as an :class:`Instant`."""
         instant = self.zero.after(t)
         if guard.mode in self.held or guard.mode not in regime.of_time:
             # only if the guard depends on time alone, a Newton step gives its zero to twice the digits
@@ -364,7 +365,7 @@ class SwitchedRun(RunState):
         return self._past(regime, guard, instant.after(correction))
 
     def _past(self, regime: Regime, guard: Guard, instant: Instant) -> Instant:
-        """Return a time at or just after a switch at which its guard, a formula of time, is no longer positive."""
+        """Return a time at or just after ``instant`` at which a guard (argument of sign, abs, ..) is not positive."""
         # By rounding, the guard may still be positive at the computed time, and the function would switch back at
         # once. Later times are tried, at growing distances of a few units in the last place.
         formula, later = parse(guard.formula), instant
@@ -377,7 +378,7 @@ class SwitchedRun(RunState):
         return instant
 
     def _is_rounding(self, regime: Regime, guard: Guard) -> bool:
-        """Return whether a guard is negative just after its function switched only because time is rounded."""
+        """Return whether a guard (where sign, abs, .. switches) is negative again only because time is rounded."""
         if guard.mode in self.held or guard.mode not in regime.of_time or not self.flipped.get(guard.mode):
             return False
         # the function then must not switch again; decided only for guards that depend on time alone
@@ -388,7 +389,7 @@ class SwitchedRun(RunState):
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
     ) -> tuple[list[Guard], list[Guard]]:
-        """Return the guards that are negative just after the start of ``piece``, and those negative at its end."""
+        """Return the guards, where functions switch, that are negative after the start of ``piece``, and at its end."""
         formulas = [guard.formula for guard in regime.guards]
         # such a function should have switched before the piece or within it; active: guards that can end the regime
         first, last = (
@@ -508,7 +509,7 @@ class SwitchedRun(RunState):
             self._wake(other)
 
     def _returns(self, mode: str) -> bool:
-        """Return whether changing a sign again would repeat a state, so that its argument must be held at zero."""
+        """Return whether x in sign(x) must be held at zero, because another change of sign(x) would repeat a state."""
         # a state is the values of all switching functions: the same changes would repeat without end
         first = self.visited.get(self._state(flip=mode))
         if first is None:
@@ -518,7 +519,7 @@ class SwitchedRun(RunState):
         return not (jumps and is_continuous(self.by_name[mode]))
 
     def _state(self, flip: str = "", hold: str = "") -> SwitchState:
-        """Return the values of all switching functions and the set of held ones, for comparison with earlier states."""
+        """Return the values of all switching functions and the names of those held at zero, for comparison."""
         # after flip has changed its sign
         modes = {**self.modes, flip: -self.modes[flip]} if flip else self.modes
         # after hold becomes held: its argument stays at zero
@@ -526,7 +527,7 @@ class SwitchedRun(RunState):
         return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether a function inside the argument of ``mode`` switched after it, at the present time."""
+        """Return whether a function inside the argument of ``mode``, as sign in abs(x + sign(y)), switched after it."""
         # in abs(x + sign(y)), if sign switched after abs, the argument of abs has jumped: abs may switch again
         last = len(self.order) - self.order[::-1].index(mode)
         return bool(self._inside(mode) & set(self.order[last:]))
@@ -536,7 +537,7 @@ class SwitchedRun(RunState):
         return set(names(self.by_name[mode].guard))
 
     def _asleep(self) -> set[str]:
-        """Return the switching functions, by mode, that have no effect now: in unused branches of ``where``."""
+        """Return the names of the switching functions without effect now: those in unused branches of ``where``."""
         # such as the sign in where(omega_1 > 0, sign(omega_2), 0) while omega_1 < 0
         return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
@@ -569,7 +570,7 @@ class SwitchedRun(RunState):
         self._regime(self.modes)
 
     def _comes_to_rest(self, regime: Regime) -> bool:
-        """Release each held sign(x) whose x stays zero without being held; return whether there are any."""
+        """Set sign(x) to sign(0) where x was held at zero but stays zero by itself; return whether any was set."""
         # Held: the equations contain the value of sign(x) between -1 and 1 for which x remains zero. If x remains zero
         # with sign(0) too, as for a body at rest that no torque drives, sign(0) replaces it.
         resting = [mode for mode in sorted(self.held - self.rested) if self.system.matters_at_zero(mode)]
@@ -607,7 +608,7 @@ class SwitchedRun(RunState):
         return any(signs[n] for n in numbers)
 
     def _regime(self, modes: Modes) -> Regime:
-        """Return the smooth motion for given modes, in which the arguments of the held functions stay at zero."""
+        """Return the smooth motion for given values of sign, abs, .., with the arguments of :attr:`held` at zero."""
         try:
             return self.system.regime(self.held, modes)
         except InputError:
@@ -622,7 +623,7 @@ class SwitchedRun(RunState):
         return " and ".join(self._name(mode) for mode in sorted(self.held))
 
     def _check_held_alone(self) -> None:
-        """Raise IntegrationStopped if a held argument keeps the argument of another jump at zero too."""
+        """Raise IntegrationStopped if x, held at zero for sign(x), also keeps the argument of another jump at zero."""
         # The equations determine one value between -1 and 1 for a held sign, not the two values in sign(omega_1) +
         # sign(omega_1 + omega_1^3), whose arguments are zero together.
         y = self.y.tolist()

@@ -55,7 +55,10 @@ class RunState:
         return Instant(self.motion.start) - self.zero
 
     def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
-        """Return a function from an epoch to (rates, parameters), or None if the rates do not depend on time."""
+        """Return a function from an epoch, s after the last switch, to (rates, parameters) for times since the epoch.
+
+        None if rates do not depend on time.
+        """
         # the epoch: time, s after the last switch, at which the stepper sets its clock to 0
         parameters = regime.rates_since(self.modes, self.zero)
         # stepped, the rates as library or Python function, is the same for all epochs

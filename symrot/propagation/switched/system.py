@@ -70,7 +70,10 @@ class SwitchedSystem:
         return twins
 
     def tied(self, held: frozenset[str]) -> dict[str, tuple[str, int]]:
-        """Return the modes that follow from held modes, as a map from mode to (held mode, 1 or -1 for the negative)."""
+        """Return the functions that switch together with held ones, as name -> (name of a held one, 1 or -1).
+
+        -1: their arguments have opposite signs.
+        """
         # held: the argument of the function stays at zero; a function that switches at the same time follows
         return {twin: (mode, sign) for mode in held for twin, sign in self.twins[mode] if twin != mode}
 
@@ -87,7 +90,7 @@ class SwitchedSystem:
 
     @cached_property
     def settled(self) -> set[str]:
-        """The modes of the switching functions that never switch, because their arguments are constant."""
+        """The names of the switching functions that never switch, because their arguments are constant."""
         settled = set[str]()
         for switch in self.switches:
             if names(switch.guard) <= self.constants.keys() - ({each.mode for each in self.switches} - settled):
@@ -99,13 +102,13 @@ class SwitchedSystem:
         return {"pi": PI, **self.plan.constants}
 
     def initial_modes(self) -> Modes:
-        """Return the values of all switching functions (sign, floor, ..) at the start, by mode; sign(0) counts as 1."""
+        """Return the values of all switching functions (sign, floor, ..) at the start, by name; sign(0) counts as 1."""
         # the motion determines later whether sign(0) becomes 1 or -1
         return dict(self._initial_modes[0])
 
     @property
     def undecided(self) -> set[str]:
-        """The switching functions, by mode, whose arguments depend on states and are zero at the start."""
+        """The names of the switching functions whose arguments depend on states and are zero at the start."""
         # whether they start with 1 or -1 follows from the motion, not from the initial state alone
         return self._initial_modes[1]
 
@@ -114,7 +117,7 @@ class SwitchedSystem:
         return self._modes_at_start({})
 
     def beside_start(self, mode: str, sign: int) -> Modes:
-        """Return the values of all switching functions, by mode, just after a start with ``sign`` for ``mode``."""
+        """Return the values of all switching functions just after the start, if ``mode`` has the value ``sign``."""
         # functions that contain this one, such as floor(sign(x) + y), differ for 1 and -1
         return self._modes_at_start({mode: sign})[0]
 
@@ -202,7 +205,7 @@ def _switches(torque: FormulaTorque) -> list[Switch]:
 
 
 def _is_mixed(torque: FormulaTorque, mode: str) -> bool:
-    """Return whether a formula of the torque is nonlinear in a mode, the number that replaces sign, abs, .."""
+    """Return whether a formula of the torque is nonlinear in ``mode``, a number that stands for sign, abs, .."""
     # the mean of the formula's values at 1 and -1 is then not its value at 0
     own = mode.removeprefix(torque.prefix)
     nodes = [parse(formula, switching=True) for formula in torque.choices or torque.formulas]
@@ -223,7 +226,7 @@ def _bends(switch: Switch | TorqueSwitch) -> bool:
 def _chosen(
     torque: TorqueStructure, modes: Modes, held: frozenset[str], tied: Mapping[str, tuple[str, int]]
 ) -> TorqueStructure:
-    """Return a torque reduced to the branches of ``where(condition, u, v)`` that apply for given modes."""
+    """Return a torque reduced to the branches of ``where(condition, u, v)`` that apply for given values of sign, .."""
     if not isinstance(torque, FormulaTorque):
         # no formulas
         return torque

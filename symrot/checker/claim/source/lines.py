@@ -24,14 +24,12 @@ def claims_of_reading(
     reading: Reading, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None,
     stated: Context = NO_CONTEXT,
 ) -> list[list[Claim]]:  # fmt: skip
-    """Return the claims of one reading (interpretation) of a text: for each line, one claim per equals sign.
-
-    ``stated`` is what the user says in words about names and the body.
-    """
+    """Return the claims of one reading (interpretation) of a text: for each line, one claim per equals sign."""
     define: list[tuple[str, Node]] = []
     lines = []
     if sum(len(chain.links) for chain in reading.lines) > MOST_EQUATIONS:
         raise InputError(f"expected at most {MOST_EQUATIONS} equations in one text; a file of claims may have more")
+    # ``stated`` is what the user says in words about names and the body
     names = {str(n.value) for chain in reading.lines for side in chain.sides for _, n in walk(side)}
     check_units(dict(units or {}), names, "claim")
     units = {**stated.units(names - {*reading.vectors}, units or {}), **(units or {})}

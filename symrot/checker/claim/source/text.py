@@ -66,7 +66,7 @@ def claim_of_relation(
     define: Sequence[tuple[str, Node]] = (), notes: Sequence[str] = (), context: Sequence[Node] = (),
     vectors: Sequence[Vector] = (),
 ) -> Claim:  # fmt: skip
-    """Return the claim of an equation that was read from a text.
+    """Return the claim of an equation in a text.
 
     ``define`` and ``context`` are the definitions and the other formulas of the same text.
 

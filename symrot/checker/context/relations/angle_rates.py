@@ -31,9 +31,7 @@ USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 
 def substitutions_of_rates(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
     """Yield the interpretations of a claim as one about Euler angles, their rates and components of the angular
-    velocity.
-
-    Each fixes the sequence, the frame, and the angle of each letter.
+    velocity, if any.
     """
     names = {atom: _plain(atom) for atom in sorted(atoms_of(sides) - {TIME}, key=str)}
     components = {atom: match for atom, name in names.items() if (match := COMPONENT.fullmatch(name))}
@@ -48,6 +46,7 @@ def substitutions_of_rates(context: Context, sides: Sequence[Expr]) -> Iterator[
     frames = _frames(context, names, components)
     rest = [name for name in SEQUENCES if name not in USUAL_SEQUENCES]
     sequences = [context.sequence] if context.sequence else [*USUAL_SEQUENCES, *rest]
+    # each fixes the sequence, the frame, and the angle of each letter, as far as the context leaves them open
     for sequence, frame in product([name for name in sequences if is_usual_for_body(context, name)], frames):
         for order in orders(context, letters, sequence):
             if is_of_aircraft and not are_roll_pitch_yaw(sequence, order.places):

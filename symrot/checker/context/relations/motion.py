@@ -24,9 +24,8 @@ __all__ = ["by_motion"]
 
 
 def by_motion(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim by the relations between angle rates, angular velocity, momenta and energies.
-
-    ``verdict`` is returned if these do not decide it.
+    """Return the verdict on a claim by relations between its rates, momenta and energies; ``verdict`` if none
+    decides it.
     """
     equation, context = claim.equation, claim.context
     sides = equation.left, equation.right
