@@ -103,8 +103,7 @@ class Terms:
         return self._add("bits", width, value & ((1 << width) - 1))
 
     def number(self, width: int, value: Fraction) -> int:
-        """Return the constant term for ``value``; raise ValueError if no ``width``-bit floating-point number equals
-        it."""
+        """Return the constant term for ``value``; raise ValueError if ``width`` bits cannot represent it exactly."""
         bits = _bits_from_number(float(value), width)
         if bits is None or Fraction(number_from_bits(bits, width)) != value:
             raise ValueError(f"expected a number that {width} bits represent exactly, got {value}")
