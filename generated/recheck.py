@@ -218,7 +218,7 @@ class Arithmetic:
 
 
 class AnyFunctions(Arithmetic):
-    """An arithmetic of exact fractions, in which functions such as sin and choices ``a < b ? x : y`` are random."""
+    """An arithmetic of exact fractions, in which functions (such as sin) and choices have random values."""
 
     def __init__(self):
         super().__init__()
@@ -671,7 +671,7 @@ def split_includes(text, name, files):
 # Each name is declared once, before its use, and each component is assigned once. Formulas of certificates have the
 # same expressions, and powers such as ``x**2`` and ``x**(3/2)``; their numbers are whole numbers or decimals.
 class CReader(Reader):
-    """A parser of the functions of a C file, by the grammar at the beginning of this file."""
+    """A parser of the functions of a C file, by the grammar above."""
 
     def __init__(self, text, name, files, sizes):
         included, text = split_includes(without_comments(text, f"{name}.c"), name, files)

@@ -115,7 +115,7 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
         if not file.startswith("../") and not (path.parent / file).is_file():
             raise CertificateError(f"{path}: expected its file {file} in the same folder, but it is missing")
     try:
-        findings = [exact_check.check(path), *_audited(path, data, symrot_statement), *_compared(data)]
+        findings = [exact_check.check(path), *_audited(path, data, symrot_statement), *_unchecked_objects(data)]
         return data, [*findings, _bounds(path, data, (path.parent / f"{data['kernel']}.c").read_text(encoding="utf-8"))]
     except CertificateError:
         raise
@@ -164,8 +164,8 @@ def _check_others(path: Path, data: Data, source: str) -> list[str]:
     return findings
 
 
-def _compared(data: Data) -> list[str]:
-    """Return the sentence that verdicts on object code were not checked, in a list; an empty list without verdicts."""
+def _unchecked_objects(data: Data) -> list[str]:
+    """Return one sentence, that verdicts on object code were not checked; an empty list without verdicts."""
     # a verdict holds only for the machine where it was made
     finding = "its verdicts on object code were not checked: --object compares an object file of yours"
     return [finding] if data.get("objects") else []

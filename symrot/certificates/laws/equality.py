@@ -190,7 +190,7 @@ class _EqualityProver:
         return self.fractions.multiply(number, self.fractions.generator("pi")) if intended.times_pi else number
 
     def _choice(self, node: tuple[Any, ...]) -> Quotient:
-        """Return the exact value of a C conditional ``a < b ? x : y``, which the formulas must have too."""
+        """Return the exact value of a C conditional ``a < b ? x : y``, which the formulas must contain too."""
         _, relation, *places = node
         if relation == "<":
             return self._series(*places)

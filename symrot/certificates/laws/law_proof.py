@@ -70,9 +70,9 @@ class UndecidedChoice(Exception):
 
 
 class BaseAngleTooLarge(Exception):
-    """Raised for an angle such as x/2 that is no integer multiple of its base angle, the angle x with known sine.
+    """Raised for an angle, such as x/2, that is no integer multiple of its base angle, such as x.
 
-    Its arguments are the monomial x and the coefficient 1/2 of a base angle that fits.
+    The arguments are the monomial x, and the coefficient 1/2 of a base angle that fits.
     """
 
 

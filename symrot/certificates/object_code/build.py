@@ -117,9 +117,9 @@ def objects_section(
 
 
 MEANS = (
-    "identical: for all inputs the same bits as the C text, signed zeros and infinities included, NaN for NaN; "
-    "identical up to contraction: the same with a*b + c rounded once in places. In rounding to nearest, with the libm "
-    "that the certificate assumes, arrays apart, for one-sample functions; loops over samples are not compared"
+    "identical: for all inputs the same bits as the C text, NaN for NaN; identical up to contraction: "
+    "the same, except that some a*b + c are rounded once. Assumed: rounding to nearest, the certificate's libm, arrays "
+    "that do not overlap. Loops over samples are not compared."
 )
 
 

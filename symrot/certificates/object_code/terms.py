@@ -103,8 +103,7 @@ class Terms:
         return self._add("bits", width, value & ((1 << width) - 1))
 
     def number(self, width: int, value: Fraction) -> int:
-        """Return the constant term for ``value``; raise ValueError if no ``width``-bit floating-point number equals
-        it."""
+        """Return the constant term for ``value``; raise ValueError if ``width`` bits cannot represent it exactly."""
         bits = _bits_from_number(float(value), width)
         if bits is None or Fraction(number_from_bits(bits, width)) != value:
             raise ValueError(f"expected a number that {width} bits represent exactly, got {value}")
@@ -259,10 +258,7 @@ class Terms:
         return None if bits is None else self.bits(self.width(a), bits)
 
     def _signed(self, a: int) -> tuple[int, bool]:
-        """Return the term ``a`` without its minus sign, and whether it had one:
-
-        (b, True) if ``a`` is -b, else (a, False).
-        """
+        """Return the term ``a`` without its minus sign, and whether it had one: (b, True) if ``a`` is -b."""
         if self.kind(a) == "neg":
             return int(self.nodes[a][2]), True
         value = self.constant(a)

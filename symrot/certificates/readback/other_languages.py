@@ -12,9 +12,7 @@ from symrot.errors import CertificateError
 __all__ = ["AsC", "compare_operations", "kernel_head"]
 
 AsC = Callable[[str, str, CFunction, str], str]
-"""Takes the text of a module, the name of its kernel, the C function of the same kernel, which gives the sizes of
-arrays, and the file's name, for errors. Returns the C text that means the same.
-"""
+"""(text of a module, name of its kernel, C function of that kernel, name of the file) -> C text of the same meaning."""
 
 
 def compare_operations(as_c: AsC, text: str, name: str, c_text: str, where: str) -> None:

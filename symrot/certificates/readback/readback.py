@@ -402,7 +402,7 @@ def _heads(cursor: Cursor, scope: _Scope, size: str) -> None:
 
 
 def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
-    """Read a loop over blocks of samples that computes with ``symrot_math.h``, and again with libm for far angles."""
+    """Read a loop over blocks of samples, computed with ``symrot_math.h`` and, for large angles, with libm."""
     _heads(cursor, scope, "SYMROT_BLOCK")
     cursor.expect("uint32_t" if reader.real == "float" else "uint64_t", "beyond", "=", "0", ";")
     far = "symrot_farf" if reader.real == "float" else "symrot_far"

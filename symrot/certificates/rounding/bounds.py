@@ -214,8 +214,8 @@ def _output_bound(operations: Operations, place: str, task: BoundTask, result: S
         where = ", ".join(f"{name} = {x:.6g}" for k, (name, x) in enumerate(at) if k in inputs)
         what = task.graph.text(result.obstacle)
         raise InputError(
-            f"{operations.name}: expected ranges of the inputs on which the error of {place} is bounded, got ranges "
-            f"with no bound: near {where}, {what} may be singular or overflow; narrow the ranges there"
+            f"{operations.name}: expected ranges on which the error of {place} is bounded, got no bound: near "
+            f"{where}, {what} may be singular or overflow; narrow the ranges there"
         )
     mantissa, exponent = frexp(result.largest_value)
     power = min(exponent - (mantissa == 0.5), LARGEST_EXPONENT)

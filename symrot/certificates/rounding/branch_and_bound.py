@@ -191,7 +191,7 @@ class _BoundSearch:
     def best(
         self, parts: _Parts, relative: Array, otherwise: NDArray[np.int64]
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return, for each part, the two inputs whose ranges, when shrunk, lower the bound most (or one and -1)."""
+        """Return, for each part, the input whose range, when shrunk, lowers the bound most, and the next one or -1."""
         inputs, count = parts.boxes.shape[1:]
         middle = parts.boxes.mean(axis=0) + (parts.boxes - parts.boxes.mean(axis=0)) / SHRUNK
         shrunk = np.repeat(parts.boxes, inputs, axis=2).reshape(2, inputs, count, inputs)
@@ -302,7 +302,7 @@ def _narrow(run: _BoundSearch, parts: _Parts) -> NDArray[np.bool_]:
 
 
 def _spread(run: _BoundSearch, parts: _Parts) -> Array:
-    """Return, for each part, its largest relative width among those inputs on which its obstacle depends."""
+    """Return, for each part, its largest relative width in the inputs of the operation that prevents a bound."""
     # an obstacle is an operation that prevents a finite bound, such as a division by an interval that contains zero
     width = np.where(run.width > 0, run.width, 1.0)
     relative = (parts.boxes[1] - parts.boxes[0]) / width[:, None]

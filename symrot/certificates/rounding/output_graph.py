@@ -126,10 +126,7 @@ class OutputGraph:
         return f"{node[0]}({', '.join(operands)})"
 
     def singular_operand(self, index: int) -> int:
-        """Return the divisor of a quotient or the radicand of a root, at whose zero the node ``index`` is singular.
-
-        For any other kind of node, the result is ``index``.
-        """
+        """Return the node whose value 0 makes node ``index`` infinite, its divisor or radicand, or else ``index``."""
         node = self.nodes[index]
         return int({"div": node[-1], "sqrt": node[-1]}.get(node[0], index))
 
@@ -294,7 +291,7 @@ _GAPS = {"sine_gap": Fraction(1, 6), "tangent_gap": Fraction(1, 3)}  # function 
 
 
 def _at_origin(reader: _GraphReader, index: int, square: int) -> Fraction | None:
-    """Return the value of a polynomial in the operation ``square`` if that is 0: 1/6 for ``1/6 - square*(1/120)``.
+    """Return the constant term of a polynomial in the operation ``square``: 1/6 for ``1/6 - square*(1/120)``.
 
     The result is None if the operation ``index`` is no such polynomial.
     """

@@ -98,10 +98,10 @@ class _Closure:
         return parts[0] + (parts[1] if node[0] == "+" else _times(parts[1], constant(-1)))
 
     def polynomial(self, i: int) -> Polynomial | None:
-        """Return series ``i`` as a polynomial in states, functions of ``a t + b`` and constants; None if it is none."""
+        """Return series ``i`` as a polynomial in states, functions of ``a t + b`` and constants, or None."""
         if i not in self.polynomials:
             s = self.series[i]
-            result: Polynomial | None = None
+            result: Polynomial | None = None  # other rules, such as a quotient, give no polynomial
             if s.rule == "state":
                 result = self.single("state", s.number)
             elif s.rule == "clock":
@@ -115,7 +115,10 @@ class _Closure:
         return self.polynomials[i]
 
     def sum(self, s: Series, only: Iterable[int] | None = None) -> Polynomial | None:
-        """Return a sum of series as a polynomial in states, constants and functions of time; None if it is none."""
+        """Return a sum of series as a polynomial in states, constants and functions of time.
+
+        None if one of its terms is no polynomial.
+        """
         *weights, constant = s.weights
         # only: indices of the series in the sum whose terms are added, without the constant
         total = self.constant(constant) if constant is not None and only is None else Polynomial({})

@@ -51,7 +51,7 @@ def _form(scene: Scene) -> _Form:
     known = exact_form(scene)
     if known is None or known.library not in _FORMS:
         raise InputError(
-            f"{scene.name}: expected a free body, a symmetric heavy top or a symmetric gyrostat for the step 'exact', "
+            f"{scene.name}: expected a free body, symmetric heavy top or symmetric gyrostat for the step 'exact', "
             "got a scene without such a closed form; use the step 'rk4', 'taylor' or 'dop853'"
         )
     if not scene.body.principal.given_axes:
