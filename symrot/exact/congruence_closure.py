@@ -25,9 +25,9 @@ MOST_SYMBOLS = 6
 def proof_by_congruence(
     left: Expr, right: Expr, hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> tuple[FormulaRing, ...] | None:
-    """Prove ``left = right`` by replacing inverse functions and logarithms by others that are proven equal.
+    """Prove ``left = right`` by replacing inverse functions by others that are proven equal.
 
-    Return the polynomial rings that the proof uses, or None without a proof.
+    Return the polynomial rings of the proof, or None.
     """
     rings: list[FormulaRing] = []
     while True:
@@ -51,10 +51,7 @@ def proof_by_congruence(
 def _equal_pairs(
     names: Sequence[Expr], hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> Iterator[tuple[Expr, Expr, tuple[FormulaRing, ...]]]:
-    """Yield pairs of functions in ``names`` that are proven equal, or to add up to pi/2, as asin(x) and acos(x) do.
-
-    A pair is (f, its value in terms of the other, rings of the proof).
-    """
+    """Yield (f, h, rings) with ``f = h`` proven, where f is in ``names`` and h is another name or pi/2 minus it."""
     for first, second in combinations(names, 2):
         for other in (first, pi / 2 - first):
             if not hypotheses and not seems_zero(second - other, domain):

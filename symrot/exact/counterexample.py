@@ -64,10 +64,7 @@ class FreeChoice:
 def rational_witness(
     ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
 ) -> Counterexample | None:
-    """Return a counterexample to ``left = right`` in rational numbers, or None if the search ends without one.
-
-    ``entry`` is (row, column) of a matrix entry, for the report.
-    """
+    """Return a counterexample to ``left = right`` in rational numbers, or None if the search ends without one."""
     # roots, inverse functions and exponentials are seldom rational: no search
     if ring.outside_scope or ring.roots or ring.fine or ring.exponentials or not _angles_are_free(ring):
         return None
@@ -116,13 +113,11 @@ def rational_witness(
 
 
 def _difference(ring: FormulaRing, left: Expr, right: Expr) -> tuple[Callable[[dict[int, Fraction]], bool], int]:
-    """Return (test, cost): ``test(values)`` says whether both sides are defined and differ at a point.
-
-    The cost is the number of terms that a test evaluates.
-    """
+    """Return (test, cost): ``test(values)`` is True if both sides are defined and differ at a point."""
     # the shorter of two forms is evaluated: the polynomial left - right, or the formulas as they are written
     written = pieces((left, right))
     try:
+        # cost is the number of terms that a test evaluates
         residual = ring.difference(left, right).numerator
         if len(residual) <= written:
             return lambda values: bool(_value(residual, values)), len(residual)
@@ -142,10 +137,7 @@ def _difference(ring: FormulaRing, left: Expr, right: Expr) -> tuple[Callable[[d
 def closed_form_witness(
     ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
 ) -> Counterexample | None:
-    """Return a point with rational values of the symbols at which 50-digit intervals prove ``left != right``, or None.
-
-    ``entry`` is (row, column) of a matrix entry, for the report.
-    """
+    """Return a point with rational symbols at which 50-digit intervals prove ``left != right``, or None."""
     places = {number: leaf for leaf, number in ring.symbols.items() if ring.leaves[leaf]}
     if any(number not in places for hypothesis in ring.hypothesis_numerators for number in _occurring(hypothesis)):
         return None
@@ -272,7 +264,7 @@ def _occurring(poly: PolyElement) -> set[int]:
 
 
 def _coordinates(ring: FormulaRing) -> tuple[list[FreeChoice], list[tuple[int, PolyElement]]]:
-    """Return (free, solved): the choices that determine a point, and pairs (variable, hypothesis linear in it)."""
+    """Return (free, solved): the free choices of a point, and pairs (variable, hypothesis that determines it)."""
     fixed: set[int] = set()
     coordinates: list[FreeChoice] = []
     solved: list[tuple[int, PolyElement]] = []

@@ -2,7 +2,6 @@
 
 Formulas in scope are rational functions of symbols, exponentials, unit vectors, and sines and cosines of angles. Their
 normal form is zero if and only if they are zero at all real points (``docs/exact_decisions.md``, sections 1 to 3).
-Others need a counterexample.
 """
 
 from collections.abc import Sequence
@@ -39,9 +38,9 @@ __all__ = ["decide", "is_zero", "normal_form"]
 
 
 def normal_form(expression: Any, relations: Sequence[Any] = ()) -> Any:
-    """Return the normal form of a formula: exactly 0 if the formula is zero wherever it is defined.
+    """Return the normal form of a formula; it is 0 only if the formula is zero wherever it is defined.
 
-    In the scope of :mod:`symrot.exact.decide`, any other result proves that it is not.
+    The converse holds in this module's scope.
 
     Parameters
     ----------

@@ -131,7 +131,7 @@ class Case(ABC):
         return (*self.lefts, *self.rights)
 
     def search(self, *searches: Search, places: Sequence[int] | None = None) -> Counterexample | None:
-        """Return the first counterexample that one of ``searches`` returns for one of the entries ``places``, or None.
+        """Return the first counterexample by one of ``searches`` for the entries with the indices ``places``, or None.
 
         Without ``places`` the unproven entries are searched.
         """
@@ -169,10 +169,7 @@ def first_decision(case: C, stages: Sequence[Callable[[C], Decision | None]]) ->
 
 
 def subtract(case: Case) -> None:
-    """Compute left - right for each entry of an equation and try to prove that it is zero.
-
-    The results are stored in ``case``; no decision is returned.
-    """
+    """Compute left - right for each entry of an equation, try to prove that it is zero, and store the results."""
     ring = case.ring
     case.residuals = [ring.difference(a, b) for a, b in zip(case.lefts, case.rights, strict=True)]
     proofs = [proof(ring, residual.numerator) for residual in case.residuals]
@@ -215,7 +212,7 @@ def arguments(case: Case) -> Decision | None:
 def congruence(case: Case) -> Decision | None:
     """Return a decision if all entries become equal by replacing inverse functions, else None.
 
-    In ``f(asin(x)) = f(pi/2 - acos(x))``, acos(x) is replaced by pi/2 - asin(x).
+    For example, acos(x) is replaced by pi/2 - asin(x).
     """
     ring = case.ring
     # entries that earlier stages have proven equal are not tried again
@@ -281,10 +278,11 @@ def flatten(expression: Any) -> tuple[list[Expr], Shape]:
 
 
 def place_in_matrix(number: int, shape: Shape) -> tuple[int, int] | None:
-    """Return (row, column), from 1, of entry ``number``, counted row by row from 0; None for a scalar.
+    """Return (row, column) of an entry by its ``number`` in reading order; None for a scalar.
 
-    In a 3 x 3 matrix, entry 3 is at (2, 1).
+    Entry 3 of a 3 x 3 matrix is at (2, 1).
     """
+    # rows and columns are counted from 1, entries from 0
     return None if shape is None else (number // shape[1] + 1, number % shape[1] + 1)
 
 

@@ -31,12 +31,10 @@ _NAMES = (*INVERSE, log)
 
 @dataclass(frozen=True)
 class Lift:
-    """A sufficient condition for a polynomial to be zero: the polynomials ``numerators`` of another ``ring`` are zero.
-
-    ``asin(x) + acos(x) - pi/2`` has two: the sine, and the cosine minus 1.
-    """
+    """A condition that makes a polynomial zero: the polynomials ``numerators`` of another ``ring`` are zero."""
 
     ring: FormulaRing
+    # for asin(x) + acos(x) - pi/2: its sine, and its cosine minus 1, in which asin and acos do not occur
     numerators: tuple[PolyElement, ...]
 
 
@@ -46,10 +44,7 @@ def vanishes(ring: FormulaRing, numerator: PolyElement) -> bool:
 
 
 def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] | None:
-    """Return the further rings by which the polynomial ``numerator`` is proven to be zero, or None without a proof.
-
-    The result is () if the relations of ``ring`` suffice.
-    """
+    """Return the rings, besides ``ring``, by which the polynomial ``numerator`` is proven to be zero, or None."""
     numerator = ring.reduce(numerator)
     if not numerator:
         return ()
@@ -65,16 +60,14 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
 
 
 def lifts(ring: FormulaRing, numerator: PolyElement, only_zero: bool = False) -> Iterator[Lift]:
-    """Yield conditions, each of which is sufficient for the polynomial ``numerator`` to be zero.
-
-    With ``only_zero``, factors that are clearly not zero in double precision yield none.
-    """
+    """Yield conditions, each of which is sufficient for the polynomial ``numerator`` to be zero."""
     places = {number for leaf, number in ring.symbols.items() if isinstance(leaf, _NAMES)}
     if not places or len(numerator) > MOST_TERMS or not any(mono[n] for mono in numerator for n in places):
         return
     # the polynomial is zero if one of its factors is
     for factor, _ in numerator.factor_list()[1]:
         used = {number for number in places if any(mono[number] for mono in factor)}
+        # with only_zero, factors that are clearly not zero in double precision give no condition
         if used and (not only_zero or seems_zero(factor.as_expr(*ring.generators), ring.domain)):
             with suppress(InputError):  # a condition that cannot be read proves nothing
                 yield from _lifts_of(ring, factor, used)
@@ -98,21 +91,15 @@ def _lifts_of(ring: FormulaRing, factor: PolyElement, used: set[int]) -> Iterato
 
 @dataclass(frozen=True)
 class PrincipalValueProof:
-    """A proof that an expression is zero wherever the formulas ``nonnegative`` are >= 0 and ``positive`` are > 0.
+    """A proof that an expression is zero wherever the formulas ``nonnegative`` are >= 0 and ``positive`` are > 0."""
 
-    For ``asin(sin(x)) - x``, ``nonnegative`` holds pi/2 - x and pi/2 + x.
-    """
-
-    nonnegative: tuple[Expr, ...]
+    nonnegative: tuple[Expr, ...]  # pi/2 - x and pi/2 + x for asin(sin(x)) - x
     positive: tuple[Expr, ...]
     rings: tuple[FormulaRing, ...]  # no divisor in these rings may be zero
 
 
 def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof | None:
-    """Return a proof that ``numerator`` is zero where an angle is a principal value, or None.
-
-    ``asin(sin(x)) - x`` is zero for x in [-pi/2, pi/2].
-    """
+    """Return a proof that ``numerator``, as asin(sin(x)) - x, is zero where an angle is a principal value, or None."""
     names = {number: leaf for leaf, number in ring.symbols.items() if type(leaf) in (*_PRINCIPAL, atan2)}
     if not names or len(numerator) > MOST_TERMS:
         return None
@@ -143,10 +130,7 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
 
 
 def _principal_multiple(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> PrincipalValueProof | None:
-    """Return a proof of where a sum of multiples of two inverse functions is zero, or None.
-
-    ``factor`` is the sum, such as ``asin(3*x - 4*x^3) - 3*asin(x)``.
-    """
+    """Return a proof of where a sum like ``asin(3*x - 4*x^3) - 3*asin(x)`` (two inverse functions) is zero, or None."""
     terms = _combination(ring, factor, {**dict(enumerate(ring.generators)), **names})
     leaves = [(leaf, multiple) for leaf, multiple in terms or () if leaf is not pi]
     if len(leaves) != 2 or any(type(leaf) not in _PRINCIPAL for leaf, _ in leaves):
@@ -169,15 +153,13 @@ def _principal_multiple(ring: FormulaRing, factor: PolyElement, names: dict[int,
 
 
 def _ends_of_argument(inner: Expr, low: Expr, high: Expr) -> tuple[Expr, ...]:
-    """Return formulas that are nonnegative where the asin, acos or atan ``inner`` lies in [low, high].
-
-    asin(x) in [-pi/6, pi/6] gives x + 1/2 and 1/2 - x.
-    """
+    """Return formulas that are nonnegative where the asin, acos or atan ``inner`` lies in [low, high]."""
     function, least, most = _PRINCIPAL[type(inner)]
     sign = -1 if isinstance(inner, acos) else 1  # acos decreases
     ends = []
     # an end of the function's own range bounds nothing
     if low > least:
+        # asin(x) in [-pi/6, pi/6] gives x + 1/2 and 1/2 - x
         ends.append(sign * (inner.args[0] - function(low)))
     if high < most:
         ends.append(sign * (function(high) - inner.args[0]))
@@ -185,10 +167,7 @@ def _ends_of_argument(inner: Expr, low: Expr, high: Expr) -> tuple[Expr, ...]:
 
 
 def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return a proof that ``atan2(y, x) = w`` wherever r = x cos w + y sin w is positive, or None.
-
-    ``leaf`` is the call of atan2 and ``angle`` is w.
-    """
+    """Return a proof that ``atan2(y, x)``, the ``leaf``, is the ``angle`` w wherever x cos w + y sin w > 0, or None."""
     y, x = leaf.args
     left, right = y * cos(angle), x * sin(angle)
     with suppress(InputError):  # an angle that cannot be read proves nothing
@@ -245,7 +224,7 @@ def _lifted(ring: FormulaRing, equations: Sequence[tuple[Expr, Expr]]) -> Lift:
 
 
 def _combination(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> list[tuple[Expr, Fraction]] | None:
-    """Return a polynomial as pairs (inverse function or pi, rational factor), or None for any other polynomial.
+    """Return a polynomial as pairs (inverse function or pi, factor), or None.
 
     ``2*asin(x) - pi`` gives (asin(x), 2) and (pi, -1).
     """
@@ -260,9 +239,9 @@ def _combination(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr])
 
 
 def _keeps_within(terms: Sequence[tuple[Expr, Fraction]], period: int) -> bool:
-    """Return whether a sum of multiples of inverse functions is proven to lie strictly between -p pi and p pi.
+    """Return whether a sum of multiples of inverse functions provably lies strictly between -p pi and p pi.
 
-    p is ``period``; ``terms`` holds pairs (inverse function or pi, factor).
+    p is ``period``.
     """
     low, high = Fraction(0), Fraction(0)
     low_taken = high_taken = True

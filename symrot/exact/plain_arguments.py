@@ -31,7 +31,7 @@ def with_plain_arguments(
 ) -> tuple[list[Expr], tuple[FormulaRing, ...]]:
     """Return (formulas, rings): the formulas with all arguments of functions in normal form.
 
-    ``f(sin(x)^2 + cos(x)^2)`` becomes ``f(1)``. No divisor in the rings may be zero.
+    ``f(sin(x)^2 + cos(x)^2)`` becomes ``f(1)``.
     """
     formulas, rings = list(formulas), []
     for level in range(MOST_LEVELS):
@@ -44,14 +44,12 @@ def with_plain_arguments(
         values = {node: node.func(*(shorter[argument] for argument in node.args)) for node in nodes}
         formulas = [formula.xreplace(values) for formula in formulas]
         rings += [ring, *further]
+    # equal to the formulas passed in wherever no divisor of the rings is zero
     return formulas, tuple(rings)
 
 
 def _common_forms(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Expr, Expr], tuple[FormulaRing, ...]]:
-    """Return (forms, rings): the normal form of each argument, and the further rings that its proofs use.
-
-    Arguments that are proven equal get the same form.
-    """
+    """Return (forms, rings): the normal form of each argument, the same for arguments that are proven equal."""
     shorter: dict[Expr, Expr] = {}
     rings: list[FormulaRing] = []
     for argument in arguments:
@@ -60,6 +58,7 @@ def _common_forms(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Ex
             further = proof(ring, ring.difference(argument, other).numerator)
             if further is not None:
                 shorter[argument] = shorter[other]
+                # the rings, besides ring, that the proofs of equality use
                 rings += further
                 break
     return shorter, tuple(rings)

@@ -135,10 +135,7 @@ def name_advice(name: str, known: Collection[str]) -> str:
 
 
 def mark_advice(source: str, position: int, known: Collection[str]) -> str:
-    """Return what to write instead of the text at ``position`` of a formula, or an empty text.
-
-    For ``^`` it is ``write ** for a power``.
-    """
+    """Return what to write instead of the text at ``position`` of a formula: ``write ** for a power`` for ``^``."""
     # the reader met a character that is no operator, or missed an operator
     rest, before = source[position:], source[:position].rstrip()
     if rest[:1] in MARKS:

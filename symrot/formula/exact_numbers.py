@@ -338,10 +338,8 @@ def _in_range(value: Fraction) -> None:
 
 
 def _read(value: object, where: str, expect: str) -> Angle:
-    """Return a number as an :class:`Angle` in rad, so that multiples of pi stay exact.
-
-    ``where`` (file and key) and ``expect`` are texts for the message of the InputError.
-    """
+    """Return a number as an :class:`Angle` in rad, so that multiples of pi stay exact."""
+    # where (file and key) and expect are texts for the message of the InputError
     kind = type(value)
     if not isinstance(value, bool):
         reader = _READERS.get(kind) or next((r for k, r in _READERS.items() if isinstance(value, k)), None)

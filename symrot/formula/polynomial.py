@@ -20,7 +20,7 @@ Operand = Union["Polynomial", Fraction, int]
 
 
 class Polynomial:
-    """A polynomial; ``terms`` maps monomials to nonzero coefficients and is never changed.
+    """A polynomial, never changed; ``terms`` maps monomials to coefficients.
 
     ``3 z x^2 + 5`` has the terms ``{(("x", 2), ("z", 1)): 3, (): 5}``.
     """
@@ -92,7 +92,7 @@ class Polynomial:
     def collect(self, names: Iterable[str]) -> dict[tuple[int, ...], "Polynomial"]:
         """Return the coefficients of the polynomial in the generators ``names``, by exponents.
 
-        With x and y, ``3 z x^2 + 5`` gives ``{(2, 0): 3 z, (0, 0): 5}``.
+        ``3 z x^2 + 5`` in x gives ``{(2,): 3 z, (0,): 5}``.
         """
         order = tuple(names)
         parts: dict[tuple[int, ...], dict[Monomial, Fraction]] = {}

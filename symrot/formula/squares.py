@@ -53,7 +53,7 @@ def _root_of_sum(node: Node) -> Node | None:
 
 
 def as_polynomial(node: Node, generators: dict[str, Node]) -> Polynomial | None:
-    """Return a formula as a polynomial in its symbols and function calls, or None if it is no such polynomial.
+    """Return a formula as a polynomial in its symbols and function calls, or None.
 
     ``generators`` gets an entry (text, formula) for each of them.
     """

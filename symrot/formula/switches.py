@@ -82,10 +82,7 @@ def has_switches(node: Node) -> bool:
 
 
 def condition_error(node: Node) -> str:
-    """Return what to write instead of the first wrong condition of ``where`` in a formula, or an empty text.
-
-    An example is "one comparison at a time: .." for ``1 < t < 2``.
-    """
+    """Return what to write instead of the first wrong condition of ``where``, as ``1 < t < 2``, or an empty text."""
 
     def wrong(node: Node, condition: bool) -> str:
         if node[0] != "call" or node[1] not in CONDITIONS:
@@ -119,10 +116,7 @@ def has_choices(node: Node) -> bool:
 
 
 def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> Node:
-    """Return a formula in which each ``where(p, a, b)`` is replaced by a if p is 1, or by b if p is 0.
-
-    ``modes`` gives the values of the modes in p; those in ``held`` have none.
-    """
+    """Return a formula with a, if p is 1, or b, if p is 0, in place of each ``where(p, a, b)``; ``modes`` gives p."""
     if not has_choices(node):
         return node
     if node[:2] == ("call", "where"):
@@ -150,9 +144,9 @@ def placed(node: Node, values: Mapping[str, Node]) -> Node:
 
 
 def on_line(node: Node) -> tuple[Any, int]:
-    """Return (key, sign) of a formula; proportional formulas such as ``t - 1`` and ``2 - 2*t`` have the same key.
+    """Return (key, sign): the formulas ``t - 1`` and ``2 - 2*t``, being proportional, have the same key.
 
-    The sign is 1 if the formula is a positive multiple of its key, else -1.
+    Their signs differ.
     """
     polynomial = as_polynomial(node, {})
     if polynomial is None or not polynomial.terms:
@@ -186,10 +180,7 @@ def _is_linear(node: Node, mode: str) -> bool:
 
 
 def _degree(node: Node) -> int:
-    """Return the degree of a formula as a polynomial in time, states and sines of time, or RISKY.
-
-    RISKY means that it may be undefined or have a pole or a short pulse.
-    """
+    """Return the degree of a formula in time, states and sines of time, or RISKY if it may have a pole or pulse."""
     kind = node[0]
     if kind in ("number", "symbol"):
         return int(kind == "symbol" and node[1] in CHANGING)
@@ -258,10 +249,7 @@ class _Writer:
         self.conditions: Conditions = ()  # conditions under which the part being rewritten applies
 
     def mode(self, kind: str, guard: Node, where: Conditions = (), at_zero: int = 1) -> Node:
-        """Return the symbol of the mode that belongs to a guard, and add a switch for a new guard.
-
-        The other arguments are those of :class:`Switch`.
-        """
+        """Return the symbol of the mode that belongs to a guard, and add a :class:`Switch` for a new guard."""
         where = self.conditions + where
         for count in range(len(where) + 1):  # a mode that applies under fewer of the conditions serves as well
             if (mode := self.known.get((kind, guard, where[:count], at_zero))) is not None:
@@ -274,7 +262,7 @@ class _Writer:
     def part(self, node: Node, share: Node, value: int) -> Node:
         """Return ``node``, the part a or b of ``where(c, a, b)``, as a smooth formula.
 
-        ``share`` is 1 if c holds, else 0; ``value`` is 1 for a and 0 for b.
+        ``value`` is 1 for a and 0 for b.
         """
         outside = self.conditions
         # the switches in the part matter only where share has that value
@@ -309,10 +297,7 @@ class _Writer:
         return getattr(self, f"_{node[1]}")(*parts)  # type: ignore[no-any-return]
 
     def share(self, condition: Node) -> Node:
-        """Return a formula of modes that is 1 if a condition holds, otherwise 0.
-
-        ``t < 1 and omega_1 < 0`` gives ``(1 + s1)/2 * (1 + s2)/2``.
-        """
+        """Return a formula of modes that is 1 if a condition holds, otherwise 0: ``(1 + s)/2`` for ``t < 1``."""
         name, parts = condition[1], condition[2]
         if name == "less":
             left, right = map(self.smooth, parts)
@@ -321,6 +306,7 @@ class _Writer:
         shares = [self.share(part) for part in parts]
         if name == "not":
             return ("-", ONE, shares[0])
+        # t < 1 and omega_1 < 0 gives (1 + s1)/2 * (1 + s2)/2
         both: Node = ("*", *shares)
         return both if name == "and" else ("-", ("+", *shares), both)
 

@@ -18,7 +18,7 @@ Value = TypeVar("Value")
 class Cursor:
     r"""A position in a row of items of the LaTeX tree, from which the next item is read.
 
-    Spaces, ``\left`` and ``\right`` are skipped; an index or a power is an item after its symbol.
+    Spaces, ``\left`` and ``\right`` are skipped.
 
     Attributes
     ----------
@@ -52,6 +52,7 @@ class Cursor:
     def flatten(self, nodes: Iterable[Node]) -> None:
         space = False
         for node in nodes:
+            # an index or a power is an item after its symbol
             if isinstance(node, Scripts):
                 self.flatten((node.base, *node.scripts))
             elif isinstance(node, Delimited):
@@ -67,9 +68,9 @@ class Cursor:
                 space = False
 
     def inside(self, node: Node, read: Callable[[], Value], closing: str = "'}'") -> Value:
-        """Return the value of ``read`` on the items of ``node``; the cursor moves there and back.
+        """Call ``read`` with the cursor at the start of ``node``, move back, and return its value.
 
-        ``read`` must read all of them.
+        ``read`` must read all items of the node.
         """
         outside = self.items, self.index, self.open_bars
         self.enter(node)
@@ -97,7 +98,7 @@ class Cursor:
     def barred(self, read: Callable[[], Value], bar: str) -> Value:
         """Parse a value between two bars, as in ``|x|``, by ``read``, and return it.
 
-        The cursor is after the opening bar; ``bar`` is the closing one.
+        The cursor is after the opening bar.
         """
         outside, self.open_bars = self.open_bars, (*self.open_bars, bar)
         value = read()

@@ -51,10 +51,7 @@ class _Reader:
         return Row(tuple(items), first.start, token.start)
 
     def group(self, opening: Token, closing: str = "}") -> Row:
-        """Parse a row of items and the token ``closing``, such as a brace; return the row.
-
-        Its position is that of ``opening``, the token before it.
-        """
+        """Parse a row of items and the bracket ``closing``; return the row, with the position of ``opening``."""
         row = self.row(closing, closing)
         self.place += 1
         return Row(_with_old_fractions(row).items, opening.start, row.end)

@@ -36,6 +36,12 @@ class Emitted(_Texts):
     source, header : str
         The text of the kernel and, in C, of its header.
 
+    Notes
+    -----
+    In C the function is named ``symrot_`` and the kernel's name (property ``function``), elsewhere as the kernel.
+    The certificate of a library kernel states error bounds on the standard ranges of its inputs; that of a scene's
+    kernel states the bounds that were passed to :func:`emit`.
+
     Examples
     --------
     >>> import symrot
@@ -43,9 +49,6 @@ class Emitted(_Texts):
     True
     """
 
-    # The function has the name of the kernel, in C with the prefix symrot_ (property ``function``). The certificate of
-    # a library kernel contains bounds of its rounding errors on the standard ranges of its inputs; that of a scene's
-    # kernel contains the bounds that were passed to ``emit``.
     text: "KernelText"
     bounds: Mapping[str, Any] | None
 

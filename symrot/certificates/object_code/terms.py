@@ -258,10 +258,7 @@ class Terms:
         return None if bits is None else self.bits(self.width(a), bits)
 
     def _signed(self, a: int) -> tuple[int, bool]:
-        """Return the term ``a`` without its minus sign, and whether it had one:
-
-        (b, True) if ``a`` is -b, else (a, False).
-        """
+        """Return the term ``a`` without its minus sign, and whether it had one: (b, True) if ``a`` is -b."""
         if self.kind(a) == "neg":
             return int(self.nodes[a][2]), True
         value = self.constant(a)

@@ -57,10 +57,7 @@ def imaginary_unit(trees: Sequence[Node]) -> Node | None:
 
 
 def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node | None:
-    """Return the node of a letter i or j if its surroundings, such as ``|x + i*y|``, show the imaginary unit.
-
-    ``nodes`` are all nodes of the formulas ``trees``.
-    """
+    """Return the node of a letter i or j if its surroundings, such as ``|x + i*y|``, show the imaginary unit."""
     own = next((node for node in nodes if (node.kind, node.value) == ("name", letter)), None)
     if own is None:
         return None

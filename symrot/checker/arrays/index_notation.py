@@ -29,9 +29,7 @@ MOST_ENTRIES, WIDTH = 81, 9
 
 
 def written_out(relation: Relation) -> tuple[Relation, str]:
-    """Return an equation with delta_ij or epsilon_ijk written out in components, and a note that says so.
-
-    Any other equation is returned unchanged, with an empty text.
+    """Return an equation with delta_ij or epsilon_ijk written out in components, and a note, empty for other equations.
 
     Raises
     ------
@@ -66,10 +64,7 @@ def written_out(relation: Relation) -> tuple[Relation, str]:
 
 
 def component_of_cross(pair: Sequence[Node], index: str, used: str) -> Node | None:
-    """Return ``epsilon_ijk a_j b_k``, the component ``index`` (here i) of the cross product of the ``pair`` a, b.
-
-    Return None if a or b is no name.
-    """
+    """Return ``epsilon_ijk a_j b_k``, the component ``index`` of the cross product of the names ``pair``; else None."""
     left, right = pair
     free = [letter for letter in "pqrskjlmni" if letter not in used + index]
     if left.kind != "name" or right.kind != "name" or len(free) < 2 or not re.fullmatch("[i-np-s]", index):
@@ -178,9 +173,9 @@ def _free(term: Node) -> tuple[str, ...]:
 
 
 def _component(side: Node, values: Mapping[str, str]) -> Node:
-    """Return one component of a side, with the numbers ``values`` for its free indices and with its sums written out.
+    """Return one component of a side, for the ``values`` of its free indices, with its sums written out.
 
-    ``A_ij b_j`` has the component ``A_11 b_1 + A_12 b_2 + A_13 b_3``.
+    ``A_ij b_j`` gives ``A_11 b_1 + ..`` for i = 1.
     """
     if side.kind == "sum":
         return sum_of([_component(part, values) for part in side.args])

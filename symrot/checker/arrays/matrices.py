@@ -24,10 +24,7 @@ COLUMN = (3, 1)
 
 
 def matrix_of_entries(name: str, timed: bool = False) -> Node:
-    """Return the tree of a 3 x 3 matrix with the entries A_11, A_12 and so on, for the ``name`` A.
-
-    If ``timed``, they are functions of time, A_11(t).
-    """
+    """Return the tree of a 3 x 3 matrix of the symbols A_11, A_12 and so on, or functions A_11(t) if ``timed``."""
     kind, args = ("call", (TIME,)) if timed else ("name", ())
     rows = [[Node(kind, f"{name}_{i}{j}", args) for j in "123"] for i in "123"]
     return Node("call", "Matrix", (_list([_list(row) for row in rows]),))
@@ -64,10 +61,7 @@ def _list(members: Sequence[Node]) -> Node:
 
 
 def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ...]:
-    """Return the capital letters that a claim uses as matrices, as A and B in ``det(A B)``.
-
-    Names in ``known``, which the claim defines, are left out.
-    """
+    """Return the capital letters that a claim uses as matrices, as A and B in ``det(A B)``, except ``known`` ones."""
     names = dict.fromkeys(name for name in _inverted_in_order(sides) if name not in (*known, *UNIT_NAMES))
     for side in sides:
         for _, node in walk(side):
@@ -83,7 +77,7 @@ def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, .
 
 
 def _inverted_in_order(sides: Sequence[Node]) -> list[str]:
-    """Return the capital letters A and B of ``(A B)^-1 = A^-1 B^-1``, else an empty list."""
+    """Return the capital letters of ``(A B)^-1 = A^-1 B^-1``, whose order is wrong for matrices; else an empty list."""
     for side, other in (sides, sides[::-1]):
         base = side.args[0] if _is_inverse(side) else side
         if base is side or base.kind != "product" or other.kind != "product" or not all(map(_is_inverse, other.args)):
@@ -191,13 +185,11 @@ def _is_array(node: Node, vectors: Collection[str]) -> bool:
 
 
 def used_columns(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ...]:
-    """Return the small letters that a claim uses as columns, as r and v in ``r^T r`` and ``(R v)^T``.
-
-    Names in ``known`` are left out.
-    """
+    """Return the small letters that a claim uses as columns, as r and v in ``r^T r`` and ``(R v)^T``."""
     names: dict[str, None] = {}
     for side in sides:
         for _, node in walk(side):
+            # names in known are defined in the claim
             if node.kind == "transpose":
                 names |= {leaf: None for leaf in _factors(node.args[0]) if leaf[0].islower() and leaf not in known}
     return tuple(names)
@@ -224,10 +216,7 @@ def _of_matrix(node: Node) -> Sequence[Node]:
 
 
 def _of_form(factors: Sequence[Node]) -> list[Node]:
-    """Return the capital letters between a transposed column and a column, which are matrices: A in ``a^T A b``.
-
-    ``factors`` are the factors of the product.
-    """
+    """Return the capital letters between a transposed column and a column, which are matrices: A in ``a^T A b``."""
     first, *between, last = factors
     columns = [first.args[0] if first.kind == "transpose" else number(0), last]
     if not between or not all(column.kind == "name" and column.value[0].islower() for column in columns):
@@ -247,10 +236,7 @@ def _factors(node: Node) -> Iterator[str]:
 def with_lengths(
     relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]
 ) -> tuple[tuple[str, Node, Node], tuple[str, ...]]:
-    """Return a relation with lengths of vectors where only a scalar makes sense, and the names of these vectors.
-
-    ``a b sin(x)`` becomes ``|a| |b| sin(x)``.
-    """
+    """Return a relation with lengths of vectors where only scalars fit, as in ``|a| |b| sin(x)``, and the vectors."""
     lengths = _Lengths(shapes)
     sign, left, right = relation
     left, right = lengths.read(left), lengths.read(right)

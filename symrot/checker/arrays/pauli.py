@@ -93,10 +93,7 @@ def _names_in(tree: Node) -> set[str]:
 
 
 def commutator(first: Node, second: Node, sign: str = "-") -> Node | None:
-    """Return the tree of ``[A, B]`` = A B - B A, or of A B + B A for ``sign`` "+".
-
-    Return None unless A and B contain Pauli matrices.
-    """
+    """Return the tree of A B - B A, or A B + B A for ``sign`` "+"; None unless A and B contain Pauli matrices."""
     # otherwise [A, B] is a list of two components
     if not all(any(STEM.match(str(node.value)) for _, node in walk(part)) for part in (first, second)):
         return None

@@ -44,9 +44,7 @@ class Quaternions:
 def used_quaternions(
     relation: tuple[str, Node, Node], vectors: Collection[str], shapes: Mapping[str, Shape], known: Collection[str]
 ) -> Quaternions:
-    """Decide which names of a relation are quaternions, from the way in which they are used, as q in ``q v q*``.
-
-    Return their definitions, and the relation with quaternion products.
+    """Return the quaternions of a relation, as q in ``q v q*``, and the relation with quaternion products.
 
     Parameters
     ----------
@@ -94,10 +92,7 @@ def used_quaternions(
 
 
 def _has_units(sides: Sequence[Node], others: Collection[str]) -> bool:
-    """Return whether i, j and k are the only names of a claim and mean units of quaternions, as in ``i² = j² = -1``.
-
-    Names in ``others`` are no units.
-    """
+    """Return whether i, j and k are the only names of a claim and mean units of quaternions, as in ``i² = j² = -1``."""
     nodes = [node for side in sides for _, node in walk(side)]
     names = {str(node.value) for node in nodes if node.kind == "name"}
     squares = any(node.kind == "power" for node in nodes)
@@ -106,25 +101,20 @@ def _has_units(sides: Sequence[Node], others: Collection[str]) -> bool:
 
 
 def _of_units(relation: tuple[str, Node, Node]) -> Quaternions:
-    """Return an equation such as ``i j = k`` with quaternion products and with definitions of the units i, j, k.
-
-    The unit i is the column [0, 1, 0, 0].
-    """
+    """Return an equation such as ``i j = k`` with quaternion products and with definitions of the units i, j, k."""
     sign, left, right = relation
     reader = _Products(tuple(UNITS), set())
     sides = [reader.read(_without_squares(side)) for side in (left, right)]
     first, second = _of_one_shape(sides, reader.shapes({}))
     used = {str(node.value) for side in (first, second) for _, node in walk(side) if node.kind == "name"}
+    # i is the column [0, 1, 0, 0]
     definitions = [(name, _column([number(int(n == place)) for n in range(4)])) for name, place in UNITS.items()]
     note = "i, j and k are the units of quaternions, with i j = k"
     return Quaternions((sign, first, second), tuple(d for d in definitions if d[0] in used), (), (note,))
 
 
 def _by_components(relation: tuple[str, Node, Node], known: Collection[str]) -> Quaternions | None:
-    """Return ``q = a + b i + c j + d k`` as the equation of q and the column ``[a, b, c, d]``; else None.
-
-    Names in ``known`` are defined, and no units.
-    """
+    """Return an equation ``q = a + b i + c j + d k`` as that of q and the column ``[a, b, c, d]``, or None."""
     sign, left, right = relation
     if left.kind != "name" or str(left.value)[0] not in LETTERS or {*UNITS, left.value} & {*known}:
         return None
@@ -137,7 +127,7 @@ def _by_components(relation: tuple[str, Node, Node], known: Collection[str]) -> 
 
 
 def _components(node: Node) -> tuple[list[Node], ...] | None:
-    """Return the terms of the scalar part of a formula, and of its factors of i, j and k; None if it is not linear.
+    """Return the terms without units of a formula, and the factors of i, j and k.
 
     ``s*(x*i + y*j)`` gives [], [s*x], [s*y], [].
     """
@@ -146,6 +136,7 @@ def _components(node: Node) -> tuple[list[Node], ...] | None:
     if node.kind == "name":
         return tuple([number(1)] if UNITS[str(node.value)] == place else [] for place in range(4))
     if node.kind not in ("sum", "neg", "product"):
+        # not linear
         return None
     parts = [_components(argument) for argument in node.args]
     if any(part is None for part in parts):
@@ -194,10 +185,7 @@ def _bare(node: Node) -> Node:
 def _quaternion_names(
     sides: Sequence[Node], vectors: Collection[str], shapes: Mapping[str, Shape], known: Collection[str]
 ) -> tuple[str, ...]:
-    """Return the names that a claim uses as quaternions, in order of occurrence, as q in ``q v q*``.
-
-    Names in ``vectors`` and ``known`` are left out.
-    """
+    """Return the names that a claim uses as quaternions, as q in ``q v q*``, except ``vectors`` and ``known`` names."""
     names: dict[str, None] = {}
 
     def add(node: Node) -> None:
@@ -258,10 +246,7 @@ def _turned(sides: Sequence[Node]) -> Sequence[Node]:
 
 
 def _rotating(side: Node, other: Node) -> Node | None:
-    """Return the quaternion q if ``side`` is a rotation of a vector such as ``q v q^-1``; otherwise None.
-
-    The ``other`` side must be the rotated vector, ``R v`` or ``v'``.
-    """
+    """Return the quaternion q if ``side`` is ``q v q^-1`` and ``other`` its vector, ``R v`` or ``v'``; else None."""
     if side.kind != "product" or len(side.args) != 3:
         return None
     # numbers commute: nobody would write such a product of numbers
@@ -365,10 +350,7 @@ def _is_angular(node: Node) -> bool:
 
 
 def _of_one_shape(sides: Sequence[Node], shapes: Mapping[str, Shape]) -> tuple[Node, Node]:
-    """Return both sides in one shape: a scalar s equal to a quaternion becomes (s, 0, 0, 0).
-
-    ``shapes`` tells which names are vectors and quaternions.
-    """
+    """Return both sides in one shape: a scalar s equal to a quaternion becomes (s, 0, 0, 0)."""
     made = []
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         own, opposite = shape_of(side, shapes), shape_of(other, shapes)

@@ -48,10 +48,7 @@ class CalculusPart(NamesPart):
         return self.trigonometric(replace(font, text=command)) if command in FUNCTIONS else super().spelled(font)
 
     def loose_argument(self, function: tree.Node) -> tuple[Node, Node | None]:
-        r"""Parse a function's argument without brackets, such as ``2\theta``; return its tree and the call's exponent.
-
-        The exponent is 2 if ``\sin\theta^2`` is read as (sin theta)^2, else None.
-        """
+        r"""Parse a function's argument without brackets, ``2\theta``; return it, and the call's exponent or None."""
         expected = f"brackets around the argument of {function.text}"
         if self.at("-") and self.flips is None:
             raise self.fail(expected)
@@ -59,6 +56,7 @@ class CalculusPart(NamesPart):
         factors, power = [self.factor()], None
         is_power = factors[0].kind == "power"
         if is_power and self.doubtful("power of argument", function, self.peek().start, expected):
+            # \sin\theta^2 as (sin theta)^2
             factors, power = [factors[0].args[0]], factors[0].args[1]
         only_number = factors[0].kind == "number" or (factors[0].kind == "product" and not any(
             piece.kind in ("name", "call") for _, piece in walk(factors[0])))  # fmt: skip

@@ -155,9 +155,7 @@ class Cursor(cursor.Cursor):
         super().__init__(source, where, read(source, where, pieces))
 
     def doubtful(self, kind: str, item: tree.Node, stop: int, expected: str, place: tree.Node | None = None) -> bool:
-        """Record an ambiguous part of the text; return whether ``self.flips`` asks for its less usual meaning.
-
-        The part starts at ``item`` and ends before ``stop``; ``kind`` names the ambiguity.
+        """Record an ambiguous part of the text, ``item`` to ``stop``; return whether its less usual meaning applies.
 
         Raises
         ------

@@ -172,10 +172,7 @@ class NamesPart(SumsPart):
                 raise self.fail("letters and digits in a subscript", place)
 
     def resolved(self, name: str, subscript: str, others: tuple[str, ...] = ()) -> str:
-        """Return a name with its subscript in the form that the claim declares: ``I_1`` or else ``I1``.
-
-        ``others`` are further forms, such as ``xp`` for ``x_prime``.
-        """
+        """Return a name with its subscript as the claim declares it: ``I_1``, ``I1`` or one of ``others``."""
         forms = [f"{name}_{subscript}", f"{name}{subscript}"] if subscript else [name]
         # undeclared names get the first form
         return next((form for form in [*forms, *others] if form in self.names), forms[0])
@@ -263,10 +260,7 @@ class NamesPart(SumsPart):
         return node
 
     def under(self, mark: tree.Accent | tree.Font, read: Callable[[], Node]) -> Node:
-        r"""Parse what is under a mark, as if the subscript and primes after the mark were inside it too.
-
-        ``\dot{\mathbf{H}}_G`` is the rate of H_G. ``read`` parses the content.
-        """
+        r"""Parse what is under a mark, and the subscript after the mark: H_G for ``\dot{\mathbf{H}}_G``."""
         scripts = []
         while script := self.script("_") or self.script("'"):
             scripts.append(script)
@@ -275,9 +269,9 @@ class NamesPart(SumsPart):
         return self.inside(tree.Row((*items, *scripts), inside.start, self.peek().start), read)
 
     def symbol(self, ending: str = "") -> Node:
-        """Parse a letter, a number, a command, or a symbol with a mark such as a hat; return its tree.
+        """Parse a letter, a number, a command, or a symbol with a mark; return its tree.
 
-        ``ending`` is added to the name, such as ``_bar``.
+        ``ending``, such as ``_bar``, is added to the name.
         """
         item = self.next()
         if item.text in VECTOR_MARKS and not ending:  # \\hat{\\mathbf n}

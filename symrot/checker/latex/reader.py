@@ -84,8 +84,7 @@ def read_latex(source: str, where: str = "", names: Names | None = None) -> Equa
 def latex_readings(source: str, names: Names | None = None) -> list[Reading]:
     r"""Return the readings (interpretations) of a LaTeX text, the usual one first.
 
-    Each ambiguous part, such as ``\cos^{-1} x``, gives a further reading, whose attribute ``flipped`` has the text of
-    the part.
+    Each ambiguous part, such as ``\cos^{-1} x``, gives a further reading.
 
     Raises
     ------
@@ -106,10 +105,8 @@ def latex_readings(source: str, names: Names | None = None) -> list[Reading]:
 
 
 def _reading(source: str, names: Names, flips: Collection[tuple[str, int]]) -> Reading:
-    """Return the reading of a LaTeX text in which the ambiguous parts ``flips`` have their less usual meaning.
-
-    A part is given by its key (kind of ambiguity, position).
-    """
+    """Return the reading of a LaTeX text in which the ambiguous parts ``flips`` have their less usual meaning."""
+    # flips has the keys (kind of ambiguity, position) of the parts
     lines, reader = _read(source, "", names, _Interpreter.equations, flips)
     if reader.both_signs:
         lines += _read(source, "", names, _Interpreter.equations, flips, upper=False)[0]
@@ -131,14 +128,12 @@ def _read(
     source: str, where: str, names: Names, read: "Callable[[_Interpreter], list[Line]]",
     flips: Collection[tuple[str, int]] | None = None, upper: bool = True,
 ) -> "tuple[list[Line], _Interpreter]":  # fmt: skip
-    """Return the lines that ``read`` parses from a LaTeX text, and the interpreter that parsed them.
-
-    ``flips`` and ``upper`` choose among its meanings and its signs.
-    """
+    """Return the lines that ``read`` parses from a LaTeX text, and the interpreter that parsed them."""
     # if a name without a mark turns out to be a vector only late in the text, the text is parsed again
     crossed: frozenset[str] = frozenset()
     while True:
         # flips are keys of ambiguous parts; if it is None, an ambiguous text is refused
+        # upper chooses the upper or lower signs of \pm
         reader = _Interpreter(source, where, names, flips, upper)
         reader.crossed = set(crossed)
         try:
@@ -241,10 +236,7 @@ class _Interpreter(CalculusPart):
         return lines
 
     def chains(self, between: Collection[str] = (), line: Line | None = None) -> list[Line]:
-        """Parse chains ``a = b = c`` up to the end; return them as lines, one for each chain.
-
-        ``between`` are the marks that may separate two chains, such as a comma.
-        """
+        """Parse chains ``a = b = c``, with marks such as a comma ``between`` them; return one line for each chain."""
         lines: list[Line] = []
         while True:
             # otherwise the beginning of the first chain is already parsed

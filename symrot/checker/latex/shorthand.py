@@ -63,10 +63,7 @@ def shorthands(pieces: Sequence[Token], declared: Collection[str] = ()) -> dict[
 
 
 def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int, Shorthand]:
-    """Return the short forms of functions in a text, such as c_1 for cos(theta_1), by their positions.
-
-    ``letters`` maps the letters of such forms to their functions, c to cos.
-    """
+    """Return the short forms in a text by their positions; ``letters`` maps c to cos and s to sin, for example."""
     named: dict[int, Shorthand] = {}
     numbered: dict[int, tuple[str, str]] = {}
     for before, piece in enumerate(pieces[:-1]):
@@ -85,16 +82,14 @@ def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int
         elif after.text != "_" and function != "vers":
             # one of the letters is a name
             return {}
+    # numbered has ("sin", "12") for s_{12}, which means sin(theta_1 + theta_2)
     short = named or _numbered(pieces, numbered)
     # a cosine without a sine, or the reverse, is no evidence
     return short if {"cos", "sin"} <= {form.function for form in short.values()} else {}
 
 
 def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) -> dict[int, Shorthand]:
-    """Return the meaning of each short form with a number, by its position: cos(theta_1) for ``c_1``.
-
-    ``numbered`` maps positions to (function, number); s_{12} is sin(theta_1 + theta_2).
-    """
+    """Return the meaning of each short form with a number, by its position: cos(theta_1) for ``c_1``."""
     digits = {digit for _, number in numbered.values() for digit in number}
     # next to the rate of theta_1, c_2 and s_3 are functions of theta_2 and theta_3
     fewest = 1 if _has_rate(pieces, digits) and len(numbered) > 1 else FEWEST_NUMBERED
@@ -112,10 +107,7 @@ def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) 
 
 
 def _has_rate(pieces: Sequence[Token], digits: Collection[str]) -> bool:
-    r"""Return whether a text has the rate of an angle with a number, such as ``\dot\theta_1``.
-
-    ``digits`` are the numbers of short forms in the text.
-    """
+    r"""Return whether a text has the rate of an angle with a number, such as ``\dot\theta_1``."""
     for place, piece in enumerate(pieces[:-3]):
         grouped = pieces[place + 1].text == "{"
         inner = pieces[place + 1 + grouped]
@@ -167,10 +159,7 @@ def _subscript(pieces: Sequence[Token], place: int) -> str:
 
 
 def _numbered_angle(pieces: Sequence[Token], digits: Collection[str]) -> str:
-    r"""Return the letter of the angles that short forms such as c_1 mean: ``theta`` if the text has ``\theta_1``.
-
-    ``digits`` are the numbers of the short forms. The result is empty if several letters fit.
-    """
+    r"""Return the letter of the angles that c_1 means: ``theta`` if the text has ``\theta_1``; empty if unclear."""
     numbered: dict[str, set[str]] = {}
     for place, piece in enumerate(pieces[:-2]):
         after = place + 1 + (pieces[place + 1].text == "}")  # the subscript of \dot{\theta}_1 follows the bracket

@@ -194,10 +194,7 @@ class SumsPart(Cursor):
                 factors.append(self.factor())
 
     def divisor(self, factors: list[Node], slash: tree.Node) -> tuple[Node, bool]:
-        """Parse the divisor after a slash: one factor, or a product such as ``2m`` in ``p^2/2m``.
-
-        Return its tree, and whether no factor after it can belong to it.
-        """
+        """Parse the divisor after a slash, such as ``2m`` in ``p^2/2m``; return it, and whether it surely ends here."""
         first = self.peek()
         below = [self.factor()]
         if len(factors) == 1 and factors[0].kind == below[0].kind == "number":
@@ -345,14 +342,12 @@ class SumsPart(Cursor):
         return Node("call", "skew", (inner,))
 
     def paired(self, first: Node, sign: str) -> Node:
-        r"""Parse ``, B`` after A in ``[A, B]`` or ``\{A, B\}``; return ``A B - B A`` or ``A B + B A``, by ``sign``.
-
-        A, the tree ``first``, and B must contain Pauli's matrices.
-        """
+        """Parse ``, B`` after A, which is ``first``, in ``[A, B]``; return A B - B A, or A B + B A by ``sign``."""
         if not self.at(","):
             return first
         comma = self.next()
         pair = commutator(first, self.expression(), sign)
+        # without Pauli's matrices, [A, B] is no commutator
         if pair is None:
             raise self.fail(
                 "a closing bracket (write a commutator as A B - B A, unless A and B have Pauli matrices)", comma

@@ -197,14 +197,12 @@ class Writer:
         return "-" + self.formula(node.args[0], PRODUCT)
 
     def product(self, node: Node) -> str:
-        """Return the LaTeX of a product: its factors side by side, each divisor below the factor before it.
-
-        ``a/b*c`` becomes a fraction, and c after it.
-        """
+        """Return the LaTeX of a product: ``a/b*c`` becomes a fraction of a and b, and c after it."""
         pieces: list[str] = []
         last = None
         for factor in node.args:
             if factor.kind == "inv":
+                # each divisor is below the factor before it
                 above = "1" if last is None else self.formula(last)
                 if last is not None:
                     pieces.pop()

@@ -75,9 +75,9 @@ def _blank(match: re.Match[str]) -> str:
 
 
 def _clauses(text: str) -> tuple[str, list[str]]:
-    """Return (equations, left out): ``text`` with blanks for all clauses without an equation, and a list of these.
+    """Return (equations, clauses): ``text`` with blanks for clauses without an equation, and these clauses.
 
-    "m is the mass and I = m r^2" leaves out "m is the mass".
+    "m is the mass" is one.
     """
     left_out: list[str] = []
 

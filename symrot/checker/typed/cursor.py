@@ -135,11 +135,9 @@ class Cursor(ABC):
             raise self.fail(f"at most {DEEPEST_NESTING} nested levels of brackets and arguments")
 
     def other_reading(self, kind: str, at: int, start: int, stop: int) -> bool:
-        """Record an ambiguous part of the text; return whether it is to get its less usual meaning.
-
-        ``kind`` and ``at`` identify the ambiguity; the part goes from ``start`` to ``stop``.
-        """
+        """Record an ambiguous part of the text, at ``start``; return whether its less usual meaning applies."""
         self.plain = True
+        # flips has the keys (kind of ambiguity, position)
         doubt = Doubt((kind, at), self.source[start:stop].strip())
         if doubt.key not in [known.key for known in self.doubts]:
             self.doubts.append(doubt)
@@ -251,10 +249,7 @@ def is_mass_before_vector(token: Token, after: Token) -> bool:
 
 
 def is_cross_letter(before: Token, after: Token, vectors: Collection[str] = ()) -> bool:
-    """Return whether a letter x between two tokens may be the sign of a cross product: if both may be vectors.
-
-    ``vectors`` are names that the text shows to be vectors.
-    """
+    """Return whether a letter x between two tokens may be the sign of a cross product: if both may be vectors."""
     pieces = [(token.kind == "name", re.split("[_0-9]", token.text)[0], token.text) for token in (before, after)]
     usual = [name and (word in USUAL_VECTORS or own in vectors) for name, word, own in pieces]
     brackets = [text in ("(", ")", "[", "]") for _, _, text in pieces]

@@ -27,10 +27,7 @@ def _is_matrix_name(node: Node) -> bool:
 
 
 def _from_matrix(factors: Sequence[Node]) -> int:
-    """Return the index in ``factors`` at which the left operand of a cross product after them starts.
-
-    In ``R a × b`` it is the index of R.
-    """
+    """Return the index in ``factors`` at which the left operand of a cross product starts: that of R in ``R a × b``."""
     # R is a matrix, and the product is (R a) × b; usually the operand is the last factor
     return len(factors) - (2 if len(factors) > 1 and _is_matrix_name(factors[-2]) else 1)
 
@@ -127,10 +124,7 @@ class Parser(PiecesPart):
                 return product(factors, self.span(start)) if len(factors) > 1 else factors[0]
 
     def divisor(self, above: Node, start: int, slash: int) -> Node:
-        """Parse the divisor of ``above``: without brackets, it is one factor or the whole product after the slash.
-
-        ``1/2 m`` is (1/2)*m, but ``p^2/2m`` divides by 2*m.
-        """
+        """Parse and return the divisor of ``above``: one factor, or a product as ``2m`` in ``p^2/2m``."""
         first = self.token()
         below = [self.factor()]
         while above.kind in ("neg", "inv"):
@@ -212,7 +206,7 @@ class Parser(PiecesPart):
         return base
 
     def raised(self, base: Node, token: Token, start: int) -> Node:
-        """Return ``base`` with the raised exponent that ``token`` is: the power ``x²``, a transpose or an inverse."""
+        """Return ``base`` with the raised exponent ``token``: the power ``x²``, a transpose or an inverse."""
         self.plain = True
         digits, transposed = token.text.removesuffix("T"), token.text.endswith("T")
         if transposed and digits in ("", "-"):

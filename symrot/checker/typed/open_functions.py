@@ -54,10 +54,7 @@ class OpenFunctionsPart(Cursor):
         return Node("neg", None, (value,), value.span) if negative else value
 
     def open_call(self, function: str, token: Token, exponent: Node | None) -> tuple[Node, Node | None]:
-        """Parse the argument in ``sin 2x``; return the call sin(2*x), and its exponent or None.
-
-        ``exponent`` is the one before the argument, 2 in ``sin^2 x``.
-        """
+        """Parse the argument in ``sin 2x``; return the call sin(2*x), and its exponent, 2 for ``sin^2 x``, or None."""
         self.plain = True
         first = self.token()
         if first.kind not in ("number", "name", "fraction") and first.text not in ("√", "-", "[", "|"):
@@ -90,23 +87,18 @@ class OpenFunctionsPart(Cursor):
         return self.power()
 
     def power_of_call(self, token: Token, factors: list[Node]) -> Node | None:
-        """Return the exponent 2 of ``sin x^2`` if the parser chooses the less usual (sin x)^2, else None.
-
-        The exponent is removed from the last of the argument's ``factors``.
-        """
+        """Return the exponent 2 of ``sin x^2`` if the parser chooses the less usual (sin x)^2, else None."""
         last = factors[-1]
         if last.kind != "power" or last.args[0].kind not in ("name", "call"):
             return None
         if not self.other_reading("power of argument", last.span[0], token.start, last.span[1]):
             return None
+        # the exponent is removed from the argument
         factors[-1] = last.args[0]
         return last.args[1]
 
     def absorbs(self, function: Token, factors: list[Node]) -> bool:
-        """Return whether the factor at the cursor belongs to the argument of ``function``, as x in ``sin 2 x`` does.
-
-        ``factors`` are those of the argument so far.
-        """
+        """Return whether the factor at the cursor belongs to the argument of ``function``, as x in ``sin 2 x`` does."""
         token = self.token()
         if token.text in ("*", "·") and token.kind == "mark":
             if self.other_reading("product after argument", token.start, function.start, self.token(1).end):
@@ -126,10 +118,7 @@ class OpenFunctionsPart(Cursor):
         return self.other_reading("argument", token.start, function.start, self.end_of_run()) != usual
 
     def slash_belongs(self, function: Token, factors: list[Node]) -> bool:
-        """Return whether the slash of ``sin x/2`` divides the argument: True for sin(x/2), False for (sin x)/2.
-
-        ``factors`` are the factors of the argument.
-        """
+        """Return whether the slash of ``sin x/2`` divides the argument: True for sin(x/2), False for (sin x)/2."""
         slash, below = self.token(), self.token(1)
         if below.kind == "name" and (self.vocabulary.function(below.text) or below.text in SINGLE_ARGUMENT):
             return False
@@ -179,10 +168,7 @@ class OpenFunctionsPart(Cursor):
         return self.derivative_by(token)
 
     def continues(self, ahead: int) -> bool:
-        """Return whether the token ``ahead`` of the cursor is the base of a power, as x in ``x^2`` is.
-
-        ``ahead`` is 0 for the token at the cursor.
-        """
+        """Return whether the token ``ahead`` places after the cursor is the base of a power, as x in ``x^2`` is."""
         after = self.token(ahead + 1)
         return after.text in ("^", "**") or after.kind == "power"
 

@@ -251,10 +251,7 @@ class PiecesPart(OpenFunctionsPart):
         return Node("name", word, (), self.span(token.start))
 
     def is_matrix_of(self, word: str, argument: str) -> bool:
-        """Return whether the name ``word`` before a bracket is a matrix that depends on a quaternion: R in ``R(q) v``.
-
-        ``argument`` is the name in the bracket.
-        """
+        """Return whether ``word``, R in ``R(q) v``, is a matrix that depends on the quaternion ``argument``."""
         after = self.token(3)
         is_name = re.fullmatch("[A-Z]", word) is not None and argument in ("q", "Q", "p") and argument != "t"
         return is_name and not self.as_sympy and after.kind == "name" and after.spaced

@@ -1,8 +1,7 @@
 """Angles as rational combinations of atoms (symbols or other factors that are not numbers).
 
-``2*phi - psi/2 + pi/3`` has the linear form ``{phi: 2, psi: -1/2}`` plus ``1/3`` of pi. The base angle of an atom is
-the largest angle of which all its multiples in the formulas are whole multiples (``docs/exact_decisions.md``, section
-4).
+``2*phi - psi/2 + pi/3`` has the linear form ``{phi: 2, psi: -1/2}`` plus ``1/3`` of pi. Each atom has a base angle, of
+which all its angles are whole multiples: theta/6 if theta/2 and theta/3 occur (``docs/exact_decisions.md``, section 4).
 """
 
 from collections.abc import Iterable
@@ -20,20 +19,15 @@ PARTS = 24
 
 @dataclass(frozen=True)
 class LinearForm:
-    """An angle in rad as ``sum(coefficient * atom) + half_turns * pi``.
+    """An angle in rad as ``sum(coefficient * atom) + half_turns * pi``; an atom is a symbol or another factor."""
 
-    ``terms`` holds the pairs (atom, coefficient). An atom is a symbol or another factor that is not a number.
-    """
-
-    terms: tuple[tuple[Expr, Fraction], ...]
+    terms: tuple[tuple[Expr, Fraction], ...]  # pairs (atom, coefficient); no atom is a number
     # a multiple of 1/24; a constant angle with another denominator is a term with the atom ``pi``
     half_turns: Fraction
 
 
 def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
-    """Return an angle (rad) as a sum of rational multiples of atoms and of pi.
-
-    In ``2*phi - psi/2 + pi/3`` the atoms are phi and psi.
+    """Return an angle (rad) as a sum of rational multiples of pi and of atoms: phi and psi in ``2*phi - psi/2 + pi/3``.
 
     Raises
     ------

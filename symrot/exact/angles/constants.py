@@ -26,7 +26,7 @@ Monomial = tuple[int, ...]
 
 @dataclass(frozen=True)
 class Number:
-    """An algebraic number that is a variable of the ring: a root, or ``2 cos(pi/order)``."""
+    """An algebraic number that is a variable of the polynomial ring: a root, or ``2 cos(pi/order)``."""
 
     place: int  # index of the variable
     degree: int  # bound on the degree that the number adds to the field
@@ -97,10 +97,7 @@ def _places(poly: PolyElement) -> frozenset[int]:
 
 
 def _integral(terms: Iterable[tuple[Monomial, Any]], known: Mapping[int, Number]) -> tuple[int, int]:
-    """Return (multiplier, bits): the factor that makes a sum an algebraic integer, and the size of its conjugates.
-
-    ``terms`` are pairs (powers of the variables, coefficient).
-    """
+    """Return (multiplier, bits): the factor that makes a sum an algebraic integer, and the size of its conjugates."""
     terms = list(terms)
     most = [max(column) for column in zip(*(mono for mono, _ in terms), strict=True)]
     whole = lcm(*(int(c.denominator) for _, c in terms))

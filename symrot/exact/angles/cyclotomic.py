@@ -40,7 +40,7 @@ def order(denominator: int) -> int:
 
 
 def needs_cyclotomic_field(denominator: int) -> bool:
-    """Return whether sines and cosines of multiples of pi/denominator are read as polynomials in 2 cos(pi/N).
+    """Return whether sines and cosines of multiples of pi/denominator are written as polynomials in 2 cos(pi/N).
 
     N is ``order(denominator)``.
     """

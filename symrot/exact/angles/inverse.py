@@ -63,9 +63,9 @@ _QUARTER = Fraction(1, 2)
 
 
 def range_of(angle: Expr) -> Range:
-    """Return (low, high, low attained, high attained): a range of the values of an inverse function, in units of pi.
+    """Return (low, high, low attained, high attained): bounds of an inverse function's values, in units of pi.
 
-    For ``atan(u)`` it is (-1/2, 1/2, False, False).
+    ``atan(u)`` has (-1/2, 1/2, False, False).
     """
     first, second = (*angle.args, Integer(1))[:2]
     closed = not isinstance(angle, atan)

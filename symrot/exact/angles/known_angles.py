@@ -35,7 +35,7 @@ def halved(coefficient: Fraction) -> Iterator[tuple[int, int]]:
 def parts_of(atom: Expr, coefficient: Fraction) -> list[Expr]:
     """Return the cosines and sines from which those of ``coefficient * atom`` follow by sum formulas.
 
-    They belong to the atom halved several times.
+    The coefficient 5/4 gives those of ``atom`` and ``atom/4``.
 
     Examples
     --------

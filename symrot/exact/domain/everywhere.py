@@ -31,10 +31,8 @@ def fails_everywhere(need: Need) -> bool:
 
 
 def range_everywhere(formula: Expr) -> Range:
-    """Return (low, high): bounds of a formula that hold at all real points where it is defined.
-
-    ``cos(x) - 2`` has the bounds -3 and -1; an unknown bound is infinite.
-    """
+    """Return (low, high): bounds of a formula at all real points where it is defined, -3 and -1 for ``cos(x) - 2``."""
+    # an unknown bound is infinite
     return _range(formula, {})
 
 
@@ -119,10 +117,7 @@ def _power(base: Range, exponent: Expr) -> Range:
 
 
 def _monotone(function: Callable[[Expr], Expr], least: Bound, most: Bound) -> Callable[[Range], Range]:
-    """Return a function from a range of u to the range of f(u), where f = ``function`` increases, as log does.
-
-    ``least`` and ``most`` are the limits of f(u).
-    """
+    """Return a function from a range of u to that of f(u), where f = ``function`` rises from ``least`` to ``most``."""
 
     def of(argument: Range) -> Range:
         # the limits replace f(low) and f(high) where these have no finite value: log(0) is -infinity

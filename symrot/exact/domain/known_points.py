@@ -143,10 +143,7 @@ class _Search:
         return point
 
     def depth(self, point: Point) -> float:
-        """Return minus the sum of all violations of the conditions at a point, in double precision.
-
-        ``x >= 0`` is violated by 2 at x = -2.
-        """
+        """Return minus the sum of all violations of the conditions at a point: -2 for ``x >= 0`` at x = -2."""
         values = {leaf: float(value) for leaf, value in point.items()}
         known: dict[Expr, float] = {}
         self.looks += len(self.needs)

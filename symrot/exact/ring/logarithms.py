@@ -59,10 +59,7 @@ def product_of(
     content: Rational, above: PolyElement, below: PolyElement, generators: Sequence[Expr],
     roots: Mapping[int, tuple[int, PolyElement]],
 ) -> Product:  # fmt: skip
-    """Return the fraction ``content * above / below``, the argument of a logarithm, in irreducible factors.
-
-    ``roots`` maps the index of a root's variable to (index of the root, radicand).
-    """
+    """Return the fraction ``content * above / below``, the argument of a logarithm, in irreducible factors."""
     sign, exponent = 1, Integer(0)
     numbers = [(content, Rational(1))]
     powers: dict[Expr, Rational] = {}
@@ -81,6 +78,7 @@ def product_of(
             place = factor.leading_expv().index(1) if factor.is_generator else -1
             formula = factor.as_expr(*generators)
             if place in roots:
+                # roots maps the variable of a root g to (n, P) with g^n = P
                 index, inside = roots[place]
                 sign = 0
                 stack.append((inside, times * n / index))

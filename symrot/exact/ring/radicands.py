@@ -24,9 +24,9 @@ Outside = tuple[tuple[Root | Expr, int], ...]
 
 
 def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Expr]) -> tuple[Expr, Outside, bool]:
-    """Return (P, factors, loose): ``above/below`` is P times the product of all factor^(2 n).
+    """Return (P, [(f, n), ..], loose) with ``above/below = P * product(f^(2 n))`` and no f negative.
 
-    ``factors`` holds pairs (nonnegative factor, n): ``x^2 y`` gives y and (|x|, 1).
+    ``x^2 y`` gives y and (``|x|``, 1).
     """
     whole = above.ring.clone(domain=ZZ)
     above, below = above.set_ring(whole), below.set_ring(whole)
@@ -79,7 +79,7 @@ class Dependence:
 
 
 def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr]) -> dict[Root, Dependence]:
-    """Return a map from each square root that is a product of other roots to its expression by them.
+    """Return a map from each square root that is a product of other roots to this product, a :class:`Dependence`.
 
     Parameters
     ----------

@@ -239,10 +239,7 @@ class FormulaRing:
         return radicand
 
     def _dependences(self) -> dict[Root, Dependence]:
-        """Return the square roots that are products of other roots, each with its expression by them.
-
-        The root of a*b may be the product of the roots of a and b.
-        """
+        """Return a map from each square root that is a product of other roots, as sqrt(a*b) may be, to this product."""
         places = {root: n for root, n in self.roots.items() if root.index == 2 and not root.power_expression.is_number}
         plain = [root for root in places if not isinstance(root.expression, Abs)]
         if not plain or len(places) < 2:
@@ -264,13 +261,11 @@ class FormulaRing:
         return accepted
 
     def _take_fine_constants(self) -> int:
-        """Return an even N such that sines and cosines of constant angles are polynomials in 2 cos(pi/N), or 0.
-
-        If N is not 0, pi is removed from ``bases``.
-        """
+        """Return an even N such that sines and cosines of constant angles are polynomials in 2 cos(pi/N), or 0."""
         # multiples of pi/24 have square roots as sines and cosines; N may also be too large
         if pi not in self.bases or not cyclotomic.needs_cyclotomic_field(self.bases[pi].denominator):
             return 0
+        # pi then needs no sine and cosine of its own
         return cyclotomic.order(self.bases.pop(pi).denominator)
 
     @property
@@ -323,10 +318,7 @@ class FormulaRing:
         return above.quo_ground(below.LC)
 
     def _tangled_numbers(self, rules: Sequence[Rule]) -> dict[int, Number]:
-        """Return the algebraic numbers among the ring's variables, such as sqrt(2), by the index of the variable.
-
-        The result is {} if the relations show all equations between them.
-        """
+        """Return the ring's algebraic numbers, as sqrt(2), by index, if some equations between them are not known."""
         known: dict[int, Number] = {}
         if self.fine:
             known[self.fine_place] = cosine_number(self.fine_place, cyclotomic.degree(self.fine), self.fine)

@@ -1,7 +1,7 @@
 """Roots: each fractional power as a rational factor times variables ``g`` of the ring with a relation ``g^n = P``.
 
 ``sqrt(P/Q)`` is written ``g/|Q|`` with ``g^2 = P*Q``, and squares leave a root as absolute values, ``sqrt(x^2 y) = |x|
-sqrt(y)``. So the variable of a square root is never negative. (``(P/Q)^(1/n)`` is ``g/Q``.)
+sqrt(y)``. So the variable of a square root is never negative. For other roots, ``(P/Q)^(1/n)`` is ``g/Q``.
 """
 
 from collections.abc import Callable, Iterable
@@ -179,9 +179,9 @@ def _imaginary_unit() -> Root:
 
 
 def square_root_of_number(value: Rational) -> tuple[Rational, list[Root]]:
-    """Return (r, roots): the root of a positive rational as r times square roots of primes.
+    """Return (r, roots): the root of a positive rational is r times ``roots`` of primes.
 
-    12/5 gives 2/5 and the roots of 3 and 5.
+    12/5 gives 2/5, sqrt(3) and sqrt(5).
     """
     powers = factorint(int(value.p) * int(value.q))
     outside = prod(prime ** (power // 2) for prime, power in powers.items())

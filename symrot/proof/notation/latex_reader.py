@@ -36,10 +36,7 @@ class Unread(InputError):
 
 
 def key(latex: str) -> str:
-    r"""Return a LaTeX name without braces and spaces:
-
-    ``\omega_{b}`` -> ``\omega_b``, the key of its meaning in a map.
-    """
+    r"""Return a LaTeX name without braces and spaces, such as ``\omega_b`` for ``\omega_{b}``, as a key of a map."""
     return latex.translate(UNMARKED)
 
 
@@ -187,10 +184,7 @@ class _Interpreter(Cursor):
         return values[0] if len(values) == 1 else Matrix.vstack(*map(_as_matrix, values))
 
     def at_skew(self) -> bool:
-        r"""Return whether the next item is the index ``\times``, which marks a cross-product matrix:
-
-        ``[\omega]_\times``.
-        """
+        r"""Return whether the next item is ``\times``, the index of a cross-product matrix ``[\omega]_\times``."""
         item = self.peek()
         return isinstance(item, Script) and item.text == "_" and alone(item.inside).text == "\\times"
 
@@ -330,10 +324,7 @@ def _text(node: Node) -> str:
 
 
 def _after(node: Node, mark: str) -> Row | None:
-    """Return what follows ``mark`` in a group:
-
-    ``x`` in ``{d x}`` after the mark ``d``; None if it begins with another item.
-    """
+    """Return the items after ``mark`` in a group, such as ``x`` in ``{d x}`` after ``d``; None without the mark."""
     row = node if isinstance(node, Row) else Row((node,), node.start, node.start)
     return Row(row.items[1:], row.start, row.end) if row.items and row.items[0].text == mark else None
 
