@@ -134,8 +134,8 @@ def _require_own(column: Column, varying: Collection[str]) -> None:
     own = sorted(moved.intersection(varying))
     if own:
         raise InputError(
-            f"sensitivities: expected a variable that sets only constants shared by all motions, but {variable.name} sets "
-            f"{', '.join(own)}, whose values differ between the motions; name {' or '.join(own)} itself as a variable"
+            "sensitivities: expected a variable that sets only constants shared by all motions, but "
+            f"{variable.name} sets {', '.join(own)}, whose values differ between the motions; name {' or '.join(own)} itself as a variable"
         )
 
 
