@@ -135,7 +135,8 @@ def _require_own(column: Column, varying: Collection[str]) -> None:
     if own:
         raise InputError(
             "sensitivities: expected a variable that sets only constants shared by all motions, but "
-            f"{variable.name} sets {', '.join(own)}, whose values differ between the motions; name {' or '.join(own)} itself as a variable"
+            f"{variable.name} sets {', '.join(own)}, whose values differ between the motions; "
+            f"name {' or '.join(own)} itself as a variable"
         )
 
 
