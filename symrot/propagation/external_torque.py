@@ -49,8 +49,8 @@ BEND = 2.0**-50  # relative to the torque: rounded samples alone make the third 
 OVERSHOOT = 100.0  # times the largest sample: a spline with larger values does not represent the torque
 MOST_STEPS = 30_000_000  # limit of steps under a table, some 20 s; for functions it is stepping.MAX_STEPS
 UNKNOWN = (
-    "the torque is a function without a formula: each step is checked inside, but a feature narrower than a step may "
-    "be missed; give max_step, in s, below the width of the narrowest feature"
+    "the torque has no formula: a pulse that is shorter than a step may be missed; give max_step, in s, shorter than "
+    "every pulse"
 )
 FORMS = "a function of (t, omega, quaternion), a C function of ctypes, or a table (times, samples)"
 
@@ -258,9 +258,9 @@ def _check_overshoot(spline: Any, largest: float) -> None:
     before, after = map(float, spline.x[worst : worst + 2])
     if not reach[worst] <= OVERSHOOT * largest:
         raise InputError(
-            f"torque: expected samples that a cubic spline can follow, but samples of at most {largest:.3g} N m give "
-            f"a spline that reaches {reach[worst]:.3g} N m between {before!r} and {after!r} s; if the torque jumps, "
-            "give a switching time and two samples at it, before and after the jump"
+            f"torque: expected samples that a cubic spline can follow, got a spline of {reach[worst]:.3g} N m between "
+            f"{before!r} and {after!r} s for samples up to {largest:.3g} N m; if the torque jumps, give two samples "
+            "at the time of the jump, and this time as a switching time"
         )
 
 

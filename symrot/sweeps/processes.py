@@ -89,8 +89,8 @@ def run_here(job: Job, ranges: Sequence[Range], workers: int) -> Iterator[Chunk]
             missing.extendleft(sorted(running.values(), reverse=True))
             if losses == MOST_LOSSES:
                 raise PropagationError(
-                    f"{MOST_LOSSES} times in a row a process of the sweep was killed before it completed a chunk; "
-                    "choose smaller chunks or fewer workers, and run the sweep again to go on"
+                    f"{MOST_LOSSES} times in a row a process of the sweep was killed while it computed a chunk; run "
+                    "the sweep again, with smaller chunks or fewer workers, to go on"
                 ) from None
         finally:
             _stop(pool)

@@ -265,8 +265,8 @@ def _require(condition: bool, where: str, expectation: str, value: object) -> No
 def _require_same(present: str, statistics: str, path: Path | None) -> None:
     if present != statistics:
         raise InputError(
-            f"{path}: expected the same values of `statistics` and `keep` as when this file was written: it has "
-            "statistics only, and the values of the trajectories were removed; write other results to another file"
+            f"{path}: expected the same values of `statistics` and `keep` as before, since the values of the "
+            "trajectories were removed from this file; write other results to another file"
         )
 
 

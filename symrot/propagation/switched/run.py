@@ -463,7 +463,7 @@ class SwitchedRun(RunState):
             raise IntegrationStopped(
                 self.t,
                 f"the motion slides along the jump of {self._names_of_held()}, but from this time on nearby motions "
-                "lead away from the jump to either side, so its continuation is not unique; end the motion here",
+                "lead away from it: its continuation is not unique; end the motion here",
                 self.end,
             )
         self.left.add((mode, self.modes[mode]))
@@ -611,11 +611,11 @@ class SwitchedRun(RunState):
         """Return the smooth motion for given values of sign, abs, .., with the arguments of :attr:`held` at zero."""
         try:
             return self.system.regime(self.held, modes)
-        except InputError:
+        except InputError:  # the equations have no such motion or several
             raise IntegrationStopped(
                 self.t,
-                f"the motion would slide along the jump of {self._names_of_held()}, but not in exactly one way: the "
-                "equations have no such motion or several; change the torque, or end the motion here",
+                f"the motion would slide along the jump of {self._names_of_held()}, but not in exactly one way; change "
+                "the torque, or end the motion here",
                 self.end,
             ) from None
 
@@ -660,9 +660,8 @@ class SwitchedRun(RunState):
                 functions = f"{self._names_of_held()} and {self._name(mode)} at once"
                 raise IntegrationStopped(
                     self.t,
-                    f"the motion would slide along the jumps of {functions}, but not in exactly one way: the "
-                    f"equations do not determine the value of {self._name(mode)}; change the torque, or end the motion "
-                    "here",
+                    f"the motion would slide along the jumps of {functions}, but not in exactly one way: the value of "
+                    f"{self._name(mode)} is not determined; change the torque, or end the motion here",
                     self.end,
                 )
 

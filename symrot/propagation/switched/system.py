@@ -164,9 +164,8 @@ class SwitchedSystem:
                 for switch in switches:
                     if names(switch.guard) & (held | tied.keys()):
                         raise InputError(
-                            f"torque: the motion slides along the jump of a function that occurs inside "
-                            f"{switch.label}, and {switch.label} has no value there; write the torque so that no "
-                            "function with a jump occurs inside another one"
+                            f"torque: the motion slides along the jump of a function inside {switch.label}, which has "
+                            "no value there; write the torque without functions with a jump inside other ones"
                         )
                 own = on_own_clock(plan, self.choice, self.tolerance)
                 self._regime_of[content] = Regime(self.constants, self.switches, own, held, switches)
