@@ -111,7 +111,7 @@ def _product(constant: Sequence[Fraction], before: bool, q: dd.Pair) -> dd.Pair:
 def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], Sequence[float]]) -> Floats:
     """Return double-double numbers rounded as :func:`symrot.closed_form.arithmetic.pairs.on_grid` rounds exact ones.
 
-    A row i in doubt is ``exactly(i)``.
+    ``exactly(i)`` computes a row i whose rounding is in doubt.
     """
     # low becomes a multiple of a grid step, which is GRID times the last bit of high
     last = np.where(abs(high) > _SPREAD, np.spacing(abs(high)), 1.0)

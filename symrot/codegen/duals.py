@@ -71,7 +71,7 @@ class Dual:
 
 
 def dual_functions(functions: Mapping[str, Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
-    """Return functions of dual numbers by name, such as ``"sin"``, made from ``functions``, the same for plain numbers.
+    """Return functions of dual numbers by name, such as ``"sin"``; ``functions`` are their versions for plain numbers.
 
     Raises
     ------

@@ -199,9 +199,9 @@ def derivative_inputs(rates: Program, name: str) -> tuple[tuple[str, str, str], 
 
 
 def step_signature(rates: Program, name: str, by: Sequence[str] = ()) -> Signature:
-    """Return the name and the arguments of a step: t, x, p (if any), dt, the result ``next``, its derivatives.
+    """Return the name and the arguments of a step: t, x, p (if any), dt, and the results, ``next`` and its derivatives.
 
-    The derivatives are those by the inputs ``by``.
+    ``by`` names the inputs by which ``next`` is differentiated.
     """
     time, state = rates.signature.argument("t"), rates.signature.argument("y")
     size = Argument(SIZE, "in", ((SIZE, "s", "size of the step"),), is_scalar=True)

@@ -134,9 +134,9 @@ def _require_own(column: Column, varying: Collection[str]) -> None:
     own = sorted(moved.intersection(varying))
     if own:
         raise InputError(
-            f"sensitivities: expected variables that do not set quantities which vary between the motions, but "
-            f"{variable.name} sets {', '.join(own)}, and the motions have different values of it; name the varying "
-            "quantity itself as a variable"
+            "sensitivities: expected a variable that sets only constants shared by all motions, but "
+            f"{variable.name} sets {', '.join(own)}, whose values differ between the motions; "
+            f"name {' or '.join(own)} itself as a variable"
         )
 
 

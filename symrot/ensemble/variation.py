@@ -96,7 +96,7 @@ class Variation:
         return Initial((x, y, z), _unit(self.quaternion[i].tolist()))
 
     def cached(self, key: Hashable, make: Callable[[], Any]) -> Any:
-        """Return the value that is cached under ``key`` for the scene; if there is none, cache that of ``make()``."""
+        """Return the value that is cached under ``key`` for the scene; on first use, ``make()`` computes it."""
         # the value may depend only on the scene: all ensembles of the scene share it
         place = id(self.scene)
         values = _caches.get(place)

@@ -139,7 +139,7 @@ class Turning:
         return np.array([self._exactly(time) for time in t.tolist()])
 
     def _integers(self, bits: int) -> tuple[int, int, int, int]:
-        """Return the constants of :meth:`_exactly` as fixed-point integers with ``bits`` bits after the point."""
+        """Return the constants of :meth:`_exactly` as integers with ``bits`` bits after the binary point."""
         if bits not in self._scaled:
             from mpmath import mp
 
@@ -176,7 +176,7 @@ class Turning:
 
 
 def _exponential(x: int, bits: int, octave: int) -> int:
-    """Return exp(x) of a fixed-point number: x and the result are integers, with ``bits`` bits after the point."""
+    """Return exp(x) for a fixed-point number x; both are integers with ``bits`` bits after the binary point."""
     if x < -bits << bits:
         return 0
     # octave is ln 2 in the same form

@@ -157,7 +157,7 @@ class Constants:
         ]  # fmt: skip
 
     def _turning(self, turned: bool) -> tuple[int, int, list[float]]:
-        """Return (turn, bits, fixed): an angle in revolutions is ``turn/2**bits`` times the angle of rotation, rad."""
+        """Return (turn, bits, fixed), constants of an angle of ``turn/2**bits`` revolutions per radian of rotation."""
         # half the angle of rotation; if turned, lag (axial.h), by which the transverse angular velocity rotates
         turn, bits = _HALF
         if turned:
@@ -194,8 +194,8 @@ class Constants:
         return Loops(evaluate, constants, ctypes.addressof(constants))
 
     def omega_rows(self, one: Any, other: Any) -> list[Any]:
-        """Return the entries, row by row, of the matrix of axial.h whose product with three numbers is omega_b."""
-        # the numbers: damped cosine and sine of the angle by which the transverse angular velocity has rotated in the
+        """Return the entries, row by row, of the matrix that maps (cosine, sine, rate) to the angular velocity."""
+        # damped cosine and sine of the angle by which the transverse angular velocity has rotated in the
         # body, and the rate about the driven axis; one, other: initial rates, rad/s, about the axes that follow it
         # cyclically
         rows: list[list[Any]] = [[0.0] * 3 for _ in range(3)]

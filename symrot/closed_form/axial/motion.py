@@ -63,9 +63,8 @@ class AxialMotion:
         """
         if quaternion and not self.has_attitude:
             raise InputError(
-                "quaternion: expected False, because this body also rotates about an axis other than the driven one "
-                "and this closed form then has no attitude, got True; for the attitude use "
-                "symrot.closed_form.spin_up.motion, or numerical integration if the body is damped"
+                "quaternion: expected False, got True, but the body also rotates across the driven axis, where this "
+                "closed form has no attitude; use symrot.closed_form.spin_up.motion, or numerical integration if damped"
             )
         times = times_of(t)
         if self._loops is None:

@@ -151,7 +151,7 @@ class Defect:
         self._largest = max(i)
 
     def __call__(self, w: list[int]) -> tuple[float, float]:
-        """Return the defect of the motion with the integer body rates ``w``, as two doubles whose sum it is."""
+        """Return the defect of the motion with the integer body rates ``w``, as a sum of two doubles."""
         x, y, z = w
         one, two, three = self._one * x * x, self._two * y * y, self._three * z * z
         defect, largest = one + two + three, self._largest * max(abs(x), abs(y), abs(z))

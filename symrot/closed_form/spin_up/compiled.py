@@ -32,7 +32,7 @@ _bound: list[_Functions] = []
 
 
 def limits() -> tuple[float, float, float]:
-    """Return NEAR, WIDE and MOST of :mod:`symrot.closed_form.spin_up.series`, an argument of the C function."""
+    """Return NEAR, WIDE and MOST of :mod:`symrot.closed_form.spin_up.series`, limits that C takes as an array."""
     return spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST
 
 

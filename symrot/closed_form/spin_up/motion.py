@@ -84,7 +84,7 @@ class SpinUp:
         return rates, attitudes
 
     def _by_integers(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Compute in integers all samples with too many revolutions for double-double numbers, and write them."""
+        """Compute in integers all samples with too many revolutions for double-double numbers; fill their rows."""
         for time in (float(times.min()), float(times.max())):
             if not self.integers.finite(time):
                 raise InputError(f"expected times at which the angular velocity is a finite number, got {time!r} s")

@@ -69,7 +69,7 @@ class Gather:
         return sign, ("mul", (atom, *factors), divisors)
 
     def split(self, expr: Expr) -> tuple[Expr, Tree]:
-        """Return (constant, core) with ``expr = constant*core``: ``2*m``, tree of ``sin(x)`` for ``2*m*sin(x)``.
+        """Return (constant, core) with ``expr = constant*core``: ``2*m*sin(x)`` gives 2 m and the tree of sin(x).
 
         The core of a constant is ONE.
         """
@@ -92,7 +92,7 @@ class Gather:
         return S.One, ("call", name, tuple(self.whole(argument) for argument in expr.args))
 
     def whole(self, expr: Expr) -> Tree:
-        """Return the formula tree of an expression, in which constant factors are symbols of parameters."""
+        """Return the formula tree of an expression, in which parameters replace the constant factors."""
         sign, tree = self.scaled(*self.split(expr))
         return tree if sign > 0 else ("add", ((-1, tree),))
 
@@ -203,7 +203,7 @@ def _oriented(value: Expr) -> tuple[int, Expr]:
 
 
 def _signed_sum(terms: Sequence[tuple[int, Tree]]) -> tuple[int, Tree]:
-    """Return (sign, tree) of a sum of terms (sign, tree), with few minus signs: -1 and ``a + b`` for ``-a - b``."""
+    """Return a sum of terms (sign, tree) as one (sign, tree) with few minus signs: -1, ``a + b`` for ``-a - b``."""
     if len(terms) == 1:
         return terms[0]
     sign = 1 if any(s > 0 for s, _ in terms) else -1

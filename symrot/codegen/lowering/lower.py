@@ -29,7 +29,7 @@ ANONYMOUS = "#"
 
 @dataclass(frozen=True)
 class Lowered:
-    """A program and the formulas of its parameters (constants computed once per motion), as ``("p0", (A - C)/A)``."""
+    """A program, and the formulas of its parameters (constants of a motion), such as ``("p0", (A - C)/A)``."""
 
     program: Program
     # component k of the argument p: its name, and its formula of physical constants

@@ -31,7 +31,7 @@ def negative(node: Node) -> Node:
 
 
 def _turned(sign: int, node: Node) -> tuple[int, Node]:
-    """Return (sign, node) of the term ``sign * node`` of a sum: 1 and ``(b - a)*c`` for -1 and ``(a - b)*c``."""
+    """Return a term (sign, node) of a sum with a plus sign if possible: -1, ``(a - b)*c`` gives 1, ``(b - a)*c``."""
     # a term without a difference among its factors keeps its sign, as a change would cost an operation
     turned = _with_difference_turned(node) if sign < 0 else None
     return (sign, node) if turned is None else (1, turned)

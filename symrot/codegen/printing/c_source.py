@@ -67,7 +67,7 @@ class Real:
 
     @cached_property
     def near_functions(self) -> dict[str, str]:
-        """The C names of all functions that batches call: those of ``symrot_math.h`` where it has them."""
+        """The C names of all functions that batches call: ``sin`` is ``symrot_sin`` of ``symrot_math.h``."""
         # valid for moderate angles only
         own = {name: f"symrot_near_{name}{self.suffix}" for name in NEAR}
         shared = {"sin": "sin", "cos": "cos", "atan2": "atan2", "select_ge": "choose_ge"}

@@ -53,7 +53,7 @@ CONVOLUTIONS = {  # rule -> operands a and b of its convolution (-1 is the serie
 
 
 def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[float], order: int) -> str:
-    """Return the C code of one right-hand side that :file:`lanes.c`, the Taylor stepper of ensembles, includes.
+    """Return C code for :file:`lanes.c`, the stepper of ensembles: sizes, and a function for the Taylor coefficients.
 
     See :func:`symrot.codegen.taylor.source.taylor_definitions` for the arguments.
 

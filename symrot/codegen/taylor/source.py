@@ -22,9 +22,7 @@ COLUMNS_PER_LOOP = 4  # each with two sums, so that sums and factors fit into 16
 
 
 def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[float], order: int = ORDER) -> str:
-    """Return the C code of one right-hand side that the Taylor stepper :file:`taylor.c` needs.
-
-    It computes all Taylor coefficients.
+    """Return C code for the stepper :file:`taylor.c`: tables, and a function for the Taylor coefficients of a motion.
 
     Parameters
     ----------
@@ -128,7 +126,7 @@ class _Jet:
         return f"l{self.packs[pack]}" if pack in self.packs else self.picked(pack)
 
     def picked(self, pack: Pack) -> str:
-        """Return the C expression that picks coefficients n of a pack (a vector of any four series) from the rows."""
+        """Return the C expression that picks coefficients n of a pack (any four series) from vectors ``r0, r1, ..``."""
         # r{i} holds coefficients n of the up to four series in row i
         rows = sorted({address.row for address in pack})
         if _is_row(pack):
