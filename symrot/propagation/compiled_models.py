@@ -224,7 +224,7 @@ def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[st
 
 
 def enclosure_text(plan: Plan, rates: Callable[[], Program], edges: Sequence[int]) -> str:
-    """Return C code that bounds the rates of a plan on complex discs, from the cache or newly generated."""
+    """Return C code that bounds how far the rates of a plan can change in a step, from the cache or newly generated."""
     key = f"enclosure {DENSE_ORDER}\n{kernel_key(plan)}"
     text = library.fetch(key)
     if text is None:

@@ -56,9 +56,9 @@ def partner(sequence: str) -> str:
 
 
 def regularity(sequence: str, angles: ArrayLike) -> Floats:
-    """Return ``|det B|`` of a sequence for angles, rad, shape (..., 3): ``|sin(theta)|`` for ``"ZXZ"``.
+    """Return ``|det B|``, shape (...), of the rate matrix B for angles, rad, shape (..., 3); it is 0 at gimbal lock.
 
-    It is 0 at gimbal lock.
+    For ``"ZXZ"`` it is ``|sin(theta)|``.
     """
     axes, _ = parse_sequence(sequence)
     middle = np.asarray(angles, dtype=np.float64)[..., 1]
@@ -77,7 +77,7 @@ def angles_of(quaternion: Floats, sequence: str) -> Floats:
 
 
 class _Kernel(NamedTuple):
-    """The compiled equations of motion in the angles of one Euler sequence: library, parameters, clock."""
+    """The compiled equations of motion in the angles of one Euler sequence, with their parameters."""
 
     library: Path
     parameters: list[float]

@@ -11,7 +11,7 @@ __all__ = ["optional"]
 def optional(name: str, where: str, extra: str = "sweep") -> Any:
     """Return the module ``name`` of an optional package, such as ``"xarray"``.
 
-    For the message: ``where`` needs it, and ``symrot[extra]`` installs it.
+    The error names ``where`` it is needed and ``symrot[extra]``, which installs it.
 
     Raises
     ------

@@ -76,7 +76,7 @@ def _inverse(a: Disc) -> Disc:
 
 
 def _sqrt(a: Disc, whole: float) -> Disc:
-    """Return a disc that contains the square roots of a disc.
+    """Return a disc that contains the square roots of all numbers in a disc.
 
     Near zero, where roots have no series, ``whole`` enlarges it.
     """
@@ -166,7 +166,7 @@ FUNCTIONS: dict[str, Callable[..., Disc]] = {
 
 
 def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
-    """Return a compiled Python function that bounds how far rates deviate, faster than with operations on discs."""
+    """Return a compiled Python function that bounds how far rates can change, faster than with operations on discs."""
     # Arguments: those of Deviations.__call__, then the constant coefficients w and their absolute values a. The
     # logarithms of sizes, which help a Disc where numbers overflow, are left out.
     lines, place = ["def bounds(t, reach, whole, y, radii, w, a):"], 0
@@ -300,7 +300,7 @@ class Deviations:
 
 
 def deviations_of(enclosure: Enclosure) -> Callable[[Mapping[str, float]], Deviations]:
-    """Return a function that takes the parameters of the rates, by name, and returns their :class:`Deviations`."""
+    """Return a function from the parameters of the rates, by name, to bounds on their changes: :class:`Deviations`."""
     # compiled once for all parameters
     bounds = _one_function(enclosure)
     return lambda parameters: Deviations(enclosure, parameters, bounds)

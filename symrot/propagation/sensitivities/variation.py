@@ -432,7 +432,7 @@ class _Part:
 
 
 def _size(scene: Scene, column: Column) -> float:
-    """Return a power of two near the value of a column's variable, which scales its derivatives.
+    """Return a power of two near the value of a column's variable, by which its derivatives are multiplied.
 
     It is 1 for zero or a rotation.
     """

@@ -533,7 +533,7 @@ class SwitchedRun(RunState):
         return bool(self._inside(mode) & set(self.order[last:]))
 
     def _inside(self, mode: str) -> set[str]:
-        """Return the names in the argument of a switching function: x and the mode of sign(y) for abs(x + sign(y))."""
+        """Return the names in the argument of ``mode``: x and the mode of sign(y), for abs(x + sign(y))."""
         return set(names(self.by_name[mode].guard))
 
     def _asleep(self) -> set[str]:
