@@ -196,7 +196,7 @@ class _Closure:
     # -------------------------------------------------------------------------------------------- closing
 
     def adjoin(self, inner: Polynomial) -> tuple[int | None, Fraction, Fraction]:
-        """Return (index, factor, number) with ``inner = factor*state + number`` for the auxiliary state ``index``.
+        """Write ``inner`` as ``factor*state + number`` with an auxiliary state; return (index, factor, number).
 
         The index is None if ``inner`` is a number.
         """
