@@ -52,9 +52,9 @@ TRUSTED = {
 }
 
 
-@dataclass(frozen=True)
 # Sections about rounding errors and object code are added on request. The same kernel has the same certificate, byte
 # for byte, on every machine.
+@dataclass(frozen=True)
 class KernelUnderTest:
     """A kernel to certify: the formulas and laws that its description states, and the printed files."""
 

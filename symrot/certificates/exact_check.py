@@ -354,10 +354,7 @@ def hypotheses(values):
 
 
 def prove(law, case, formulas):
-    """Check the stored proof of a law in one case; raise ValueError if it is wrong.
-
-    Each expression that the law states to be zero, times a factor, must be a sum of cofactors times relations.
-    """
+    """Check the stored proof of a law in one case; raise ValueError if it is wrong."""
     witness = {name: Fraction(text) for name, text in law["witness"].items()} | {"pi": PI}
     there, reader = (
         Evaluator(witness, FloatFunctions(), cases={}),
@@ -370,6 +367,7 @@ def prove(law, case, formulas):
         "expected the hypotheses of the law to hold at its witness (a stored point), but they do not",
     )
 
+    # value (an expression that the law states to be zero) times factor must be the sum of cofactors times relations
     def combined(value, factor, cofactors):
         # no hidden division by zero: at the witness, where the hypotheses hold, factors are not zero and cofactors
         # finite

@@ -37,10 +37,10 @@ CONTRACTION = (
 UNFIXED = "without it a compiler may contract a*b + c where the processor has it, and bits change"
 
 
-@dataclass(frozen=True)
 # Contraction makes even the bounds void if a product is fused in some sums and rounded in others, so that its errors no
 # longer cancel. The table follows the compilers' manuals; object_code/comparison.py shows what the flags changed in one
 # file.
+@dataclass(frozen=True)
 class FlagRule:
     """The effect of a compiler flag: properties of the code that it switches on or off, such as contraction."""
 

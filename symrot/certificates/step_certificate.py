@@ -70,11 +70,11 @@ class StepUnderTest:
     files: Mapping[str, str]
 
 
-@dataclass(frozen=True)
 # Two rational functions of degree d that differ agree at a random point with a probability of at most 2 d/PRIME. The
 # points follow from the hash of the C text, so that the certificate is the same everywhere. The certificate states the
 # rates, so that it can be audited without the scene. For a box of states and step sizes it may also bound the errors of
 # one step: rounding (rounding/) and truncation (truncation.py).
+@dataclass(frozen=True)
 class _Residue:
     """The value, modulo PRIME, of a rational function at a random point, with a bound of the function's degree."""
 

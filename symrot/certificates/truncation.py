@@ -1,7 +1,7 @@
 """Bounds of the truncation error of one time step on a box of states and step sizes, in interval arithmetic.
 
-The exact motion and a step of order n differ by h^(n+1) (a - b), where a is a Taylor coefficient of the motion, and b
-one of the step. Intervals contain both, on a box that the motion provably does not leave.
+The exact motion and a step of order n differ by h^(n+1) (a - b): a is a Taylor coefficient of the motion, b one of the
+step. Intervals contain both, on a box that the motion provably does not leave.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -57,7 +57,7 @@ def _with(node: Node, values: Mapping[str, Node]) -> Node:
 
 
 def kernel_description(kernel: Definition, target: str, errors: str = "") -> Description:
-    """Return the texts for the head comment of a library kernel's file: title, domain, source, command that prints it.
+    """Return the texts for the head comment of a library kernel's file: title, domain, derivation, command.
 
     ``target`` is the language, such as ``"c"``.
     """

@@ -255,7 +255,7 @@ def _equal(one: Fraction | Floats, other: Fraction | Floats) -> Any:
 
 
 def _constant_place(field: str, entry: int | str | None) -> tuple[str, int | None]:
-    """Return the arguments (name, index) with which a torque of a scene reads or replaces the constant of a place."""
+    """Return the arguments (name, index) with which a torque of a scene reads or replaces a constant."""
     # the name of a parameter of formulas; or a field and an index in it, None if the field is a number
     return (entry, None) if isinstance(entry, str) else (field, entry)
 

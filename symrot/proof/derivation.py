@@ -297,10 +297,7 @@ class Derivation(PrintedPage):
         return True
 
     def _read(self, text: str, sides: tuple[Any, Any] = (S.Zero, S.Zero)) -> list[Any]:
-        """Return the value of the LaTeX ``text``, or the value of each side of a chain ``X = Y``, as a list.
-
-        Unread is raised if the text cannot be parsed.
-        """
+        """Return the value of the LaTeX ``text``, or the values of the sides of a chain ``X = Y``, as a list."""
         # symbols in the ``sides`` of the equation need no definition on the page
         used = {symbol for side in sides for symbol in side.free_symbols}
         names = {key(formula(symbol)): symbol for symbol in used} | self.names

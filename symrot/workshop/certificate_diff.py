@@ -61,10 +61,7 @@ def _first_line(text: str, emitted: str) -> str:
 
 
 def _meaning(text: str, emitted: KernelUnderTest) -> str:
-    """Return a remark on what an edited C text computes, such as why it is not proven to compute the formulas.
-
-    The remark is empty if the text performs the same operations.
-    """
+    """Return a remark on what an edited C text computes, or ``""`` if it performs the same operations."""
     file = f"{emitted.name}.c"
     symbols = {place: symbol for place, (symbol, _) in emitted.places.items()}
     formulas = {place: formula for place, (_, formula) in emitted.formulas.items()}

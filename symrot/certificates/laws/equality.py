@@ -1,8 +1,7 @@
 """Proof that the operations of a C text compute a kernel's formulas exactly, as functions of real numbers.
 
-The C text and the formulas become fractions of polynomials over the inputs, pi and atoms; an atom is a symbol for a
-function value such as ``sin(psi)``. A function that is 0/0 at zero, such as sin(x)/x, is recognised by its two
-branches: formula, and series or limit.
+The C text and the formulas become fractions of polynomials over the inputs, pi and atoms, symbols for function values
+such as ``sin(psi)``. A function that is 0/0 at zero, such as sin(x)/x, is recognised by its two branches.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -90,6 +89,7 @@ class _Formulas(FormulaReader):
         return self.fractions.atom(name, tuple(map(self.read, expr.args)))
 
 
+# one branch is the function's formula, the other its limit or its series
 @dataclass(frozen=True)
 class FunctionWithLimit:
     """A function, such as ``sin(x)/x``, that the C text computes by its limit at zero and its formula elsewhere."""

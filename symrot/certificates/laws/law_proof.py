@@ -37,8 +37,8 @@ Choice = tuple[str, str, str]  # left side, ">=" or "<", right side
 ProofStep = tuple[Any, ...]  # kind, arguments
 
 
-@dataclass(frozen=True)
 # Every angle must be a sum of integer multiples of base angles and of pi/2.
+@dataclass(frozen=True)
 class EntryProof:
     """The proof that an expression is zero: expression times ``factor`` = sum of ``cofactors`` times relations."""
 
@@ -70,10 +70,7 @@ class UndecidedChoice(Exception):
 
 
 class BaseAngleTooLarge(Exception):
-    """Raised for an angle, such as x/2, that is no integer multiple of its base angle, such as x.
-
-    The arguments are the monomial x, and the coefficient 1/2 of a base angle that fits.
-    """
+    """Raised for an angle, such as x/2, that is no integer multiple of its base angle, such as x."""
 
 
 class OutOfGenerators(Exception):
@@ -277,10 +274,7 @@ class LawProver(FormulaReader):
         return self.read(expr)
 
     def cosine_and_sine(self, angle: Quotient) -> tuple[Quotient, Quotient]:
-        """Return the pair (cosine, sine) of an angle, each a fraction of polynomials in generators.
-
-        CertificateError is raised unless the angle is a sum of integer multiples of base angles and pi/2.
-        """
+        """Return the pair (cosine, sine) of an angle, each a fraction of polynomials in generators."""
         above, below = angle
         if below != 1:
             raise CertificateError(
@@ -291,6 +285,7 @@ class LawProver(FormulaReader):
             self.ring.zero,
             (self.fractions.number(1), self.fractions.number(0)),
         )
+        # the angle must be a sum of integer multiples of base angles and of pi/2
         for monomial, coefficient in above.terms():
             unit, multiple = (
                 self.ring({monomial: QQ(1)}),
@@ -342,10 +337,7 @@ class LawProver(FormulaReader):
         return result if times > 0 else (result[0], (-result[1][0], result[1][1]))
 
     def _base(self, unit: PolyElement, coefficient: Fraction) -> Fraction:
-        """Return the coefficient of the base angle for ``unit``: 1/2 if the law contains the angles x/2 and x.
-
-        BaseAngleTooLarge is raised if ``coefficient*unit`` is no integer multiple of the base angle.
-        """
+        """Return the coefficient of the base angle for ``unit``: 1/2 if the law contains the angles x/2 and x."""
         if unit in self.angle_functions and unit in self.arcs.values():
             if coefficient.denominator != 1:
                 raise CertificateError(
@@ -359,6 +351,7 @@ class LawProver(FormulaReader):
                 gcd(known.numerator * coefficient.denominator, coefficient.numerator * known.denominator),
                 known.denominator * coefficient.denominator,
             )
+            # ``coefficient*unit`` is no integer multiple of the base angle, but of ``finer*unit``
             raise BaseAngleTooLarge(str(unit), finer)
         return known
 

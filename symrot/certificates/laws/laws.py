@@ -31,10 +31,10 @@ __all__ = ["LawProof", "hypotheses", "prove_law"]
 FEWEST = 8  # generators in the ring of the first attempt at a proof; a later attempt has twice as many
 
 
-@dataclass(frozen=True)
 # Relations are the hypotheses of the law, s^2 + c^2 - 1 for a base angle, r^2 - P for a root and g^2 - 1 for a sign.
 # Every step from a function to its generator is recorded as an instance of a fact (tables FACTS and RELATIONS of
 # exact_check.py), so that a second program can follow the proof by multiplication.
+@dataclass(frozen=True)
 class LawProof:
     """A law of a kernel with its proof in every case; a case chooses one branch of each conditional."""
 

@@ -193,9 +193,9 @@ def _outputs(path: ExecutionPath, text: Operations, terms: Terms, width: int) ->
 
 
 def _unfused(terms: Terms, got: list[int], known: Known) -> tuple[list[int], Known, str]:
-    """Split each fused multiply-add in the machine code's outputs ``got`` into a rounded product and a rounded sum.
+    """Split each fused multiply-add in the outputs ``got`` into a rounded product and a rounded sum.
 
-    Return the outputs, the known outcomes of comparisons, and a product for which the split is invalid, or ``""``.
+    Return outputs, outcomes of comparisons, and a product whose split is invalid (or ``""``).
     """
     pairs = [operand for pair in known for operand in pair]
     if not any(terms.kind(index) in ("fma", "fnma") for index in terms.order(got + pairs)):
@@ -218,11 +218,12 @@ def _cases(
 ) -> Iterable[tuple[str, str]]:
     """Yield, for each combination of comparison outcomes, the first output that differs and the reason.
 
-    Both texts are empty if all outputs agree. ``expected`` belongs to the C text, ``got`` to the machine code.
+    Both texts are empty if all outputs agree.
     """
     waiting = [dict(known)]
     while waiting:
         case = waiting.pop()
+        # ``expected``: the outputs of the C text, ``got``: those of the machine code
         first, second = terms.rebuilt(expected, case), terms.rebuilt(got, case)
         # ``fused``: the machine code has fused multiply-adds
         if first == second or (fused and _apart_from_zeros(terms, first, second)):

@@ -28,10 +28,10 @@ SPAN = "SYMROT_SPAN"  # number of samples in a block, which several loops of a b
 DEEPEST = 200  # limit on the nesting of an expression
 
 
-@dataclass
 # The accepted subset of C: functions of double or float; const temporaries, assigned once; + - * /, unary minus, a < b
 # ? x : y; calls of the C library and of static inline functions of the same file; each element of an output array
 # assigned once; in a batch, one loop over samples, or loops over blocks of samples.
+@dataclass
 class _Scope:
     """The names known inside one C function: numbers, arrays, and the output elements that have been assigned."""
 

@@ -2,7 +2,7 @@
 
 A box is one range per input. Going forward, interval arithmetic encloses the exact and the computed value of each
 operation. Going backward, it encloses the output's derivatives. Half a unit in the last place bounds each rounding
-error. No second-order term is neglected.
+error.
 """
 
 from collections.abc import Callable, Sequence
@@ -30,13 +30,14 @@ __all__ = ["LIBM_ULP", "Evaluation", "evaluate"]
 LIBM_ULP = 1.0  # error of sin, cos and atan2, in units in the last place of the exact value
 
 
-@dataclass(frozen=True)
 # Let the operations 1 to k be rounded and the others exact. As k grows from 0 to the number of operations, the output
 # moves from its exact to its computed value. By the mean value theorem,
 #     computed - exact = sum over operations of (derivative of the output by the result) * (its rounding error),
 # with derivatives between exact and computed values, where each operation acts on computed operands. Conditionals
 # compare computed numbers, so the condition of a branch narrows the intervals of computed numbers, which give the
 # rounding errors, but not the intervals in which derivatives are evaluated.
+# No second-order term is neglected.
+@dataclass(frozen=True)
 class Evaluation:
     """The bounds of the rounding error on many boxes; every field has one entry for each box."""
 
@@ -255,14 +256,12 @@ GAP_CELLS = 8192
 
 @cache
 def _gap_errors(own: OutputGraph, libm_ulp: float) -> tuple[Array, ...]:
-    """Return error bounds of a function such as (x - sin x)/x^3 on runs of 1, 2, 4, .. cells of the range of x.
-
-    Entry i of an array is the bound on the run that begins with cell i.
-    """
+    """Return error bounds of a function such as (x - sin x)/x^3 on runs of 1, 2, 4, .. cells of its range."""
     ends = np.linspace(0.0, GAP_END, GAP_CELLS + 1)
     boxes = np.stack([ends[:-1], ends[1:]])[:, None]
     sides = [evaluate(own, boxes, np.full((1, GAP_CELLS), side, np.int8), libm_ulp=libm_ulp).bound for side in (0, 1)]
     # two entries cover any range within [0, GAP_END]
+    # entry i of an array is the bound on the run that begins with cell i
     levels = [np.maximum(*sides)]
     while levels[-1].size > 1:
         step = 2 ** (len(levels) - 1)
@@ -478,10 +477,7 @@ def _forward_pass(state: _ErrorPass, computed: _ErrorPass, node: Node) -> Array 
 
 
 def _backward_pass(state: _ErrorPass) -> tuple[Array, NDArray[np.int64], NDArray[np.bool_]]:
-    """Return, for each box, the sum of errors times derivatives, the obstacle, and whether an angle may jump by 2 pi.
-
-    The obstacle is the node that makes the sum infinite, or -1.
-    """
+    """Return, for each box, the sum of errors times derivatives, its obstacle, and whether an angle may jump."""
     nodes = state.graph.nodes
     count = state.boxes.shape[2]
     adjoints: list[Array | None] = [None] * len(nodes)
@@ -520,6 +516,7 @@ def _backward_pass(state: _ErrorPass) -> tuple[Array, NDArray[np.int64], NDArray
             part = np.where(active, part, 0.0)
             adjoints[place] = part if known is None else combine(known, part)
     whole = bound * (1 + 2.0**-52 * (2 * len(nodes) + 4)) + 1e-320 * len(nodes) * (bound > 0)
+    # the node that makes the sum infinite, or -1
     obstacle = np.where(of_value >= 0, of_value, np.where(np.isfinite(whole), -1, of_slope))
     obstacle = np.where((obstacle < 0) & ~np.isfinite(whole), len(nodes) - 1, obstacle)
     return np.where(of_value >= 0, inf, whole), obstacle, turns

@@ -47,9 +47,9 @@ LARGEST, LARGEST_EXPONENT = Fraction(float_info.max), 1023  # the largest double
 STORE = Store()
 
 
-@dataclass(frozen=True)
 # Where a conditional compares rounded numbers, the exact formula follows the branch that the kernel took; these choices
 # are listed. An angle that is wrapped is compared modulo 2 pi.
+@dataclass(frozen=True)
 class OutputBound:
     """Bounds of the rounding error of one output."""
 
@@ -474,14 +474,12 @@ def _check_precision(
 
 
 def error_at_point(task: BoundTask, at: Array) -> float:
-    """Return a task's error bound at the point ``at``, a lower limit for bounds on boxes that contain the point.
-
-    The result is -1 if the point is outside the task's region of allowed inputs.
-    """
+    """Return a task's error bound at the point ``at``, a lower limit for bounds on boxes that contain the point."""
     point = np.stack([at, at])[:, :, None]
     evaluation = evaluate(
         task.graph, point, np.full((len(task.graph.conditions), 1), -1, np.int8), task.region, task.libm_ulp
     )
+    # -1 if the point is outside the task's region of allowed inputs
     value = float(evaluation.bound[0])
     # 0 refutes no bound
     return value if isfinite(value) else 0.0

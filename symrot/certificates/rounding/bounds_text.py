@@ -36,8 +36,6 @@ def _sections(name: str, double: Operations, single: Operations) -> Section | st
 def library_section(name: str, source: str) -> Section | str:
     """Return the section ``rounding`` of a library kernel's certificate, or a text that says why it has no bounds.
 
-    The inputs lie in the kernel's own box, a range for each input.
-
     Parameters
     ----------
     name : str

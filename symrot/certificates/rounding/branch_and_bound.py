@@ -1,7 +1,7 @@
 """Branch and bound for the largest rounding error on a box: split the worst parts until the bound is tight.
 
 A part is a sub-box. It is split into the two branches of a condition, or halved in the input that lowers the bound
-most. It is finished when its bound is at most ``GAP`` times the largest error at a point.
+most. It is finished when its bound is close to the largest error at a point.
 """
 
 from dataclasses import dataclass, replace
@@ -26,8 +26,8 @@ SHRUNK = 8.0  # a range is shrunk to an eighth of its width to estimate the effe
 NARROWEST = 2.0**-24  # relative to the box: a part this narrow without a bound is at a singular point
 
 
-@dataclass(frozen=True)
 # The budget counts evaluations of boxes, not time, so that the result is the same on every machine.
+@dataclass(frozen=True)
 class SearchResult:
     """The result of a search for the largest error on a box."""
 
@@ -261,10 +261,7 @@ def search(
 
 
 def _run_search(run: _BoundSearch, budget: int, target: float | None) -> SearchResult:
-    """Return the result of a search, with mean value forms or plain intervals, of at most ``budget`` evaluations.
-
-    With a number ``target``, the search ends when it is known whether the bound exceeds it.
-    """
+    """Return the result of a search of at most ``budget`` evaluations, with mean value forms or plain intervals."""
     graph, box = run.graph, run.box
     conditions = len(graph.conditions)
     parts = run.parts(box[:, :, None].copy(), np.full((conditions, 1), -1, np.int8))
@@ -280,6 +277,7 @@ def _run_search(run: _BoundSearch, budget: int, target: float | None) -> SearchR
             enough = max(enough, target)
         if parts.bound.max() <= enough or run.evaluations >= budget:
             break
+        # with a target, the search ends when it is known whether the bound exceeds it
         if target is not None and run.pointwise > target:
             break
         narrow = _narrow(run, batch)

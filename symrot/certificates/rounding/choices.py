@@ -35,9 +35,9 @@ _NOT_LESS = {  # relation -> the branch in which left >= right, the branch in wh
 def decide_branches(
     relation: str, a: Array, b: Array, decision: NDArray[np.int8]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Write into ``decision``, for each box, the branch of the condition ``a relation b`` if only one is possible.
+    """Write the branch of ``a relation b`` into ``decision`` for each box where only one branch is possible.
 
-    Return for each box whether it contradicts an earlier decision, and whether both branches are possible.
+    Return where this contradicts an earlier decision, and where both branches are possible.
     """
     # ``decision``: 1 if the condition is assumed to hold on a box, 0 if not to hold, -1 if nothing is assumed
     holds, fails = _POSSIBLE[relation](a, b)

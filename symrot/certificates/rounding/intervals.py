@@ -1,7 +1,7 @@
 """Interval arithmetic for rounding bounds: float64 arrays of shape (2, n), the lower and upper ends of n intervals.
 
-Results are rounded outward, but only if the operation was inexact: the upper end of 1*1 stays 1, since numbers just
-above 1 have twice the rounding error. With ``+ - * / sqrt`` alone, results are the same on every machine.
+Results are rounded outward only if the operation was inexact: the upper end of 1*1 stays 1, since numbers just above 1
+have twice the rounding error. With ``+ - * / sqrt`` alone, results are the same on every machine.
 """
 
 from typing import TypeAlias

@@ -155,10 +155,7 @@ def is_short(value: Fraction) -> bool:
 
 
 def _modulo_two_pi(graph: OutputGraph, index: int, sign: int = 1) -> tuple[int, int]:
-    """Return (i, s) such that ``s`` times node i equals ``sign`` times node ``index`` modulo 2 pi.
-
-    For the node ``2*pi - x`` and ``sign`` 1, the result is (index of x, -1).
-    """
+    """Return (i, s) such that ``s`` times node i equals ``sign`` times node ``index`` modulo 2 pi."""
     # constants near 2 pi are dropped from sums; a sine or cosine of the simpler node replaces that of the sum
     node = graph.nodes[index]
     if node[0] == "neg":
@@ -170,6 +167,7 @@ def _modulo_two_pi(graph: OutputGraph, index: int, sign: int = 1) -> tuple[int, 
         left, right = node[1:]
         if _is_two_pi(graph.nodes[right]):
             return _modulo_two_pi(graph, left, sign)
+        # 2*pi - x gives (index of x, -1)
         if _is_two_pi(graph.nodes[left]):
             return _modulo_two_pi(graph, right, sign if node[0] == "add" else -sign)
     return index, sign
@@ -234,9 +232,9 @@ class _GraphReader:
         return self.put(kind, *(self.read(i) for i in operands(node)))
 
     def squares(self, index: int, depth: int = 0) -> list[tuple[int, int]] | None:
-        """Return (x, roundings) for each term of a sum of squares x^2: (a, 2), (b, 3), (c, 3) for a^2 + (b^2 + c^2).
+        """Return (x, roundings) for each term x^2 of a sum: (a, 2), (b, 3), (c, 3) for a^2 + (b^2 + c^2).
 
-        The result is None if operation ``index`` is no such sum.
+        The result is None if it is no sum of squares.
         """
         node = self.source[index]
         # one rounding in the square, and one in each addition on the way to the sum (``depth``)

@@ -253,7 +253,7 @@ class _Closure:
                 self.seek(operand)
 
     def seek_in(self, s: Series) -> None:
-        """Replace polynomials of the attitude in ``s``, a sum of series, by auxiliary states, in ``self.parts``."""
+        """Replace polynomials of the attitude in ``s``, a sum of series, by auxiliary states."""
         # products of components of the attitude are replaced together: q1 q3 + q0 q2 in q1 q3 + q0 q2 + t
         alone = {
             i for i in s.operands if self.series[i].rule == "product" and self.of_attitude(self.polynomial(i))
