@@ -1,7 +1,7 @@
 """Motions: a plan with numbers and one initial state, from which the states at any time can be computed.
 
-The *rates* are the time derivatives of the states. The *clock* of a motion is the time that its stepper counts; the
-*epoch* is the scene time at which it shows 0. Initial states with equations of equal form have the same *structure*.
+The *rates* are the time derivatives of the states. The *epoch* is the time of the scene from which a stepper counts
+time: the zero of its *clock*. Initial states with equations of equal form have the same *structure*.
 """
 
 from abc import ABC, abstractmethod

@@ -1,8 +1,7 @@
 """Proven upper limits of the step length, so that no step misses a short pulse of a torque formula.
 
 An enclosure evaluates terms of the rates on complex discs, which bounds the Taylor coefficients that a step omits. A
-disc's radius in time is the step times the *reach*. The *missed share* is the fraction of the deviation that a step
-may miss.
+disc's radius in time is the step times the *reach*. A step may miss a fraction of the deviation, the *missed share*.
 """
 
 import math

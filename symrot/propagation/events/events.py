@@ -1,8 +1,8 @@
 """Events: all times at which a formula of the motion is zero, located to the last bits.
 
-The search in C bounds the formula on intervals of a motion's polynomials, so that it misses no zero. A *piece* is a
-group of consecutive polynomials; an *entry* is an interval that may contain a zero; a *doubt* is an extremum nearer to
-zero than the motion's error.
+The search in C bounds the formula on intervals, so that it misses no zero. A *piece* is a group of consecutive
+polynomials of the motion; an *entry* is an interval that may contain a zero; a *doubt* is an extremum nearer to zero
+than the motion's error.
 """
 
 import ctypes

@@ -1,7 +1,7 @@
 """Motions by any method as piecewise polynomials in time, for the search for events.
 
-A *row* holds the polynomials of all N states in one step: t, h, the low part of t, a unit of time, then coefficient 0
-of all states, coefficient 1, and so on, in powers of ``(time - t)/unit``. An *edge* is where two rows meet.
+A *row* holds the polynomials of all states in one step: t, h, the low part of t, a unit of time, then coefficient 0 of
+all states, coefficient 1, and so on, in powers of ``(time - t)/unit``. An *edge* is where two rows meet.
 """
 
 import math

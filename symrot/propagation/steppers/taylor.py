@@ -1,8 +1,7 @@
 """Taylor series, usually of order 20: Python calls the C functions of :file:`taylor.c` once per span.
 
 The right-hand side is the function of the rates, ``dy/dt = f(t, y, p)``. A *jet* is the list of Taylor coefficients of
-all states at one time, computed by generated C code. The tolerance limits the error of the trajectory, not of one
-step.
+all states at one time, computed by generated C code. The tolerance limits the error of the trajectory, not of steps.
 """
 
 import ctypes

@@ -1,8 +1,8 @@
 """A motion under torques with switching functions (sign, abs, ..), followed through all switches to one end.
 
 The *guard* of a function is its argument; its *mode* is the number that replaces it in formulas. For given modes the
-motion is smooth: a *regime*. While the motion *slides*, a guard is *held* at zero. *Twins* are modes of guards that
-are zero together.
+motion is smooth: a *regime*. In *sliding* motion a guard is *held* at zero. *Twins* are modes of guards that are zero
+together.
 """
 
 import math
