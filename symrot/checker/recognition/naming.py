@@ -152,7 +152,7 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
 
 
 def _near_usual(claim: Claim, named: NamedFormula, readings: Sequence[Identification]) -> Verdict | None:
-    """Return the verdict "doubtful" on a formula that is right in the space frame, and after one change in the body frame.
+    """Return the verdict "doubtful" if a formula is right in the space frame and, after one change, in the body frame.
 
     Otherwise return None.
     """
