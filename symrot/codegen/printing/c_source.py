@@ -189,7 +189,8 @@ def _body(
 
 
 def _computed_in_turn(program: Program) -> list[Argument]:
-    """Return the output arguments in order of computation, for a loop that stores its results last."""
+    """Return the output arguments of a program in the order in which the loop over samples computes them."""
+    # for a loop in which each pass computes all results before it stores the first one
     outputs = [a for a in program.signature.arguments if a.role == "out"]
     # all inputs and results fit into registers
     if _streams(program) <= REGISTERS:
