@@ -189,7 +189,7 @@ def _numbered(
     formulas: Sequence[Node],
     parameter_argument: str,
 ) -> Lowered:
-    """Return a program in which each constant is a parameter ``p0, p1, ..``, and the parameters' formulas."""
+    """Return a program in which each constant is a parameter ``p0, p1, ..``, with the formulas of the parameters."""
     # preliminary name of a constant (a value of hoisted) -> parameter, numbered by first use
     order: dict[str, str] = {}
     for node in [node for _, node in temporaries] + list(formulas):

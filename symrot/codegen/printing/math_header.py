@@ -63,10 +63,8 @@ def _nearest(series: list[Fraction], largest: Fraction, count: int) -> tuple[Fra
 
 
 def quarter_turn_parts(precision: str) -> list[Fraction]:
-    """Return numbers whose sum is pi/2, which are subtracted from an angle one after the other.
-
-    ``precision`` is ``"binary64"`` or ``"binary32"``.
-    """
+    """Return a few numbers whose sum is pi/2, the largest first; ``precision`` is ``"binary64"`` or ``"binary32"``."""
+    # they are subtracted from an angle one after the other
     rest, parts = PI / 2, []
     for bits in _PARTS[precision]:
         # so few bits that the product with the number of quarter turns is exact
@@ -76,7 +74,7 @@ def quarter_turn_parts(precision: str) -> list[Fraction]:
 
 
 def _leading(value: Fraction, bits: int) -> Fraction:
-    """Return a positive number truncated to its first ``bits`` significant bits."""
+    """Return a positive number truncated to ``bits`` significant bits: 7 with 2 bits gives 6."""
     shift = bits
     while value * Fraction(2) ** shift >= 2**bits:
         shift -= 1
