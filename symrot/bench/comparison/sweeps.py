@@ -3,7 +3,8 @@
     python -m symrot.bench.comparison.sweeps [--count 1e6] [--seconds 10] [--rounds 3]
 
 Every motion is a damped heavy top with its own rate and weight; a sweep writes three outputs at 11 times to a Zarr
-file. The longer the motions, the less the rest of a sweep counts: outputs, files, starts of processes. All contestants use the same number of cores, one after the other in each round; the median of the ratios counts.
+file. The longer the motions, the less the rest of a sweep counts: outputs, files, starts of processes. All contestants
+use the same number of cores, one after the other in each round; the median of the ratios counts.
 
 ``pip install 'symrot[sweep,cluster]'`` installs what is needed.
 """
