@@ -260,7 +260,9 @@ class _Stepped:
 
     def read(self, states: Floats, omega: Floats, quaternion: Floats | None) -> None:
         """Compute ``omega`` and ``quaternion`` from the integrated states, shape (n, m, N), and write them there."""
-        chosen = list(self.chosen)
+        chosen = np.asarray(self.chosen)
+        whole = len(chosen) == len(omega) and bool((chosen == np.arange(len(omega))).all())
+        rows = slice(None) if whole else chosen  # a slice needs no copies
         # the plan's N states may be fewer than the seven of omega and q, such as one angle
         values: dict[str, Any] = dict(zip(self.plan.states, np.moveaxis(states, -1, 0), strict=True))
         values["t"] = self.times
@@ -270,12 +272,13 @@ class _Stepped:
         values |= dict(zip([name for name, _ in parameters], columns[:, :, None], strict=True))
         values_of = self.kernel.quantities.evaluate(values, ARRAY_FUNCTIONS, float, outputs)
         for k, name in enumerate(OMEGA):
-            omega[chosen, :, k] = values_of[name]
+            omega[rows, :, k] = values_of[name]
         if quaternion is not None:
+            components = np.empty((len(chosen), *quaternion.shape[1:]))
             for k, name in enumerate(QUATERNION):
-                quaternion[chosen, :, k] = values_of[name]
-            size = np.sqrt((quaternion[chosen] ** 2).sum(axis=-1, keepdims=True))
-            quaternion[chosen] /= size
+                components[..., k] = values_of[name]
+            components /= np.sqrt((components**2).sum(axis=-1, keepdims=True))
+            quaternion[rows] = components
 
     def _parameters_of(self, outputs: Sequence[str]) -> Any:
         """Return the parameters (constants of the kernel) that the named outputs need, as pairs (name, formula)."""
