@@ -1,58 +1,32 @@
 """Check kernels from their files alone: ``python recheck.py NAME.cert.json ..``. It needs Python but not symrot.
 
-What is checked
----------------
-Files (`certified`): the seal of the certificate and the hash of every file that it names.
-
-C text (`check_precision`): each function computes the formulas of the certificate. C text and formulas are evaluated at
-one random point, exactly, in fractions. There, sin(x) is a random number that depends on x alone, and a choice ``a < b
-? x : y`` is a mean of x and y with a random weight that depends on a and b alone. Two texts that differ as rational
-expressions of their functions and choices agree at such a point with negligible probability. Identities of functions,
-such as sin^2 + cos^2 = 1, do not hold for such random numbers, so a C text may not rely on identities.
-
-Series (`check_series`): a polynomial that replaces a function near a removable singularity is close enough to the
-function at 64 random points.
-
-Laws (`check_law`): the formulas obey the laws, to 60 digits, at 8 random points with coordinates up to 1000 (64 points
-if there are choices). A smaller violation, or a violation near few points or farther out, is not noticed; `symrot
-audit` proves laws.
-
-Rounding (`check_rounding`): at one random point of the box, the outputs computed as C computes them have errors within
-the bounds. So a text with ``(x + 1e20) - 1e20`` for x is refused, although both are equal in exact arithmetic.
-
-Header (`check_header`): it declares the functions of the C file and defines only the known macros.
-
-What is not checked
--------------------
-Not checked are proofs of laws, theorems of Coq, operation counts, flags, object code, the domain, and NumPy texts
-beyond their hash; nor that a kernel computes what its name promises: all files must agree on the name, but only `symrot
-audit` knows its meaning.
-
-Which C is read
----------------
-A C text that this grammar does not describe is refused. ``real`` is double or float; E is an expression.
-
-    file        = {include} {function}
-    include     = #include <math.h> | #include "symrot_math.h" | #include "NAME.h"       (each at most once)
-    function    = static inline real name(real a, ..) { {local} return E; }
-                | void name(parameters) { {unused} {statement} }                         (one sample)
-                | void name(size_t n, parameters) { {unused} loops }                     (n samples)
-    parameter   = real a | [const] real a[3] | [const] real *SYMROT_RESTRICT a
-    unused      = (void)a;
-    statement   = local | assignment | far
-    local       = const real x = E;
-    assignment  = a[index] = E;
-    far         = beyond += symrot_far(E) {+ symrot_far(E)};                             (in blocks only)
-    index       = 2 (one sample) | k | n + k | 2*n + k                                   (component 2 of sample k)
-    loops       = the three phrases EACH_SAMPLE, SPANS and BLOCKS below, around {statement}
-    E           = sum | sum < sum ? sum : sum                                            (or >=, ==)
-    sum         = product {(+ | -) product}
-    product     = factor {(* | /) factor}
-    factor      = -factor | number | x | a[index] | function(sum, ..) | (sum)
-
-Each name is declared once, before its use, and each component is assigned once. Formulas of certificates have the same
-expressions, and powers such as ``x**2`` and ``x**(3/2)``; their numbers are whole numbers or decimals.
+Each C function must compute the formulas of its certificate, the formulas must obey their laws, and rounding errors
+must be within their bounds. All this is tested at random points. Proofs, theorems of Coq and object code are not
+checked.
 """
+
+# What is checked
+# ---------------
+# Files (`certified`): the seal of the certificate and the hash of every file that it names.
+# C text (`check_precision`): each function computes the formulas of the certificate. Both are evaluated at one random
+# point, exactly, in fractions. There, sin(x) is a random number that depends on x alone, and a choice ``a < b ? x : y``
+# is a mean of x and y with a random weight that depends on a and b alone. Two texts that differ as rational expressions
+# of their functions and choices agree there with negligible probability. Identities of functions, such as sin^2 + cos^2
+# = 1, do not hold for such random numbers, so a C text may not rely on identities.
+# Series (`check_series`): a polynomial that replaces a function near a removable singularity is close enough to the
+# function at 64 random points.
+# Laws (`check_law`): the formulas obey the laws, to 60 digits, at 8 random points with coordinates up to 1000 (64
+# points if there are choices). A smaller violation, or a violation near few points or farther out, is not noticed;
+# `symrot audit` proves laws.
+# Rounding (`check_rounding`): at one random point of the box, the outputs computed as C computes them have errors
+# within the bounds. So a text with ``(x + 1e20) - 1e20`` for x is refused, although both are equal in exact arithmetic.
+# Header (`check_header`): it declares the functions of the C file and defines only the known macros.
+#
+# What is not checked
+# -------------------
+# Proofs of laws, theorems of Coq, operation counts, flags, object code, the domain, and NumPy texts beyond their hash;
+# nor that a kernel computes what its name promises: all files must agree on the name, but only `symrot audit` knows its
+# meaning.
 
 # mypy: ignore-errors
 import json
@@ -220,15 +194,12 @@ OPERATIONS = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": oper
 
 
 class Arithmetic:
-    """The base class of arithmetics: the operations on one kind of number, with which expressions are evaluated.
-
-    Two formulas are compared by their values at one random point. The subclasses also draw random values there for
-    functions that they do not compute; :meth:`random` stores them, so that equal calls have equal values.
-    """
+    """The operations on one kind of number, with which expressions are evaluated; a base class."""
 
     def __init__(self):
         self.drawn = {}  # (function, *arguments) or (comparison, a, b) -> random number
 
+    # two formulas are compared by their values at one random point; functions without a value get a random one there
     def random(self, *key):
         """Return a random number; the same key always gives the same number."""
         if key not in self.drawn:
@@ -247,12 +218,7 @@ class Arithmetic:
 
 
 class AnyFunctions(Arithmetic):
-    """An arithmetic of exact fractions, in which functions and choices have random values.
-
-    A function has a random value for each argument; ``a < b ? x : y`` is a mean of x and y with a random weight for
-    each a and b. Expressions with equal values here have equal values, with overwhelming probability, whatever
-    functions their names stand for.
-    """
+    """An arithmetic of exact fractions, in which functions (such as sin) and choices have random values."""
 
     def __init__(self):
         super().__init__()
@@ -287,6 +253,8 @@ class AnyFunctions(Arithmetic):
             self.near_angles.add(arguments[0])
         return self.random(function.removeprefix("symrot_").replace("fabs", "Abs"), *arguments)
 
+    # A mean of x and y, with a random weight for each a and b. With overwhelming probability, expressions with equal
+    # values here have equal values whatever functions their names stand for.
     def choose(self, comparison, a, b, x, y):
         share = self.random(comparison, a, b)
         return self.short(x() * share + y() * (1 - share))
@@ -321,11 +289,7 @@ EXACT_FUNCTIONS |= {"copysign": Decimal.copy_sign}
 
 
 class Decimals(Arithmetic):
-    """An arithmetic of 190-digit numbers, in which sin, cos, sqrt, abs, atan2 and copysign have their exact values.
-
-    Other functions, such as tan and exp, get a random value for each argument. No law depends on them, but formulas
-    beside the law may contain them.
-    """
+    """An arithmetic of 190-digit numbers, in which sin, cos, sqrt, abs, atan2 and copysign have their exact values."""
 
     def __init__(self):
         super().__init__()
@@ -340,6 +304,7 @@ class Decimals(Arithmetic):
     def power(self, x, exponent):
         return x**exponent if isinstance(exponent, int) else x.sqrt() ** int(2 * exponent)
 
+    # other functions, such as tan, get random values: no law depends on them, but formulas beside the law may have them
     def apply(self, function, arguments):
         if function in EXACT_FUNCTIONS:
             return EXACT_FUNCTIONS[function](*arguments)
@@ -541,11 +506,9 @@ class Reader:
 
 
 class FormulaReader(Reader):
-    """A parser of the formulas in a certificate: symbols, powers, and functions that the certificate defines.
+    """A parser of the formulas in a certificate: symbols, powers, and functions that the certificate defines."""
 
-    If ``symbols`` is passed, other names are refused; in a constant, functions are refused too.
-    """
-
+    # with ``symbols``, other names are refused; in a constant, functions are refused too
     def __init__(self, text, place, own, symbols=None, is_constant=False):
         super().__init__(text, place)
         self.own, self.symbols = own, symbols
@@ -567,12 +530,10 @@ class FormulaReader(Reader):
         return name
 
     def power(self, operand):
-        """Read the exponent of a power, if there is one; return the node of the power, or ``operand``.
-
-        An exponent has one or two digits, or is half of such a number; a negative or half exponent needs parentheses.
-        """
+        """Read the exponent of a power, if there is one; return the node of the power, or ``operand``."""
         if not self.accept("**"):
             return operand
+        # one or two digits, or half of such a number; a negative or half exponent needs parentheses
         inner, sign = self.accept("("), -1 if self.accept("-") else 1
         self.need(
             re.fullmatch(r"\d\d?", self.token.text),
@@ -597,11 +558,8 @@ class FormulaReader(Reader):
 
 
 def constant(text, place):
-    """Return the number for which a text without variables stands, as a fraction: ``"1/3"`` or ``"pi/3"``.
-
-    The fraction is exact, except that pi is replaced by the fraction PI, which has more digits than any number in the C
-    text.
-    """
+    """Return the number for which a text without variables stands, as a fraction: ``"1/3"`` or ``"pi/3"``."""
+    # PI is a fraction with more digits than any number in the C text
     return FormulaReader(text, place, {}, ("pi",), is_constant=True).whole().value(AnyFunctions(), {"pi": PI})
 
 
@@ -642,27 +600,20 @@ class Body(NamedTuple):
 
 
 class Kernel(NamedTuple):
-    """A C function that writes arrays: its parameters, and its statements.
-
-    ``bodies`` holds lists of statements: one list for a function that computes one sample, and one for each loop of a
-    function that computes many. ``shape`` tells these apart: "one sample"; "each sample", with one loop over all
-    samples; "spans" or "blocks", with two loops over a run of samples at a time (see ``loops``).
-    """
+    """A C function that writes arrays: its parameters, and its statements."""
 
     parameters: list
+    # "each sample" has one loop over all samples; "spans" and "blocks" have two loops over a run of samples
     shape: str  # "one sample", "each sample", "spans" or "blocks"
+    # a list of statements for one sample, or for each loop
     bodies: list
     real: str
     prototype: tuple  # the words of its declaration
 
 
 def without_comments(text, file):
-    """Return a C text in which spaces replace comments; lines keep their numbers.
-
-    The text is refused if compilers or versions of C may read it in different ways: it must not contain trigraphs,
-    lines joined by a backslash, line comments, comments in comments, or other characters than printable ASCII and ends
-    of lines.
-    """
+    """Return a C text in which spaces replace comments; lines keep their numbers."""
+    # refused: what compilers or versions of C may read in different ways, such as trigraphs and joined lines
     odd = re.search(r"[^\n -~]|\\|\?\?|//", text)
     need(not odd, f"{file}: expected plain ASCII without backslashes, ?? and //, got {quoted(odd and odd[0])}")
     pieces, start = [], 0
@@ -676,16 +627,14 @@ def without_comments(text, file):
 
 
 def split_includes(text, name, files):
-    """Return the headers that a C text includes, and the text with its #include lines replaced by empty lines.
-
-    The only allowed preprocessor lines are #include lines of the three known headers, before all code. Any other # is
-    refused later as a word outside the grammar, so that macros cannot change the meaning of the text.
-    """
+    """Return the headers that a C text includes, and the text with its #include lines replaced by empty lines."""
     known = {'#include "symrot_math.h"'} if "symrot_math.h" in files else set()
     known |= {"#include <math.h>", f'#include "{name}.h"'}
     lines, included = text.split("\n"), set()
     for number, line in enumerate(lines):
         line = line.strip()
+        # any # after the first code is refused later, as a word outside the grammar: macros cannot change the text's
+        # meaning
         if line and not line.startswith("#"):
             break
         if line:
@@ -699,8 +648,30 @@ def split_includes(text, name, files):
     return {re.search(r'[<"](.*)[>"]', line)[1] for line in included}, "\n".join(lines)
 
 
+# A C text that this grammar does not describe is refused. ``real`` is double or float; E is an expression.
+#
+#     file        = {include} {function}
+#     include     = #include <math.h> | #include "symrot_math.h" | #include "NAME.h"       (each at most once)
+#     function    = static inline real name(real a, ..) { {local} return E; }
+#                 | void name(parameters) { {unused} {statement} }                         (one sample)
+#                 | void name(size_t n, parameters) { {unused} loops }                     (n samples)
+#     parameter   = real a | [const] real a[3] | [const] real *SYMROT_RESTRICT a
+#     unused      = (void)a;
+#     statement   = local | assignment | far
+#     local       = const real x = E;
+#     assignment  = a[index] = E;
+#     far         = beyond += symrot_far(E) {+ symrot_far(E)};                             (in blocks only)
+#     index       = 2 (one sample) | k | n + k | 2*n + k                                   (component 2 of sample k)
+#     loops       = the three phrases EACH_SAMPLE, SPANS and BLOCKS, around {statement}
+#     E           = sum | sum < sum ? sum : sum                                            (or >=, ==)
+#     sum         = product {(+ | -) product}
+#     product     = factor {(* | /) factor}
+#     factor      = -factor | number | x | a[index] | function(sum, ..) | (sum)
+#
+# Each name is declared once, before its use, and each component is assigned once. Formulas of certificates have the
+# same expressions, and powers such as ``x**2`` and ``x**(3/2)``; their numbers are whole numbers or decimals.
 class CReader(Reader):
-    """A parser of the functions of a C file, by the grammar at the beginning of this file."""
+    """A parser of the functions of a C file, by the grammar above."""
 
     def __init__(self, text, name, files, sizes):
         included, text = split_includes(without_comments(text, f"{name}.c"), name, files)
@@ -734,10 +705,7 @@ class CReader(Reader):
         return Variable(name)
 
     def component(self, name, is_input):
-        """Read an array index; return (array, component), such as ("q", 2) for ``[2]`` of one sample.
-
-        For sample k of n samples, ``[k]`` means component 0, ``[n + k]`` component 1 and ``[2*n + k]`` component 2.
-        """
+        """Read an array index; return (array, component), such as ("q", 2) for ``[2]`` or for ``[2*n + k]``."""
         parameter = self.parameters.get(name)
         self.need(
             parameter and parameter.form != "value" and parameter.is_input == is_input,
@@ -747,6 +715,7 @@ class CReader(Reader):
         component = 0
         if parameter.form == "array":
             component = self.index()
+        # sample k of n: [k] is component 0, [n + k] component 1, [2*n + k] component 2
         elif not self.accept("k"):
             component = 1
             if self.token.text != "n":
@@ -763,12 +732,9 @@ class CReader(Reader):
         return int(self.advance())
 
     def use(self, real):
-        """Prepare to read a function for ``real`` numbers, "double" or "float".
-
-        This sets ``self.real``, and the functions that such a text may call: from <math.h>, from symrot_math.h if the
-        text includes them, and its own inline functions of this type.
-        """
+        """Prepare to read a function for ``real`` numbers, "double" or "float"."""
         self.real, end = real, REALS[real]
+        # the functions that such a text may call: its own, those of <math.h> and symrot_math.h if they are included
         self.own = self.inline[real]
         functions = C_FUNCTIONS if "math.h" in self.included else {}
         if "symrot_math.h" in self.included:
@@ -870,18 +836,15 @@ class CReader(Reader):
         return Parameter(name, "value", 1, True)
 
     def loops(self):
-        """Read the loops over samples; return their form ("each sample", "spans" or "blocks") and their bodies.
-
-        Each form visits every sample from 0 to n - 1. A span or a block is a run of samples. Each span has two loops,
-        which compute different outputs, so that arrays stay in the processor's cache. A block computes all outputs
-        with functions for a limited range of angles; `beyond` counts the angles outside that range, and if it is not
-        zero, the block is computed again with the functions of <math.h>.
-        """
+        """Read the loops over samples; return their form ("each sample", "spans" or "blocks") and their bodies."""
         if self.accept(INDEPENDENT):
             self.take(EACH_SAMPLE)
             bodies = [self.body()]
             self.take("}")
             return "each sample", bodies
+        # Each form visits every sample from 0 to n - 1. Two loops over a span compute different outputs, so that arrays
+        # stay in the processor's cache. A block is computed with functions for a limited range of angles, and again
+        # with <math.h> if ``beyond``, the number of angles outside that range, is not zero.
         shape = "blocks" if self.comes(BLOCKS) else "spans"
         self.take(BLOCKS if shape == "blocks" else SPANS)
         if shape == "blocks":
@@ -899,16 +862,13 @@ class CReader(Reader):
         return words == [token.text for token in self.tokens[self.position : self.position + len(words)]]
 
     def body(self, asks_far=False):
-        """Read statements up to a closing brace, which ends the scope of their variables; return them as a Body.
-
-        With ``asks_far``, one statement may be ``beyond += symrot_far(a) + ..;``, which tests whether the angles a, ..
-        are in the range of symrot_sin and symrot_cos. The Body then holds these angles.
-        """
+        """Read statements up to a closing brace, which ends the scope of their variables; return them as a Body."""
         outer, self.names, self.assigned = self.names, set(self.names), set()
         statements, far = [], []
         while not self.accept("}"):
             if self.token.text == "const":
                 statements.append(self.local())
+            # beyond += symrot_far(a) + ..; tests whether angles are in the range of symrot_sin and symrot_cos
             elif asks_far and not far and self.accept("beyond"):
                 far = self.far()
             else:
@@ -1016,12 +976,7 @@ def without_repetition(pairs):
 
 
 def certified(path):
-    """Return the certificate in a file, after checking its seal and the hash of every file that it names.
-
-    The seal is a hash of the certificate itself. Hashes show only that no file was changed after it was certified;
-    other checks show that the files are right. Files in other folders (NumPy texts) may be missing, but files in the
-    folder of the certificate may not.
-    """
+    """Return the certificate in a file, after checking its seal and the hash of every file that it names."""
     try:
         data = json.loads(content(path), object_pairs_hook=without_repetition)
     except RecursionError:
@@ -1049,6 +1004,8 @@ def certified(path):
             re.fullmatch(r"(\.\./){0,2}(\w+/)*\w+\.\w+", file, re.ASCII),
             f"{quoted(file)} is not the path of a kernel's file: expected a path such as NAME.c",
         )
+        # Files in other folders (NumPy texts) may be missing. A hash shows only that a file was not changed after it
+        # was certified; other checks show that it is right.
         if "/" not in file or (path.parent / file).exists():
             right = sha256(content(path.parent / file)).hexdigest() == digest
             need(right, f"{file} was changed after it was certified")
@@ -1062,10 +1019,7 @@ def is_name(text):
 
 
 def defined_functions(definitions):
-    """Return a map from name to Definition of the functions of x, y, z, w that a certificate defines.
-
-    A function may only call functions above it.
-    """
+    """Return the functions of x, y, z, w that a certificate defines, by name; each may call those above it."""
     functions = {}
     for name, text in definitions:
         new = is_name(name) and name not in functions
@@ -1111,12 +1065,8 @@ class Specification:
         return FormulaReader(text, place, self.functions).whole()
 
     def set_values(self, names):
-        """Compute all quantities at the point that ``names`` holds, and return the values of the inputs.
-
-        ``names`` maps symbols to their values at one point. The named intermediate quantities and the outputs are
-        computed from them and added to ``names``. The result maps an input of the C function, such as ``q[2]``, to its
-        value.
-        """
+        """Add all named quantities and outputs at a point to ``names``, and return the values of the inputs."""
+        # ``names`` maps symbols to values; the result maps inputs of the C function, such as q[2], to values
         inputs = {place: expression.value(names.numbers, names) for place, expression in self.inputs}
         for symbol, expression in self.named:
             names.define(symbol, expression.value(names.numbers, names))
@@ -1127,10 +1077,9 @@ class Specification:
 
 
 def draw_hypothesis(members, names):
-    """Define random values for symbols that a law assumes to form a rotation matrix (9, row by row) or a unit vector.
-
-    The matrix is computed from a random unit quaternion (q0, v): 2*v*v^T + 2*q0*[v]x + (2*q0^2 - 1)*1.
-    """
+    """Define random values for symbols that a law assumes to form a rotation matrix or a unit vector."""
+    # 2*v*v^T + 2*q0*[v]x + (2*q0^2 - 1)*1 for the unit quaternion (q0, v)
+    # nine symbols are a matrix, row by row
     vector = [names.numbers.draw() for _ in range(4 if len(members) == 9 else len(members))]
     length = Decimal.sqrt(sum(each * each for each in vector))
     vector = [each / length for each in vector]
@@ -1147,13 +1096,7 @@ def draw_hypothesis(members, names):
 
 
 def check_law(law, specification, points):
-    """Raise ValueError if an expression of a law, which must be zero, is not zero to 60 digits at random points.
-
-    There are ``points`` random points. At each, the hypotheses of the law hold, and the outputs have the values of
-    their formulas. The expression must be at most 1e-40 there, and at most 1e-60 of the value that it has if all
-    symbols are random and unrelated. An analytic expression that is not identically zero passes this test at a random
-    point with negligible probability.
-    """
+    """Raise ValueError if an expression of a law, which must be zero, is not zero to 60 digits at random points."""
     place = f"the law {quoted(law['law'])}"
     need(law["vanishing"], f"{place} does not follow: expected an expression that vanishes, got none")
     members = law["given"]
@@ -1174,6 +1117,8 @@ def check_law(law, specification, points):
     for _ in range(points):
         rests, sizes = at_a_point(lambda: values(True)), at_a_point(lambda: values(False))
         for rest, size in zip(rests, sizes, strict=True):
+            # An analytic expression that is not identically zero passes at a random point with negligible probability.
+            # ``size`` is its value if all symbols are random and unrelated.
             small = min(max(abs(size) / 10**60, Decimal("1e-70")), Decimal("1e-40"))
             need(abs(rest) <= small, f"{place} does not follow: expected 0 to 60 digits, got {rest:.3}")
 
@@ -1186,11 +1131,7 @@ LEAST = {"double": Fraction(1, 2**55), "float": Fraction(1, 2**26)}  # a quarter
 
 
 def check_series(series, functions, real):
-    """Return ``functions``, in which a polynomial replaces the function of ``series`` near x = 0.
-
-    The error of the polynomial, relative to the function, is computed at 64 random points of the interval. ValueError
-    is raised if it is larger than the certificate says, or larger than a quarter of a unit in the last place.
-    """
+    """Check the polynomial that replaces a function near x = 0, and return ``functions`` with it."""
     name, split_text, coefficient_texts, rest_text = series
     place = f"series of {quoted(name)}"
     split, rest = constant(split_text, place), constant(rest_text, place)
@@ -1208,6 +1149,7 @@ def check_series(series, functions, real):
         x = numbers.number(split).sqrt() * randbelow(2**64) / 2**64
         return abs(polynomial.value(numbers, {"x": x}) / exact.call(numbers, [x]) - 1)
 
+    # what the certificate states, and at most a quarter of a unit in the last place
     largest = min(rest, LEAST[real])
     for _ in range(64):
         error = at_a_point(left_out)
@@ -1218,11 +1160,7 @@ def check_series(series, functions, real):
 
 
 def constants_of(readback, real):
-    """Return a map from each rounded constant of the C text to its exact number.
-
-    ValueError is raised if the constant is not the nearest number, or stands for a multiple of 2^-20, such as 1/2:
-    such a number needs no rounding.
-    """
+    """Return a map from each rounded constant of the C text to its exact number."""
     pairs = [(constant(a, "constants"), constant(b, "constants")) for a, b in readback["constants"]]
     for name, _, coefficients, _ in readback["series"]:
         numbers = [abs(constant(text, f"series of {quoted(name)}")) for text in coefficients]
@@ -1230,6 +1168,7 @@ def constants_of(readback, real):
     constants = {}
     for written, exact in pairs:
         number = NEAREST[real](float(written)).value
+        # a multiple of 2^-20, such as 1/2, needs no rounding
         right = NEAREST[real](float(exact)).value == number and exact * 2**20 % 1
         need(right, f"a constant is wrong: expected the {real} nearest to {float(exact)!r}, got {number!r}")
         constants[number] = exact
@@ -1258,16 +1197,14 @@ def array_sizes(data, is_input):
 
 
 def expected_parameters(data, in_batch):
-    """Return the parameters that a C function must have, according to the inputs and outputs of the certificate.
-
-    For one sample, a number is passed by value, and any other quantity as an array. In a batch, every quantity is an
-    array for all samples, except the parameters of a scene, which all samples share. Inputs are const.
-    """
+    """Return the parameters that a C function must have, according to the inputs and outputs of the certificate."""
     by_value = {place for place, *_ in data["inputs"] if "[" not in place}
     parameters = []
     for is_input in (True, False):
         for name, size in array_sizes(data, is_input).items():
+            # for one sample, a number is passed by value, and any other quantity as an array
             form = "value" if is_input and name in by_value else "array"
+            # all samples share the parameters of a scene
             shared = bool(data["spec"]["parameters"]) and name == "p"
             if in_batch and not shared:
                 form = "samples"
@@ -1276,21 +1213,16 @@ def expected_parameters(data, in_batch):
 
 
 def by_component(values):
-    """Return a map like ``values``, from names of inputs to values, with the key ("q", 2) instead of ``"q[2]"``.
-
-    A single number, such as ``"t"``, has two keys: ("t", 0) for its array in a batch, and ``"t"``.
-    """
+    """Return a map like ``values``, from inputs to values, with the key ("q", 2) instead of ``"q[2]"``."""
     named = {component_of(place): value for place, value in values.items()}
+    # a single number "t" has two keys: ("t", 0) for its array in a batch, and "t"
     return named | {place: value for place, value in values.items() if "[" not in place}
 
 
 class ExactPoint(NamedTuple):
-    """A random point: the values of inputs and outputs as exact fractions, by component such as ("q", 2).
+    """A random point: the values of inputs and outputs as exact fractions, by component such as ("q", 2)."""
 
-    ``numbers`` is the arithmetic that evaluated the outputs. It holds the random values of functions, which the C text
-    must use too.
-    """
-
+    # holds the random values of functions, which the C text must use too
     numbers: AnyFunctions
     inputs: dict
     outputs: dict
@@ -1309,17 +1241,12 @@ def exact_point(specification):
 
 
 def check_formulas(name, kernel, data, point):
-    """Raise ValueError if the outputs of a C function differ from the formulas at a random point of exact fractions.
-
-    Functions and conditionals have random values at ``point``, so that equality there means equality as expressions.
-    The function ``kernel`` has one loop or two (see ``loops``). In the shape "spans", two loops compute different
-    outputs, so that each output must occur in exactly one loop. In the other shapes, each loop must compute all
-    outputs.
-    """
+    """Raise ValueError if the outputs of a C function differ from the formulas at a random, exact point."""
     need(
         kernel.parameters == expected_parameters(data, kernel.shape != "one sample"),
         f"arguments or loops of {name} differ: expected the inputs and outputs of the certificate, in their order",
     )
+    # functions and conditionals are random at the point, so that equality there means equality as expressions
     numbers, expected = point.numbers, point.outputs
     computed = {}
     for body in kernel.bodies:
@@ -1336,6 +1263,7 @@ def check_formulas(name, kernel, data, point):
                 f"{name} does not compute its formulas: expected {place[0]}[{place[1]}] to have the "
                 "value of the certificate's formula",
             )
+        # two loops over a span compute different outputs; in the other shapes each loop computes all outputs
         if kernel.shape == "spans":
             need(
                 not computed.keys() & outputs.keys(),
@@ -1371,15 +1299,13 @@ def hexadecimal(text, place):
 
 
 def point_of_box(data, specification, real):
-    """Return a random point of the box for which rounding errors are bounded, or None if no point can be drawn.
-
-    No point is drawn if the certificate has no bounds, if points of the box are excluded, or if the kernel has the
-    parameters of a scene.
-    """
+    """Return a random point of the box for which rounding errors are bounded, or None if no point can be drawn."""
+    # no bounds, or a scene's parameters
     if "rounding" not in data or data["spec"]["parameters"]:
         return None
     check_shape(data["rounding"], ROUNDING_SHAPE, "rounding")
     bounds = data["rounding"]
+    # points of the box are excluded
     if hexadecimal(bounds["clearance"], "rounding.clearance"):
         return None
     numbers = Decimals()
@@ -1409,12 +1335,9 @@ def point_of_box(data, specification, real):
 
 
 def check_rounding(name, kernel, point):
-    """Raise ValueError if a C function's error at a point of the box is larger than the certified bound.
-
-    The function is computed as C computes it, rounding by rounding, and compared with the exact formula at the same
-    inputs. A bound must hold at every point, so one point where it fails refutes it.
-    """
+    """Raise ValueError if a C function's error at a point of the box is larger than the certified bound."""
     machine = Machine(NEAREST[kernel.real])
+    # computed as C computes it, rounding by rounding; a bound that fails at one point is refuted
     for body in kernel.bodies:
         outputs, _ = run(body._replace(far=[]), machine, point.inputs)
         for place in outputs.keys() & point.bounds.keys():
@@ -1428,11 +1351,7 @@ def check_rounding(name, kernel, point):
 
 
 def check_precision(name, data, specification, kernels):
-    """Check the C functions for double or for float, for one sample and for many, against formulas and error bounds.
-
-    For the comparison, exact numbers replace the rounded constants, and functions replace the series that approximate
-    them.
-    """
+    """Check the C functions for double or float, for one sample and for many, against formulas and error bounds."""
     readback = data["readback"][name]
     real = readback["type"]
     need(
@@ -1443,6 +1362,7 @@ def check_precision(name, data, specification, kernels):
     for series in readback["series"]:
         functions = check_series(series, functions, real)
     point = at_a_point(lambda: exact_point(Specification(data, functions)))
+    # exact numbers replace the rounded constants, and functions the series that approximate them
     point.numbers.constants |= constants_of(readback, real)
     box_point = point_of_box(data, specification, real)
     for function, shapes in ((name, {"one sample"}), (f"{name}_batch", {"each sample", "spans", "blocks"})):
@@ -1490,10 +1410,8 @@ HEADER_END = """#ifdef __cplusplus
 
 
 def check_header(name, text, kernels):
-    """Raise ValueError if a header contains more than the known macros and a prototype of each function in the C file.
-
-    The C file includes the header, so another macro there could change the meaning of the C text.
-    """
+    """Raise ValueError if a header contains more than the known macros and the prototypes of the C file."""
+    # the C file includes the header, so another macro there could change the meaning of the C text
     text = without_comments(text, f"{name}.h holds what C may read in several ways")
     lines = [line.strip() for line in text.split("\n") if line.strip()]
     refusal = f"{name}.h holds more than prototypes: expected the macros of symrot and a prototype of each function"
@@ -1516,12 +1434,10 @@ def check_header(name, text, kernels):
 
 
 def check_banner(data, text):
-    """Raise ValueError if a C file's first comment (banner) lacks the name, title or command in the certificate.
+    """Raise ValueError if a C file's first comment (banner) lacks the name, title or command in the certificate."""
 
-    This reveals a renamed kernel if any file still has the old name. Only letters and digits are compared: banners
-    break lines, omit characters that would end a comment, and write other alphabets as codes such as <U+00E9>.
-    """
-
+    # Only letters and digits are compared: banners break lines, omit characters that would end a comment, and write
+    # other alphabets as codes such as <U+00E9>. A renamed kernel is revealed if any file still has the old name.
     def bare(words):
         return re.sub(r"<U\+[0-9A-F]{4,6}>|[^A-Za-z0-9]", "", "".join(words.split()))
 

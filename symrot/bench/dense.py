@@ -2,8 +2,8 @@
 
     python -m symrot.bench.dense [--samples 20000] [--rounds 15] [--motion NAME]
 
-heyoka runs by ``propagate_grid`` and by ``propagate_until`` with ``c_output``. Each run is compared with symrot's
-fastest run of at most its error, which is measured at the last sample against 40 digits.
+heyoka runs by ``propagate_grid`` and by ``propagate_until`` with ``c_output``. Each run of heyoka is compared with
+symrot's fastest run whose error is not larger. Errors are those of the last sample.
 """
 
 import argparse

@@ -1,15 +1,7 @@
 """The cache of compiled C: a library is compiled once, stored for the user, and later loaded without a compiler.
 
-An entry is a small file that names a library; its key consists of the source, the identity of the compiler (resolved
-path, size, modification time), the flags and the processor. The name of a library contains the checksum of its content,
-so a truncated or altered library is detected, and built again instead of loaded. Files appear by atomic rename, so any
-number of processes may build at once. The directory is private (mode 0700); a directory that belongs to another user,
-or that another user could replace, is not used. If the cache cannot be used, a temporary directory of this process
-replaces it, and :func:`cache` returns the reason.
-
-Environment variables: ``CC`` names the compiler. ``SYMROT_CACHE`` names the cache directory; if it is not set, the
-directory is ``XDG_CACHE_HOME/symrot``, or else the usual one of the platform. This module imports neither SymPy nor
-NumPy nor SciPy.
+The name of a library contains the checksum of its content, so a damaged one is built again. ``CC`` names the compiler,
+``SYMROT_CACHE`` the cache directory. If that is unusable, a temporary directory replaces it. No NumPy here.
 """
 
 import os
@@ -67,22 +59,18 @@ OWN_FILE = re.compile(r"(\w+-[0-9a-f]{32}\.(so|dll|dylib|index|text)|\.symrot-\w
 
 
 class Compiler(NamedTuple):
-    """A C compiler: the words of its command line, and a text that changes when its program or options change.
-
-    The text is a part of cache keys, so that another compiler never gets libraries of this one.
-    """
+    """A C compiler: the words of its command line, and a text that changes when its program or options change."""
 
     command: tuple[str, ...]
+    # a part of cache keys, so that another compiler never gets libraries of this one
     identity: str
 
 
 class Cache(NamedTuple):
-    """The directory that stores compiled libraries; ``reason`` is empty if it is the user's cache directory.
-
-    Otherwise the directory is a temporary one, and ``reason`` says why the user's cannot be used.
-    """
+    """The directory that stores compiled libraries: the user's, or a temporary one with the reason."""
 
     directory: Path
+    # why the user's directory cannot be used; empty if it is used
     reason: str
 
 
@@ -114,11 +102,9 @@ def missing() -> str:
 
 
 def cache(probe: bool = False) -> Cache:
-    """Return the cache directory in use: the user's, or a temporary one of this process, with the reason.
-
-    If ``probe`` is true, a small file is written first, so that a full disk is noticed; see :class:`Cache`.
-    """
+    """Return the cache directory in use: the user's, or a temporary one of this process, with the reason."""
     if probe:
+        # notices a full disk
         _keep(_text_name("probe"), b"")
     if _temporary.path is not None:
         return Cache(_temporary.path, _temporary.reason)
@@ -161,10 +147,7 @@ def built(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path | None
 
 
 class Building:
-    """A library that is being compiled in another thread, while the program does other work.
-
-    The arguments are those of :func:`build`; :meth:`path` waits for the result.
-    """
+    """A library that another thread compiles like :func:`build`; :meth:`path` waits for the result."""
 
     def __init__(self, source: str, name: str, flags: tuple[str, ...] = FLAGS) -> None:
         self._path: Path | None = built(source, name, flags)
@@ -205,13 +188,9 @@ class Building:
 
 
 def _thread(work: Callable[..., None], *arguments: object) -> Any:
-    """Return a thread, not yet started, that runs ``work(*arguments)``, a compilation.
-
-    All modules that the work needs are imported here first. A thread that imports a module waits for Python's import
-    lock. Ctrl-C during an import of the main thread can leave this lock locked for ever: then neither the thread nor
-    the
-    process, which waits for its threads, would end.
-    """
+    """Return a thread, not yet started, that runs ``work(*arguments)``, a compilation."""
+    # All modules that the work needs are imported here: Ctrl-C during an import of the main thread can leave Python's
+    # import lock locked, and then a thread that imports a module would never end.
     import atexit  # noqa: F401
     import shutil  # noqa: F401
     import tempfile  # noqa: F401
@@ -236,13 +215,11 @@ def _entry(tool: Compiler, source: str, name: str, flags: tuple[str, ...]) -> st
 
 
 def store(key: str, text: str) -> None:
-    """Store a small text in the cache under a key, which may be any string.
-
-    If the cache cannot be written, the text is stored only for this process.
-    """
+    """Store a small text in the cache under a key, which may be any string."""
     try:
         _keep(_text_name(key), f"{_digest(text)}\n{text}".encode())
     except CompilerError:
+        # only for this process
         _temporary.texts[key] = text
 
 
@@ -277,10 +254,10 @@ def _digest(text: str) -> str:
 
 
 def _which(program: str) -> str | None:
-    """Return the full path of the executable ``program``, searched on the path as a shell does; None if there is none.
-
-    The module shutil has such a function but is slow to import.
+    """Return the full path of the executable ``program``, searched on the path as a shell does; None if
+    there is none.
     """
+    # the module shutil has such a function but is slow to import
     endings = ("", ".exe") if sys.platform == "win32" else ("",)
     named = os.sep in program or (os.altsep is not None and os.altsep in program)
     for place in [""] if named else os.environ.get("PATH", os.defpath).split(os.pathsep):
@@ -299,10 +276,8 @@ def _identity(path: str, arguments: tuple[str, ...]) -> str:
 
 @cache_once
 def _processor() -> str:
-    """Return a text that identifies this computer's processor: family, model and features.
-
-    It is a part of cache keys, since code compiled with ``-march=native`` may not run on another processor.
-    """
+    """Return a text that identifies this computer's processor: family, model and features."""
+    # A part of cache keys: code compiled with -march=native may not run on another processor.
     try:
         with Path("/proc/cpuinfo").open(encoding="ascii", errors="replace") as stream:
             first = stream.read(16384).split("\n\n")[0]
@@ -317,10 +292,7 @@ def _processor() -> str:
 
 
 class _Temporary:
-    """The private cache directory of this process, for when the user's cannot be used.
-
-    It is created on first use and removed when the process ends.
-    """
+    """The private cache directory of this process, created on first use and removed when the process ends."""
 
     def __init__(self) -> None:
         self.path: Path | None = None
@@ -371,15 +343,11 @@ def _foreign(path: Path) -> str:
 
 @cache_once
 def _exposed(directory: Path) -> str:
-    """Return the reason why another user could replace the cache ``directory``, or an empty text if nobody could.
-
-    A user who may write to a directory may rename its entries, even entries of other users. In a sticky directory such
-    as ``/tmp``, only the owner of the entry, the owner of the directory and root may rename an entry. Therefore every
-    parent directory, with symbolic links followed and not followed, must belong to the user or to root, and must be
-    sticky if others may write to it.
-    """
+    """Return the reason why another user could replace the cache ``directory``, or an empty text if nobody could."""
     if not hasattr(os, "getuid"):
         return ""
+    # Who may write to a directory may rename its entries, even those of others; in a sticky directory such as /tmp,
+    # only the owner of the entry, the owner of the directory and root may.
     for path in dict.fromkeys((*directory.absolute().parents, *directory.resolve().parents)):
         for status in (path.lstat(), path.stat()):  # a symbolic link, and its target
             if status.st_uid not in (0, os.getuid()):
@@ -398,11 +366,7 @@ def _exposed(directory: Path) -> str:
 
 
 def _shared_group(group: int) -> bool:
-    """Return whether the group with the number ``group`` may have members other than the user.
-
-    A group is the user's own if it has the name of the user and no other members. If the system does not know the group
-    or the user, the result is True.
-    """
+    """Return whether a group may have members other than the user; True if the system does not know group or user."""
     import grp
     import pwd
 
@@ -410,14 +374,12 @@ def _shared_group(group: int) -> bool:
         user, members = pwd.getpwuid(os.getuid()), grp.getgrgid(group)
     except KeyError:
         return True
+    # the user's own group has the name of the user and no other members
     return members.gr_name != user.pw_name or not {user.pw_name}.issuperset(members.gr_mem)
 
 
 def _user_directory() -> tuple[Path, str]:
-    """Return the user's cache directory and a text: empty, or the reason why the directory cannot be used.
-
-    A missing directory is created.
-    """
+    """Return the user's cache directory, created if missing, and the reason why it cannot be used, or an empty text."""
     directory = _cache_directory() / CACHE_SUBDIR
     try:
         if not directory.is_dir():
@@ -425,6 +387,7 @@ def _user_directory() -> tuple[Path, str]:
                 place.mkdir(mode=0o700, exist_ok=True)
         reason = _foreign(directory) or _exposed(directory)
         if not reason and directory.stat().st_mode & 0o077:
+            # private, so that nobody else can add libraries
             directory.chmod(0o700)
         if not reason and not os.access(directory, os.W_OK):
             reason = f"{directory} cannot be written"
@@ -443,12 +406,9 @@ def _directories() -> list[Path]:
 
 
 def _read(path: Path) -> bytes | None:
-    """Return the content of the file ``path``, or None if it is missing, unreadable, or not to be trusted.
-
-    A file is not trusted if it belongs to another user, is a symbolic link, or is no regular file (:func:`_foreign`):
-    another user could have put foreign machine code into the cache.
-    """
+    """Return the content of the file ``path``, or None if it is missing, unreadable, or not to be trusted."""
     try:
+        # another user could have put foreign machine code into the cache
         return None if _foreign(path) else path.read_bytes()
     except OSError:
         return None
@@ -465,10 +425,7 @@ def _replace(path: Path, content: bytes) -> None:
 
 
 def _keep(name: str, content: bytes) -> Path:
-    """Write ``content`` into the cache as a file ``name`` and return its path.
-
-    If the user's cache cannot be written, the file is in the temporary directory of this process.
-    """
+    """Write ``content`` into the cache as a file ``name``, or else into the temporary directory; return its path."""
     if _temporary.path is None:
         directory, reason = _user_directory()
         if not reason:
@@ -495,16 +452,14 @@ def _library_name(name: str, content: bytes) -> str:
 
 
 def _sound_library(directory: Path, entry: str, name: str) -> Path | None:
-    """Return the path of the library that the file ``entry`` in ``directory`` names; None if it is missing or damaged.
-
-    A library is damaged if its content does not match the checksum in its name. ``name`` is the beginning of that name.
-    """
+    """Return the path of the library that the file ``entry`` names; None if it is missing or damaged."""
     pointer = _read(directory / entry)
     if pointer is None:
         return None
     library = pointer.decode("ascii", "replace").strip()
     if not OWN_FILE.match(library):
         return None
+    # damaged: not matching the checksum in its name
     content = _read(directory / library)
     return directory / library if content is not None and _library_name(name, content) == library else None
 

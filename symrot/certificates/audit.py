@@ -1,13 +1,8 @@
 """The audit of a certificate: it checks every statement against the certified files and symrot's own derivations.
 
-A certificate is a JSON file of statements about an emitted C kernel, with proofs. A check from the files alone
-(:mod:`symrot.certificates.exact_check`) comes first. The audit then checks that
-
-- the header holds nothing but prototypes, the C text performs the certified operations, and so do JavaScript and JAX;
-- symrot derives the same statements (formulas, laws and their proofs, domain, units, assumptions) for a kernel of that
-  name and proves them exactly, as identities of fractions of polynomials (:mod:`symrot.certificates.laws.laws`,
-  :mod:`symrot.certificates.laws.equality`), so that a correct certificate of another kernel is refused;
-- symrot computes the same bounds of the rounding errors on the certificate's box, the ranges of the inputs.
+A certificate is a JSON file of statements about an emitted C kernel, with proofs. After the check from the files alone
+(exact_check.py), symrot derives and proves the same statements again, so that a correct certificate of another kernel
+is refused.
 """
 
 import json
@@ -120,7 +115,7 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
         if not file.startswith("../") and not (path.parent / file).is_file():
             raise CertificateError(f"{path}: expected its file {file} in the same folder, but it is missing")
     try:
-        findings = [exact_check.check(path), *_audited(path, data, symrot_statement), *_compared(data)]
+        findings = [exact_check.check(path), *_audited(path, data, symrot_statement), *_unchecked_objects(data)]
         return data, [*findings, _bounds(path, data, (path.parent / f"{data['kernel']}.c").read_text(encoding="utf-8"))]
     except CertificateError:
         raise
@@ -129,12 +124,9 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
 
 
 def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | None]) -> list[str]:
-    """Check header, C text and statements of a certificate against symrot's own derivation.
-
-    Return one sentence for each check; raise CertificateError at the first that fails. The arguments are those of
-    :func:`audit`, with ``data``, the content of the certificate.
-    """
+    """Check header, C text and statements of a certificate against symrot's derivation; return the findings."""
     name = data["kernel"]
+    # CertificateError is raised at the first check that fails
     source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))
     check_header(header, source, name)
     _check_readback(data, source)
@@ -143,6 +135,7 @@ def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | N
         raise CertificateError(
             f"{path}: expected a certificate as symrot prints it, got another layout; emit the kernel again"
         )
+    # formulas, laws and their proofs, domain, units and assumptions, proven exactly in laws/
     statement = symrot_statement(data)
     if statement is None:
         return [
@@ -160,36 +153,27 @@ _READERS = {".js": compare_javascript, "_jax.py": compare_jax}
 
 
 def _check_others(path: Path, data: Data, source: str) -> list[str]:
-    """Return the findings on the JavaScript and the JAX text of a kernel, one sentence for each file that was compared.
-
-    Each text must perform the operations of the C text, ``source``; CertificateError is raised otherwise. ``data`` is
-    the content of the certificate at ``path``. A file that is not in the certificate's folder is left out, without a
-    sentence.
-    """
+    """Check the JavaScript and JAX files of a kernel against its C text; return a sentence for each file."""
     findings = []
     for ending, compare in _READERS.items():
         for file in data["files"]:
+            # a file that is not in the certificate's folder is left out
             if file.endswith(ending) and (path.parent / file).is_file():
                 compare((path.parent / file).read_text(encoding="utf-8"), data["kernel"], source, file)
                 findings.append(f"{file} performs the operations of the C text")
     return findings
 
 
-def _compared(data: Data) -> list[str]:
-    """Return a list of one sentence, which says that the verdicts on object code in a certificate were not checked.
-
-    The list is empty if the certificate ``data`` has no such verdicts. A verdict holds only for the machine where it
-    was made.
-    """
+def _unchecked_objects(data: Data) -> list[str]:
+    """Return one sentence, that verdicts on object code were not checked; an empty list without verdicts."""
+    # a verdict holds only for the machine where it was made
     finding = "its verdicts on object code were not checked: --object compares an object file of yours"
     return [finding] if data.get("objects") else []
 
 
 def _compare(path: Path, data: Mapping[str, Any], statement: Mapping[str, Any]) -> None:
-    """Raise CertificateError if a section of the certificate ``data`` differs from the same section of ``statement``.
-
-    ``statement`` holds the sections that symrot derives now, by name. ``path`` is for the message.
-    """
+    """Raise CertificateError if a section of the certificate ``data`` differs from that section of ``statement``."""
+    # ``statement`` holds the sections that symrot derives now
     for name, value in statement.items():
         if json.dumps(data[name]) != json.dumps(value):
             raise CertificateError(
@@ -198,14 +182,11 @@ def _compare(path: Path, data: Mapping[str, Any], statement: Mapping[str, Any]) 
 
 
 def _bounds(path: Path, data: Data, source: str) -> str:
-    """Return a sentence that says what was checked about the certificate's bounds of rounding errors.
-
-    CertificateError is raised if the bounds do not hold for ``source``, the C text, or are missing although symrot has
-    bounds for this kernel. ``data`` is the content of the certificate at ``path``.
-    """
+    """Return a sentence that says what was checked about the certificate's bounds of rounding errors."""
     section = data.get("rounding")
     own = library_section(data["kernel"], source) if is_kernel(data["kernel"]) else None
     if section is None:
+        # symrot has bounds for this kernel
         if isinstance(own, dict):
             raise CertificateError(
                 f"{path}: expected bounds of rounding errors, but the certificate has none; "
@@ -228,19 +209,13 @@ def _bounds(path: Path, data: Data, source: str) -> str:
 
 
 def operations_of(data: Data, source: str) -> dict[str, Operations]:
-    """Return a map from the name of each C function for one sample to the operations that were read from ``source``.
-
-    ``data`` is the content of the certificate, which names the functions; ``source`` is the text of its C file.
-    """
+    """Return the operations that each C function for one sample performs, by the function's name."""
+    # the certificate names the functions
     return {name: read_kernel(source, name, f"{data['kernel']}.c") for name in data["readback"]}
 
 
 def _check_readback(data: Data, source: str) -> None:
-    """Raise CertificateError if the section ``readback`` does not list the operations that the C text performs.
-
-    ``data`` is the content of the certificate, ``source`` the C text. The section states, for each function, the counts
-    and the digest of its operations and its constants.
-    """
+    """Raise CertificateError if the section ``readback`` does not list the operations that the C text performs."""
     where = f"{data['kernel']}.c"
     for name, stated in data["readback"].items():
         one, batch = read_kernel(source, name, where), read_batch(source, f"{name}_batch", where)
@@ -248,6 +223,7 @@ def _check_readback(data: Data, source: str) -> None:
         listed = [written for written, _ in stated["constants"]]
         series = [function for function, *_ in stated["series"]]
         end = "f" if stated["type"] == "float" else ""
+        # the section states, for each function, the counts and the digest of its operations and its constants
         checks = {
             "keys": list(stated) == ["type", "operations", "digest", "constants", "series"],
             "digests": one.digest() == batch.digest() == stated["digest"],

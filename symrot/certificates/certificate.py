@@ -1,11 +1,7 @@
 """The certificate of an emitted kernel: statements about its files, and their proofs, as JSON.
 
-The program ``recheck.py`` checks a certificate without symrot.
-
-Two statements are proven here from the printed files: the formulas obey their laws (identities such as "the norm is
-1"), and the C text computes the formulas; the proof of the second statement is called the readback. The sections about
-rounding errors and object code are added on request. The same kernel has the same certificate, byte for byte, on every
-machine.
+Two statements are proven here: the formulas obey their laws, such as "the norm is 1", and the C text computes the
+formulas (the readback). The program ``recheck.py`` checks a certificate without symrot.
 """
 
 import json
@@ -56,13 +52,11 @@ TRUSTED = {
 }
 
 
+# Sections about rounding errors and object code are added on request. The same kernel has the same certificate, byte
+# for byte, on every machine.
 @dataclass(frozen=True)
 class KernelUnderTest:
-    """A kernel to certify: the formulas and laws that its description states, and the printed files.
-
-    ``files`` maps each path, relative to the certificate, to the text of the file; ``types`` maps the suffix of a C
-    function's name to the type of its numbers, such as ``"f"`` to ``"float"``.
-    """
+    """A kernel to certify: the formulas and laws that its description states, and the printed files."""
 
     name: str
     title: str
@@ -71,7 +65,9 @@ class KernelUnderTest:
     outputs: tuple[tuple[Argument, tuple[Expr, ...]], ...]
     named: tuple[tuple[Symbol, Expr], ...]
     laws: tuple[Law, ...]
+    # path, relative to the certificate -> text of the file
     files: Mapping[str, str]
+    # suffix of a C function's name -> type of its numbers, such as "f" -> "float"
     types: Mapping[str, str]
     parameters: Mapping[str, Expr] = field(
         default_factory=dict
@@ -93,10 +89,7 @@ class KernelUnderTest:
 
 
 def _places(argument: Argument) -> list[tuple[str, tuple[str, str, str]]]:
-    """Return a pair for each component of an argument: its place in C, and (symbol, unit, description).
-
-    The place is ``"q[1]"``, for example; for an argument that is one number, it is the argument's name.
-    """
+    """Return each component of an argument as its name in C, such as ``"q[1]"``, and (symbol, unit, description)."""
     if argument.is_scalar:
         return [(argument.name, argument.components[0])]
     return [(f"{argument.name}[{i}]", component) for i, component in enumerate(argument.components)]
@@ -104,8 +97,6 @@ def _places(argument: Argument) -> list[tuple[str, tuple[str, str, str]]]:
 
 def certificate_text(kernel: KernelUnderTest) -> str:
     """Return the text of a kernel's certificate, in which every statement is proven.
-
-    Proofs are read from the cache if they were stored for the same statements by the same version of the provers.
 
     Raises
     ------
@@ -119,6 +110,7 @@ def certificate_text(kernel: KernelUnderTest) -> str:
         _prover_digest(),
     ]
     key = f"certificate {sha256(json.dumps(key_content).encode()).hexdigest()}"
+    # proofs are stored for the same statements and the same version of the provers
     proofs = proof_cache.fetch(key)
     if proofs is None:
         proofs = json.dumps(_proven(kernel))
@@ -135,19 +127,14 @@ PROVERS = (
 
 @cache
 def _prover_digest() -> str:
-    """Return the SHA-256 of the source files in ``PROVERS``, which make the proofs.
-
-    It is a part of the key of each proof in the cache, so that a proof by other sources is not used.
-    """
+    """Return the SHA-256 of the source files that make the proofs."""
     here = Path(__file__).parent
+    # part of the key of each proof in the cache, so that a proof by other sources is not used
     return sha256(b"".join((here / f"{name}.py").read_bytes() for name in PROVERS)).hexdigest()
 
 
 def unproven_statement(kernel: KernelUnderTest) -> Data:
-    """Return the parts of a kernel's certificate that need no proof, as data for JSON.
-
-    They are description, domain, formulas, hashes of the files, assumptions and compiler flags.
-    """
+    """Return the parts of a kernel's certificate that need no proof, such as formulas and hashes of the files."""
     description = kernel.description
     return {
         "schema": SCHEMA,
@@ -172,10 +159,7 @@ def unproven_statement(kernel: KernelUnderTest) -> Data:
 
 
 def _functions(formulas: Sequence[Expr]) -> list[list[str]]:
-    """Return the definitions of the functions with a removable singularity that occur in the formulas, as text by name.
-
-    Such a function, for example sin(x)/x, has a limit where its formula divides by zero.
-    """
+    """Return pairs (name, definition) of the functions in the formulas that are 0/0 at a point, such as sin(x)/x."""
     x, y = (Symbol(name, real=True) for name in "xy")
     names = {type(call).__name__ for formula in formulas for call in formula.atoms(Function)}
     texts = {}
@@ -189,19 +173,13 @@ def _functions(formulas: Sequence[Expr]) -> list[list[str]]:
 
 
 def proven_statement(kernel: KernelUnderTest) -> Data:
-    """Prove all statements about a kernel, and return them as the data of a certificate.
-
-    An audit compares them with the content of a certificate's file. The data have no optional sections (bounds of
-    rounding errors, verdicts on object code) and no seal (the hash of the content).
-    """
+    """Prove all statements about a kernel, and return them as the data of a certificate without its seal."""
+    # an audit compares the data with a certificate's file; they have no optional sections (bounds, object code)
     return {key: value for key, value in json.loads(certificate_text(kernel)).items() if key != "seal"}
 
 
 def _proven(kernel: KernelUnderTest) -> Data:
-    """Return the sections ``laws`` and ``readback`` of a kernel's certificate, with their proofs.
-
-    The first proves that the formulas obey their laws, the second that the C text computes the formulas.
-    """
+    """Return the sections ``laws`` and ``readback`` of a kernel's certificate, with their proofs."""
     known = {str(symbol): value for symbol, value in kernel.named} | dict(kernel.formulas.values())
     return {
         "laws": [_law(prove_law(kernel.name, law, known)) for law in kernel.laws],
@@ -232,11 +210,8 @@ def _as_lists(value: Any) -> Any:
 
 
 def _readback(kernel: KernelUnderTest, suffix: str, real: str) -> Data:
-    """Return the ``readback`` entry of one C function: its operations, and the proof that they compute the formulas.
-
-    ``suffix`` is the end of the function's name, such as ``"f"``, and ``real`` the type of its numbers, such as
-    ``"float"``. CertificateError is raised if the proof fails.
-    """
+    """Return the ``readback`` entry of one C function: its operations, and the proof that they give the formulas."""
+    # ``suffix`` is the end of the function's name, such as "f", and ``real`` the type of its numbers, such as "float"
     name, file = f"symrot_{kernel.name}{suffix}", f"{kernel.name}.c"
     text = kernel.files[file]
     one, batch = read_kernel(text, name, file), read_batch(text, f"{name}_batch", file)
@@ -291,14 +266,11 @@ OPTIONAL_SECTIONS: dict[str, Callable[[Data, Any], bool]] = {  # section -> whet
 
 
 def with_sections(text: str, sections: Mapping[str, Any]) -> str:
-    """Return the text of a certificate to which bounds of rounding errors or verdicts on object code are added.
-
-    ``text`` is the certificate without them; ``sections`` maps ``"rounding"`` or ``"objects"`` to the content of that
-    section, or to None. A section about an earlier version of the kernel's C text is left out.
-    """
+    """Return the certificate ``text`` with the optional ``sections`` added, such as ``"rounding"``."""
     data = json.loads(text)
     for name, is_about in OPTIONAL_SECTIONS.items():
         try:
+            # a section about an earlier version of the C text is left out
             if sections.get(name) is not None and is_about(data, sections[name]):
                 data[name] = sections[name]
         except (KeyError, TypeError, AttributeError):
@@ -307,10 +279,8 @@ def with_sections(text: str, sections: Mapping[str, Any]) -> str:
 
 
 def certificate_json(data: Data) -> str:
-    """Return a certificate as JSON text; its last entry is the seal, a SHA-256 of all the other entries.
-
-    A seal in ``data`` is ignored and computed again.
-    """
+    """Return a certificate as JSON text; its last entry is the seal, a SHA-256 of all the other entries."""
+    # a seal in ``data`` is ignored and computed again
     sealed = {key: value for key, value in data.items() if key != "seal"}
     return _layout(sealed | {"seal": seal(sealed)}) + "\n"
 
@@ -319,10 +289,8 @@ WIDTH = 118
 
 
 def _layout(value: Any, indent: int = 0, key: str = "") -> str:
-    """Return a value as JSON text; an object or list that fits on one line is written on one line.
-
-    ``indent`` is the number of blanks before the value's lines; ``key`` is its key, which takes room on the first line.
-    """
+    """Return a value as JSON text, in which an object or list that fits on one line is written on one line."""
+    # ``indent`` blanks come before the value's lines; its ``key`` takes room on the first line
     flat = json.dumps(value, ensure_ascii=False)
     if len(flat) + indent + len(key) <= WIDTH or not isinstance(value, (dict, list)) or not value:
         return flat

@@ -1,13 +1,7 @@
 """An exact check of certificates from their files alone; ``symrot audit`` begins with it.
 
-The module checks every hash, that the C text computes the formulas, and that the formulas obey their laws (identities
-such as "the norm is 1"). It evaluates both sides of each equation in exact arithmetic; every variable, and every
-function call such as sin(x), gets a random integer of 128 bits as its value. A wrong equation of degree d passes with a
-probability of about d/2^128. The laws are proven with the cases, steps and cofactors that the certificate stores
-(:mod:`symrot.certificates.laws.laws`). ``recheck.py``, which evaluates numbers and reads no proofs, shares only the
-check of seal and hashes with this module. Headers are checked by hash alone. All other statements of a certificate
-(titles and units, counts and digests of operations, flags, theorems, bounds of rounding errors, object code) are not
-checked here.
+It checks every hash, that the C text computes the formulas, and that the formulas obey their laws. It evaluates both
+sides of each equation in exact arithmetic, where each variable and function value is a random integer of 128 bits.
 """
 
 import ast
@@ -88,26 +82,24 @@ def nearest(value, real):
     return round(value * scale) / scale
 
 
+# A wrong equation of degree d passes with a probability of about d/2^128. Laws are proven with the cases, steps and
+# cofactors that the certificate stores (laws/laws.py). recheck.py, which evaluates numbers and reads no proofs, shares
+# only the check of seal and hashes. Headers are checked by hash alone. Titles, units, counts and digests of operations,
+# flags, theorems, rounding bounds and object code are not checked here.
 class RandomIntegers(defaultdict):
-    """A dictionary of values at which formulas are compared: each new key gets a random integer.
+    """A dictionary that gives each new key a random integer, as the value of a variable or a function call."""
 
-    A key is the name of a variable, or a function with the values of its arguments, so that equal calls have equal
-    values.
-    """
-
+    # a function's key contains the values of its arguments, so that equal calls have equal values
     def __missing__(self, key):
         return self.setdefault(key, Fraction(secrets.randbits(128)))
 
 
 class Evaluator:
-    """An evaluator of formulas, or of C expressions; the values are exact fractions in both cases.
+    """An evaluator of formulas, or of C expressions; the values are exact fractions in both cases."""
 
-    ``real`` is empty for formulas. For C expressions it is ``"double"`` or ``"float"``: literals must have this C type,
-    and are rounded to it; ``constants`` maps a rounded literal to the exact number for which it stands, such as 1/3.
-    Sums and products are not rounded. ``names`` maps variables to values, and ``functions`` maps a function's name with
-    the values of its arguments to the value of the function.
-    """
-
+    # ``real``: "double" or "float" for C, to which literals are rounded (sums are not); empty for formulas.
+    # ``constants``: rounded literal -> the exact number for which it stands, such as 1/3. ``functions``: (name, *values
+    # of arguments) -> value
     def __init__(self, names, functions, real="", calls=None, constants=(), cases=None):
         self.names, self.functions, self.real, self.calls = names, functions, real, calls
         self.constants, self.cases, self.limited_angles = dict(constants), cases, set()
@@ -171,11 +163,8 @@ class Evaluator:
         return self.functions[name, *values]
 
     def run(self, body, places, targets=()):
-        """Evaluate ``body``, C statements; return the value of ``return``, or else a map from each target to its value.
-
-        ``places`` maps the input names that may be read to their values; ``targets`` are the outputs to assign, such as
-        ``"q[1]"``.
-        """
+        """Evaluate C statements; return the value of ``return``, or else a map from each target to its value."""
+        # ``places``: inputs that may be read -> values; ``targets``: outputs to assign, such as "q[1]"
         self.names, results, statements = dict(places), {}, body.split(";")
         require(not statements.pop().strip(), f"expected a semicolon at the end, got {body[-60:]!r}")
         for place, statement in enumerate(statements, 1):
@@ -238,10 +227,7 @@ class KernelCheck:
         self.constants = dict(map(self.constant, self.readback["constants"]))
 
     def constant(self, pair):
-        """Check that a constant of the C text is an exact number, rounded; return both numbers.
-
-        ``pair`` holds the two as text: the number in the C text, and the exact number, such as ``1/3`` or ``1/2*pi``.
-        """
+        """Check that a constant of the C text is an exact number, such as 1/3 or pi/2, rounded; return both."""
         written, exact = Fraction(pair[0]), Fraction(pair[1].removesuffix("*pi"))
         times_pi = pair[1].endswith("*pi")
         require(
@@ -251,15 +237,12 @@ class KernelCheck:
         return written, exact * self.symbols["pi"] if times_pi else exact
 
     def run(self, body, places, targets=(), tested=()):
-        """Run ``body``, the body of a C function, at given inputs; return the values that it assigns or returns.
-
-        ``places`` and ``targets`` are as for :meth:`Evaluator.run`. Functions such as ``symrot_sin`` are accurate only
-        for angles of limited size. ``tested`` are the angles (C expressions) whose size the C text tests; ValueError is
-        raised if ``body`` calls such a function for another angle.
-        """
+        """Return the values that the body of a C function assigns or returns, at given inputs."""
         reader = Evaluator({}, self.functions, self.real, self.calls, self.constants if targets else ())
         computed = reader.run(body, places, targets)
         require(
+            # functions such as symrot_sin are accurate only for small angles: the C text must test the angle
+            # (``tested``)
             reader.limited_angles <= set(map(reader.read, tested)),
             f"{self.name} calls a function of limited range for an angle that the C text does not test",
         )
@@ -314,10 +297,7 @@ class KernelCheck:
         self.compare([again], batch, map(of_sample, self.outputs))
 
     def compare(self, bodies, places, targets, tested=()):
-        """Check that the bodies of C functions assign to each target, such as ``"q[1]"``, the value of its formula.
-
-        The other arguments are as for :meth:`run`; ``targets`` are in the order of the outputs.
-        """
+        """Check that the bodies of C functions assign to each target, such as ``"q[1]"``, the value of its formula."""
         targets, computed = [*targets], {}
         for body in bodies:
             computed |= self.run(body, places, [target for target in targets if target not in computed], tested)
@@ -328,11 +308,7 @@ class KernelCheck:
             )
 
     def check_own(self, function, bare):
-        """Check that a helper function of the C file computes its formula, or an accurate series near zero.
-
-        ``function`` is its name in the C text, and ``bare`` the name of the function that it computes, such as
-        ``sinc``.
-        """
+        """Check that a ``function`` defined in the C file computes ``bare``, such as sinc, or its accurate series."""
         (explicit, case), (_, _, arguments, body) = SAFE[bare], self.c_functions[function]
         for _, split, coefficients, rest in (each for each in self.readback["series"] if each[0] == bare):
             taylor = [(-1) ** k * TAYLOR[bare](k) for k in range(len(coefficients) + 1)]
@@ -365,12 +341,10 @@ class FloatFunctions(dict):
 
 
 def hypotheses(values):
-    """Return polynomials that are all zero if the values form a unit vector, unit quaternion or rotation matrix.
-
-    Nine values are a matrix, row by row; fewer are a vector or quaternion; without values the list is empty.
-    """
+    """Return polynomials that are all zero if the values form a unit vector, unit quaternion or rotation matrix."""
     if len(values) != 9:
         return [sum(each**2 for each in values) - 1] if values else []
+    # nine values: a matrix, row by row
     rows, pairs = [values[:3], values[3:6], values[6:]], [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]
     columns = [[row[k] for row in rows] for k in range(3)]
     normal = [sum(map(operator.mul, of[i], of[j])) - (i == j) for of in (columns, rows) for i, j in pairs]
@@ -380,25 +354,23 @@ def hypotheses(values):
 
 
 def prove(law, case, formulas):
-    """Check the stored proof of a law in one case; raise ValueError if it is wrong.
-
-    An entry is an expression that the law states to be zero; a relation is a polynomial that is known to be zero. The
-    proof gives a factor and cofactors: entry times factor must be the sum of the cofactors times their relations. A
-    factor must not be zero, and a cofactor must be finite, at the witness, a stored point where the hypotheses of the
-    law hold; this excludes a hidden division by zero.
-    """
+    """Check the stored proof of a law in one case; raise ValueError if it is wrong."""
     witness = {name: Fraction(text) for name, text in law["witness"].items()} | {"pi": PI}
     there, reader = (
         Evaluator(witness, FloatFunctions(), cases={}),
         Evaluator(RandomIntegers(), RandomIntegers(), cases={}),
     )
+    # relations are polynomials that are known to be zero
     relations, roots = hypotheses([*map(reader.read, law["given"])]), set()
     require(
         not any(hypotheses([*map(there.read, law["given"])])),
         "expected the hypotheses of the law to hold at its witness (a stored point), but they do not",
     )
 
+    # value (an expression that the law states to be zero) times factor must be the sum of cofactors times relations
     def combined(value, factor, cofactors):
+        # no hidden division by zero: at the witness, where the hypotheses hold, factors are not zero and cofactors
+        # finite
         holds = abs(there.read(factor)) > 1e-6 and all(abs(there.read(text)) < 1e6 for _, text in cofactors)
         total = sum(reader.read(text) * relations[place] for place, text in cofactors)
         return holds and value * reader.read(factor) == total
@@ -462,24 +434,20 @@ def prove(law, case, formulas):
 
 
 def complete(cases):
-    """Return whether the cases of a law's proof cover both branches of every conditional in the formulas.
-
-    A case is a list of choices ``[left, relation, right]``, where the relation is ``<`` or ``>=``.
-    """
+    """Return whether the cases of a law's proof cover both branches of every conditional in the formulas."""
     if not cases or not cases[0]:
         return len(cases) == 1
+    # a case is a list of choices [left, relation, right], with the relation "<" or ">="
     left, _, right = cases[0][0]
     branches = [[case[1:] for case in cases if case and case[0] == [left, sign, right]] for sign in ("<", ">=")]
     return len(cases) == sum(map(len, branches)) and all(map(complete, branches))
 
 
 def functions_of(text, name, files):
-    """Return the functions in a C text, by name: tuples (is it static, type, arguments, body).
-
-    ``name`` is the kernel and ``files`` the certified files, which decide the includes that the text may have.
-    """
+    """Return the functions in a C text, by name: tuples (is it static, type, arguments, body)."""
     odd = re.search(r"\\|\?\?|//|[\0-\x09\x0b-\x1f]", text)
     require(not odd, f"expected no backslash, trigraph, // comment or control character, got {odd and odd[0]!r}")
+    # the certified files decide the includes that the text may have
     known = ["#include <math.h>", f'#include "{name}.h"', *['#include "symrot_math.h"'] * ("symrot_math.h" in files)]
     lines = [line for line in re.sub(r"/\*.*?\*/", " ", text, flags=re.S).split("\n") if line.strip() not in known]
     functions, (*chunks, end) = {}, re.split(r"^\}$", "\n".join(lines), flags=re.M)
@@ -497,10 +465,8 @@ def functions_of(text, name, files):
 
 
 def check(path):
-    """Check the certificate at ``path`` and its files exactly; return one line that lists the checks.
-
-    A failed check raises an exception whose type is in ``REFUSALS``; :func:`sentence` makes a message of it.
-    """
+    """Check the certificate at ``path`` and its files exactly; return one line that lists the checks."""
+    # a failed check raises an exception whose type is in REFUSALS
     path = Path(path)
     data = recheck.certified(path)
     name, files, spec, readback = data["kernel"], data["files"], data["spec"], data["readback"]

@@ -1,11 +1,7 @@
 """The effect of compiler flags on a certificate: bits and error bounds hold, only the bounds hold, or nothing holds.
 
 A certificate is about the operations of the C text, each rounded once to nearest. A flag that lets the compiler round
-elsewhere makes the certificate void. Contraction (a*b + c rounded once) removes roundings: the bits of the results
-change, but the error bounds hold, unless a product is fused in some places and rounded in others, so that its errors no
-longer cancel. The table of flags follows the compilers' manuals; a comparison of object code
-(:mod:`symrot.certificates.object_code.comparison`) shows what the flags changed in one compiled file. Only the standard
-library is used.
+elsewhere makes it void. With contraction (a*b + c rounded once) only the error bounds hold.
 """
 
 import re
@@ -41,12 +37,12 @@ CONTRACTION = (
 UNFIXED = "without it a compiler may contract a*b + c where the processor has it, and bits change"
 
 
+# Contraction makes even the bounds void if a product is fused in some sums and rounded in others, so that its errors no
+# longer cancel. The table follows the compilers' manuals; object_code/comparison.py shows what the flags changed in one
+# file.
 @dataclass(frozen=True)
 class FlagRule:
-    """A row of the table of compiler flags: a pattern of flags, and the properties of code that they switch on or off.
-
-    An example of a property is contraction, the fusion of a product and a sum into one rounding.
-    """
+    """The effect of a compiler flag: properties of the code that it switches on or off, such as contraction."""
 
     form: str  # regular expression that matches the whole flag
     reason: str
@@ -144,34 +140,25 @@ _FILE = re.compile(r"[^@].*\.(?:c|cc|cpp|cxx|h|o|a|so|s|S|d|i|ii|obj|exe|lib|dll
 
 @dataclass(frozen=True)
 class FlagRemark:
-    """A remark about one compiler flag that is set, or missing, in a compiler command.
-
-    ``effect`` says what is still proven for the compiled code in spite of this flag. "bits": results are the same, bit
-    for bit, as those of the C text. "bounds": results may differ in bits, but the proven error bounds hold. "nothing":
-    neither is proven. ``reason`` says why.
-    """
+    """A remark about one compiler flag that is set, or missing, in a compiler command."""
 
     flag: str
+    # what is still proven: "bits" (same results as the C text), "bounds" (only the error bounds) or "nothing"
     effect: str
     reason: str
 
 
 @dataclass(frozen=True)
 class FlagEffect:
-    """The effect of all flags of a compiler command: whether "bits", "bounds" or "nothing" still holds, with remarks.
-
-    "bits": the code computes the same bits as the C text; "bounds": only the error bounds hold.
-    """
+    """The effect of a command's compiler flags: "bits", "bounds" or "nothing" still holds, with remarks."""
 
     holds: str
     remarks: tuple[FlagRemark, ...]
 
     @property
     def accepted(self) -> bool:
-        """Whether the proven error bounds hold for code that is compiled with these flags.
-
-        Results may still differ in single bits from those of the C text (``holds`` is then "bounds").
-        """
+        """Whether the proven error bounds hold for code that is compiled with these flags."""
+        # if ``holds`` is "bounds", results may differ in bits
         return self.holds != NOTHING
 
     def sentence(self) -> str:
@@ -190,9 +177,7 @@ class FlagEffect:
 
 
 def classify_flags(flags: str | Sequence[str]) -> FlagEffect:
-    """Return what still holds of a certificate if its C text is compiled by a gcc or clang command with these flags.
-
-    A later flag overrides an earlier flag.
+    """Return what still holds of a certificate if its C text is compiled by gcc or clang with these flags.
 
     Parameters
     ----------
@@ -231,6 +216,7 @@ def classify_flags(flags: str | Sequence[str]) -> FlagEffect:
             continue
         rule = _rule(word)
         place += rule.takes_next
+        # a later flag overrides an earlier flag
         for name in rule.clears:
             switched.pop(name, None)
         switched |= dict.fromkeys(rule.sets, word)
@@ -247,12 +233,9 @@ def classify_flags(flags: str | Sequence[str]) -> FlagEffect:
 
 
 def _compiler(words: Sequence[str]) -> tuple[str, int]:
-    """Return the compiler's name at the start of a command, or an empty text, and the index of the first flag.
-
-    ``words`` is the command; a launcher such as ``ccache`` may come before the compiler. InputError is raised for
-    another compiler than gcc and clang.
-    """
+    """Return the compiler's name at the start of a command, or ``""``, and the index of the first flag."""
     names = [re.split(r"[/\\]", word)[-1] for word in words[:2]]
+    # a launcher such as ccache may come first
     place = 1 if names[0] in LAUNCHERS and len(names) > 1 else 0
     if words[place].startswith("-") or _FILE.fullmatch(words[place]):
         return "", place
@@ -270,10 +253,7 @@ def _check_file(word: str) -> None:
 
 
 def _rule(flag: str) -> FlagRule:
-    """Return the rule for a compiler flag: which properties of the code it changes.
-
-    InputError is raised for a flag that is not in the table.
-    """
+    """Return which properties of the code a compiler flag changes; raise InputError for an unknown flag."""
     for rule in TABLE:
         if re.fullmatch(rule.form, flag):
             return rule

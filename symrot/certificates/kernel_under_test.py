@@ -54,10 +54,10 @@ def scene_kernel_under_test(
 ) -> KernelUnderTest:
     """Return the kernel of a scene's equations of motion with all that its certificate states.
 
-    ``parameters`` gives the kernel's arguments that stand for formulas in the scene's physical constants; ``outputs``
-    are the formulas of the rates and of their derivatives, by component; ``named`` are the named quantities that occur
-    in these formulas, each with its formula.
+    ``outputs`` maps components to formulas of rates and their derivatives.
     """
+    # ``parameters`` are arguments that stand for formulas in physical constants; ``named`` are quantities in the
+    # formulas
     inputs = tuple(a for a in program.signature.arguments if a.role == "in" and a.size)
     targets = (a for a in program.signature.arguments if a.role == "out")
     results = tuple((a, tuple(outputs[component] for component, *_ in a.components)) for a in targets)
@@ -74,11 +74,7 @@ def _expression(node: Node) -> Expr:
 
 
 def _derivative_laws(equations: Equations, outputs: Sequence[str]) -> tuple[Law, ...]:
-    """Return a tuple of one law: outputs that are derivatives equal the exact derivatives of the rates.
-
-    ``outputs`` are the names of the output components. ``domega_1_by_A`` is the derivative by A of the rate
-    ``domega_1``. The tuple is empty if no output is a derivative.
-    """
+    """Return one law: outputs that are derivatives, such as ``domega_1_by_A``, equal the exact derivatives."""
     rates = {f"d{state}": rate for state, rate in zip(equations.states, equations.explicit_rates, strict=True)}
     vanishing = []
     for output in outputs:
@@ -88,6 +84,7 @@ def _derivative_laws(equations: Equations, outputs: Sequence[str]) -> tuple[Law,
             symbols = {str(symbol): symbol for symbol in formula.free_symbols}
             slope = exact_derivative(formula, symbols[variable]) if variable in symbols else 0
             vanishing.append(constant(output) - slope)
+    # no law if no output is a derivative
     return (Law("the derivatives are those of the rates", tuple(vanishing)),) if vanishing else ()
 
 
@@ -99,13 +96,8 @@ class _ConstantsByName(dict[str, Symbol]):
 
 
 def scene_laws(equations: Equations) -> tuple[Law, ...]:
-    """Return the laws that the rates (the time derivatives of a scene's states) obey, as implicit equations.
-
-    They are the equations of motion before they are solved for the rates, so they also check the solution.
-
-    ``I domega/dt + omega x (I omega + h)`` equals the torque in every component, even where a component of ``omega``
-    is constant and therefore not a state; and ``dq/dt`` equals ``q (0, omega) / 2``.
-    """
+    """Return the laws that the rates (time derivatives of a scene's states) obey, as implicit equations."""
+    # the equations of motion before they are solved for the rates, so that the laws also check the solution
     motion = equations.motion
     rate = {state: constant(f"d{state}") for state in equations.states}
     relations = tuple(equations.relations)
@@ -113,6 +105,7 @@ def scene_laws(equations: Equations) -> tuple[Law, ...]:
     if any(state in omega_b for state in equations.states):
         torque = reduce(add, (law.torque for law in equations.laws), zeros(3, 1))
         acceleration = Matrix([rate.get(w, 0) for w in omega_b])
+        # in every component, even where a component of omega is constant and therefore not a state
         balance = motion.inertia * acceleration + motion.omega_b.cross(equations.momentum_b) - torque
         laws.append(Law("I domega/dt + omega x (I omega + h) is the torque", tuple(balance), relations))
     if motion.quaternion is not None and (quaternion_states := [s for s in equations.states if s not in omega_b]):

@@ -1,8 +1,8 @@
 """The self-test: check that this machine's C functions and arithmetic are as accurate as the certificates assume.
 
-``symrot emit --all`` prints ``symrot_selftest.c`` and ``.h`` into the folder of the kernels, with values of sine,
-cosine, arc tangent and square root that mpmath computed to 60 digits and rounded once. ``symrot selftest`` compiles the
-same text and runs it inside this process, so that it detects a loaded library that changed the arithmetic.
+``symrot selftest`` compiles ``symrot_selftest.c``, which holds values of sine, cosine, arc tangent and square root to
+60 digits (by mpmath), rounded once. It runs inside this process, so that it detects a loaded library that changed the
+arithmetic.
 """
 
 import ctypes
@@ -38,20 +38,15 @@ CHECKS: tuple[tuple[str, str], ...] = (
 
 @dataclass(frozen=True)
 class _CheckedFunction:
-    """A function of libm to test: name, allowed error, and a generator of test arguments (y, x) with a given precision.
-
-    Functions of one argument use x alone.
-    """
+    """A function of libm to test: name, allowed error, and a generator of test arguments (y, x)."""
 
     name: str
     allowed: Fraction  # ulp
+    # of a precision in binary digits; functions of one argument use x alone
     arguments: Callable[[Random, int], Iterator[tuple[float, float]]]
 
     def sentence(self, suffix: str) -> str:
-        """Return the sentence that reports that the libm function of this entry failed its test.
-
-        ``suffix`` is "" for the function for doubles, such as sin, and "f" for that for floats, sinf.
-        """
+        """Return the sentence that this function of libm, with the suffix ``"f"`` for floats, failed its test."""
         if self.allowed == CORRECT:
             return f"expected {self.name}{suffix} to be rounded correctly: on this machine it is not"
         return (
@@ -61,18 +56,15 @@ class _CheckedFunction:
 
 
 def _angles(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Yield angles x up to 1e6 rad at which sine and cosine are tested, as pairs (0, x).
-
-    The angles are near multiples of pi/2, and random. Tests of all functions take pairs (y, x); sine and cosine ignore
-    y = 0. Each x has ``digits`` binary digits. Near multiples of pi/2 the reduction of an angle loses digits. Beyond
-    1e6 rad libraries are less accurate: the cosine of glibc 2.36 has an error of 8 ulp at 6381956970095103*2^797.
-    """
+    """Yield test angles x for sine and cosine, up to 1e6 rad, as pairs (0, x) of ``digits`` binary digits."""
     from mpmath import mp, mpf
 
+    # near multiples of pi/2 the reduction of an angle loses digits
     for multiple in (1, 2, 3, 4, 5, 8, 21, 355 // 2, 1000, 102573):
         yield 0.0, _rounded(mpf(multiple) * mp.pi / 2, digits)
     for exponent in (-40, -27, -12, -9, -4):
         yield 0.0, _rounded(mpf(2) ** exponent * (1 + mpf(random.random())), digits)
+    # beyond 1e6 rad libraries are less accurate: glibc 2.36's cosine errs by 8 ulp at 6381956970095103*2^797
     for size in (1.0, 3.2, 6.4, 100.0, 1e4, 1e6):
         for _ in range(4):
             yield 0.0, _rounded(mpf(random.uniform(-size, size)), digits)
@@ -91,10 +83,7 @@ def _sides(random: Random, digits: int) -> Iterator[tuple[float, float]]:
 
 
 def _radicands(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Yield pairs (0, x) that test the square root, with x random, positive, and of ``digits`` binary digits.
-
-    Every test takes a pair of arguments, as for atan2; the square root ignores the first.
-    """
+    """Yield pairs (0, x) that test the square root, with x random, positive, and of ``digits`` binary digits."""
     from mpmath import mpf
 
     for _ in range(POINTS):
@@ -119,13 +108,10 @@ def _rounded(value: Any, digits: int) -> float:
 
 
 def _point(name: str, suffix: str, y: float, x: float) -> str:
-    """Return a row of a C table of test points: y, x, the exact value rounded, its error in ulp, the size of an ulp.
-
-    ``name`` is the function, such as ``atan2``, and ``suffix`` is ``"f"`` for float or empty for double. An ulp is the
-    distance between neighbouring numbers.
-    """
+    """Return a row of a C table of test points: y, x, the rounded exact value, its error in ulp, and the ulp."""
     from mpmath import floor, log, mp, mpf
 
+    # an ulp is the distance between neighbouring numbers
     digits, smallest = FORMATS[suffix]
     exact = mp.atan2(mpf(y), mpf(x)) if name == "atan2" else getattr(mp, name)(mpf(x))
     ulp = mpf(2) ** (max(int(floor(log(abs(exact), 2))), smallest) - digits + 1)
@@ -209,13 +195,12 @@ def _header() -> str:
 
 @dataclass(frozen=True)
 class SelfTest:
-    """The result of the self-test: whether it ``passed``, a ``sentence`` that says so, and each function's worst error.
-
-    ``ulps`` maps the name of a function to its worst error, in ulp.
-    """
+    """The result of the self-test."""
 
     passed: bool
+    # says whether it passed
     sentence: str
+    # function -> its worst error, in ulp
     ulps: dict[str, float]
     compiler: str
     flags: tuple[str, ...]

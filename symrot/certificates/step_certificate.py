@@ -1,13 +1,7 @@
 """The certificate of an emitted time step: its C text computes the formula of its method, for any state and size.
 
-The formula is the method applied to the derived rates. It has too many terms to be expanded, so C text and formula are
-both computed at random points, exactly, in the field of integers modulo a prime. There, functions such as sin are
-random functions. If the two differ as rational functions of degree d, they agree at a random point with a probability
-of at most ``2 d/PRIME``. The points follow from the hash of the C text, so that the certificate is the same everywhere.
-
-The certificate states the rates, so that it can be audited without the scene. For a box of states and step sizes it may
-also bound the errors of one step: rounding (:mod:`symrot.certificates.rounding`) and truncation
-(:mod:`symrot.certificates.truncation`).
+The formula, the method applied to the derived rates, is too long to expand. So C text and formula are computed at
+random points, exactly, as residues: integers modulo a prime. Functions such as sin are random functions there.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -76,14 +70,16 @@ class StepUnderTest:
     files: Mapping[str, str]
 
 
+# Two rational functions of degree d that differ agree at a random point with a probability of at most 2 d/PRIME. The
+# points follow from the hash of the C text, so that the certificate is the same everywhere. The certificate states the
+# rates, so that it can be audited without the scene. For a box of states and step sizes it may also bound the errors of
+# one step: rounding (rounding/) and truncation (truncation.py).
 @dataclass(frozen=True)
 class _Residue:
-    """The value, modulo PRIME, of a rational function at a random point, with a bound of the function's degree.
-
-    The larger the degree, the more probable it is that two different functions agree at the point.
-    """
+    """The value, modulo PRIME, of a rational function at a random point, with a bound of the function's degree."""
 
     value: int
+    # the larger, the more probable it is that two different functions agree at the point
     degree: int = 0
 
     @staticmethod
@@ -135,10 +131,8 @@ def _digest_number(*parts: object) -> int:
 
 
 def _function(name: str) -> Callable[..., _Residue]:
-    """Return a function of residues, numbers modulo PRIME, that stands for a function such as sine.
-
-    Its values are random numbers that depend on its name and arguments alone, so that equal calls have equal values.
-    """
+    """Return a random function of residues (numbers modulo PRIME) that stands for a function such as sine."""
+    # the value depends on name and arguments alone, so that equal calls have equal values
     return lambda *arguments: _Residue(_digest_number(name, *(_Residue.of(each).value for each in arguments)), 1)
 
 
@@ -146,11 +140,7 @@ _RANDOM = {name: _function(name) for name in (*FUNCTIONS, "copysign")}
 
 
 def _exact(precision: str) -> Callable[[Fraction], _Residue]:
-    """Return a function that converts a rounded constant of the C text to a residue, its value modulo PRIME.
-
-    The value is that of the simple fraction that rounds to the constant if there is one, such as 1/3; otherwise that of
-    the constant itself. ``precision`` is the type of the constant.
-    """
+    """Return a function that converts a rounded constant of the C text to a residue, its value modulo PRIME."""
 
     def residue(value: Fraction) -> _Residue:
         rounded = float(value) if precision == "binary64" else float(unpack("f", pack("f", float(value)))[0])
@@ -158,6 +148,7 @@ def _exact(precision: str) -> Callable[[Fraction], _Residue]:
             constant = intended_value(Fraction(rounded), precision)
         except CertificateError:
             return _Residue.of(Fraction(rounded))
+        # the value of the simple fraction that rounds to the constant, such as 1/3, if there is one
         return _Residue.of(Fraction(rounded) if constant.times_pi else constant.fraction)
 
     return residue
@@ -293,16 +284,12 @@ def bounds_of_step(
 
 
 def _with_intended_constants(rates: Program, method: Method) -> Method:
-    """Return a method with the exact coefficients for which the constants of the C text stand.
-
-    The bounds of rounding errors are those from exact constants: from the fraction that the reader of the C text
-    recovers, such as 1/3, or from any number that rounds to the constant. Coefficients that are rounded decimals are
-    replaced by the fractions; CertificateError is raised if one of them fits no constant.
-    """
+    """Return a method with the exact coefficients, such as 1/3, for which the constants of the C text stand."""
     if not isinstance(method, RungeKutta) or not method.rounded:
         return method
     factors = [abs(factor) for factor in dict.fromkeys(without_factors(rates)[1])]
 
+    # rounding errors are bounded from these exact numbers; a constant that stands for another number is refused
     def exact(value: Fraction) -> Fraction:
         fractions = [(_intended(value * factor), factor) for factor in factors]
         near = [own / factor for own, factor in fractions if own is not None and abs(own / factor - value) < DEFECT]
@@ -369,11 +356,7 @@ def _proof(step: str, rates: Program, method: Method, source: str, suffix: str) 
 def _degree(
     file: str, rates: Program, method: Method, places: Mapping[str, str], operations: Operations, point: int
 ) -> int:
-    """Compare the C text with the formula of the step at one random point, in numbers modulo PRIME.
-
-    Return the largest degree of an output as a rational function, from which the probability of a wrong proof follows.
-    CertificateError is raised if an output differs.
-    """
+    """Compare the C text with the formula of the step at one random point; return the largest degree of an output."""
     values = {symbol: _Residue(_digest_number(operations.digest(), point, symbol), 1) for symbol in places.values()}
     number = _exact(operations.precision)
     computed = operations.evaluate({place: values[symbol] for place, symbol in places.items()}, _RANDOM, number)
@@ -381,5 +364,6 @@ def _degree(
     for (place, ours), formula in zip(computed.items(), exact, strict=True):
         if ours.value != _Residue.of(formula).value:
             raise CertificateError(f"{file}: expected {place} to be the {method.formula}, got another formula")
+    # the probability of a wrong proof follows from the degree as a rational function
     degrees: list[int] = [each.degree for each in (*computed.values(), *map(_Residue.of, exact))]
     return max(degrees)

@@ -1,24 +1,7 @@
 """Bounds of the truncation error of one time step on a box of states and step sizes, in interval arithmetic.
 
-Let x(h) be the exact motion and S(h) the exact formula of the step, both from the same start. For a method of order n
-the first n derivatives of ``x(h) - S(h)`` vanish at h = 0, so that by Taylor's theorem, for each component,
-
-    x(h) - S(h) = h^(n+1) (a - b),
-
-where a is a Taylor coefficient of the motion at a state between start and end, and b one of S at a size between 0 and
-h. Intervals contain both: first a box is found that the motion provably does not leave during the step (its rates on
-the box keep it inside); then the coefficients are computed on that box. Without exact polynomials, see below, the box
-of the start is divided where this makes the bound smaller.
-
-If the rates are polynomials, as those of most scenes are, the difference is expanded further: its coefficients of the
-orders n + 1 to m - 1 are exact polynomials in the start, in which equal terms of motion and method cancel; only the
-remainder of order m is bounded by intervals.
-
-A Taylor step has order n by construction, and b = 0. For a Runge-Kutta method, the order conditions of all rooted trees
-with up to n nodes are checked exactly. If the coefficients are rounded decimals, as those of dop853, the conditions
-hold up to small defects. The coefficient of h^k of x(h) - S(h) is then a sum over the trees with k nodes: the defect of
-each tree's condition times an elementary differential of the rates. Without the defects, and with absolute values in
-all places, this sum is a coefficient of the series Z with ``Z = h f(start + Z)`` (the implicit Euler step).
+The exact motion and a step of order n differ by h^(n+1) (a - b): a is a Taylor coefficient of the motion, b one of the
+step. Intervals contain both, on a box that the motion provably does not leave.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -119,6 +102,19 @@ class _Functions(dict[str, Callable[..., Any]]):
 
 
 @dataclass(frozen=True)
+# By Taylor's theorem for each component: the first n derivatives of x(h) - S(h) vanish at h = 0, a is taken at a state
+# between start and end, b at a size between 0 and h. The box of the start is divided where this makes the bound
+# smaller.
+#
+# If the rates are polynomials, the difference is expanded further: its coefficients of the orders n + 1 to m - 1 are
+# exact polynomials in the start, in which equal terms of motion and method cancel; only the remainder of order m is
+# bounded by intervals.
+#
+# A Taylor step has order n by construction, and b = 0. For a Runge-Kutta method, the order conditions of all rooted
+# trees with up to n nodes are checked exactly. If the coefficients are rounded decimals, as in dop853, the conditions
+# hold up to small defects. The coefficient of h^k of x(h) - S(h) is then a sum over the trees with k nodes: the defect
+# of each tree's condition times an elementary differential of the rates. Without the defects, and with absolute values
+# everywhere, this sum is a coefficient of the series Z with Z = h f(start + Z) (the implicit Euler step).
 class _Power:
     """A power series in the size of the step, cut off after ``len(terms)`` terms; its coefficients are intervals."""
 
@@ -171,10 +167,8 @@ class _Power:
         return result if exponent >= 0 else 1 / result
 
     def integrated(self, start: Any, slope: "_Power") -> "_Power":
-        """Return f of this series x(h), for the function f with f = ``start`` at x(0) and df/dx = ``slope``.
-
-        For example, ``slope`` is 1/x if f is the logarithm.
-        """
+        """Return the power series f(x(h)) of the function f with value ``start`` at x(0) and derivative ``slope``."""
+        # for example, ``slope`` is 1/x if f is the logarithm
         rates = self.rates
         return _Power((start, *(_dot(slope.terms[: n + 1], rates[n::-1]) / (n + 1) for n in range(len(rates)))))
 
@@ -215,13 +209,11 @@ def _is_zero(value: Any) -> bool:
 
 
 def _turning(x: _Power, sign: int, functions: tuple[str, str]) -> tuple[_Power, _Power]:
-    """Return sine and cosine of the power series x, or hyperbolic sine and cosine if ``sign`` is 1.
-
-    Coefficient n + 1 of each is computed from the coefficients up to n of the other one.
-    """
+    """Return sine and cosine of the power series x, or hyperbolic sine and cosine if ``sign`` is 1."""
     rates = x.rates
     s, c = ([_SCALAR[name](iv.mpf(x.terms[0]))] for name in functions)
     for n in range(len(rates)):
+        # coefficient n + 1 of each follows from the coefficients up to n of the other
         s.append(_dot(c[: n + 1], rates[n::-1]) / (n + 1))
         c.append(sign * _dot(s[: n + 1], rates[n::-1]) / (n + 1))
     return _Power(tuple(s)), _Power(tuple(c))
@@ -302,14 +294,12 @@ def _weight(tree: Tree, method: RungeKutta) -> list[Fraction]:
 def require_order(method: Method) -> tuple[Fraction, ...]:
     """Return the largest defects of a method's order conditions: for the trees with 1, 2, .. nodes, up to its order.
 
-    They are zero unless the coefficients of the method are rounded decimals. A larger defect than :data:`DEFECT` raises
-    CertificateError, as does any defect of a method whose coefficients are exact.
-
     Source: Hairer, Norsett, Wanner, Solving ODEs I, 2nd ed., theorem II.2.13.
     """
     method = method.plain if isinstance(method, WithDerivatives) else method
     if isinstance(method, TaylorSeries):
         return (Fraction(0),) * method.order
+    # a defect is zero unless the coefficients are rounded decimals; a larger one raises CertificateError
     most = DEFECT if method.rounded else Fraction(0)
     for node, stage in zip(method.nodes, method.stages, strict=True):
         if abs(sum(stage.values(), Fraction(0)) - node) > most:
@@ -391,14 +381,12 @@ def _halves(box: Box, name: str) -> Iterator[dict[str, tuple[Fraction, Fraction]
 
 
 def _gains(problem: "_Problem", box: Box, whole: list[float]) -> dict[str, float]:
-    """Return, for each input, the fraction by which the largest bound decreases if the box is halved in that input.
-
-    Inputs for which it does not decrease are left out. ``whole`` are the bounds on the whole box.
-    """
+    """Return, for each input, the fraction by which halving the box in it decreases the largest bound."""
     gains = {}
     for name, (low, high) in box.items():
         if low < high:
             halves = max(max(problem.bounds(half)) for half in _halves(box, name))
+            # other inputs are left out; ``whole`` are the bounds on the whole box
             if halves < max(whole):
                 gains[name] = 1.0 if max(whole) == inf else 1 - halves / max(whole)
     return gains
@@ -408,11 +396,8 @@ Terms = list[tuple[Fraction, tuple[tuple[str, int], ...]]]  # of a polynomial: c
 
 
 def _problem(rates: Program, method: Method, states: Sequence[str], box: Box) -> "_Problem":
-    """Return the data from which bounds of a step's truncation on boxes are computed.
-
-    Polynomial rates are expanded once, which makes their bounds tighter. ``states`` are the names of the states,
-    ``box`` the range of each input.
-    """
+    """Return the data from which bounds of a step's truncation on boxes are computed."""
+    # polynomial rates are expanded once, which makes their bounds tighter
     orders = range(method.order + 1, min(method.order + 1 + EXACT_ORDERS, HIGHEST))
     formulas = [node for _, node in (*rates.temporaries, *rates.outputs)]
     if not orders or not all(map(_is_polynomial, formulas)):
@@ -487,14 +472,12 @@ def _sum_of(terms: Terms) -> Node:
 
 
 def _range_of(terms: Terms, values: Mapping[str, Any]) -> Any:
-    """Return an interval that contains all values of a polynomial, given by its ``terms``, on a box.
-
-    ``values`` are the intervals of its variables. The interval of an even power contains no negative numbers.
-    """
+    """Return an interval that contains all values of a polynomial, given by its ``terms``, on a box."""
     total = iv.mpf(0)
     for value, powers in terms:
         term = _number(value)
         for name, power in powers:
+            # the interval of an even power contains no negative numbers
             term = term * values[name] ** power
         total = total + term
     return total
@@ -502,23 +485,18 @@ def _range_of(terms: Terms, values: Mapping[str, Any]) -> Any:
 
 @dataclass(frozen=True)
 class _Problem:
-    """The rates, the method and the states of a step whose truncation is bounded.
-
-    ``leading`` holds the first coefficients of the difference between motion and method, for each order and state; it
-    is empty if the rates are no polynomials. ``defects`` are those of the order conditions, from :func:`require_order`.
-    """
+    """The rates, the method and the states of a step whose truncation is bounded."""
 
     rates: Program
     method: Method
     states: Sequence[str]
+    # first coefficients of the difference between motion and method, for each order and state; none without polynomials
     leading: tuple[list[Terms], ...]
+    # of the order conditions, from ``require_order``
     defects: tuple[Fraction, ...] = ()
 
     def bounds(self, box: Box) -> list[float]:
-        """Return a bound of the truncation error for each state, valid for all motions that start in ``box``.
-
-        All are infinite if no ranges are known that the motions do not leave during the step.
-        """
+        """Return a bound of the truncation error for each state, valid for all motions that start in ``box``."""
         values: dict[str, Any] = {name: _interval(*ends) for name, ends in box.items()}
         low, high = box[SIZE]
         span = _interval(min(low, Fraction(0)), max(high, Fraction(0)))  # all times from the start to the end
@@ -527,6 +505,7 @@ class _Problem:
         last = first + len(self.leading)
         try:
             during = self._enclosure(values, span)
+            # no ranges are known that the motions do not leave during the step
             if during is None:
                 return [inf] * len(self.states)
             exact = coefficients(recurrences(self.rates), last, during, _Functions(_SCALAR), _number)
@@ -542,10 +521,8 @@ class _Problem:
             return [inf] * len(self.states)
 
     def _defective(self, values: Mapping[str, Any], size: Any) -> list[Any]:
-        """Return a bound of the terms of the orders that only defects of the order conditions keep from vanishing.
-
-        There is one bound for each state; it holds for all states in the box ``values`` and all sizes up to ``size``.
-        """
+        """Return, for each state, a bound of the terms that only the defects of the order conditions contribute."""
+        # valid for all states in the box ``values`` and all sizes up to ``size``
         count = len(self.defects) + 1
         largest = {name: _Majorant.of(iv.mpf(abs(value).b), count) for name, value in values.items()}
         series = [_Majorant.of(0, count) for _ in self.states]
@@ -563,14 +540,12 @@ class _Problem:
         ]
 
     def _enclosure(self, values: Mapping[str, Any], span: Any) -> dict[str, Any] | None:
-        """Return ranges that no motion from the box leaves during the step; None if none are found.
-
-        If ``start + span f(ranges)`` lies in the ranges, every motion stays inside them (Picard and Lindelof).
-        """
+        """Return ranges that no motion from the box leaves during the step; None if none are found."""
         around = dict(values) | {"t": values["t"] + span}
         for _ in range(ATTEMPTS):
             slopes = self.rates.evaluate(around, _Functions(_SCALAR), _number).values()
             image = {name: values[name] + span * slope for name, slope in zip(self.states, slopes, strict=True)}
+            # start + span f(ranges) lies in the ranges, so every motion stays inside them (Picard and Lindelof)
             if all(image[name] in around[name] for name in self.states):
                 return dict(around) | image
             for name in self.states:
@@ -580,17 +555,15 @@ class _Problem:
         return None
 
     def _step_coefficients(self, values: Mapping[str, Any], span: Any, order: int) -> list[Any]:
-        """Return intervals that contain the Taylor coefficient ``order``, in the step size, of the step's formula.
-
-        There is one interval for each state; it holds for all states of the box and all step sizes of ``span``. The
-        coefficients of a Taylor method above its own order are zero.
-        """
+        """Return, for each state, an interval of the Taylor coefficient ``order``, in the step size, of the step."""
+        # the coefficients of a Taylor method above its own order are zero
         if isinstance(self.method, TaylorSeries):
             return [0] * len(self.states)
         count = order + 1
         size = _Power((span, iv.mpf(1), *(0,) * (count - 2)))
         start = {name: _Power.of(value, count) for name, value in values.items() if name != SIZE}
         functions = _Functions({name: _of_any(name) for name in _OF_SERIES})
+        # valid for all states of the box and all step sizes of ``span``
         after = stepped(
             self.rates, self.method, start, size, functions, lambda value: _Power.of(_number(value), count)
         )  # fmt: skip

@@ -26,9 +26,7 @@ WITH_HYPOTHESES = "it is no formula that symrot derives, but the hypotheses, whi
 
 
 def check_claim(claim: Claim, repair: bool = True) -> Verdict:
-    """Return the verdict on a claim as it is usually read (interpreted), or on another reading if only that is true.
-
-    In the latter case a note says so. ``repair``: also search for true formulas near a claim that is not true.
+    """Return the verdict on a claim in its usual interpretation, or in another one if the claim is true only there.
 
     Raises
     ------
@@ -49,10 +47,9 @@ def check_claim(claim: Claim, repair: bool = True) -> Verdict:
 
 
 def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict | None]:
-    """Return the verdict on the usual reading (interpretation) of a claim, and the verdict on another, true reading.
+    """Return (verdict, None) for a claim in its usual interpretation.
 
-    The second verdict is there only if the usual reading is not true and another reading is; otherwise it is None. If
-    it is None, and ``repair`` is True, the verdict on the usual reading comes with a diagnosis of its faults.
+    If only another interpretation makes the claim true, its verdict replaces the None.
     """
     start = perf_counter()
     verdict: Verdict | None = None
@@ -67,6 +64,7 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
                 named = _on_determinant(claim, repair) or _on_name(claim, repair, related_formula)
                 named = named or _on_relation(claim) or _on_expanded(claim, repair)
                 decision, verdict = named or (decision, verdict)
+            # a diagnosis of faults only if no other interpretation makes the claim true
             if other_verdict is None and repair and decision is not None:
                 verdict = _diagnosed(claim, decision, verdict)
             is_open = is_false and claim.implied and not (named and _was_near_relation(claim))
@@ -99,8 +97,8 @@ def _ended() -> str:
 def unfinished() -> Decision:
     """Return the decision "undecided" for a claim that would need more processor time than the limit allows."""
     reason = (
-        f"stopped, since SymPy needs more than {MOST_SECONDS} s of processor time for these formulas; a faster "
-        "machine may decide, and so may a claim with a letter in place of one of the inner functions"
+        f"SymPy needs more than {MOST_SECONDS} s of processor time; "
+        "a faster machine may decide it, and so may a letter in place of an inner function"
     )
     return Decision("undecided", reason=reason)
 
@@ -119,10 +117,9 @@ def _of_another_reading(claim: Claim) -> Verdict | None:
 def _on_name(
     claim: Claim, repair: bool, formula_of: Callable[[Claim], NamedFormula | None]
 ) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) for a claim that gives a formula for an undefined quantity; None for other claims.
+    """Return (None, verdict) for a claim such as ``I_zz == m*r**2/2``, a formula for an undefined quantity.
 
-    An example is ``I_zz == m*r**2/2``. ``formula_of`` returns the quantity and its formula, or None. Such a claim can
-    be recognised, but not decided, so that None stands in the place of a decision.
+    Return None for other claims.
     """
     if claim.context.sign_of_products == "plus":
         from symrot.checker import product_signs
@@ -135,6 +132,7 @@ def _on_name(
     named = formula_of(claim) if claim.relation is not None else None
     if named is None:
         return None
+    # such a claim can be recognised, but not decided: None stands in place of a decision, here and below
     from symrot.checker.context.exchanged_letters import by_exchanged_letters
     from symrot.checker.context.sizes import by_other_sizes
     from symrot.checker.recognition.naming import verdict_on_name
@@ -165,15 +163,10 @@ def _on_name(
 
 
 def _on_rule(claim: Claim) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) for a rule of differentiation, such as ``(u v)' = u' v + u v'``; None for other claims.
-
-    The rule is decided for all functions u(t) and v(t). The first element of the pair is where callers expect the
-    Decision on the claim's own equation. It is None here, because another equation was decided: the one with u(t) for
-    u.
-    """
+    """Return (None, verdict) for a rule of differentiation, such as ``(u v)' = u' v + u v'``; otherwise None."""
     if claim.relation is None or open_formula(claim) is None or (general := as_functions(claim)) is None:
         return None
-    decision, verdict = _decide(general)
+    decision, verdict = _decide(general)  # for all functions u(t) and v(t)
     if decision.verdict not in ("true", "conditional") and not (decision.verdict == "false" and is_rule(general)):
         return None
     return None, replace(verdict, text=claim.text, notes=general.notes)
@@ -191,10 +184,7 @@ def _was_near_relation(claim: Claim) -> bool:
 
 
 def _near_relation(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return ``verdict``, on a false claim, with repairs that turn the claim into a relation that symrot derives.
-
-    If no single edit of the claim gives such a relation, the verdict is returned unchanged.
-    """
+    """Return ``verdict``, on a false claim, with repairs that turn the claim into a known relation, if any."""
     from symrot.checker.recognition.naming import verdict_near_relation
 
     nearest = verdict_near_relation(claim)
@@ -218,10 +208,7 @@ def _on_motion(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) for a claim that is a known relation, such as an impulse equation; otherwise None.
-
-    The None in the pair means that the verdict comes from recognising the claim, not from a decision of its equation.
-    """
+    """Return (None, verdict) for a claim that is a known relation, such as an impulse equation; otherwise None."""
     if claim.relation is None or claim.hypotheses:
         return None
     from symrot.checker.recognition.naming import verdict_on_relation
@@ -232,27 +219,19 @@ def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
 
 
 def _on_determinant(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) for a claim about the determinant of a rate Jacobian; None for other claims.
-
-    The first element of the pair is where callers expect the Decision on the claim's own equation. It is None here,
-    because the derived determinant was compared instead. ``repair`` asks for repairs of a false claim.
-    """
+    """Return (None, verdict) for a claim about the determinant of a rate Jacobian; None for other claims."""
     if claim.relation is None or claim.hypotheses:
         return None
     from symrot.checker.context.determinants import verdict_on_determinant
 
     start = perf_counter()
-    verdict = verdict_on_determinant(claim, repair)
+    verdict = verdict_on_determinant(claim, repair)  # not a decision of the claim's own equation
     return None if verdict is None else (None, _completed(claim, replace(verdict, text=claim.text), start))
 
 
 def _on_expanded(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) if a claim gives a formula for a quantity once its hypotheses are substituted; else None.
-
-    The hypotheses are abbreviations, such as ``c1 = cos(alpha)``. The None in the pair means that the verdict comes
-    from recognising the formula, not from a decision of its equation.
-    """
-    expanded = claim.expanded
+    """Return (None, verdict) if a claim is a formula for a quantity after its hypotheses are substituted; else None."""
+    expanded = claim.expanded  # hypotheses such as c1 = cos(alpha) are abbreviations
     if expanded is claim or expanded.hypotheses:
         return None
     named = _on_name(expanded, repair, related_formula) or _on_relation(expanded)
@@ -284,10 +263,7 @@ def _place_of(claim: Claim) -> Iterator[None]:
 
 
 def _completed(claim: Claim, verdict: Verdict, start: float) -> Verdict:
-    """Return a verdict with the result of the check of units, and with the name, place and time of the claim.
-
-    ``start`` is the reading of the clock when the check began.
-    """
+    """Return a verdict with the check of units, and the name, source and time of the claim, begun at ``start``."""
     if claim.relation is not None:
         hypotheses = [relation[1:] for relation in claim.hypotheses]
         dimensions = check_dimensions(claim.relation[1:], claim.define, hypotheses, claim.units)
@@ -296,16 +272,14 @@ def _completed(claim: Claim, verdict: Verdict, start: float) -> Verdict:
 
 
 def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
-    """Return ``verdict`` with the probable fault and repairs of the claim, if it is false or conditional.
-
-    A true claim gets a remark if one of its sides is not defined everywhere and the other is.
-    """
+    """Return ``verdict`` with the probable fault and repairs of a claim that is false or conditional."""
     if claim.relation is None or is_large(claim.equation):
         return verdict
     if any(requirement.code == "positive_base" for requirement in decision.requires):
         text = f"a power with letters in its exponent is read for a positive base: {verdict.requires[0]}"
         return replace(verdict, diagnosis=Diagnosis("positive_base", text))
     if decision.verdict not in ("false", "conditional"):
+        # a true claim: a remark if only one side is defined everywhere
         return replace(verdict, diagnosis=_domain(claim)) if verdict and verdict.conditions else verdict
     from symrot.checker.recognition.identification import named_parts
     from symrot.checker.repair.diagnose import diagnose
@@ -318,9 +292,9 @@ def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
 
 
 def _domain(claim: Claim) -> Diagnosis:
-    """Return the diagnosis "domain" for a true claim if only one side is defined everywhere, as in ``x == x**2/x``.
+    """Return the diagnosis "domain" for a true claim with only one side defined everywhere, as in ``x == x**2/x``.
 
-    Its text says which side needs which conditions. For any other claim, return a diagnosis with the code "none".
+    Its code is "none" otherwise.
     """
     assert claim.relation is not None
     sides = [claim.with_relation(("==", side, side)) for side in claim.relation[1:]]

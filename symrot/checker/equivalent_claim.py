@@ -1,7 +1,6 @@
-"""The verdict on a claim that was judged in an equivalent form, with its repairs changed back to the typed form.
+"""The verdict on a claim that was decided in an equivalent form, with its repairs changed back to the typed form.
 
-For example, ``I_xy = a`` with I_xy = integral of x*y dm is judged as ``I_xy = -a``; the repair ``I_xy = -b`` becomes
-``I_xy = b``.
+With I_xy = integral of x*y dm, ``I_xy = a`` is decided as ``I_xy = -a``; the repair ``I_xy = -b`` becomes ``I_xy = b``.
 """
 
 from collections.abc import Callable
@@ -16,11 +15,9 @@ __all__ = ["brought_back"]
 
 
 def brought_back(verdict: Verdict, original: Callable[[Relation], Relation], note: str) -> Verdict:
-    """Return the verdict on a claim, given the ``verdict`` on an equivalent claim that was decided in its place.
+    """Return the verdict on a claim from that on an equivalent one: ``original`` rewrites each repair.
 
-    ``original`` rewrites an equation between the names of the equivalent claim with the names of the claim itself; here
-    it rewrites each repair. A repair that is no single equation is left out. ``note`` is added to the verdict, to tell
-    the user which equivalent claim was decided.
+    ``note`` tells the user about the equivalent claim.
     """
     repairs = [changed for repair in verdict.repairs if (changed := _brought_back(repair, original)) is not None]
     return replace(verdict, repairs=tuple(repairs), notes=(*verdict.notes, note))

@@ -1,8 +1,7 @@
 """Verdicts on inequalities such as ``x^2 + 1 > 0``, and on the inequalities between moments of inertia.
 
-An inequality is true if the difference of its sides is proven to have one sign, and false if the difference has the
-other sign at an exact point. An inequality that only restricts the values of a letter, such as ``omega > 2``, is a
-condition, about which nothing is claimed.
+An inequality is true if the difference of its sides is proven to have one sign, and false if it has the other sign at
+an exact point. One such as ``omega > 2`` is a condition, about which nothing is claimed.
 """
 
 from collections.abc import Iterator, Mapping
@@ -89,10 +88,7 @@ def verdict_on_inequality(claim: Claim, sign: str, flipped: str) -> Verdict:
 
 
 def _is_condition(claim: Claim) -> bool:
-    """Return whether an inequality only restricts values, as ``omega > 2`` does: no letter is on both sides.
-
-    Nothing is claimed then, so that it is neither true nor false.
-    """
+    """Return whether an inequality only restricts values, as ``omega > 2`` does: no letter is on both sides."""
     assert claim.relation is not None
     if claim.hypotheses:
         return False
@@ -113,17 +109,15 @@ def _letters(tree: Node) -> set[str]:
 
 
 def _on_moments(difference: Expr, strict: bool, flipped: str) -> Verdict | None:
-    """Return the verdict on an inequality between the three moments of inertia of a body, such as I_1 + I_2 >= I_3.
+    """Return the verdict on an inequality between the moments of inertia of a body, such as I_1 + I_2 >= I_3.
 
-    Return None for other inequalities. ``difference`` is the larger side minus the smaller one, ``strict`` tells > from
-    >=, and ``flipped`` is the inequality with the opposite sign, for a repair. With X, Y, Z for the integrals of x^2,
-    y^2, z^2 over the mass, the moments are Y + Z, X + Z and X + Y. These integrals are never negative, and one of them
-    is zero only for a plane plate.
+    Return None for others.
     """
     names = {symbol.name for symbol in difference.free_symbols}
     own = next((moments for moments in MOMENTS if names == {*moments}), None)
     if own is None:
         return None
+    # moments Y + Z, X + Z, X + Y, with integrals X, Y, Z of x^2, y^2, z^2: one of these is zero for a plane plate only
     integrals = [Symbol(name, nonnegative=True) for name in "XYZ"]
     x, y, z = integrals
     moments = dict(zip(own, (y + z, x + z, x + y), strict=True))
@@ -142,10 +136,7 @@ def _on_moments(difference: Expr, strict: bool, flipped: str) -> Verdict | None:
 
 
 def _counterexample(claim: Claim, difference: Expr, strict: bool) -> Counterexample | None:
-    """Return an exact point where both sides are defined and the inequality fails; None if the search finds none.
-
-    It fails where ``difference``, the larger side minus the smaller one, is negative or, if ``strict``, zero.
-    """
+    """Return an exact point where both sides are defined and the inequality fails; None if the search finds none."""
     equation = claim.equation
     if equation.hypotheses or equation.nonzero or equation.bases:
         return None
@@ -156,7 +147,7 @@ def _counterexample(claim: Claim, difference: Expr, strict: bool) -> Counterexam
         value = enclosure(difference, values)
         if value is None or not _is_defined(equation, values):
             continue
-        exact = difference.xreplace(values)
+        exact = difference.xreplace(values)  # the larger side minus the smaller one
         if value.b < 0 or (strict and exact.is_zero):
             sides = (side.xreplace(values) for side in (equation.left, equation.right))
             return Counterexample(tuple(values.items()), None, *sides)
@@ -173,11 +164,8 @@ def _points(symbols: list[Any]) -> Iterator[Mapping[Any, Expr]]:
 
 
 def _is_defined(equation: Any, values: Mapping[Any, Expr]) -> bool:
-    """Return whether both sides of an equation are proven to have real values at a point.
-
-    ``values`` gives the point: symbol -> value. The divisors in the equation must be nonzero, and the formulas under
-    its even roots not negative.
-    """
+    """Return whether both sides of an equation are proven to have real values at a point."""
+    # divisors must be nonzero, and formulas under even roots not negative
     parts = [enclosure(side, values) for side in (equation.left, equation.right, *equation.divisors)]
     if any(part is None for part in parts) or any(part.a <= 0 <= part.b for part in parts[2:]):
         return False

@@ -163,14 +163,12 @@ def _without_backticks(source: str) -> str:
 def _on_latex(
     source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool, stated: Context
 ) -> Verdict:
-    """Return the verdict on a text in LaTeX; the claim as it was read, and its repairs, are in LaTeX too.
-
-    The arguments are those of :func:`symrot.checker.text.verdict_on_text`.
-    """
+    """Return the verdict on a text in LaTeX, with the claim and its repairs in LaTeX too."""
     from symrot.checker.latex.reader import Names, latex_readings
     from symrot.checker.latex.shorthand import without_definitions
     from symrot.checker.latex.writing import LatexNotation
 
+    # the arguments are those of symrot.checker.text.verdict_on_text
     assume = without_definitions(assume, source)
     functions = functions_of_time(assume)
     readings = latex_readings(source, Names(functions=functions))
@@ -222,10 +220,7 @@ def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:
 def verdicts_of_file(
     path: str | Path, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Iterator[Verdict]:
-    """Yield the verdict on each claim of a file; a claim that cannot be read is ``"refused"``, with the reason.
-
-    ``progress`` is called with a line of text before each claim.
-    """
+    """Yield the verdict on each claim of a file; it is ``"refused"``, with a reason, if the claim cannot be read."""
     for entry in read_entries(path):
         if isinstance(entry, Refusal):
             yield Verdict("refused", reason=entry.reason, id=entry.id, where=entry.where, text=entry.text)

@@ -21,8 +21,6 @@ TOKEN = re.compile(r"\\[A-Za-z]+|\\.|[^\W\d]\w*|\d+(?:\.\d+)?|\*\*|==|\s+|.", re
 def changed_spans(claim: str, repair: str) -> tuple[Span, ...]:
     """Return the positions (start, end) in a repair's text that differ from the claim.
 
-    Where the repair has left out something, the sign next to the gap is marked.
-
     Examples
     --------
     >>> changed_spans("sin(2*x) == sin(x)*cos(x)", "sin(2*x) == 2*sin(x)*cos(x)")
@@ -36,6 +34,7 @@ def changed_spans(claim: str, repair: str) -> tuple[Span, ...]:
         if tag == "equal" or not matches:
             continue
         if start == end:
+            # something left out: the sign next to the gap is marked
             start, end = (start - 1, start) if start == len(matches) else (start, start + 1)
         span = matches[start].start(), matches[end - 1].end()
         if spans and not repair[spans[-1][1] : span[0]].strip():
@@ -78,10 +77,7 @@ def _rows(side: Node) -> list[tuple[Node, ...]] | None:
 
 
 def carets(spans: Sequence[Span], start: int, end: int) -> str:
-    """Return a line for a terminal with a caret under each marked character of a piece of a text.
-
-    The piece goes from ``start`` to ``end``. ``spans`` are the marked positions, counted in the whole text.
-    """
+    """Return carets for a terminal, one under each marked character of a text from ``start`` to ``end``."""
     marks = (any(first <= place < last for first, last in spans) for place in range(start, end))
     return "".join("^" if mark else " " for mark in marks).rstrip()
 
@@ -111,10 +107,7 @@ def latex_with_marks(text: str, spans: Sequence[Span]) -> str:
 
 
 def _is_formula(piece: str) -> bool:
-    r"""Return whether a part of a LaTeX text can be underlined: its brackets match, and no command lacks its argument.
-
-    ``x^{2}`` is such a part; ``\frac`` and ``{2`` are not.
-    """
+    r"""Return whether a part of a LaTeX text is a complete formula, such as ``x^{2}``, not ``\frac`` or ``{2``."""
     depth = 0
     for token in TOKEN.findall(piece):
         depth += (token in ("{", "\\left")) - (token in ("}", "\\right"))
@@ -126,10 +119,7 @@ def _is_formula(piece: str) -> bool:
 
 
 def _stands_alone(text: str, start: int, end: int) -> bool:
-    """Return whether the part of a LaTeX text from ``start`` to ``end`` is no index, exponent or base, and no argument.
-
-    Underlining such a part, as 2 in ``x^2``, would break the formula.
-    """
+    """Return whether underlining a LaTeX text from ``start`` to ``end`` keeps the formula: not 2 in ``x^2``."""
     before, after = text[:start].rstrip(), text[end:].lstrip()
     if re.search(r"([\^_]|\\(?!\\)[A-Za-z]+\{?|\}\{)$", before) and not before.endswith(("\\cdot", "\\times")):
         return before.endswith("{") and after.startswith("}")

@@ -67,11 +67,8 @@ def with_units(claim: Claim, measured: Measured, decide: Callable[[Claim], Verdi
 
 
 def _right_number(claim: Claim, sides: list[Node], factors: dict[str, Node], measured: Measured) -> dict[str, Any]:
-    """Return the diagnosis and the repair of a false equation whose right side is a whole number with a unit.
-
-    They are the fields ``diagnosis`` and ``repairs`` of a verdict, empty if no right number is known. ``sides`` are
-    those of the equation, with names for units, and ``factors`` has the factor to SI units for each such name.
-    """
+    """Return the fields of a verdict that correct the whole number on the right of a false equation with units."""
+    # sides: with names in place of units; factors: name of a unit -> its factor to SI units
     left, right = sides
     digits, unit = _decimal(right, measured.text, r"\d+")
     try:
@@ -94,11 +91,7 @@ def _in_si(tree: Node, factors: dict[str, Node]) -> Node:
 
 
 def _rounded(claim: Claim, sides: list[Node], factors: dict[str, Node], measured: Measured) -> Verdict | None:
-    """Return the verdict on an equation with a rounded number and its unit on one side; None for other equations.
-
-    ``sides`` are those of the equation with names for the units, and ``factors`` has the factor to SI units for each
-    name.
-    """
+    """Return the verdict on an equation with a rounded number and its unit on one side; None for other equations."""
     verdicts = []
     for side, other in (sides, sides[::-1]):
         digits, unit = _decimal(side, measured.text)
@@ -128,11 +121,7 @@ def _is_irrational(claim: Claim, value: Node) -> bool:
 
 
 def _to_digits(worked: Claim, measured: Measured, unit: str, is_right: bool) -> Verdict | None:
-    """Return the verdict on a rounded number: whether the value of ``worked`` rounds to the digits printed for it.
-
-    ``unit`` is the unit of the number, and ``is_right`` tells whether it is on the right side of the text. Return None
-    if this cannot be decided.
-    """
+    """Return the verdict whether the value of ``worked`` rounds to the digits printed for it, or None if undecided."""
     digits = worked.printed
     decision = decide_value(worked)
     if decision.verdict == "true":
@@ -150,25 +139,16 @@ def _to_digits(worked: Claim, measured: Measured, unit: str, is_right: bool) -> 
 
 
 def _with_number(source: str, digits: str, unit: str, right: str, is_right: bool) -> tuple[Repair, ...]:
-    """Return (repair,): the text ``source`` with the correct number ``right`` in place of ``digits``.
-
-    The digits must stand before ``unit``. If they do so at several places, the last one is replaced if ``is_right``
-    (the wrong number is on the right side of the equation), else the first. The tuple is empty if there is no such
-    place.
-    """
+    """Return (repair,): the text ``source`` with the number ``right`` in place of ``digits`` before a unit."""
     places = [*re.finditer(rf"(?<![\w.^]){re.escape(digits)}(?=[ *·⋅]*{re.escape(unit)})", source)]
     if not places:
         return ()
-    start, end = places[-1 if is_right else 0].span()
+    start, end = places[-1 if is_right else 0].span()  # is_right: the number is on the right side
     return (Repair((source[:start] + right + source[end:]).strip(), "digits", 1.0),)
 
 
 def _decimal(tree: Node, source: str, pattern: str = DECIMAL) -> tuple[str, str]:
-    """Return (digits, unit) of a tree that is a number times a unit: ("157.08", "unit_1") for 157.08 rad/s.
-
-    The digits are those typed in ``source``; ``unit_1`` is the name that stands for the unit in the tree. Both are ""
-    for any other tree, and if the digits do not match ``pattern``.
-    """
+    """Return (digits, unit) of a number times a unit: ("157.08", "unit_1") for 157.08 rad/s; else ("", "")."""
     if tree.kind != "product" or len(tree.args) != 2 or [part.kind for part in tree.args] != ["number", "name"]:
         return "", ""
     first, unit = tree.args
@@ -177,11 +157,7 @@ def _decimal(tree: Node, source: str, pattern: str = DECIMAL) -> tuple[str, str]
 
 
 def in_degrees(claim: Claim, verdict: Verdict, decide: Callable[[Claim], Verdict]) -> Verdict:
-    """Return ``verdict`` with a remark if a claim has angles like 30 in ``sin(30)``, which may be meant in degrees.
-
-    If the claim is false in radians and true in degrees, the remark is its diagnosis, with a repair. ``decide`` returns
-    the verdict on the claim in degrees.
-    """
+    """Return ``verdict`` with a remark if a claim has angles like 30 in ``sin(30)``, which may be meant in degrees."""
     if claim.relation is None:
         return verdict
     sign, left, right = claim.relation
@@ -195,6 +171,7 @@ def in_degrees(claim: Claim, verdict: Verdict, decide: Callable[[Claim], Verdict
         return verdict
     numbers = " and ".join(sorted(str(angle.value) for angle in angles))
     note = f"the angle {numbers} is in radians; in degrees, written {numbers}°, the claim is {other.verdict}"
+    # false in radians and true in degrees: a diagnosis with a repair
     if verdict.verdict == "false" and other.verdict == "true":
         source = claim.sources.get("claim", "")
         degree = "^\\circ" if "\\" in source else "°"
@@ -206,10 +183,7 @@ def in_degrees(claim: Claim, verdict: Verdict, decide: Callable[[Claim], Verdict
 
 
 def _is_large_angle(node: Node) -> bool:
-    """Return whether a tree is the sine (or the like) of a number from 7 on, which is probably in degrees.
-
-    In radians it would be more than a turn.
-    """
+    """Return whether a tree is the sine (or the like) of a number of more than a full turn, probably in degrees."""
     return (
         node.kind == "call" and node.value in CIRCULAR and node.args[0].kind == "number" and node.args[0].value >= TURN
     )

@@ -1,7 +1,6 @@
-"""Equations for one letter, such as ``x² = 4`` and ``sin θ = 3/5``: true for some values of the letter only.
+"""Equations for one letter, such as ``x² = 4``: true for some values of the letter only.
 
-Nobody writes such an equation as an identity, so that it is neither true nor false. The verdict is "definition", with
-the values for which the equation holds.
+Nobody writes such an equation as an identity; so its verdict is "definition", with the values for which it holds.
 """
 
 from collections.abc import Sequence
@@ -27,15 +26,11 @@ HIGHEST_DEGREE = 12
 
 
 def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:
-    """Turn the verdict "false" into "definition" for an equation that restricts its letters; return others unchanged.
-
-    An equation restricts a letter if it has no other letter and a real solution; the letter must occur only once, or in
-    the powers of a polynomial, as in ``x² = 4``. An equation of two letters, ``a = b``, counts too. ``x² = -1``, which
-    holds for no real x, stays false.
-    """
+    """Turn "false" into "definition" for an equation of one letter with a real solution, such as ``x² = 4``."""
     if claim.relation is None or not claim.implied or claim.hypotheses or claim.define or claim.has_parts:
         return verdict
     _, left, right = claim.relation
+    # an equation of two letters, a = b
     if all(map(is_name_or_rate, (left, right))) and left != right:
         both = " and ".join(notation.formula(side) for side in (left, right))
         reason = f"nothing here says what {both} are: it may be a condition, or another name for one quantity"
@@ -44,7 +39,7 @@ def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:
     if len({*names}) != 1 or len({str(name.value) for name in names}) != 1:
         return verdict
     letter = names[0]
-    values = _values(claim, letter, once=len(names) == 1)
+    values = _values(claim, letter, once=len(names) == 1)  # None for x² = -1, which stays false
     if values is None:
         return verdict
     name = notation.formula(letter)
@@ -63,11 +58,7 @@ def _open(verdict: Verdict, reason: str) -> Verdict:
 
 
 def _values(claim: Claim, letter: Node, once: bool) -> str | None:
-    """Return the real values of ``letter`` for which the claim's equation holds, as ``"x == 2"``.
-
-    None is returned if no value was found, or if the equation holds for every value. If ``once``, the letter occurs
-    once in the equation, which is then solved by inverse functions; otherwise only polynomials are solved.
-    """
+    """Return the real values of ``letter`` for which the claim's equation holds, such as ``"x == 2"``, or None."""
     left, right = claim.equation.left, claim.equation.right
     symbol = claim.interpreter().read(letter)
     if not all(isinstance(side, Expr) for side in (left, right)):
@@ -75,7 +66,7 @@ def _values(claim: Claim, letter: Node, once: bool) -> str | None:
     if _is_polynomial(claim, letter):
         return _roots(left - right, symbol, text(letter))
     if not once:
-        return None
+        return None  # only a letter that occurs once can be isolated by inverse functions
     assert claim.relation is not None
     side, other = claim.relation[1:]
     if letter not in [node for _, node in walk(side)]:
@@ -94,11 +85,7 @@ def _values(claim: Claim, letter: Node, once: bool) -> str | None:
 
 
 def _roots(difference: Expr, symbol: Symbol, name: str) -> str | None:
-    """Return the real roots of a polynomial ``difference`` as text: ``"x == -2 and x == 2"`` for x^2 - 4.
-
-    ``name`` is the text of the unknown ``symbol``. For irrational roots of a high degree, only their number is stated.
-    Return None if there is no real root.
-    """
+    """Return the real roots of ``difference``, if any, as text: ``"x == -2 and x == 2"`` for x^2 - 4."""
     try:
         polynomial = Poly(difference, symbol, domain="QQ")
     except PolynomialError:
@@ -112,22 +99,16 @@ def _roots(difference: Expr, symbol: Symbol, name: str) -> str | None:
 
 
 def _is_polynomial(claim: Claim, letter: Node) -> bool:
-    """Return whether both sides are sums of powers of a letter, and no power occurs twice in the equation: ``x^2 = 4``.
-
-    If the equation has a power twice, as ``2x = 3x`` or ``x + 2x = 4x``, or a bracket as ``(x + 1)^2 = x^2 + 1``, it
-    may be meant as an identity; the result is then False.
-    """
+    """Return whether both sides are sums of different powers of a letter, as in ``x^2 = 4``."""
     assert claim.relation is not None
     sides = [[] if side == number(0) else _exponents(side, letter) for side in claim.relation[1:]]
     powers = [exponent for exponents in sides if exponents is not None for exponent in exponents]
+    # 2x = 3x and (x + 1)^2 = x^2 + 1 may be meant as identities
     return None not in sides and len({*powers}) == len(powers)
 
 
 def _exponents(side: Node, letter: Node) -> Sequence[Any] | None:
-    """Return the power of a letter in each term of a sum: [2, 1, 0] for ``x^2 + 3 x + 5``.
-
-    Return None if a term is not a power of the letter times a number.
-    """
+    """Return the power of a letter in each term of a sum: [2, 1, 0] for ``x^2 + 3 x + 5``; None for others."""
     exponents = []
     for term in side.args if side.kind == "sum" else (side,):
         bare = term.args[0] if term.kind == "neg" else term

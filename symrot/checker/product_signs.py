@@ -1,6 +1,6 @@
-"""Claims whose context defines products of inertia without the minus sign; symrot's formulas have it.
+"""Claims whose context defines products of inertia without the minus sign, which is in symrot's formulas.
 
-``I_xy`` without the minus sign is ``-I_xy`` with it. So the claim is judged after changing the sign of every product.
+So each claim is decided with the opposite sign of every product of inertia.
 """
 
 from dataclasses import replace
@@ -24,10 +24,7 @@ COORDINATES = ("x", "y", "z")
 
 
 def sign_by_integral(name: Node, formula: Node) -> str:
-    """Return "plus" if a text defines ``name`` as in ``I_xy = integral of x*y dm``, "minus" for its negative.
-
-    Return an empty text for any other definition. ``formula`` is its right side.
-    """
+    """Return "plus" for a definition such as ``I_xy = integral of x*y dm``, "minus" for its negative; else ""."""
     integral = formula.args[0] if formula.kind == "neg" else formula
     if not _is_product(name) or integral.kind != "call" or integral.value != "integral_over_body":
         return ""
@@ -40,20 +37,14 @@ def sign_by_integral(name: Node, formula: Node) -> str:
 
 
 def with_sign(context: Context, name: Node, sign: str) -> Context:
-    """Return the context with one more statement: ``name`` is a product of inertia with or without the minus sign.
-
-    ``sign`` is "minus" or "plus", as :func:`sign_by_integral` returns it.
-    """
+    """Return the context with the statement that ``name`` is a product of inertia with the sign "minus" or "plus"."""
     quantity = WITH_MINUS if sign == "minus" else WITHOUT_MINUS
     meaning = Meaning((str(name.value),), quantity, written=(str(name.value),))
     return replace(context, meanings=(*context.meanings, meaning))
 
 
 def with_minus_sign(claim: Claim) -> Claim:
-    """Return a claim about I_xy = integral of x*y dm as one about I_xy = -integral of x*y dm, with -I_xy for I_xy.
-
-    The claim ``I_xy = a`` becomes ``I_xy = -a``.
-    """
+    """Return a claim with -I_xy for each product of inertia I_xy: ``I_xy = -a`` for ``I_xy = a``."""
     if claim.relation is None:
         return claim
     meanings = tuple(
@@ -65,22 +56,15 @@ def with_minus_sign(claim: Claim) -> Claim:
 
 
 def in_claim(verdict: Verdict) -> Verdict:
-    """Return the verdict on the original claim from that on the claim of :func:`with_minus_sign`.
-
-    In the repairs, I_xy becomes -I_xy again, the original convention; a note names this convention.
-    """
+    """Return the verdict on a claim from that on the equivalent claim of :func:`with_minus_sign`."""
     return brought_back(verdict, _changed, NOTE)
 
 
 def _changed(relation: Relation) -> Relation:
-    """Return an equation with the opposite sign of each product of inertia: ``L = -I_xy*w`` for ``L = I_xy*w``.
-
-    If a side is nothing but a product of inertia, the equation is then multiplied by -1, so that this side has no minus
-    sign: ``I_xy = -a`` for ``I_xy = a``.
-    """
+    """Return an equation with the opposite sign of each product of inertia: ``L = -I_xy*w`` for ``L = I_xy*w``."""
     sign, *sides = relation
     left, right = (_with_other_sign(side) for side in sides)
-    if any(map(_is_product, sides)):
+    if any(map(_is_product, sides)):  # I_xy = -a, not -I_xy = a
         left, right = _negative(left), _negative(right)
     return sign, left, right
 

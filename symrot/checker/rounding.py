@@ -14,10 +14,9 @@ __all__ = ["rounded_value", "with_rounding"]
 
 
 def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict "true" for a claim that equates a value and a decimal number to which the value rounds.
+    """Return the verdict "true" for a claim such as ``2/3 == 0.667``, with a correctly rounded decimal number.
 
-    An example is ``2/3 == 0.667``. If the value does not round to the number, the diagnosis gives the correct digits.
-    Every other verdict is returned unchanged.
+    Other verdicts are unchanged.
     """
     if verdict.verdict not in ("false", "undecided") or claim.relation is None or claim.hypotheses or claim.define:
         return verdict
@@ -30,10 +29,7 @@ def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def rounded_value(claim: Claim) -> str:
-    """Return the value of a number that a document computes, rounded to as many digits as the document prints for it.
-
-    The text is empty if the value is not known well enough to be rounded.
-    """
+    """Return a computed number, rounded to as many digits as the document prints, or "" if that is not certain."""
     assert claim.value is not None
     interval = enclosure(claim.interpreter().read(claim.value))
     if interval is None:
@@ -45,12 +41,9 @@ def rounded_value(claim: Claim) -> str:
 
 
 def _decimal(node: Node, source: str) -> str:
-    """Return the digits of a tree that is a decimal number, as they were typed in ``source``; "" for any other tree.
-
-    A decimal number times a power of ten is one number: ``7.27e-5`` for ``7.27*10^-5``.
-    """
+    """Return the digits of a decimal number as typed in ``source``, such as ``7.27e-5``; "" for other trees."""
     sign, inner = ("-", node.args[0]) if node.kind == "neg" else ("", node)
-    mantissa, power = _scientific(inner)
+    mantissa, power = _scientific(inner)  # 7.27*10^-5 is one number
     digits = source[mantissa.span[0] : mantissa.span[1]]
     if mantissa.kind != "number" or "." not in digits or (power and "e" in digits.lower()):
         return ""
@@ -69,14 +62,10 @@ def _scientific(tree: Node) -> tuple[Node, int]:
 
 
 def _long_whole(node: Node, source: str, value: Node) -> str:
-    """Return the digits of a whole number that can be equal to ``value`` only after rounding; otherwise "".
-
-    An example is 157 for ``1500*2*pi/60``. It has at least three digits, the last one not 0, and the value has pi, a
-    root or a decimal number.
-    """
+    """Return the digits of a whole number that rounds ``value``, as 157 does for ``1500*2*pi/60``; otherwise ""."""
     sign, inner = ("-", node.args[0]) if node.kind == "neg" else ("", node)
     digits = source[inner.span[0] : inner.span[1]]
-    is_rough = any(
+    is_rough = any(  # pi, a root or a decimal number
         part.value == "pi" or (part.kind == "call" and part.args) or
         (part.kind == "number" and "." in source[part.span[0] : part.span[1]])
         for _, part in walk(value)
@@ -89,10 +78,7 @@ def _is_constant(node: Node) -> bool:
 
 
 def _begins_with(worked: Claim) -> bool:
-    """Return whether the value of ``worked`` begins with the digits that the claim states, as 2/3 does with ``0.66..``.
-
-    ``worked`` has both: the exact ``value`` and the decimal text ``printed``.
-    """
+    """Return whether the value of ``worked`` begins with the digits printed for it, as 2/3 does with ``0.66..``."""
     assert worked.value is not None
     places = len(worked.printed.partition(".")[2])
     half = number(Fraction(5, 10 ** (places + 1)))

@@ -22,19 +22,14 @@ FACTOR, OTHER = "factor_", "other_"
 
 
 def for_complex_numbers(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return "conditional" for a claim on ``|z|`` that is true for real z and false for complex z, else ``verdict``.
-
-    ``|z|^2 = z^2`` is an example; its condition is "z is real". The letters of the claim must all be z, w or zeta,
-    which usually mean complex numbers. A claim with another letter keeps its ``verdict``, in which all letters are
-    real.
-    """
+    """Return "conditional" for a claim such as ``|z|^2 = z^2``, true for real z only; otherwise ``verdict``."""
     if verdict.verdict != "true" or claim.relation is None or claim.define or claim.hypotheses or claim.has_parts:
         return verdict
     nodes = [node for side in claim.relation[1:] for _, node in walk(side)]
     names = sorted({str(node.value) for node in nodes if node.kind == "name"} - {"pi"})
     has_length = any(node.value == "abs" and node.args[0].kind == "name" for node in nodes if node.kind == "call")
     if not has_length or not all(map(NUMBER.fullmatch, names)):
-        return verdict
+        return verdict  # letters other than z, w and zeta usually mean real numbers
     numbers = {
         name: sum_of([Node("name", f"Re_{name}"), product([Node("name", UNIT), Node("name", f"Im_{name}")])])
         for name in names
@@ -56,10 +51,9 @@ def for_complex_numbers(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def for_special_directions(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict "conditional" for a false claim that is true for two vectors in special directions.
+    """Return "conditional" for a claim such as ``F·d = F d``, true for two vectors in special directions only.
 
-    One side of the claim has only the lengths of the vectors. The vectors then have the same direction, as in ``F·d =
-    F d``, or are perpendicular, as in ``|a × b| = a b``. Any other claim keeps its ``verdict``.
+    Others keep their ``verdict``.
     """
     if verdict.verdict != "false" or claim.relation is None or claim.hypotheses:
         return verdict

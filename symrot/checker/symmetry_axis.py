@@ -1,7 +1,4 @@
-"""Claims about a body whose stated axis of symmetry is x or y, judged with z in its place, as in derived formulas.
-
-For a cone with axis x, I_x is the moment that derived formulas call I_z.
-"""
+"""Claims about a body whose axis of symmetry is x or y, decided with z in its place, as in derived formulas."""
 
 import re
 from collections.abc import Mapping
@@ -23,10 +20,7 @@ MOMENT = re.compile(r"([IJk](?:_bar)?_?)([xyz])(\2)?")
 
 
 def with_axis_z(claim: Claim) -> Claim:
-    """Return an equivalent claim about the body with z as its axis of symmetry: ``I_z = ..`` for ``I_x = ..``.
-
-    A claim whose context states no body is returned unchanged.
-    """
+    """Return an equivalent claim about the body with z as its axis of symmetry: ``I_z = ..`` for ``I_x = ..``."""
     body = claim.context.body
     if body is None or claim.relation is None:
         return claim
@@ -36,21 +30,14 @@ def with_axis_z(claim: Claim) -> Claim:
 
 
 def in_claim(verdict: Verdict, axis: str) -> Verdict:
-    """Return the verdict on the original claim from that on the claim of :func:`with_axis_z`.
-
-    ``axis`` is the axis of symmetry, x or y. The repairs get the names of the original claim again. A note says that
-    the axis is called z in derived formulas.
-    """
+    """Return the verdict on a claim with ``axis`` as axis of symmetry from that on the equivalent claim with axis z."""
     back = {new: old for old, new in TURNED[axis].items()}
     note = f"{axis} is the axis of symmetry of the body; in the names of derived formulas it is z"
     return brought_back(verdict, lambda relation: _renamed(relation, back), note)
 
 
 def _renamed(relation: Relation, axes: Mapping[str, str]) -> Relation:
-    """Return an equation whose moments of inertia are about other axes, as I_z for I_x.
-
-    ``axes`` gives the new axis for each of x, y and z.
-    """
+    """Return an equation with moments of inertia about other axes: I_z for I_x, if ``axes`` maps x to z."""
 
     def renamed(tree: Node) -> Node:
         if tree.kind == "name" and (match := MOMENT.fullmatch(str(tree.value))):

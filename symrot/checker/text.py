@@ -1,7 +1,7 @@
-"""The verdict on a text as people type it, by its usual reading (interpretation).
+"""The verdict on a text as people type it, by its usual interpretation (here: reading).
 
 A note reports each other reading whose verdict differs. A chain ``a = b = c`` is decided equation by equation, and
-several lines one by one; a line that gives a name to a formula defines the name for the lines after it.
+several lines one by one; a line that gives a name to a formula defines the name for the next lines.
 """
 
 import re
@@ -115,16 +115,14 @@ def verdict_on_readings(
     readings: Sequence[Reading], notation: Callable[[Reading], Notation], source: str, assume: Sequence[str] = (),
     units: Mapping[str, str] | None = None, repair: bool = True, stated: Context = NO_CONTEXT,
 ) -> Verdict:  # fmt: skip
-    """Return the verdict on the usual reading (interpretation) of a text, with notes on readings whose verdict differs.
-
-    ``notation`` returns the notation in which the formulas of a reading are written. The other arguments are those of
-    :func:`verdict_on_text`.
+    """Return the verdict on the usual interpretation of a text, with notes on those whose verdict differs.
 
     Raises
     ------
     InputError
         For text that cannot be read, with the place, and for a text of which no reading has a meaning.
     """
+    # notation: interpretation -> how its formulas are written; other arguments as in verdict_on_text
     verdicts: list[tuple[Reading, Verdict]] = []
     refusal: InputError | None = None
     late = False
@@ -169,10 +167,7 @@ def verdict_on_readings(
 
 
 def _is_false_by_context(verdict: Verdict, stated: Context) -> bool:
-    """Return whether a claim is false only because its context ``stated`` names a quantity with another formula.
-
-    The claim's formula is then a known formula for something else, which ``recognised_as`` names.
-    """
+    """Return whether a claim is false only because its context ``stated`` gives its quantity another formula."""
     return bool(stated) and verdict.verdict == "false" and bool(verdict.recognised_as)
 
 
@@ -182,14 +177,9 @@ def _is_unknown(reading: tuple[Reading, Verdict]) -> bool:
 
 
 def _beside_units(verdict: Verdict, source: str) -> Verdict:
-    """Return the verdict on a text that may have both letters and numbers with units, as ``F = m a = 6 N`` has.
-
-    Such an equation holds for certain values of its letters and is no identity, so its verdict is "definition". If the
-    text ends with several sides of numbers with units, as ``F = m a = 2 kg * 3 m/s^2 = 6 N`` does, this end is judged
-    by itself; if it is false, the text is false. Any other text, and one that is true for all values of its letters,
-    has the given ``verdict``.
-    """
+    """Return "definition" for a text such as ``F = m a = 6 N``, with letters and units; otherwise ``verdict``."""
     unit = "" if verdict.recognised_as else unit_beside_letters(source)
+    # an end such as 2 kg * 3 m/s^2 = 6 N is decided by itself; if it is false, the text is false
     beginning, end = numeric_end(source) if unit or verdict.verdict == "false" else ("", "")
     numbers = verdict_on_text(end) if end else None
     while not unit and numbers is not None and numbers.verdict != "true" and end.count("=") > 1:
@@ -214,11 +204,7 @@ def _beside_units(verdict: Verdict, source: str) -> Verdict:
 def _on_measured(
     measured: Measured, source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool
 ) -> Verdict:
-    """Return the verdict on a text whose numbers have units, as ``measured`` reads them.
-
-    Units may be readable in several ways (g as gram or as an acceleration). The verdict "true" of any reading is
-    returned, otherwise the verdict on the first reading whose units are consistent, or on the first one. The other
-    arguments are those of :func:`verdict_on_text`.
+    """Return the verdict on a text whose numbers have units, as ``measured`` interprets them.
 
     Raises
     ------
@@ -233,6 +219,7 @@ def _on_measured(
             refusal = refusal or reason
     usual = next((verdict for words, verdict in verdicts if not words), None)
     fitting = [pair for pair in verdicts if pair[1].diagnosis.code != "dimension"] or verdicts
+    # g may be a gram or an acceleration: a true interpretation, or the first one with consistent units
     true = (pair for pair in fitting if pair[1].verdict == "true" and pair[0] != ONE_PER_SECOND)
     words, verdict = next(true, fitting[0] if fitting else ("", None))
     if verdict is None or (refusal is not None and usual is None and verdict.verdict != "true"):
@@ -255,10 +242,7 @@ def _on_measured(
 def _on_units(
     measured: Measured, source: str, assume: Sequence[str], units: Mapping[str, str] | None, repair: bool
 ) -> Verdict:
-    """Return the verdict on one reading of a text whose numbers have units, which ``measured`` describes.
-
-    The other arguments are those of :func:`verdict_on_text`.
-    """
+    """Return the verdict on one interpretation, ``measured``, of a text whose numbers have units."""
     reading = readings_of(measured.text)[0]
     lines = claims_of_reading(reading, measured.text, assume, units)
     notation = notation_of(reading)
@@ -301,11 +285,7 @@ def verdict_on_reading(
     reading: Reading, notation: Notation, source: str, assume: Sequence[str] = (),
     units: Mapping[str, str] | None = None, repair: bool = True, stated: Context = NO_CONTEXT,
 ) -> Verdict:  # fmt: skip
-    """Return the verdict on one reading of a text: on its only equation, or on all equations of its chains and lines.
-
-    ``notation`` is the notation in which formulas are written, ``source`` the typed text, and ``stated`` the context
-    that the user states. The other arguments are those of :func:`verdict_on_text`.
-    """
+    """Return the verdict on one interpretation of a text: on its only equation, or on all its equations."""
     if len(reading.lines) == 1 and is_inequality(reading.lines[0].signs):
         return _on_inequality(reading, notation, source, assume, units, stated)
     lines = claims_of_reading(reading, source, assume, units, stated)
@@ -332,10 +312,7 @@ def _on_inequality(
     reading: Reading, notation: Notation, source: str, assume: Sequence[str], units: Mapping[str, str] | None,
     stated: Context,
 ) -> Verdict:  # fmt: skip
-    """Return the verdict on a reading that consists of one inequality.
-
-    The arguments are those of :func:`verdict_on_reading`.
-    """
+    """Return the verdict on an interpretation of a text as one inequality."""
     (chain,) = reading.lines
     (sign,) = chain.signs
     equation = replace(reading, lines=(replace(chain, signs=("==",)),))
@@ -351,24 +328,18 @@ def _on_inequality(
 
 
 def _differs(echo: str, source: str) -> bool:
-    """Return whether ``echo``, the claim as it was read, differs from the typed text in more than blanks.
-
-    Only then is it printed beside the verdict.
-    """
+    """Return whether ``echo``, the claim as symrot read it, differs from the typed text in more than blanks."""
     return "".join(echo.split()) != "".join(source.split()).replace("==", "=" if "==" not in echo else "==")
 
 
 def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Verdict:
-    """Return the verdict on one equation, written in the notation of the text.
-
-    If the text is ``plain``, not SymPy syntax, a false equation may be meant as a condition, such as ``x^2 = 4``: its
-    verdict is then "definition".
-    """
+    """Return the verdict on one equation, written in the notation of the text."""
     verdict = with_rounding(claim, check_claim(claim, repair and not claim.has_parts))
     verdict = in_degrees(claim, verdict, lambda other: with_rounding(other, check_claim(other, repair=False)))
     verdict = _on_rotations(claim, verdict) if verdict.verdict == "false" else verdict
     verdict = for_special_directions(claim, for_complex_numbers(claim, verdict)) if plain else verdict
     verdict = _with_two_meanings(claim, verdict) if verdict.verdict == "false" and plain else verdict
+    # a false equation outside SymPy syntax may be meant as a condition, such as x^2 = 4
     verdict = as_equation(claim, verdict, notation) if verdict.verdict == "false" and plain else verdict
     if verdict.verdict in ("recognised", "doubtful") and _has_indices(claim):
         verdict = replace(verdict, verdict="definition", recognised_as=(), repairs=(), reason=INDICES)
@@ -389,11 +360,7 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Ve
 
 
 def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim such as ``L = T - V`` if L meant something else on an earlier line, ``I = m L^2``.
-
-    The claim is decided with L_1 for the length in the earlier definitions. If it is not false then, this verdict is
-    returned, with a note on the two meanings of L. Otherwise, and for claims of other forms, ``verdict`` is returned.
-    """
+    """Return the verdict on a claim such as ``L = T - V`` after ``I = m L^2``, with L_1 for the earlier L."""
     assert claim.relation is not None
     _, left, right = claim.relation
     name, others = str(left.value), {own for own, tree in claim.define if left in [node for _, node in walk(tree)]}
@@ -405,7 +372,7 @@ def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
     define = tuple((own, with_names(tree, {name: f"{name}_1"})) for own, tree in claim.define)
     other = check_claim(replace(claim, define=define), repair=False)
     if other.verdict == "false":
-        return verdict
+        return verdict  # two meanings do not help
     note = f"{name} is read as another quantity than in {' and '.join(sorted(others))}; as the same, the line is false"
     return replace(other, notes=(*other.notes, note))
 
@@ -420,10 +387,7 @@ def _on_zero_powers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
 
 
 def _on_numbers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
-    """Return, in a tuple, a note on a true claim such as ``A B = B A``, in which A and B may be matrices; otherwise ().
-
-    For matrices the claim may be false.
-    """
+    """Return a tuple with a note on a true claim such as ``A B = B A``, false for some matrices; otherwise ()."""
     if verdict.verdict != "true" or claim.relation is None:
         return ()
     known = {*dict(claim.define), *claim.symbols}
@@ -456,10 +420,7 @@ def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
 
 
 def _with_inverse(source: str, place: str, typed: str) -> str:
-    """Return the text of an equation with ``q**(-1)`` on a side that is the inverse of a quaternion in the claim.
-
-    ``place`` is the side, ``typed`` the text of the claim. Other texts are returned unchanged.
-    """
+    """Return an equation with ``q**(-1)`` at ``place``, "left" or "right", if the typed claim has it there."""
     relation = _relation_of(source)
     if relation is None or relation[0] != "==":
         return source
@@ -497,11 +458,10 @@ def _is_odd(repair: Repair) -> bool:
 def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
     """Return "conditional" for a claim that is false for general matrices but true for rotation matrices.
 
-    First each matrix alone is assumed to be a rotation. Each one for which the claim is then true gives a condition, "R
-    is a rotation", and any one of these conditions suffices. If there is none, all matrices are assumed to be rotations
-    together. Any other claim keeps its ``verdict``.
+    Others keep their ``verdict``.
     """
     names = matrices_of_entries(claim.define)
+    # each matrix alone, any of which suffices; then all together
     groups = [(name,) for name in names] + ([tuple(names)] if len(names) > 1 else [])
     conditions: list[str] = []
     for group in groups:
@@ -518,10 +478,7 @@ def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _has_indices(claim: Claim) -> bool:
-    """Return whether a claim is in index notation, as ``I_ik = m*a_i*a_k`` is.
-
-    It is if a name has two of the indices i, j, k and l, and another name has one of these alone.
-    """
+    """Return whether a claim is in index notation: ``I_ik = m*a_i*a_k`` has a pair of indices and one of them alone."""
     assert claim.relation is not None
     names = {name for side in claim.relation[1:] for name in _names(side)}
     pairs = {name.rpartition("_")[2] for name in names if re.fullmatch(r"\w+_[ijkl]{2}", name)}
@@ -531,10 +488,7 @@ def _has_indices(claim: Claim) -> bool:
 def _on_parts(
     lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], notation: Notation, units: Collection[str] = ()
 ) -> Verdict:
-    """Return the verdict on a chain or several lines: the worst verdict on any of their equations, and a note on each.
-
-    ``verdicts`` are those on the equations in the order of ``lines``, and ``units`` the names that stand for units.
-    """
+    """Return the worst verdict on any equation of a chain or of several lines, with a note on each equation."""
     remaining = iter(verdicts)
     counted, notes = [], []
     total = sum(map(len, lines))
@@ -576,17 +530,13 @@ def _on_parts(
 def _with_fitting_line(
     claims: Sequence[Claim], lines: Sequence[tuple[str, Collection[str], Verdict]], notation: Notation, verdict: Verdict
 ) -> Verdict:
-    """Return the verdict on lines that do not fit together, with the single edit of one line after which they do.
-
-    ``lines`` are those of the names on the left sides, their letters and verdicts, one for each of the ``claims``. If
-    there is no such edit, ``verdict`` is returned.
-    """
+    """Return the verdict on equations that contradict each other, with the single edit that makes them fit together."""
     if len(lines) != len(claims) or len(lines) > MOST_LINES or any(claim.hypotheses for claim in claims):
         return verdict
     from symrot.checker.recognition.naming import recognised_edits  # it takes longer to import than most checks
     from symrot.checker.repair.edits import FAULT_DESCRIPTIONS
 
-    nearest: tuple[tuple[int, float], Verdict] | None = None
+    nearest: tuple[tuple[int, float], Verdict] | None = None  # without such an edit, the verdict is unchanged
     for place, claim in enumerate(claims):
         named = named_formula(claim)
         letters = {letter for _, own, _ in lines for letter in own}
@@ -603,15 +553,10 @@ def _with_fitting_line(
 
 
 def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], both_signs: bool) -> Verdict:
-    """Return the verdict on several conditional equations, with the conditions of all of them.
-
-    ``conditions`` has a sequence of texts for each equation; any one of these texts makes that equation true. So ``[["a
-    > 0", "b > 0"], ["c > 0"]]`` gives "a > 0 or b > 0 and c > 0". With ``both_signs``, the two equations are those with
-    the upper and the lower sign of ±, and each keeps its own condition.
-    """
+    """Return the verdict on several conditional equations with all their conditions: "a > 0 or b > 0 and c > 0"."""
     texts = list(dict.fromkeys(" or ".join(alternatives) for alternatives in conditions))
     others = tuple(condition for condition in verdict.conditions if condition not in verdict.requires)
-    if both_signs:
+    if both_signs:  # the two equations are those with the upper and the lower sign of ±
         required = tuple(f"{text} for the {word} sign" for text, word in zip(texts, ("upper", "lower"), strict=False))
     else:
         required = tuple(conditions[0]) if len(texts) == 1 else (" and ".join(texts),)
@@ -619,13 +564,7 @@ def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], 
 
 
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
-    """Return the verdicts on the equations ``name = a`` and ``a = b`` of a chain ``name = a = b``.
-
-    ``verdicts`` has the verdict on each equation alone, in the order of ``line``. An equation ``a = b`` that is not
-    true, and in which a has letters that b lacks and b has letters that a lacks, gets the verdict on ``name = b``
-    instead. So ``E = I*omega^2/2 = L^2/(2*I)`` is no false identity: both formulas give the energy E. Where b is a
-    number, such an ``a = b`` becomes a definition. All other verdicts are returned unchanged.
-    """
+    """Return the verdicts on the equations of a chain ``name = a = b``, with ``name = b`` for a false ``a = b``."""
     named = named_formula(line[0]) if len(line) > 1 else None
     if named is None or line[0].relation is None or line[0].relation[1] != named.side:
         return list(verdicts)
@@ -633,7 +572,7 @@ def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation
     for claim, verdict in zip(line[1:], verdicts[1:], strict=True):
         assert claim.relation is not None
         _, left, right = claim.relation
-        others = _names(right) - _names(left)
+        others = _names(right) - _names(left)  # both formulas in E = I*omega^2/2 = L^2/(2*I) give E
         if verdict.verdict in ("false", "conditional", "definition") and others and _names(left) - _names(right):
             renamed = claim.with_relation(("==", named.side, right))
             under_name = check_claim(renamed)
@@ -653,11 +592,8 @@ def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation
 
 
 def _depends_on_letters(claim: Claim) -> bool:
-    """Return whether the value of a claim's left side depends on a letter, as that of sin²x + cos²x does not.
-
-    It matters for an equation in a chain such as ``y = sin x = 1/2``: if the value depends on a letter, ``sin x = 1/2``
-    is no error but holds for certain values of x.
-    """
+    """Return whether the value of a claim's left side depends on a letter, as that of sin²x + cos²x does not."""
+    # if so, sin x = 1/2 in y = sin x = 1/2 is no error, but holds for certain x
     left = claim.equation.left
     return not is_matrix(left) and bool(normal_form(left).free_symbols)
 

@@ -1,9 +1,7 @@
 """Verdicts on the claims of a document, with allowance for characters that the extraction of its text lost.
 
-Each claim has the formula that the document prints on the left, and the right result on the right. A false claim is an
-error of the document, or its formula lost characters when the text was extracted. Lost characters are accepted as the
-reason if the claim is true after they are put back on the left side, and if all of them are of the kinds (such as minus
-signs) that the extraction is known to have lost at this place.
+Each claim equates the printed formula (left) and the right result. If it is false, but true after lost characters such
+as minus signs are put back on the left, the document may have no error.
 """
 
 from collections import Counter
@@ -106,9 +104,7 @@ def finding_of(
 ) -> Finding:
     """Return the result of checking one claim, whose record in the document's file is ``data``.
 
-    ``formula`` is its entry in the errata, which may propose a correction or ask to derive it; None for a claim without
-    an entry. A claim that is false, but true under the proposed ``condition``, is conditional. So is a true claim that
-    divides by a number which the ``condition`` says may be zero.
+    ``formula`` is its entry in the errata, or None.
     """
     if "editable" not in data:
         claim = replace(claim, editable=("left",))  # the left side is what the document prints
@@ -116,6 +112,7 @@ def finding_of(
     readings = tuple(other for other in claim.alternatives if _is_reading(claim, other, lost))
     claim = replace(claim, alternatives=readings)
     verdict, other = check_readings(claim, repair)
+    # a false claim that is true under the condition is conditional, as is a true one that divides by a possible zero
     listed, words = ((), "") if condition is None else (condition.hypotheses, condition.words)
     if verdict:
         broken = tuple(text for text in verdict.conditions if text in listed or _may_be_broken(text))
@@ -141,14 +138,11 @@ def finding_of(
 
 
 def _may_be_broken(condition: str) -> bool:
-    """Return whether a condition can fail although all quantities have their usual signs.
-
-    Such a condition is about an angle, as ``sin(theta) != 0`` is, or is an inequality with a difference or between
-    two quantities, such as ``m*g*L <= kappa``. A length, a mass or a moment of inertia is positive by its meaning.
-    """
+    """Return whether a condition can fail although all quantities have their usual signs: ``sin(theta) != 0``."""
     sign, *trees = read_relation(condition)
     sides = [[node for _, node in walk(tree)] for tree in trees]
     nodes = [node for side in sides for node in side]
+    # m*g*L <= kappa can fail too, but a length, a mass or a moment of inertia is positive by its meaning
     is_on_an_angle = any(node.kind == "call" and node.value in ANGLES for node in nodes)
     has_difference = any(node.kind == "neg" for node in nodes) or all(
         any(node.kind == "name" for node in side) for side in sides
@@ -166,17 +160,14 @@ def _prove(claim: Claim, condition: Condition) -> None:
 
 
 def _correction(claim: Claim, verdict: Verdict, formula: PrintedFormula | None) -> tuple[str, dict[str, Node]]:
-    """Return what the correction of a false claim comes from, and the corrected parts by place.
-
-    A place is a side, or the name of a definition. The correction is the one that the errata propose or ask to derive;
-    otherwise it is the nearest repair in ``verdict``. There may be none.
+    """Return the origin of the correction of a false claim, and the corrected parts by side or definition.
 
     Raises
     ------
     InputError
         For a correction of a part that is not printed, or one that the exact engine does not prove.
     """
-    origin = "search"
+    origin = "search"  # the nearest repair, unless the errata propose a correction or ask to derive it
     changes: Mapping[str, str] = verdict.repairs[0].edited if verdict.repairs else {}
     if formula is not None and formula.derived:
         origin = "derivation"
@@ -200,10 +191,7 @@ def _correction(claim: Claim, verdict: Verdict, formula: PrintedFormula | None) 
 
 
 def _inner(kinds: Collection[str]) -> Callable[[Node], Node]:
-    """Return a function that removes the sign of a node whose kind is in ``kinds``: it maps ``-a`` to a for "neg".
-
-    The function returns any other node unchanged.
-    """
+    """Return a function that removes the sign of nodes of certain kinds: it maps ``-a`` to a for "neg"."""
     return lambda node: node.args[0] if node.kind in kinds else node
 
 
@@ -234,10 +222,7 @@ lost with them."""
 
 
 def _is_reading(claim: Claim, other: tuple[str, Node, Node], lost: Collection[str]) -> bool:
-    """Return whether the equation ``other`` differs from a claim only by characters put back on the claim's left side.
-
-    The left side is what the document prints. ``lost`` are the kinds of characters that the extraction loses.
-    """
+    """Return whether ``other`` differs from a claim only by lost characters put back on its left side."""
     assert claim.relation is not None
     return other[2] == claim.relation[2] and differs_by_lost_characters(claim.relation[1], other[1], lost)
 
@@ -261,11 +246,7 @@ def differs_by_lost_characters(printed: Node, right: Node, lost: Collection[str]
 
 
 def _extracted(node: Node, lost: Collection[str]) -> Node:
-    """Return a formula as it looks after the extraction of text lost all characters of the kinds ``lost``.
-
-    Without "minus signs", ``a - b`` becomes ``a + b``: its tree is the sum of a and -b, and of b once the sign is lost.
-    The other kinds are the keys of LOSSES, such as "dots" and "primes".
-    """
+    """Return a formula as it looks without all characters of the kinds ``lost``: ``a + b`` for ``a - b``."""
     node = replace(node, args=tuple(_extracted(child, lost) for child in node.args))
     for loss in lost:
         node = LOSSES[loss](node) if loss in LOSSES else node

@@ -20,12 +20,8 @@ class TimeUp(BaseException):
 
 @contextmanager
 def processor_seconds(limit: float) -> Iterator[None]:
-    """Raise TimeUp inside a ``with`` block when the process has computed for ``limit`` seconds since the block began.
-
-    The limit needs the operating system's timer of processor time (``ITIMER_PROF``) and the main thread. Without
-    them, inside another limit, or if the program uses that timer itself, the block runs without a limit of its own.
-    """
-    if not _timer_is_free():
+    """Raise TimeUp inside a ``with`` block after ``limit`` seconds of computing, if a timer of the system is free."""
+    if not _timer_is_free():  # no ITIMER_PROF, another thread, inside another limit, or in use by the program
         yield
         return
 

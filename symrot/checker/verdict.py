@@ -87,10 +87,7 @@ class Repair:
 
     @property
     def note(self) -> str:
-        """A text in square brackets: the fault's code, the wrong matrix entry, and the range where the repair holds.
-
-        An example is "[sign, entry (1, 2), if x > 0]"; entry and range are left out where there are none.
-        """
+        """A text such as "[sign, entry (1, 2), if x > 0]": the fault, the wrong entry, and where the repair holds."""
         entry = f", entry {self.entry}" if self.entry else ""
         return f"[{self.code}{entry}{f', if {self.requires}' * bool(self.requires)}]"
 

@@ -46,20 +46,15 @@ _TURNED = 2.0**-99  # error of products of unit quaternions: 2^-100 of the units
 
 
 def attitudes(quaternions: Floats) -> Floats:
-    """Return quaternions divided by their norms, as double-double numbers, shape (n, 8): hi and lo of each component.
-
-    The numbers are the same as from :func:`symrot.closed_form.arithmetic.pairs.attitude`. For about one quaternion in a
-    thousand, double-double arithmetic leaves the last bit in doubt; exact arithmetic then determines it.
-    """
+    """Return quaternions divided by their norms, as double-double numbers, shape (n, 8): hi, lo of each component."""
+    # the same numbers as from pairs.attitude: exact arithmetic decides the last bit of about one row in a thousand
     high, low = _units(quaternions)
     return _on_grid(high, low, 0.0, lambda i: attitude(_unit(quaternions[i])))
 
 
 def turned(frame: Frame, quaternions: Floats) -> Floats:
-    """Return attitudes converted to the axes ``frame`` of a heavy top's formulas, shape (n, 8): pairs hi, lo.
-
-    The numbers are the same as from :meth:`symrot.closed_form.heavy_top.motion.Frame.start` for each attitude.
-    """
+    """Return attitudes converted to the axes ``frame`` of a heavy top's formulas, shape (n, 8): pairs hi, lo."""
+    # the same numbers as from Frame.start for each attitude
     attitudes = _units(quaternions)
     if frame.before is not None:
         attitudes = _product(frame.before, True, attitudes)
@@ -73,11 +68,7 @@ def _unit(quaternion: Floats) -> Sequence[Fraction]:
 
 
 def _units(quaternions: Floats) -> dd.Pair:
-    """Return quaternions, shape (n, 4), divided by their norms, as double-double numbers.
-
-    The error of each component is less than ``_DOUBT/4`` grid steps. A grid step is GRID times the last bit of the high
-    part; :func:`_on_grid` rounds the low part to a multiple of it, and its constant ``_DOUBT`` includes this error.
-    """
+    """Return quaternions, shape (n, 4), divided by their norms, as double-double numbers."""
     scaled = np.ldexp(quaternions, -np.frexp(abs(quaternions).max(axis=1))[1][:, None])
     square = dd.two_product(scaled, scaled)
     total = (square[0][:, 0], square[1][:, 0])
@@ -90,14 +81,13 @@ def _units(quaternions: Floats) -> dd.Pair:
     high = scaled / root
     back = dd.two_product(high, root)
     low = (((scaled - back[0]) - back[1]) - high * rest) / root
+    # the error of each component is below _DOUBT/4 grid steps, which _DOUBT in _on_grid includes
     return dd.normalized(high, low)
 
 
 def _sign(i: int, j: int) -> float:
-    """Return the sign of the product of units i and j of the quaternions; the units 1, i, j, k have the numbers 0 to 3.
-
-    Example: i j = k gives ``_sign(1, 2) = 1``, and j i = -k gives ``_sign(2, 1) = -1``.
-    """
+    """Return the sign of the product of units i and j of the quaternions: i j = k gives ``_sign(1, 2) = 1``."""
+    # the units 1, i, j, k have the numbers 0 to 3
     one, other = ([float(k == unit) for k in range(4)] for unit in (i, j))
     return float(hamilton(one, other)[i ^ j])
 
@@ -105,8 +95,9 @@ def _sign(i: int, j: int) -> float:
 def _product(constant: Sequence[Fraction], before: bool, q: dd.Pair) -> dd.Pair:
     """Return the products of one constant unit quaternion with many unit quaternions q, shape (n, 4).
 
-    If ``before`` is true, the constant quaternion is the left factor. The error is 2^-102.
+    If ``before``, the constant is the left factor.
     """
+    # the error is 2^-102
     product: dd.Pair | None = None
     for i, (high, low) in enumerate(map(pair, constant)):
         places = [i ^ k for k in range(4)]  # unit j with i*j = k or -k
@@ -118,15 +109,14 @@ def _product(constant: Sequence[Fraction], before: bool, q: dd.Pair) -> dd.Pair:
 
 
 def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], Sequence[float]]) -> Floats:
-    """Return double-double numbers rounded as :func:`symrot.closed_form.arithmetic.pairs.on_grid` rounds exact numbers.
+    """Return double-double numbers rounded as :func:`symrot.closed_form.arithmetic.pairs.on_grid` rounds exact ones.
 
-    Each low part is rounded to a multiple of a grid step, which is GRID times the last bit of the high part. The sum
-    ``high + low`` is an approximation: it may differ from the exact number by ``error`` plus ``_DOUBT/4`` grid steps.
-    Where an error of this size could change the multiple, in row i, the row is replaced by ``exactly(i)``, which is
-    computed from the exact numbers.
+    ``exactly(i)`` computes a row i whose rounding is in doubt.
     """
+    # low becomes a multiple of a grid step, which is GRID times the last bit of high
     last = np.where(abs(high) > _SPREAD, np.spacing(abs(high)), 1.0)
     part, steps = abs(low) / last, low / (last * GRID)
+    # high + low may differ from the exact number by error plus _DOUBT/4 grid steps
     wide = error / last
     doubtful = abs(abs(steps - np.floor(steps)) - 0.5) < _DOUBT + wide / GRID
     doubtful |= (abs(part - 0.5) < _TIE + wide) | (abs(part - 0.25) < _TIE + wide)
@@ -146,10 +136,7 @@ def _pairs(values: Floats) -> Floats:
 
 
 def _columns(values: Sequence[Column], n: int) -> Floats:
-    """Return k constants of n motions as double-double numbers, shape (n, 2 k): hi, lo, hi, lo, .. in each row.
-
-    Each of ``values`` is an array with one double per motion, or one Fraction for all motions.
-    """
+    """Return k constants of n motions as double-double numbers, shape (n, 2 k): hi, lo, hi, lo, .. in each row."""
     columns = np.zeros((n, 2 * len(values)))
     for k, value in enumerate(values):
         if isinstance(value, Fraction):
@@ -160,37 +147,31 @@ def _columns(values: Sequence[Column], n: int) -> Floats:
 
 
 def _together(values: Sequence[Column], n: int) -> Floats:
-    """Return k constants as double-double numbers: shape (2 k,) if all motions share them, else (n, 2 k).
-
-    Each of ``values`` is an array with one double per motion, or one Fraction for all motions.
-    """
+    """Return k constants as double-double numbers: shape (2 k,) if all motions share them, else (n, 2 k)."""
     return _columns(values, n)[0] if all(isinstance(value, Fraction) for value in values) else _columns(values, n)
 
 
 def usual(omega: Floats) -> NDArray[np.bool_]:
-    """Return for each angular velocity, shape (n, 3), whether its size is usual, so that the functions below accept it.
+    """Return for each angular velocity, shape (n, 3), whether the functions below accept its size.
 
-    It is usual if the largest component is zero or from SMALLEST to LARGEST; other motions have to be computed one by
-    one.
+    Other motions must be computed one by one.
     """
+    # the largest component is zero or from SMALLEST to LARGEST
     largest = abs(omega).max(axis=1)
     is_usual: NDArray[np.bool_] = (largest <= LARGEST) & ((largest >= SMALLEST) | (largest == 0))
     return is_usual
 
 
 def _noticed(omega: Floats) -> Floats:
-    """Return angular velocities, shape (n, 3), in which components too small to affect the motion are replaced by zero.
-
-    A single motion ignores these components too, so that a batch gives the same bits.
-    """
+    """Return angular velocities, shape (n, 3), with zeros for components too small to affect the motion."""
+    # single motions ignore these components too, so that a batch gives the same bits
     return np.where(abs(omega) < np.ldexp(abs(omega).max(axis=1), -number.NEGLIGIBLE_BITS)[:, None], 0.0, omega)
 
 
 def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
     """Return the motions of one free body from n initial states as a batch, which one call of C computes.
 
-    ``omega`` holds the angular velocities, shape (n, 3), of which :func:`usual` must be true. ``start`` holds the
-    initial attitudes as pairs hi, lo of doubles, shape (8,) if all are equal, or (n, 8).
+    The angular velocities must be :func:`usual`; ``start`` has the shape (8,) or (n, 8).
     """
     exact = np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
@@ -206,10 +187,7 @@ def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
 
 
 def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floats) -> Batch:
-    """Return the motions of free bodies, given their principal moments of inertia, kg m^2, as a batch for C.
-
-    The other arguments are as for :func:`free_bodies`.
-    """
+    """Return the motions of free bodies with given principal moments, kg m^2, as a batch, see :func:`free_bodies`."""
     omega, n = _noticed(omega), len(omega)
     exact, pairs = np.empty((n, 8)), _columns(moments, n)
     if not pairs[:, 1::2].any():  # the low parts are zero, since moments are doubles
@@ -231,11 +209,9 @@ def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floa
 def free_bodies_of_tensors(
     entries: Sequence[Column], omega: Floats, start: Floats
 ) -> tuple[Batch | None, NDArray[np.bool_]]:
-    """Return the motions of free bodies whose axes are not principal axes as a batch for C, and a Boolean array.
+    """Return a batch of motions of free bodies in any axes, and for each motion whether the batch computes it exactly.
 
-    The array is false for the motions that the batch cannot compute exactly; they must be computed one by one.
-    ``entries`` are the components xx, yy, zz, xy, xz and yz of the inertia tensors, kg m^2; the other arguments are as
-    for :func:`free_bodies`.
+    ``entries`` are the tensor components xx, yy, zz, xy, xz and yz, kg m^2.
     """
     settled = np.ones(len(omega), np.bool_)
     principal = bodies.principal_bodies(entries, omega)
@@ -259,21 +235,17 @@ def tops(
 ) -> Batch:  # fmt: skip
     """Return the motions of symmetric heavy tops from n initial states as a batch, which one call of C computes.
 
-    ``across`` and ``own`` are the moments of inertia across and about the symmetry axis, kg m^2. ``pull`` is the weight
-    times the height of the centre of mass on this axis, N m, as hi, lo, of shape (2,) or (n, 2). ``start`` holds
-    attitudes in the axes of ``frame``, see :func:`turned`; ``omega`` are the angular velocities, shape (n, 3).
+    ``pull`` is weight times height of the centre of mass, N m, as hi and lo.
     """
+    # start: attitudes in the axes of frame, see turned
     rates = _pairs(np.ascontiguousarray(omega[:, frame.named]))
     axes = None if frame.axes is None else np.array(frame.axes)
     return Batch("heavy_top", (_together([across, own], len(omega)), pull, rates, start, np.array(frame.space), axes))
 
 
 def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of symmetric gyrostats, with the rotor along ``axis``, as a batch for one call of C.
-
-    ``across`` and ``own`` are the moments of inertia across and about the axis, and ``rotor`` is the angular momentum
-    of the rotor; each is one Fraction or an array. ``omega`` and ``start`` are as for :func:`free_bodies`.
-    """
+    """Return the motions of symmetric gyrostats, with the rotor along ``axis``, as a batch for one call of C."""
+    # across, own: moments of inertia across and about the axis; rotor: the rotor's angular momentum
     named = [(axis + 1) % 3, (axis + 2) % 3, axis]
     rates = _pairs(np.ascontiguousarray(omega[:, named]))
     constants = [_together([across, own], len(omega)), _together([rotor], len(omega))]
@@ -281,11 +253,8 @@ def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floa
 
 
 def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of symmetric bodies under a constant torque about ``axis`` as a batch for one call of C.
-
-    ``across`` and ``own`` are the moments of inertia across and about the axis; these and ``torque`` are one Fraction
-    each, or arrays. ``omega`` and ``start`` are as for :func:`free_bodies`.
-    """
+    """Return the motions of symmetric bodies under a constant torque about ``axis`` as a batch for one call of C."""
+    # across, own: moments of inertia across and about the axis
     numbers = np.empty((len(omega), 20))
     numbers[:, :6] = _columns([across, own, torque], len(omega))
     numbers[:, 6:12] = _pairs(omega[:, [axis - 2, axis - 1, axis]])
@@ -294,11 +263,8 @@ def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floa
 
 
 def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Floats) -> Batch:
-    """Return the motions of bodies driven about one axis, from n initial states, as a batch for one call of C.
-
-    ``constants`` describes one body for all initial states, or is a list with one body for each. ``omega`` and
-    ``start`` are as for :func:`free_bodies`.
-    """
+    """Return the motions of bodies driven about one axis, from n initial states, as a batch for one call of C."""
+    # one body for all initial states, or a list with one body for each
     bodies = [constants] * len(omega) if isinstance(constants, Constants) else constants
     axis = bodies[0].axis
     turned: NDArray[np.bool_] = (omega[:, [axis - 2, axis - 1]] != 0).any(axis=1)

@@ -1,11 +1,8 @@
 """Compilation of the closed forms, once per machine: all scenes share the code and differ only in constants.
 
-A closed form consists of two C files, compiled in parallel. ``name.c`` computes the constants of a motion; it is
-compiled with -Og, which takes a third of the compile time of -O2, but makes each motion 1 us slower. ``name_at.c``
-contains the loops over samples. A closed form with elementary constants has no ``name.c``; ``bodies_at.c`` contains
-loops over bodies. Double-double arithmetic (numbers that are sums of two doubles) requires that every operation is
-rounded separately. The compiler must therefore not combine a product and a sum into one operation, and each prepared
-motion first tests whether the compiled code rounds every operation.
+A closed form consists of two C files, compiled in parallel: ``name.c`` computes the constants of a motion, and
+``name_at.c`` contains the loops over samples. Double-double arithmetic (sums of two doubles) requires that every
+operation is rounded separately, which each prepared motion tests first.
 """
 
 import ctypes
@@ -38,6 +35,7 @@ FLAGS = (
 
 INCLUDE = '\n#include "'
 
+# -Og takes a third of the compile time of -O2, but makes each motion 1 us slower
 PARTS = {"": (*FLAGS, "-Og"), "_at": (*FLAGS, "-O2")}
 """Compiler flags for the C files of a closed form, by the ending of the file name."""
 
@@ -60,10 +58,7 @@ def source(name: str) -> str:
 
 
 def joined(*names: str) -> str:
-    """Return the texts of the C files ``names`` as one, with the texts of their headers in place of their includes.
-
-    Each header is inserted only once.
-    """
+    """Return the texts of the C files ``names`` as one, with the texts of their headers in place of their includes."""
     places, seen = _files(), set()
 
     def text(file: str) -> str:
@@ -79,17 +74,16 @@ def joined(*names: str) -> str:
 
 
 def begin(name: str) -> list[library.Building]:
-    """Start to compile the libraries of a closed form, and return the compilations, which run in the background.
+    """Start to compile the libraries of a closed form, such as ``"free_body"``, and return the compilations.
 
-    ``name`` is the name of its C files without an ending, such as ``"free_body"``. There is one library for each of its
-    C files, ``free_body.c`` and ``free_body_at.c``: :data:`PARTS` has their endings and compiler flags. A cached
-    library is not compiled again. A caller may do other work until it calls :func:`load`.
+    They run in the background.
 
     Raises
     ------
     CompilerError
         If there is no C compiler.
     """
+    # one library for each C file (elementary constants need no name.c); a cached library is not compiled again
     if name not in _begun:
         _begun[name] = [
             library.Building(source(f"{name}{part}"), f"closed_form_{name}{part}", flags)
@@ -108,9 +102,7 @@ def loaded(name: str) -> bool:
 
 
 def load(name: str) -> tuple[Any, ...]:
-    """Load the compiled libraries of a closed form and return them in a list.
-
-    The last one contains the loops over samples; the one before it, if there is one, computes the constants.
+    """Load the compiled libraries of a closed form and return them; the last one contains the loops over samples.
 
     Raises
     ------

@@ -21,15 +21,11 @@ AT_ONCE = 1024  # motions per call of C, about 10 ms, after which Python can rea
 
 
 class Batch(NamedTuple):
-    """A batch of n motions of the closed form ``name``, described by the arguments of its C function `prepare`.
-
-    Each argument is an array of shape (k,) that all motions share, an array of shape (n, k), or None. For ``axial`` the
-    only argument has the values of all members of the C struct `axial`. For ``spin_up`` there are two: the 20 numbers
-    of each motion, and an array of four with the axis and the results of
-    :func:`symrot.closed_form.spin_up.compiled.limits`.
-    """
+    """A batch of n motions of the closed form ``name``, described by the arguments of its C function `prepare`."""
 
     name: str
+    # shape (k,) if all motions share it, or (n, k); for axial, all members of the C struct `axial`; for spin_up, the 20
+    # numbers of each motion, then the axis and the results of symrot.closed_form.spin_up.compiled.limits
     arguments: tuple[Floats | None, ...]
 
     def of(self, chosen: NDArray[np.bool_]) -> "Batch":
@@ -54,9 +50,7 @@ def _place(function: Any) -> int:
 
 
 def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | None, workers: int = 1) -> list[int]:
-    """Write the samples of n motions into arrays, and return the indices of the motions that could not be computed.
-
-    The numbers of these motions exceed the range of double-double arithmetic, so they must be computed one by one.
+    """Write the samples of n motions into arrays, and return the indices of the motions to compute one by one.
 
     Parameters
     ----------
@@ -92,6 +86,7 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
             end = min(first + AT_ONCE, last)
             first = run(ctypes.addressof(motions), first, end)
             if first < end:
+                # its numbers exceed the range of double-double arithmetic
                 refused.append(first)
                 first += 1
         return refused
@@ -103,18 +98,13 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
 
 
 class _Linked(NamedTuple):
-    """The compiled loop over many motions, with the addresses of the C functions of one closed form.
+    """The compiled loop over many motions, with the addresses of the C functions of one closed form."""
 
-    The loop ``run`` calls the functions at the addresses ``prepare`` and ``at`` for each motion, with the constants of
-    the motion in a C array of the type ``record``. An address is 0, and ``table`` is 0, where a closed form has no such
-    part.
-    """
-
-    run: Any
-    prepare: int
+    run: Any  # calls the functions at the addresses prepare and at for each motion
+    prepare: int  # 0 if there is no such function
     at: int
-    record: Any
-    table: int  # doubles
+    record: Any  # type of the C array with the constants of a motion
+    table: int  # doubles; 0 if there is no table
 
 
 def _loop(name: str, library_name: str = "many") -> Any:

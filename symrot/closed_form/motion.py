@@ -27,9 +27,9 @@ _bound: dict[str, _Functions] = {}
 
 
 class ExactMotion(ABC):
-    """The base class of motions in closed form: one body's motion from one initial state, evaluated at any time.
+    """The base class of closed forms: one body's motion from one initial state, evaluated at any time.
 
-    A derived class computes the samples, in C, with NumPy or in integers. Times, s, are counted from the initial state.
+    Times, s, are counted from the initial state.
     """
 
     regime: str
@@ -78,10 +78,7 @@ class ExactMotion(ABC):
 
 
 class _Compiled(ExactMotion):
-    """A motion in closed form whose constants and samples are computed by compiled C functions.
-
-    The constants are computed once, when the motion is created; each call of ``evaluate`` then fills arrays of samples.
-    """
+    """A motion in closed form whose constants and samples are computed by compiled C functions."""
 
     def __init__(self, constants: Any, evaluate: Any) -> None:
         self._constants, self._evaluate = constants, evaluate
@@ -103,12 +100,9 @@ class _Portable(ExactMotion):
 
 
 def functions(name: str, arguments: int) -> _Functions:
-    """Return the two C functions of the closed form ``name``, and the ctypes type of the constants that they share.
-
-    The first, ``prepare``, computes the constants of a motion from ``arguments`` arrays of doubles; the second loops
-    over its samples. ``name`` is the name of the C files, such as ``"free_body"``.
-    """
+    """Return the two C functions of the closed form ``name``, and the ctypes type of the constants that they share."""
     if name not in _bound:
+        # prepare computes the constants of a motion from arrays of doubles, evaluate loops over its samples
         constants, samples = load(name)
         prepare, length = (getattr(constants, f"symrot_{name}_{part}") for part in ("prepare", "length"))
         evaluate = getattr(samples, f"symrot_{name}_at")
@@ -123,9 +117,7 @@ def functions(name: str, arguments: int) -> _Functions:
 def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Callable[[], str]) -> ExactMotion:
     """Return the motion whose constants the C function `prepare` of ``name.c`` computes from ``arguments``.
 
-    Without a C compiler, the motion is one of :mod:`symrot.closed_form.portable`, which NumPy and mpmath compute.
-
-    Each argument is a list of doubles or None. ``refusal`` returns the error message for numbers outside the domain.
+    ``refusal`` returns the error message for numbers outside the domain.
 
     Raises
     ------
@@ -134,6 +126,7 @@ def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Call
     CompilerError
         If the C compiler rejects the source, or does not round every operation separately.
     """
+    # without a C compiler, NumPy and mpmath compute the motion
     if name not in _bound and library.missing():
         from symrot.closed_form.portable import MOTIONS
 
@@ -156,8 +149,6 @@ _packing = {length: Struct(f"{length}d").pack for length in (2, 4, 6, 8, 26)}
 
 
 def _packed(values: list[float]) -> bytes:
-    """Return the bytes of a list of doubles, in the machine's format, as an argument of a C function.
-
-    Making these bytes takes a fifth of the time of making a ctypes array.
-    """
+    """Return the bytes of a list of doubles, in the machine's format, as an argument of a C function."""
+    # takes a fifth of the time of making a ctypes array
     return _packing[len(values)](*values)

@@ -1,8 +1,8 @@
 """The table of closed forms: each has a condition on scenes, and a function that returns its motions.
 
 A closed form is a formula for angular velocity and attitude at any time, such as the theta functions of a free body.
-:func:`exact_form` chooses the first form of the table :data:`FORMS` whose condition a scene meets; a scene that meets
-none is integrated step by step.
+:func:`exact_form` chooses the first form in :data:`FORMS` whose condition a scene meets; other scenes are integrated
+step by step.
 """
 
 from collections.abc import Callable
@@ -27,10 +27,9 @@ class Exact(Protocol):
     def evaluate(
         self, t: ArrayLike, omega: bool = True, quaternion: bool = True
     ) -> tuple[Floats | None, Floats | None]:
-        """Return angular velocity (n, 3), body components, rad/s, and attitude (n, 4) at the n times ``t``, s.
+        """Return angular velocity (n, 3), body components, rad/s, and attitude (n, 4), body to space, at times t, s.
 
-        The attitude consists of unit quaternions, scalar first, body to space. ``omega`` and ``quaternion`` say which
-        of the two results are computed; the other one is None.
+        A result that is not requested is None.
         """
 
 
@@ -39,13 +38,9 @@ Starts = Callable[[Initial], Exact]
 
 
 class ClosedForm(NamedTuple):
-    """One row of the table of closed forms: its name, its condition on a scene, and a function that returns motions.
+    """One row of the table of closed forms: its name, its condition on a scene, and a function that returns motions."""
 
-    An example is "symmetric gyrostat, two steady rotations", which applies to a symmetric body whose only torque comes
-    from a rotor along the symmetry axis.
-    """
-
-    name: str
+    name: str  # such as "symmetric gyrostat, two steady rotations"
     applies: Callable[[Scene], bool]
     starts: Callable[[Scene], Starts]  # returns a function from initial states to motions that share constants
     library: str  # name of its C files, see symrot.closed_form.build; "" if it has no C files
@@ -79,9 +74,9 @@ def _symmetric_about(scene: Scene, axis: int) -> bool:
 
 
 def _only_axis(vector: tuple[Fraction, ...]) -> int | None:
-    """Return the index (0, 1 or 2) of the only nonzero component of a vector: the body axis to which it is parallel.
+    """Return the index (0, 1 or 2) of the only nonzero component of a vector: ``(0, 0, 2)`` gives 2.
 
-    The result is None if no component, or more than one, is nonzero. Example: ``(0, 0, 2)`` gives 2.
+    None if there is not exactly one.
     """
     along = [axis for axis, component in enumerate(vector) if component != 0]
     return along[0] if len(along) == 1 else None
@@ -128,8 +123,7 @@ def _gyrostat(scene: Scene) -> Starts:
 def torque_and_damping(scene: Scene) -> tuple[Vector, Vector]:
     """Return two vectors of body components: the sum of a scene's constant torques, and its damping coefficients.
 
-    The torques, N m, are those of kind ``constant_body``; the coefficients, N m s, are the sums of the fields
-    ``linear`` of the torques of kind ``damping``. Without such torques, a vector is zero.
+    Their units are N m and N m s.
     """
     sums = []
     for kind, field in (("constant_body", "torque"), ("damping", "linear")):
@@ -145,15 +139,12 @@ def _is_driven(scene: Scene) -> bool:
 
 
 def _driven_axis(scene: Scene) -> int | None:
-    """Return the index of the principal axis about which the body rotates at all times, or None if there is none.
-
-    Such an axis exists if the scene has only constant torques and linear damping, and torque and angular velocity are
-    parallel to it. For a body that stays at rest, the index is 0.
-    """
+    """Return the index of the principal axis about which the body rotates at all times, or None if there is none."""
     if not _is_driven(scene):
         return None
     push, turning = torque_and_damping(scene)[0], _only_axis(scene.initial.omega_b)
     axis = turning if turning is not None else _only_axis(push)
+    # torque and angular velocity must be parallel to the axis
     across = [*scene.initial.omega_b, *push]
     if not any(across):
         return 0  # the body stays at rest
@@ -161,14 +152,11 @@ def _driven_axis(scene: Scene) -> int | None:
 
 
 def _driven_symmetry_axis(scene: Scene) -> int | None:
-    """Return the index of the symmetry axis about which a constant torque drives the body, or None.
-
-    The result is None if there are other torques or no such axis, and for a scene with damping whose output needs the
-    attitude, since the attitude then has no closed form.
-    """
+    """Return the index of the symmetry axis about which a constant torque drives the body, or None."""
     if not _is_driven(scene):
         return None
     push, drag = torque_and_damping(scene)
+    # with damping, the attitude has no closed form
     if any(drag) and set(scene.output.quantities) & ATTITUDE_QUANTITIES:
         return None
     for axis in range(3):
@@ -197,12 +185,7 @@ def _axial(scene: Scene) -> Starts:
 
 
 def _field_axis(name: str) -> Callable[[Scene], int | None]:
-    """Return a function from a scene to the index of the body axis to which a vector of its torque is parallel.
-
-    ``name`` is the name of the vector: ``"center_of_mass"`` of a gravity torque, or ``"angular_momentum"`` of a rotor.
-    The scene must have one torque. The index is 0, 1 or 2, or None if the vector is not parallel to a body axis. Such a
-    function is the field ``axis`` in the entries for heavy tops and for gyrostats in the table of closed forms.
-    """
+    """Return a function from a scene to the body axis (0, 1 or 2) along the vector ``name`` of its torque, or None."""
     return lambda scene: _only_axis(scene.torques[0].vector(name))
 
 
@@ -265,11 +248,7 @@ FORMS = (
 
 
 def exact_form(scene: Scene) -> ClosedForm | None:
-    """Return the first closed form in the table that applies to a scene, or None if none applies.
-
-    None means that the motion must be integrated step by step. It is also the result for a scene with a torque given by
-    a table of samples.
-    """
+    """Return the first closed form in the table that applies to a scene, or None if none applies."""
     if scene.table is not None:  # the conditions do not cover a torque given by samples
         return None
     return next((form for form in FORMS if form.applies(scene)), None)

@@ -1,12 +1,8 @@
-"""Formulas of outputs and of their derivatives, written in several ways that need different numbers of operations.
+"""Formulas of outputs and of their derivatives, written in several ways that differ in the number of operations.
 
-All ways are equal in exact arithmetic. Which one needs the fewest operations depends on the kernel, so the caller
-counts the operations of each and chooses:
-
-- the chain rule, with named intermediate quantities or with formulas in the inputs alone;
-- forward accumulation: the derivatives of each temporary by the inputs, one assignment after the other;
-- backward accumulation: the derivatives of each output by the temporaries;
-- if an output is linear in some inputs, its value as the sum of these inputs times their derivatives.
+All ways are equal in exact arithmetic; the caller counts the operations of each and chooses. The derivatives come from
+the chain rule, from forward accumulation (each temporary by the inputs) or from backward accumulation (each output by
+the temporaries). A temporary is an intermediate result.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -37,14 +33,12 @@ Groups = Sequence[Sequence[str]]  # inputs that belong together, such as the com
 
 @dataclass(frozen=True)
 class Formulas:
-    """Formulas of a kernel's outputs, and of the intermediate quantities (temporaries) that occur in them.
+    """Formulas of a kernel's outputs, and of the temporaries (intermediate quantities) that occur in them."""
 
-    ``outputs`` holds pairs (name of the output, formula), ``named`` pairs (symbol, formula) of the intermediate
-    quantities in the order of computation: each formula may contain the symbols before it. For ``y = sin(s)/s`` with
-    ``s = sqrt(a + b)``: ``outputs = (("y", sin(s)/s),)`` and ``named = ((s, sqrt(a + b)),)``.
-    """
-
+    # pairs (name, formula), such as ("y", sin(s)/s)
     outputs: tuple[tuple[str, Expr], ...]
+    # pairs (symbol, formula) of temporaries in order of computation, such as (s, sqrt(a + b)); a formula may contain
+    # the symbols before it
     named: tuple[tuple[Symbol, Expr], ...] = ()
 
     @classmethod
@@ -78,7 +72,7 @@ class Formulas:
 def ways(value: Formulas, chained: Formulas, base: Program, entries: Entries, groups: Groups) -> Iterator[Formulas]:
     """Yield the formulas of a kernel's outputs and their derivatives, once for each way to compute them.
 
-    All results are equal in exact arithmetic; :func:`cheapest` selects the one with the fewest operations.
+    All results are equal in exact arithmetic.
 
     Parameters
     ----------
@@ -112,9 +106,7 @@ def ways(value: Formulas, chained: Formulas, base: Program, entries: Entries, gr
 
 
 def cheapest(signature: Signature, formulas: Iterable[Formulas], parameter_argument: str = "p") -> Lowered:
-    """Return the program with the fewest operations among programs for equal formulas.
-
-    Changes of sign are not counted; between programs with equal counts, the one with fewer changes of sign is chosen.
+    """Return the program with the fewest operations, not counting changes of sign, among programs for equal formulas.
 
     Parameters
     ----------
@@ -132,7 +124,7 @@ def cheapest(signature: Signature, formulas: Iterable[Formulas], parameter_argum
 
     def cost(lowered: Lowered) -> tuple[int, int]:
         counts = lowered.program.operations()
-        return counts.total() - counts["neg"], counts["neg"]
+        return counts.total() - counts["neg"], counts["neg"]  # changes of sign decide between equal counts
 
     every = (lower(signature, each.outputs, each.named, parameter_argument) for each in formulas)
     return min(every, key=cost)
@@ -180,15 +172,16 @@ def _single_operations(program: Program) -> Program:
 
 
 def _slopes(formula: Expr, value: Symbol | None = None) -> dict[Symbol, Expr]:
-    """Return the partial derivatives of a formula: a mapping from each symbol in it to the derivative by this symbol.
+    """Return the partial derivatives of a formula, by the symbols in it.
 
-    ``value`` is the symbol y of the temporary that holds the formula's value, or None. With y, derivatives need fewer
-    operations: that of a quotient ``y = a/b`` is ``(a' - y b')/b``, and that of a root ``y = sqrt(a)`` is ``a'/(2 y)``.
+    ``value`` is the symbol of the temporary that holds the formula's value, or None.
     """
     held = sorted(formula.free_symbols, key=str)
     above, below = formula.as_numer_denom()
+    # y = sqrt(a) has the derivative a'/(2 y), without a second root
     if value is not None and formula.is_Pow and formula.exp == Rational(1, 2):
         return {s: exact_derivative(formula.base, s) / (2 * value) for s in held}
+    # y = a/b has the derivative (a' - y b')/b, without b^2
     if value is not None and below.free_symbols:
         return {s: (exact_derivative(above, s) - value * exact_derivative(below, s)) / below for s in held}
     return {s: exact_derivative(formula, s) for s in held}
@@ -234,10 +227,9 @@ def _backward(value: Formulas, entries: Entries) -> Formulas:
 
 
 def _symbol(named: list[tuple[Symbol, Expr]], name: str, slope: Expr) -> Expr:
-    """Return the derivative ``slope`` as later formulas should contain it.
+    """Return a new symbol for the derivative ``slope``, and append it with its formula to ``named``.
 
-    A number, a symbol, or a number times a symbol is returned unchanged. Otherwise the result is a new symbol called
-    ``name``; it is appended with its formula ``slope`` to the intermediate quantities ``named``.
+    A number times a symbol is returned unchanged.
     """
     if not slope.args or slope.as_coeff_Mul()[1].is_Symbol:
         return slope
@@ -252,8 +244,7 @@ Linear = dict[str, tuple[tuple[str, Symbol], ...]]  # output -> names of derivat
 def _linear_outputs(explicit: Formulas, entries: Entries, groups: Groups) -> Linear:
     """Return the outputs that are linear in a group of inputs, each with pairs (name of the derivative, input).
 
-    Such an output equals the sum of these inputs times these derivatives: for ``f = a*x + b*y`` the pairs are those of
-    a with x and of b with y. An output that is linear in no group is absent.
+    For ``f = a*x + b*y`` the result is ``{"f": (("f_by_x", x), ("f_by_y", y))}``.
     """
     formulas, known, linear = dict(explicit.outputs), set(entries), Linear()
     for output in dict.fromkeys(output for output, _ in entries):
@@ -264,6 +255,7 @@ def _linear_outputs(explicit: Formulas, entries: Entries, groups: Groups) -> Lin
                 continue
             slopes = [formulas[_entry(output, str(symbol))] for symbol in inputs]
             at_zero = formulas[output].xreplace(dict.fromkeys(inputs, S.Zero))
+            # then the output is the sum of these inputs times these derivatives
             if at_zero == 0 and not any(slope.free_symbols & set(inputs) for slope in slopes):
                 linear[output] = tuple((_entry(output, str(symbol)), symbol) for symbol in inputs)
                 break
@@ -271,11 +263,9 @@ def _linear_outputs(explicit: Formulas, entries: Entries, groups: Groups) -> Lin
 
 
 def _with_sums(formulas: Formulas, linear: Linear) -> Formulas:
-    """Return formulas in which each output of ``linear`` is computed from its derivatives, f as the sum of ``x*df/dx``.
-
-    ``linear`` is the result of :func:`_linear_outputs`. The derivatives are outputs anyway, so this saves operations.
-    """
+    """Return formulas in which each output of ``linear`` is a sum of inputs times derivatives: ``x*f_x + y*f_y``."""
     outputs, named = dict(formulas.outputs), list(formulas.named)
+    # the derivatives are outputs anyway, so the sum costs few operations
     for output, terms in linear.items():
         outputs[output] = Add(*(symbol * _symbol(named, f"term_{entry}", outputs[entry]) for entry, symbol in terms))
     return Formulas(tuple(outputs.items()), tuple(named))

@@ -14,13 +14,10 @@ __all__ = ["Dual", "dual_functions"]
 
 
 class Dual:
-    """A number with its derivatives: ``value``, and ``slopes``, which maps names of variables to derivatives by them.
-
-    A variable that is absent in ``slopes`` has the derivative 0. ``Dual(3, {"x": 1})`` is the variable x at 3; its
-    square is ``Dual(9, {"x": 6})``.
-    """
+    """A number with its derivatives: the variable x at 3 is ``Dual(3, {"x": 1})``, its square ``Dual(9, {"x": 6})``."""
 
     def __init__(self, value: Any, slopes: Mapping[str, Any]) -> None:
+        # slopes: name of a variable -> derivative by it; an absent variable has the derivative 0
         self.value, self.slopes = value, slopes
 
     def _with(self, value: Any, factor: Any) -> "Dual":
@@ -74,10 +71,7 @@ class Dual:
 
 
 def dual_functions(functions: Mapping[str, Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
-    """Return functions such as sin and sqrt that take and return dual numbers, by name.
-
-    ``functions`` maps the name of each function to its version for plain numbers (the values inside the dual numbers):
-    ``dual_functions({"sin": math.sin, "cos": math.cos})`` contains a sine of dual numbers with float values.
+    """Return functions of dual numbers by name, such as ``"sin"``; ``functions`` are their versions for plain numbers.
 
     Raises
     ------

@@ -17,12 +17,10 @@ __all__ = ["kernel_description", "kernel_program"]
 
 @cache
 def kernel_program(name: str) -> Program:
-    """Return the straight-line program (temporaries, then outputs) of the library kernel ``name``, for printing.
-
-    A kernel with derivatives, such as ``quaternion_dcm_by_q``, is computed in the way that needs the fewest operations.
-    """
+    """Return the straight-line program (temporaries, then outputs) of the library kernel ``name``, for printing."""
     kernel = definition(name)
     signature = Signature(name, (*kernel.inputs, *(target for target, _ in kernel.results)))
+    # there are several ways to compute a kernel with derivatives, such as quaternion_dcm_by_q
     lowered = cheapest(signature, _ways(name, kernel), "constant_")
     known = {"pi": number.PI}
     values = {name: ("number", evaluate(node, known, {"sqrt": number.sqrt})) for name, node in lowered.parameters}
@@ -35,14 +33,10 @@ def kernel_program(name: str) -> Program:
 
 
 def _ways(name: str, kernel: Definition) -> Iterable[Formulas]:
-    """Return one or more sets of formulas that compute the kernel ``name``; the caller uses the cheapest.
-
-    A kernel of values has one set. A kernel of derivatives, such as ``quaternion_dcm_by_q``, has several, which are
-    equal in exact arithmetic: the formulas by the chain rule, and those that differentiate the program for the values
-    step by step. See :func:`symrot.codegen.derivatives.ways`.
-    """
+    """Return one or more sets of formulas that compute the kernel ``name``; the caller uses the cheapest."""
     formulas = Formulas(kernel.formulas, kernel.named)
     base, *variables = name.split(BY)
+    # without derivatives there is one set; a kernel with derivatives has several, see ways
     if not variables:
         return (formulas,)
     plain = definition(base)
@@ -63,11 +57,11 @@ def _with(node: Node, values: Mapping[str, Node]) -> Node:
 
 
 def kernel_description(kernel: Definition, target: str, errors: str = "") -> Description:
-    """Return the texts for the head comment of a library kernel's file: title, domain, source, command that prints it.
+    """Return the texts for the head comment of a library kernel's file: title, domain, derivation, command.
 
-    ``target`` is the language, such as ``"c"``. In C the texts include the ranges of the inputs in which rounding
-    errors are bounded (the box of the kernel), and ``errors``, a text with these bounds, if it is not empty.
+    ``target`` is the language, such as ``"c"``.
     """
+    # in C only: the ranges of the inputs in which rounding errors are bounded, and ``errors``, the bounds
     known = (("Box", _box(kernel.box)), *((("Errors", errors),) if errors else ()))
     return Description(
         title=kernel.title, domain=kernel.domain, derivation=kernel.derivation,
@@ -77,10 +71,7 @@ def kernel_description(kernel: Definition, target: str, errors: str = "") -> Des
 
 
 def _box(box: Box) -> str:
-    """Return the ranges of the inputs as text, such as ``theta, phi in [-4, 4]; m in [1, 10]``.
-
-    A box maps each input to the range in which rounding errors are bounded.
-    """
+    """Return the ranges of the inputs of a kernel as text, such as ``theta, phi in [-4, 4]; m in [1, 10]``."""
     names: dict[tuple[str, str], list[str]] = {}
     for name, (low, high) in box.items():
         names.setdefault((str(low), str(high)), []).append(name)

@@ -18,10 +18,7 @@ _UNNAMED = Description(
 
 
 def load_numpy_kernel(program: Program) -> Callable[..., Any]:
-    """Return the Python function that computes a program's outputs: its emitted NumPy text, imported as a module.
-
-    Tests call it to check the emitted text itself.
-    """
+    """Return the Python function that computes a program's outputs: its emitted NumPy text, imported as a module."""
     with TemporaryDirectory(prefix="symrot-") as directory:
         path = Path(directory) / f"{program.signature.name}.py"
         path.write_text(numpy_source(program, _UNNAMED), encoding="utf-8")

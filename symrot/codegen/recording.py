@@ -1,7 +1,7 @@
-"""Straight-line programs as records of computations: a number that records its operations, and its record.
+"""Recording of straight-line programs: numbers that append each operation on them to a record.
 
-A method is written once for any kind of number. Evaluated with numbers of this kind, it leaves a record, which becomes
-a program of the same operations.
+A method is written once for any kind of number. Evaluated with such numbers, it leaves a record of its operations,
+which becomes a program.
 """
 
 from collections import Counter
@@ -23,14 +23,14 @@ ANONYMOUS = "#"  # first letter of temporaries that get their names later
 class Recorder:
     """A record of the operations of one computation, from which :meth:`program` makes a straight-line program.
 
-    ``symbol`` gives the inputs, numbers of type :class:`Recorded`; computing with them adds operations to the record.
-    Equal operations occur once. Operations that change nothing, such as adding 0 or multiplying by 1, are left out.
+    Its method ``symbol`` returns an input.
     """
 
     def __init__(self) -> None:
         self.known: dict[Operation, int] = {}
 
     def add(self, kind: str, *operands: int, value: Any = None) -> "Recorded":
+        # equal operations have one entry
         return Recorded(self, self.known.setdefault(Operation(kind, operands, value), len(self.known)))
 
     def symbol(self, name: str) -> "Recorded":
@@ -46,13 +46,11 @@ class Recorder:
         return lambda *arguments: self.add(f"call {name}", *(self.index(argument) for argument in arguments))
 
     def program(self, signature: Signature, outputs: Mapping[str, Any]) -> Program:
-        """Return the straight-line program that computes ``outputs``, a mapping from output names to recorded numbers.
-
-        Operations that no output needs are left out. A result that is used repeatedly, or a call, becomes a temporary.
-        """
+        """Return the straight-line program that computes ``outputs``, a mapping from names to recorded numbers."""
         roots = {name: self.index(value) for name, value in outputs.items()}
         operations = list(self.known)
         uses = Counter(roots.values())
+        # operations that no output needs are left out
         needed = set(roots.values())
         for index in range(len(operations) - 1, -1, -1):
             if index in needed:
@@ -67,6 +65,7 @@ class Recorder:
                 continue
             parts = tuple(nodes[i] for i in operands)
             node: Node = ("call", kind.removeprefix("call "), parts) if kind.startswith("call ") else (kind, *parts)
+            # a repeated result or a call becomes a temporary
             if uses[index] > 1 or node[0] == "call":
                 temporaries.append((f"{ANONYMOUS}{index}", node))
                 node = ("symbol", f"{ANONYMOUS}{index}")
@@ -76,19 +75,17 @@ class Recorder:
 
 
 class Recorded:
-    """A symbolic number: an operation with it, such as ``a + b``, is not computed but recorded by ``recorder``.
-
-    Each operation appends an entry to the record and returns a new Recorded that stands for its result. ``index`` is
-    the position of the entry that computes this number.
-    """
+    """A symbolic number: an operation with it, such as ``a + b``, is recorded by ``recorder`` instead of computed."""
 
     def __init__(self, recorder: Recorder, index: int) -> None:
+        # index: the position of the operation that computes this number
         self.recorder, self.index = recorder, index
 
     def _operation(self, kind: str, left: Any, right: Any) -> "Recorded":
         return self.recorder.add(kind, self.recorder.index(left), self.recorder.index(right))
 
     def __add__(self, other: Any) -> "Recorded":
+        # operations that change nothing, such as adding 0, are not recorded
         return self if is_exactly(other, 0) else self._operation("+", self, other)
 
     def __radd__(self, other: Any) -> "Recorded":
@@ -121,8 +118,6 @@ class Recorded:
 
 
 def is_exactly(value: Any, number: int) -> bool:
-    """Return whether ``value`` is a number (int, float, Fraction) equal to ``number``, such as 0 or 1.
-
-    The result is False for a :class:`Recorded`, whose value is not known while a program is recorded.
-    """
+    """Return whether ``value`` is a number equal to ``number``, such as 0; False for a :class:`Recorded`."""
+    # the value of a Recorded is unknown while a program is recorded
     return not isinstance(value, Recorded) and bool(value == number)

@@ -67,10 +67,7 @@ def _rates(equations: Equations) -> Formulas:
 
 
 def rates_program(equations: Equations, name: str) -> Lowered:
-    """Return the program of the right-hand side ``dy/dt`` of equations of motion, with its parameters' formulas.
-
-    ``name`` is the name of the program. Its arguments are t, the states y, the parameters p and the rates dy.
-    """
+    """Return the program ``name`` of the rates dy(t, y, p) of equations of motion, with its parameters' formulas."""
     signature = Signature(name, (TIME, _state_argument(equations), _rates_argument(equations)))
     rates = _rates(equations)
     return lower(signature, rates.outputs, rates.named)
@@ -136,9 +133,9 @@ def rates_jacobian_program(
 
 
 def _variables(equations: Equations, name: str) -> tuple[Symbol, ...]:
-    """Return the symbols that a name stands for: all states for ``"y"``, a group such as ``"omega"``, or one symbol.
+    """Return the symbols of a name: all states for ``"y"``, a group such as ``"omega"``, or one symbol.
 
-    Raises InputError if the equations contain neither a state nor a constant of this name.
+    Raise InputError if there are none.
     """
     families = {"omega": symbols.omega_b, "q": symbols.quaternion, "angles": symbols.angles}
     states = [state for state in equations.states if name == "y" or state in families.get(name, ())]
@@ -182,16 +179,14 @@ def _quantities(equations: Equations, conserved: Mapping[str, Expr]) -> Lowered:
 def derive_scene_kernel(
     structure: Structure, on_rates: Callable[[Program, str], object] = lambda rates, source: None
 ) -> SceneKernel:
-    """Derive and return the kernel of a planned motion, which a stepper integrates.
+    """Derive the kernel of a planned motion: programs of its rates, of energy and momentum, of conserved quantities.
 
-    It consists of programs of the rates dy/dt, of quantities such as energy and momentum, and of the conserved
-    quantities. ``structure`` describes the motion without the values of its constants. As soon as the rates are
-    derived, ``on_rates`` is called with their program and their C text, so that a compiler can run while the rest is
-    derived and the conservation of quantities is proven.
+    ``on_rates`` is called early, with the program and the C text of the rates.
     """
     equations = equations_of_motion(structure)
     rates = rates_program(equations, RATES)
     source = rates_source(rates)
+    # a compiler can run while the rest is derived and proven
     on_rates(rates.program, source)
     invariants = find_invariants(equations, structure)
     conserved_values = {f"conserved_{i}": item.value for i, item in enumerate(invariants) if item.holds}
@@ -215,10 +210,9 @@ def rates_source(rates: Lowered) -> str:
 
 
 def with_values(program: Program, parameters: Parameters, constants: Mapping[str, Fraction]) -> Program:
-    """Return a program that describes each parameter by its formula and value, as in ``(A - C)/A = 0.25``.
+    """Return a program that describes each parameter by its formula and value, such as ``(A - C)/A = 0.25``.
 
-    ``parameters`` holds the formulas and ``constants`` the values of the constants in them. The head comment of the
-    emitted file contains these descriptions.
+    The emitted head comment contains these texts.
     """
     values = bind(parameters, constants)
     described = tuple(
@@ -231,11 +225,8 @@ def with_values(program: Program, parameters: Parameters, constants: Mapping[str
 def scene_description(
     title: str, name: str, target: str, bounds: tuple[tuple[str, str], ...] = (), jacobian: Sequence[str] = ()
 ) -> Description:
-    """Return the texts in the head comment of the file that is emitted for a scene's kernel.
-
-    In C they include ``bounds``, pairs of a heading and a text about rounding errors. ``jacobian`` names the states and
-    constants by which the kernel computes derivatives.
-    """
+    """Return the texts in the head comment of the file that is emitted for a scene's kernel."""
+    # jacobian: names of the states and constants by which the kernel computes derivatives
     derivatives = f"; with their derivatives by {', '.join(jacobian)}, row by row" if jacobian else ""
     option = f" --jacobian {','.join(jacobian)}" if jacobian else ""
     return Description(
@@ -243,5 +234,6 @@ def scene_description(
         domain="all states of finite size; a quaternion is of unit norm, and its rate keeps the norm",
         derivation="derivations/euler_equations.md, derivations/quaternion_rates.md",
         command=f"symrot emit {name}{option} --target {target}",
+        # pairs (heading, text) about rounding errors
         contract=(*bounds, *CONTRACT) if target == "c" else (),
     )

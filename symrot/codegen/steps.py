@@ -1,8 +1,8 @@
 """One time step of fixed size as a straight-line program: Runge-Kutta methods and Taylor series.
 
-A step takes t, the state x, the parameters p and dt, and returns the state at t + dt. It has no loop, no heap and no
-branch of its own, so its time is bounded. Each method is written once, for any kind of number; here it is evaluated
-with numbers that record their operations, and the record is the program.
+A step takes t, the state x, the parameters p and dt, and returns the state at t + dt. It has no loop, heap or branch of
+its own, so its time is bounded. The method is evaluated with numbers that record their operations; the record is the
+program.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -30,18 +30,17 @@ STATE, SIZE, NEXT = "x", "dt", "next"
 
 @dataclass(frozen=True)
 class RungeKutta:
-    """An explicit Runge-Kutta method, whose rates are evaluated at several stages within a step.
-
-    Stage i is at the time ``t + nodes[i] dt``; its state is the initial state plus ``stages[i][j] dt`` times the rates
-    at each earlier stage j. The step adds ``weights[j] dt`` times the rates at each stage j to the initial state.
-    ``rounded`` says that the coefficients are rounded decimals, which fulfil the conditions of the order to 25 digits.
-    """
+    """An explicit Runge-Kutta method, whose rates are evaluated at several stages within a step."""
 
     name: str
     order: int
+    # stage i is at the time t + nodes[i] dt
     nodes: tuple[Fraction, ...]
+    # its state is the initial state plus stages[i][j] dt times the rates at each earlier stage j
     stages: tuple[Mapping[int, Fraction], ...]
+    # the step adds weights[j] dt times the rates at each stage j to the initial state
     weights: Mapping[int, Fraction]
+    # whether the coefficients are rounded decimals, which fulfil the order conditions to 25 digits
     rounded: bool = False
 
     @property
@@ -65,29 +64,20 @@ class TaylorSeries:
 
 @dataclass(frozen=True)
 class WithDerivatives:
-    """A method of time steps (``plain``) whose step also computes the new state's derivatives by inputs.
-
-    The derivatives are exact: those of the formula of the step. ``by`` names the inputs: each is ``"x"`` (all states),
-    ``"omega"``, ``"q"``, ``"p"`` (all parameters), ``"dt"``, ``"t"``, one state or one parameter.
-    """
+    """A method of time steps (``plain``) whose step also computes the exact derivatives of the new state by inputs."""
 
     plain: RungeKutta | TaylorSeries
+    # "x" (all states), "omega", "q", "p" (all parameters), "dt", "t", one state or one parameter
     by: tuple[str, ...]
 
     @property
     def name(self) -> str:
-        """The name of the method of time steps, such as ``rk4``.
-
-        It is the name of the same step without the derivatives of the new state by the old one.
-        """
+        """The name of the method without derivatives, such as ``rk4``."""
         return self.plain.name
 
     @property
     def order(self) -> int:
-        """The order of the method of time steps, such as 4 for ``rk4``.
-
-        It is that of the same step without the derivatives of the new state by the old one.
-        """
+        """The order of the method without derivatives, such as 4 for ``rk4``."""
         return self.plain.order
 
     @property
@@ -162,11 +152,8 @@ def stepped(
 
 
 def without_factors(rates: Program) -> tuple[Program, list[Fraction]]:
-    """Return the rates without the numbers that multiply whole formulas, and these numbers, one per rate.
-
-    From ``dq0 = 1/2*(..)`` the number 1/2 is removed. A step adds weighted rates to the state at each of its stages; it
-    multiplies the weights by these numbers once, which replaces a multiplication of each rate at each stage.
-    """
+    """Return the rates without the numbers that multiply whole formulas (1/2 in ``1/2*(a - b)``), and these numbers."""
+    # a step multiplies its weights by these numbers once, instead of each rate at each stage
     outputs, factors = [], []
     for name, node in rates.outputs:
         factor = Fraction(1)
@@ -191,10 +178,7 @@ def _polynomial(series: Sequence[Any], dt: Any) -> Any:
 
 
 def derivative_inputs(rates: Program, name: str) -> tuple[tuple[str, str, str], ...]:
-    """Return the inputs by which a step is differentiated, as (name, unit, meaning) of each.
-
-    ``name`` is ``"x"`` (all states), ``"omega"``, ``"q"``, ``"p"``, ``"dt"``, ``"t"``, one state or one parameter;
-    ``rates`` is the program of the rates dy/dt.
+    """Return (name, unit, meaning) of each input of a step that ``name`` selects, such as all states for ``"x"``.
 
     Raises
     ------
@@ -215,10 +199,9 @@ def derivative_inputs(rates: Program, name: str) -> tuple[tuple[str, str, str], 
 
 
 def step_signature(rates: Program, name: str, by: Sequence[str] = ()) -> Signature:
-    """Return the name and the arguments of a step: t, x, p (if any), dt, the result ``next``, and its derivatives.
+    """Return the name and the arguments of a step: t, x, p (if any), dt, and the results, ``next`` and its derivatives.
 
-    ``rates`` is the program of dy/dt. For each name in ``by``, such as ``"omega"`` (see :class:`WithDerivatives`),
-    there is one output array of derivatives.
+    ``by`` names the inputs by which ``next`` is differentiated.
     """
     time, state = rates.signature.argument("t"), rates.signature.argument("y")
     size = Argument(SIZE, "in", ((SIZE, "s", "size of the step"),), is_scalar=True)

@@ -1,8 +1,8 @@
 """Equations of motion of a rigid body: Euler's equations and the quaternion rates, for the states of a plan.
 
-The equations are derived from the structure of the plan, which says which constants are zero, equal or free: ``I
-domega/dt = tau - omega x (I omega + h)`` in body axes about the centre of mass or a fixed point, and ``dq/dt = 1/2 q
-(0, omega_b)``. Proof: ``derivations/euler_equations.md``, ``derivations/quaternion_rates.md``.
+The structure of the plan says which constants are zero, equal or free. ``I domega/dt = tau - omega x (I omega + h)``
+and ``dq/dt = 1/2 q (0, omega_b)``, in body axes. Proof: ``derivations/euler_equations.md``,
+``derivations/quaternion_rates.md``.
 """
 
 from dataclasses import dataclass, replace
@@ -40,10 +40,7 @@ class AngleMotion(Motion):
 
 @dataclass(frozen=True)
 class Equations:
-    """First-order equations of motion, ``d(states)/dt = rates``, and the quantities from which they were derived.
-
-    Numeric kernels are printed from them, and conserved quantities are decided with them.
-    """
+    """First-order equations of motion, ``d(states)/dt = rates``, and the quantities from which they were derived."""
 
     states: tuple[Symbol, ...]
     rates: tuple[Expr, ...]  # d(states)/dt
@@ -76,11 +73,7 @@ class Equations:
 
 
 def inertia_matrix(inertia: PrincipalInertia | InertiaTensor) -> Matrix:
-    """Return the inertia tensor, shape (3, 3), as a matrix of symbols: A, B, C on the diagonal, or I_xx to I_zz.
-
-    ``inertia`` says which moments are equal and which entries are zero; equal moments have the same symbol. Example:
-    the moments ``"AAC"`` give ``diag(A, A, C)``.
-    """
+    """Return the inertia tensor, shape (3, 3), as a matrix of symbols: moments ``"AAC"`` give ``diag(A, A, C)``."""
     if isinstance(inertia, PrincipalInertia):
         moments = dict(zip("ABC", symbols.principal, strict=True))
         return diag(*(moments[name] for name in inertia.moments))
@@ -155,35 +148,32 @@ def _read(values: Any, expectation: str) -> Matrix:
 
 
 def inverse(tensor: Matrix) -> Matrix:
-    """Return the inverse of a symbolic 3 x 3 matrix, computed from the cross products of its columns.
-
-    A diagonal matrix gives the reciprocals of its entries; the determinant must not be zero.
-    """
+    """Return the inverse of a symbolic 3 x 3 matrix, computed from the cross products of its columns."""
     if tensor.is_diagonal():
         return diag(*(1 / entry for entry in tensor.diagonal()))
     first, second, third = (tensor.col(i) for i in range(3))
+    # the determinant must not be zero
     rows = [second.cross(third), third.cross(first), first.cross(second)]
     return Matrix.hstack(*rows).T / first.dot(rows[0]).expand()
 
 
 def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr]]:
-    """Return the symbols of a motion of the given structure, its attitude states, and its relations.
-
-    The attitude states are the quaternion, three Euler angles, the one angle of a rotation about one axis, or nothing
-    if the attitude is not computed. A relation is an expression that is always zero, such as the squared norm of the
-    quaternion minus 1; proofs may use it.
+    """Return the motion of a structure in symbols, its attitude states, and its relations (expressions that are always
+    zero).
     """
     inertia, axis = inertia_matrix(structure.inertia), structure.planar
     turning = [
         S.Zero if pattern is Pattern.ZERO else w for w, pattern in zip(symbols.omega_b, structure.constant, strict=True)
     ]
     if axis is None:
+        # attitude states: none, three Euler angles, or the quaternion with the relation |q|^2 - 1
         omega_b = Matrix(turning)
         if not structure.attitude:
             return Motion(omega_b, None, inertia), (), []
         if sequence := structure.sequence:
             return AngleMotion(omega_b, tuple(quaternion_of_euler(sequence)), inertia, sequence), symbols.angles, []
         return Motion(omega_b, symbols.quaternion, inertia), symbols.quaternion, [unit_relation(symbols.quaternion)]
+    # about one axis: a single angle
     omega_b = Matrix([w if i == axis else 0 for i, w in enumerate(turning)])
     if not structure.attitude:
         return Motion(omega_b, None, inertia), (), []
@@ -199,11 +189,7 @@ def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr
 
 
 def equations_of_motion(structure: Structure) -> Equations:
-    """Return the equations of motion for a structure, which says which constants of a scene are zero, equal or free.
-
-    Some torques jump where a formula, their guard, changes its sign. If the structure says that guards stay at zero, as
-    for a body held at rest by dry friction, the equations are those of :func:`sliding`.
-    """
+    """Return the equations of motion for a structure, which says which constants of a scene are zero, equal or free."""
     motion, attitude, relations = _motion(structure)
     laws = tuple(torque_law(torque, motion) for torque in structure.torques)
     torque = reduce(add, (law.torque for law in laws), zeros(3, 1))
@@ -226,22 +212,15 @@ def equations_of_motion(structure: Structure) -> Equations:
     elif attitude:
         rates.append(motion.omega_b[structure.planar])
     equations = Equations((*states, *attitude), tuple(rates), definitions, motion, laws, momentum_b, tuple(relations))
+    # Guards (formulas at whose zeros a torque jumps) that stay at zero, as for a body held at rest by dry friction.
     held = [(torque, mode) for torque in structure.formula_torques for mode in torque.held]
     return sliding(equations, held) if held else equations
 
 
 def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equations:
-    """Return the equations of a motion that slides along surfaces at which a torque jumps.
+    """Return the equations of a motion that slides along jumps of torques: the formulas whose signs jump stay zero.
 
-    ``held`` lists each such torque and its mode. A guard is the formula whose sign the torque depends on, such as
-    omega_1 in sign(omega_1); its mode is the symbol that stands for this sign. While the motion slides, each guard
-    stays at zero; a body held at rest by dry friction is an example.
-
-    The modes then have the values that keep the guards at zero. The rates are linear in the modes s, so ``dg/dt = a + B
-    s = 0`` gives ``s = -B^-1 a`` (V. I. Utkin's equivalent control; for one guard, A. F. Filippov's convex
-    combination). The result has these values as its ``modes`` and, before the other definitions, as ``definitions`` of
-    the symbols. Motions near the surfaces return to them while all eigenvalues of B have negative real parts, that is,
-    while all of A. Hurwitz's determinants of B are positive; the determinants are the ``attraction`` of the result.
+    ``held`` pairs each torque with the symbol of its sign.
 
     Raises
     ------
@@ -256,6 +235,8 @@ def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equa
         names.append(values[mode])
         guards.append(guard)
         pace.append(guard.diff(symbols.t) + reduce(add, (guard.diff(y) * rate for y, rate in rates.items()), S.Zero))
+    # The rates are linear in the modes s: dg/dt = a + B s = 0 gives s = -B^-1 a (V. I. Utkin's equivalent control; for
+    # one guard, A. F. Filippov's convex combination).
     matrix = Matrix([[entry.diff(name) for name in names] for entry in pace])
     rest = Matrix(pace).subs(dict.fromkeys(names, S.Zero))
     determinant = matrix.det().expand()
@@ -264,14 +245,13 @@ def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equa
     modes = tuple(zip(names, -(matrix.adjugate() * rest) / determinant, strict=True))
     still = [S.Zero if state in guards else rate for state, rate in zip(equations.states, equations.rates, strict=True)]
     return replace(equations, rates=tuple(still), definitions=(*modes, *equations.definitions), modes=modes,
+                   # Nearby motions return to the surfaces while all eigenvalues of B have negative real parts, that is,
+                   # while these determinants are positive.
                    attraction=hurwitz_determinants(matrix))  # fmt: skip
 
 
 def hurwitz_determinants(matrix: Matrix) -> tuple[Expr, ...]:
     """Return numbers that are all positive if and only if all eigenvalues of a matrix have negative real parts.
-
-    The numbers are the leading principal minors of the Hurwitz matrix of the characteristic polynomial (F. R.
-    Gantmacher, The Theory of Matrices, vol. 2, ch. XV).
 
     Examples
     --------
@@ -289,5 +269,7 @@ def hurwitz_determinants(matrix: Matrix) -> tuple[Expr, ...]:
         k = 2 * j - i + 1
         return coefficients[k] if 0 <= k <= size else S.Zero
 
+    # Leading principal minors of the Hurwitz matrix of the characteristic polynomial: F. R. Gantmacher, The Theory of
+    # Matrices, vol. 2, ch. XV.
     hurwitz = Matrix(size, size, entry)
     return tuple(hurwitz[:k, :k].det() for k in range(1, size + 1))

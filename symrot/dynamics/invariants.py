@@ -1,8 +1,7 @@
 """Conserved quantities: candidates that symmetries suggest, such as the energy, and a decision for each candidate.
 
-A candidate F(t, states) is conserved if and only if ``dF/dt = partial F/partial t + grad F . rates`` is zero, which is
-decided exactly; no list of known integrals is used. A candidate that is not conserved is reported with the torques that
-change it.
+A candidate F(t, states) is conserved if and only if ``partial F/partial t + grad F . rates`` is zero, which is decided
+exactly. One that is not conserved is reported with the torques that change it.
 """
 
 from collections.abc import Iterable, Sequence
@@ -32,36 +31,29 @@ TORQUE_PHRASES = {
 
 @dataclass(frozen=True)
 class Invariant:
-    """A candidate for a conserved quantity, such as the energy, and whether it is conserved.
-
-    ``holds`` says whether it is, and ``reason`` why or why not, as text for users: "changed by damping". If the
-    question could not be decided, ``holds`` is False and ``reason`` says so.
-    """
+    """A candidate for a conserved quantity, such as the energy, and whether it is conserved."""
 
     name: str
     unit: str
     value: Expr  # a formula in t, the states and the constants
     holds: bool
+    # text for users, such as "changed by damping"; an undecided candidate does not hold, and says so
     reason: str
 
 
 def rate_along(expression: Expr, equations: Equations) -> Expr:
-    """Return the time derivative of ``expression``, a formula in t and the states, along the motion.
-
-    It is ``partial F/partial t + grad F . rates`` with the rates of ``equations``; a conserved quantity has the rate
-    zero.
+    """Return the time derivative ``partial F/partial t + grad F . rates`` of the formula F = ``expression`` along the
+    motion.
     """
     rates = zip(equations.states, equations.explicit_rates, strict=True)
     return expression.diff(symbols.t) + sum(expression.diff(state) * rate for state, rate in rates)
 
 
 def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[str, str, Expr, Expr]]:
-    """Yield candidates for conserved quantities, as (name, unit, value, formula to test).
-
-    They are the energy, the angular momentum (its magnitude if the attitude is not computed, otherwise its space
-    components), the quantities that a torque suggests, and the spin about each symmetry axis. The formula to test is
-    constant exactly if the value is, but simpler: for the magnitude it is the square.
+    """Yield candidates for conserved quantities, as (name, unit, value, formula to test), such as energy and angular
+    momentum.
     """
+    # The formula to test is constant exactly if the value is, but simpler.
     momentum, energy = equations.momentum_b, equations.kinetic_energy + equations.potential
     yield "energy", "J", energy, energy
     if equations.motion.quaternion is None:
@@ -82,10 +74,8 @@ def _candidates(equations: Equations, structure: Structure) -> Iterable[tuple[st
 
 
 def _of_torque(torque: TorqueStructure, momentum_s: Matrix, energy: Expr) -> Iterable[tuple[str, str, Expr, Expr]]:
-    """Yield candidates that a torque suggests, as (name, unit, value, formula to test).
-
-    Gravity along a direction that is no coordinate axis suggests the vertical angular momentum; ``gravity_gradient``
-    suggests the Jacobi integral, energy minus mean motion times L_z. Other torques suggest nothing.
+    """Yield candidates that a torque suggests, as (name, unit, value, formula to test); most torques suggest
+    nothing.
     """
     if not isinstance(torque, FieldTorque):
         return
@@ -123,10 +113,8 @@ def _listed(kinds: Sequence[str]) -> str:
 
 
 def find_invariants(equations: Equations, structure: Structure) -> tuple[Invariant, ...]:
-    """Return the conserved quantities of a motion, followed by the candidates that are not conserved.
-
-    ``equations`` must be those of ``structure``. Components of omega that the plan treats as constant are among the
-    conserved quantities.
+    """Return the conserved quantities of the motion of ``structure``, followed by the candidates that are not
+    conserved.
     """
     kinds = [torque.kind for torque in structure.torques]
     candidates = []

@@ -1,11 +1,7 @@
 """The structure of a motion: which constants are zero, equal or free (any value). It determines the equations.
 
-The values of free constants are not part of the structure. A plan (:mod:`symrot.planning.plan`) determines the
-structure of a scene, and :mod:`symrot.dynamics.equations` derives the equations of motion from the structure. Scenes of
-the same structure share one kernel (the code of the equations) and differ only in the values of its parameters.
-
-The parts of a structure are NamedTuples, since defining a dataclass takes six times as long at every start of symrot.
-The module uses the standard library only.
+Scenes of the same structure share one kernel (the code of the equations) and differ in the values of its parameters.
+The parts are NamedTuples, since a dataclass takes six times as long at every start.
 """
 
 from collections.abc import Iterator
@@ -20,11 +16,9 @@ __all__ = [
 
 
 class Pattern(Enum):
-    """What the equations assume about a constant: that it is 0, 1 or -1, or nothing (free: it stays a symbol).
+    """What the equations assume about a constant: that it is 0, 1 or -1, or nothing (free)."""
 
-    A constant that is 0, 1 or -1 in the scene disappears from the formulas, which makes them shorter.
-    """
-
+    # these disappear from the formulas, which makes them shorter
     ZERO = "0"
     ONE = "1"
     MINUS_ONE = "-1"
@@ -38,10 +32,8 @@ FieldPattern = Pattern | tuple[Pattern, ...]
 
 
 def component_names(name: str, pattern: FieldPattern) -> list[str]:
-    """Return the names of the numbers in a torque's field, for the symbols of the equations.
-
-    A number has the name of the field, a vector ``c`` has ``c_1, c_2, c_3``, a quaternion ``c_0`` to ``c_3``.
-    ``pattern`` tells which of these the field is.
+    """Return the symbols' names for a torque's field: ``c``, or for a vector ``c_1, c_2, c_3``, a quaternion ``c_0`` to
+    ``c_3``.
     """
     if isinstance(pattern, Pattern):
         return [name]
@@ -49,10 +41,7 @@ def component_names(name: str, pattern: FieldPattern) -> list[str]:
 
 
 class PrincipalInertia(NamedTuple):
-    """Principal moments of inertia about the body axes 1, 2, 3, as letters A, B, C; equal moments share a letter.
-
-    Example: ``"AAC"`` is a body that is symmetric about axis 3.
-    """
+    """Principal moments about the body axes 1, 2, 3 as letters; ``"AAC"`` means equal moments about axes 1 and 2."""
 
     moments: str = "ABC"
 
@@ -67,11 +56,9 @@ class InertiaTensor(NamedTuple):
 
 
 class TorqueSwitch(NamedTuple):
-    """A function in a torque's formulas that jumps (such as sign) or has a kink (such as abs); formulas are texts.
+    """A function in a torque's formulas that jumps (such as sign) or has a kink (such as abs)."""
 
-    The fields are explained in :class:`symrot.formula.switches.Switch`.
-    """
-
+    # fields as in :class:`symrot.formula.switches.Switch`, formulas as texts
     mode: str
     kind: str
     guard: str
@@ -149,9 +136,8 @@ class FormulaTorque(NamedTuple):
 
     @property
     def has_choices(self) -> bool:
-        """Whether a formula contains a ``where(condition, u, v)`` of which a branch has a value only where it applies.
-
-        An example is ``where(omega_1 > 0, 1/omega_1, 0)``.
+        """Whether a formula has a branch that cannot be evaluated everywhere, as in ``where(omega_1 > 0, 1/omega_1,
+        0)``.
         """
         return bool(self.choices) or any(switch.choices for switch in self.switches)
 
@@ -222,17 +208,12 @@ class Structure:
         return self.planar, self.initial_quaternion, self.constant
 
     def unreduced(self) -> "Structure":
-        """Return the structure in which no state is eliminated, so that it fits every initial state.
-
-        All components of omega_b are states, and so are those of q if the attitude is computed.
-        """
+        """Return the structure with all components of omega_b and q as states, so that it fits every initial state."""
         return replace(self, planar=None, initial_quaternion=None, constant=MOVING)
 
     def to_json(self) -> dict[str, object]:
-        """Return the structure as data for JSON; two structures are equal if and only if their data are equal.
-
-        The cache finds the compiled kernel of a plan by these data.
-        """
+        """Return the structure as data for JSON; structures are equal if and only if their data are equal."""
+        # The cache finds the compiled kernel of a plan by these data.
         return {field.name: _plain(getattr(self, field.name)) for field in fields(self)}
 
 

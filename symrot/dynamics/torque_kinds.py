@@ -14,10 +14,7 @@ EXPRESSION_NAMES = ("t", "omega_1", "omega_2", "omega_3", "q0", "q1", "q2", "q3"
 
 
 class Field(NamedTuple):
-    """One entry of a torque's table in a scene file, such as a stiffness: shape, unit, meaning, sign and default.
-
-    The reader of scenes checks the values of a torque against the list of its fields.
-    """
+    """One entry of a torque's table in a scene file, such as a stiffness: shape, unit, meaning, sign and default."""
 
     name: str
     shape: str  # scalar | vector | scalar or vector | attitude | formulas | parameters | a choice "x|y"
@@ -29,13 +26,13 @@ class Field(NamedTuple):
 
 
 class TorqueKind(NamedTuple):
-    """One kind of torque, such as ``"gravity"``: its name, its fields, and the point about which the body must rotate.
-
-    ``about`` names that point: ``center_of_mass``, ``fixed_point``, or ``any`` if both are allowed.
+    """One kind of torque, such as ``"gravity"``: its name, its fields, and the point about which the body
+    must rotate.
     """
 
     kind: str
     fields: tuple[Field, ...]
+    # center_of_mass, fixed_point, or any
     about: str
     meaning: str
 

@@ -70,11 +70,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class TorqueLaw:
-    """The formula of one torque, with the potential and the angular momentum that it contributes.
-
-    All vectors are in body components. A rotor contributes an angular momentum and no torque, a spring a torque and a
-    potential.
-    """
+    """The formula of one torque in body components, with the potential and the angular momentum that it contributes."""
 
     torque: Matrix = field(default_factory=lambda: zeros(3, 1))
     potential: Expr | None = None  # J; None if the torque has no potential
@@ -138,10 +134,8 @@ def _expression(motion: Motion, torque: Matrix, frame: str) -> TorqueLaw:
 
 
 def collected_cross(left: Matrix, right: Matrix, variables: Matrix) -> Matrix:
-    """Return the cross product ``left x right``, in which terms with the same product of ``variables`` are collected.
-
-    An example is ``(C - B) r_2 r_3``, which is 0 at once if the moments B and C have the same symbol.
-    """
+    """Return ``left x right`` with equal products of ``variables`` collected, as in ``(C - B) r_2 r_3``."""
+    # a term is 0 at once if the moments B and C have the same symbol
     return _collected_cross(ImmutableMatrix(left), ImmutableMatrix(right), ImmutableMatrix(variables)).as_mutable()
 
 
@@ -182,11 +176,7 @@ def _rational(value: Fraction) -> Rational:
 
 
 def _with_brackets(node: Node, known: dict[str, Expr]) -> Node:
-    """Return a formula in which each product of a number and a sum with tanh, atan, exp or log is replaced by a name.
-
-    An example is 2*(1 + tanh(u)). The product is added to ``known`` as the value of the name. SymPy would expand the
-    product and combine its constant with other constants; a rounding error then remains where the sum tends to zero.
-    """
+    """Return a formula with names for products such as ``2*(1 + tanh(u))``; the map ``known`` gets their values."""
     if node[0] in ("number", "symbol"):
         return node
     if node[0] == "call":
@@ -197,6 +187,8 @@ def _with_brackets(node: Node, known: dict[str, Expr]) -> Node:
     factors = [part for part in parts if part[0] == "number"]
     if len(factors) == 1 and (node[0] == "*" or (node[0] == "/" and parts[1] is factors[0])):
         bracket = evaluate(next(part for part in parts if part[0] != "number"), known, _FUNCTIONS, _rational)
+        # SymPy would expand the product and merge its constant with others; a rounding error then remains where the sum
+        # tends to zero.
         if bracket.is_Add and bracket.atoms(*LEVELLING):
             number = _rational(factors[0][1])
             name = f"bracket {len(known)}"
@@ -206,10 +198,7 @@ def _with_brackets(node: Node, known: dict[str, Expr]) -> Node:
 
 
 def torque_law(structure: TorqueStructure, motion: Motion) -> TorqueLaw:
-    """Return the law of one torque (its formula, potential, ..) in terms of the quantities of ``motion``.
-
-    ``structure`` says which constants of the torque are zero, one or free symbols.
-    """
+    """Return the law of one torque (its formula, potential, ..) in terms of the quantities of ``motion``."""
     if isinstance(structure, FormulaTorque):
         values = formula_values(structure, motion)
         torque = Matrix([_finite_formula(source, values) for source in structure.formulas])
@@ -219,13 +208,10 @@ def torque_law(structure: TorqueStructure, motion: Motion) -> TorqueLaw:
 
 
 def formula_values(structure: FormulaTorque, motion: Motion) -> dict[str, Expr]:
-    """Return the values, as expressions, of all names that the formulas of an ``expression`` torque may contain.
-
-    The names are t, omega_1 to omega_3, q0 to q3 if the attitude is computed, and the torque's own parameters and
-    modes. (A mode is a symbol for the present value of a function that jumps, such as sign.)
-    """
+    """Return the values, as expressions, of all names that the formulas of an ``expression`` torque may contain."""
     values = dict(zip(EXPRESSION_NAMES[:4], (symbols.t, *motion.omega_b), strict=True))
     values.update(zip(EXPRESSION_NAMES[4:], motion.quaternion or (), strict=False))
+    # parameters and modes; a mode is a symbol for the present value of a function that jumps, such as sign
     values.update({name: constant(f"{structure.prefix}{name}") for name in structure.parameters})
     return values
 
@@ -247,21 +233,15 @@ def _finite_formula(source: str, values: Mapping[str, Expr]) -> Expr:
 
 
 def field_value(name: str, pattern: FieldPattern) -> Any:
-    """Return the value of the torque's field ``name`` as symbols or exact numbers: a scalar, a vector or a quaternion.
-
-    ``pattern`` says which components are 0, 1, -1 or free; a free one becomes a symbol. The components of a vector are
-    numbered from 1, those of a quaternion from 0: the field ``c`` gives ``c_1``, ``c_2``, ``c_3``.
-    """
+    """Return the value of a torque's field ``name``: a scalar, vector or quaternion of symbols and exact numbers."""
     if isinstance(pattern, Pattern):
         return constant(name) if pattern is Pattern.FREE else Integer(pattern.value)
     return Matrix(list(map(field_value, component_names(name, pattern), pattern)))
 
 
 def torque_of_potential(law: TorqueLaw) -> Matrix:
-    """Return the torque, body components, that a law's potential exerts: minus its derivatives by small rotations.
-
-    It is compared with the law's own formula, to prove that both agree.
-    """
+    """Return the torque, body components, that a law's potential exerts: minus its derivatives by small rotations."""
+    # compared with the law's own formula, to prove that both agree
     rates = quaternion_rates("body") * Matrix(symbols.omega_b)
     gradient = Matrix([sympy.S.Zero if law.potential is None else law.potential]).jacobian(symbols.quaternion)
     return -ImmutableMatrix((gradient * rates).jacobian(symbols.omega_b).T)

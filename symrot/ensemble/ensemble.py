@@ -106,8 +106,7 @@ class EnsembleMember(MotionSamples):
     def sensitivities(self) -> Sensitivities | None:
         """The derivatives of this motion by the k variables that were requested, or None if none were.
 
-        Their arrays have the shape (m, .., k) for m sample times: (m, 3, k) for the angular velocity and (m, 4, k) for
-        the quaternion.
+        Their arrays have the shape (m, .., k).
         """
         every = self._ensemble.sensitivities
         return None if every is None else every.of(self._number)
@@ -125,8 +124,7 @@ class EnsembleMember(MotionSamples):
 class Ensemble(MotionSamples):
     """The result of :func:`propagate_ensemble`: n motions of one scene. Conventions: :mod:`symrot.conventions`.
 
-    ``ensemble[k]`` is motion k, an :class:`EnsembleMember`. Quantities of trajectories, such as ``energy`` and
-    ``euler(sequence)``, have the shape (n, m, ...).
+    Quantities such as ``energy`` have the shape (n, m, ...); ``ensemble[k]`` is motion k.
 
     Attributes
     ----------
@@ -285,11 +283,7 @@ class Ensemble(MotionSamples):
         return percentiles
 
     def _statistic(self, quantity: str, omit_stopped: bool, pair: tuple[Callable[..., Any], Callable[..., Any]]) -> Any:
-        """Return a statistic of a quantity over the n motions, at each sample time: shape (m, ...).
-
-        ``pair`` has a function that uses all values, such as ``numpy.mean``, and one that skips NaN, for
-        ``omit_stopped``.
-        """
+        """Return a statistic of a quantity over the n motions, at each sample time: shape (m, ...)."""
         if quantity in UNAVERAGED or quantity not in QUANTITIES:
             names = ", ".join(name for name in QUANTITIES if name not in UNAVERAGED)
             raise InputError(f"quantity: expected one of {names}, got {number.show(quantity)}")
@@ -298,6 +292,7 @@ class Ensemble(MotionSamples):
                 "t: expected sample times that all motions share, for statistics, got different times for each motion"
             )
         values = self.quantity(quantity)
+        # pair: a function of all values, such as numpy.mean, and a function that skips NaN
         if not omit_stopped:
             return pair[0](values, axis=0)
         with catch_warnings():  # no motion reached a time: the statistic is NaN there
@@ -319,13 +314,6 @@ def propagate_ensemble(
     sensitivities: Sequence[str] | None = None,
 ) -> Ensemble:
     """Return n motions of a scene that differ in their initial states and in constants of the scene.
-
-    The bits of a motion's samples do not depend on the other motions, their order or the number of threads. The method
-    ``auto`` uses a closed form for each motion that has one; the samples then have the same bits as those of
-    :func:`symrot.propagate`. For other motions, and where numeric integration is known to be faster
-    (:func:`symrot.ensemble.exact.choose`), ``auto`` uses Taylor series with one trajectory in each SIMD lane. If a
-    motion stops before its last time, the other motions are not affected; its ``status`` is -1 and its message says
-    why.
 
     Parameters
     ----------
@@ -371,6 +359,11 @@ def propagate_ensemble(
     Notes
     -----
     Convention: :mod:`symrot.conventions`.
+    The bits of a motion's samples do not depend on the other motions, their order or the number of threads.
+    A motion that stops before its last time has the ``status`` -1, and its message says why.
+    ``auto`` uses the closed form of each motion that has one; the samples then have the same bits as those of
+    :func:`symrot.propagate`. For other motions, and where numeric integration is known to be faster
+    (:func:`symrot.ensemble.exact.choose`), it uses Taylor series with one trajectory in each SIMD lane.
 
     Examples
     --------

@@ -1,9 +1,7 @@
 """Ensembles in closed form: trajectories whose motions have the same closed form are computed together.
 
-A batch holds the constants of the motions of many trajectories as arrays, from which one call of C computes all
-samples. Trajectories with unusual numbers (beyond 1e205, or varying products of inertia close to zero) are computed one
-by one, each as a single motion. If only initial states vary, these single motions share the constants of the body and
-its torques.
+A batch holds the constants of the motions as arrays, from which one call of C computes all samples. Trajectories with
+unusual numbers (beyond 1e205, or varying products of inertia close to zero) are computed one by one, as single motions.
 """
 
 from collections.abc import Callable, Hashable, Iterator, Sequence
@@ -34,28 +32,23 @@ MOST_BITS = 59  # largest number of conditions in a pattern, without the three o
 
 
 class Kind(NamedTuple):
-    """A closed form and the index (0, 1 or 2) of the body axis to which it refers, such as a symmetry axis.
+    """A closed form and the index (0, 1 or 2) of the body axis to which it refers, such as a symmetry axis."""
 
-    ``form`` is None for trajectories without a closed form; ``axis`` is None if the form refers to no axis.
-    """
-
-    form: ClosedForm | None
-    axis: int | None
+    form: ClosedForm | None  # None for trajectories without a closed form
+    axis: int | None  # None if the form refers to no axis
 
 
 def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
     """Return the closed forms that occur in an ensemble, each with the indices of the trajectories that have it.
 
-    The entry with the form None holds the trajectories that have no closed form.
-
-    The closed form depends only on which components are zero and which constants are equal. Therefore only one
-    trajectory is examined for each such pattern.
+    None stands for no closed form.
     """
     chosen: dict[Kind, list[Rows]] = {}
     known: dict[Hashable, Kind] = variation.cached("forms", dict)
     for pattern, rows in _patterns(variation):
         kind = known.get(pattern)
         if kind is None:
+            # one trajectory of each pattern suffices: the form depends only on zero components and equal constants
             scene = variation.scene_of(int(rows[0]))
             form = exact_form(scene)
             kind = Kind(form, form and form.axis(scene))
@@ -66,10 +59,9 @@ def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
 
 
 def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
-    """Return groups of trajectories that have the same closed form for certain, as pairs (pattern, row indices).
+    """Return groups of trajectories that certainly have the same closed form, as pairs (pattern, row indices).
 
-    In all trajectories of a group, the same components are zero and the same constants are equal. The pattern is a key
-    for them; it is None if the trajectory has to be examined alone.
+    The pattern is None if a trajectory must be examined alone.
     """
     columns, n = variation.columns, len(variation)
     code = (variation.omega != 0) @ np.array([1, 2, 4])
@@ -77,6 +69,7 @@ def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
         if (code == code[0]).all():
             return [(int(code[0]), np.arange(n))]
         return [(k, rows) for k in range(8) if len(rows := np.flatnonzero(code == k))]
+    # in all trajectories of a group, the same components are zero and the same constants are equal
     bits = [column != 0 for column in columns.values()]
     bits += [one == other for one, other in combinations(columns.values(), 2)]
     bits += [abs(columns[name]) <= variation.negligible for name in columns if name in PRODUCTS]
@@ -93,6 +86,17 @@ def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
     return [((names, int(code[rows[0]])), rows) for rows in np.split(order, edges)]
 
 
+# Measured times, in microseconds per trajectory of 101 samples, among 400, for rotation by 0.01 to 10^4 rad and
+# tolerances of 1e-6 and 1e-12 (`python -m symrot.bench.starts --ensembles` prints them for the spans of the scenes):
+#
+# - In a batch, a closed form takes 4 to 18 us if only initial states vary and 4 to 29 us if constants vary. Steps up to
+#   10 rad take 13 to 46 us in the first case and 33 to 75 us in the second, and more for larger angles. If products of
+#   inertia vary, a batch takes 23 us and steps take 280 us.
+# - For a symmetric damped body without its attitude, if only initial states vary, a batch takes 12 us and steps take
+#   6 to 9 us: there are few steps, because the motion ends.
+# - Computed alone, a trajectory takes 1100 us if products of inertia vary and are nearly zero, or if moments of inertia
+#   are nearly equal, because its principal axes are computed in fractions. It takes 40 to 80 us for rotation about one
+#   axis or spin-up, if constants are too large or too small for a batch.
 ARRAYS_LOSE_BELOW = {"symmetric body driven about its axis, angular velocity alone": 1e4}
 """Angle of rotation, rad, below which steps are faster than this closed form, if no constant varies; see ``choose``."""
 
@@ -101,45 +105,19 @@ ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
 
 
 class Solved(NamedTuple):
-    """Trajectories to compute by one closed form: their indices ``rows``, and their constants as arrays.
-
-    ``batch`` holds the arrays, or is None if the trajectories are computed one by one. Computation in arrays must give
-    the same bits as that of a single motion. ``usual`` tells for which rows it does (or, as one value, whether for
-    all): not for numbers so large or small that intermediate results would lose digits. The other rows are computed as
-    single motions.
-    """
+    """Trajectories to compute by one closed form: their indices ``rows``, and their constants as arrays."""
 
     form: ClosedForm
     rows: Rows
-    batch: "Batch | None"
+    batch: "Batch | None"  # the arrays; None if the trajectories are computed one by one
+    # false for numbers so large or small that intermediate results lose digits: these are single motions
     usual: Any  # whether the arrays give the right bits, for each row or for all rows
 
 
 def choose(variation: Variation, times: Floats, start: float, faster: bool) -> list[Solved]:
     """Return the trajectories of an ensemble to compute in closed form, grouped by their form; the others need steps.
 
-    ``times`` are the sample times and ``start`` the initial time, s. Without ``faster``, every trajectory that has a
-    closed form is returned.
-
-    With ``faster``, only those are returned for which the closed form is faster than steps. Trajectories are computed
-    in a batch (NumPy arrays for many at once) where their numbers allow it; otherwise each is computed alone. A
-    trajectory in a batch is always returned, except for the forms in :data:`ARRAYS_LOSE_BELOW`, which need a larger
-    angle of rotation than the one listed there, if only initial states vary. A trajectory that is computed alone is
-    returned if its angle is larger than the one listed in :data:`ALONE_LOSES_BELOW`. The choice uses only the
-    trajectory's own angle, so that it does not depend on other trajectories.
-
-    These rules follow from measured times, in microseconds per trajectory of 101 samples, among 400, for rotation by
-    0.01 to 10^4 rad and tolerances of 1e-6 and 1e-12 (``python -m symrot.bench.starts --ensembles`` prints them for the
-    spans of the scenes):
-
-    - In a batch, a closed form takes 4 to 18 us if only initial states vary and 4 to 29 us if constants vary. Steps up
-      to 10 rad take 13 to 46 us in the first case and 33 to 75 us in the second, and more for larger angles. If
-      products of inertia vary, a batch takes 23 us and steps take 280 us.
-    - For a symmetric damped body without its attitude, if only initial states vary, a batch takes 12 us and steps take
-      6 to 9 us: there are few steps, because the motion ends.
-    - Computed alone, a trajectory takes 1100 us if products of inertia vary and are nearly zero, or if moments of
-      inertia are nearly equal, because its principal axes are computed in fractions. It takes 40 to 80 us for rotation
-      about one axis or spin-up, if constants are too large or too small for a batch.
+    ``faster`` leaves out trajectories for which steps are faster.
     """
     solved: list[Solved] = []
     for kind, rows in forms_of(variation):
@@ -148,6 +126,7 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
         without_compiler = not loaded(kind.form.library) and library.missing()
         if without_compiler and faster:  # without a compiler, SciPy makes the steps
             continue
+        # only the trajectory's own angle counts, so that the choice does not depend on other trajectories
         least = ARRAYS_LOSE_BELOW.get(kind.form.name) if faster and not variation.columns else None
         if least is not None:
             rows = rows[_angles(variation, times, start)[rows] > least]
@@ -160,10 +139,8 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
 
 
 def _angles(variation: Variation, times: Floats, start: float) -> Floats:
-    """Return a rough angle of rotation, rad, of each trajectory from ``start`` to its farthest sample time: shape (n,).
-
-    It is estimated from the initial angular velocity and the constant torques.
-    """
+    """Return a rough angle of rotation, rad, of each trajectory from ``start`` to its farthest sample time."""
+    # estimated from the initial angular velocity and the constant torques
     n = len(variation)
     span = np.broadcast_to(abs(times - start).max(axis=-1, initial=0.0), (n,))
     push: Any = np.zeros(n)
@@ -182,10 +159,9 @@ def follow_exact(
     variation: Variation, solved: Solved, times: Floats, start: float, omega: Floats, quaternion: Floats | None,
     workers: int,
 ) -> None:  # fmt: skip
-    """Compute the samples of the trajectories ``solved`` by their closed form, and write them into arrays.
+    """Write the samples of the trajectories ``solved``, by their closed form, into ``omega`` and ``quaternion``.
 
-    ``omega`` (n, m, 3) and ``quaternion`` (n, m, 4) are these arrays; without ``quaternion`` no attitude is computed.
-    ``times``, s, have shape (m,) or (n, m), ``start`` is the initial time, and ``workers`` the number of threads.
+    ``quaternion`` is None if no attitude is needed.
     """
     since = times - start if start else times
     form, rows, batch, usual = solved
@@ -218,11 +194,8 @@ def follow_exact(
 def _put_starts(
     variation: Variation, rows: Rows, at_start: NDArray[np.bool_], omega: Floats, quaternion: Floats | None
 ) -> None:
-    """Set the samples of the trajectories ``rows`` at the initial time to their exact initial states.
-
-    ``at_start`` is true for each sample time that equals the initial time. The formulas would give these samples with
-    rounding errors; single motions are treated in the same way.
-    """
+    """Set the samples of the trajectories ``rows`` at the initial time to their exact initial states."""
+    # the formulas would give these samples with rounding errors
     if not at_start.any():
         return
     states = variation.initial_states
@@ -240,13 +213,11 @@ def _put_starts(
 
 
 class _Alone:
-    """A function from the index of a trajectory to its motion in closed form, for trajectories computed one by one.
-
-    The motions share the constants of the body if no constant of the scene varies.
-    """
+    """A function from the index of a trajectory to its motion in closed form, for trajectories computed one by one."""
 
     def __init__(self, variation: Variation, form: ClosedForm) -> None:
         self._variation, self._form = variation, form
+        # if no constant of the scene varies, the motions share the constants of the body
         self._starts: dict[tuple[bool, ...], Callable[[Initial], Exact]] = {}
 
     def __call__(self, i: int) -> Exact:
@@ -287,18 +258,12 @@ class _Part(NamedTuple):
         return attitudes if len(self.rows) == len(variation) else attitudes[self.rows]
 
     def constant(self, name: str) -> Any:
-        """Return the constant ``name`` of the plan: one Fraction, or an array if it varies.
-
-        The array has one value for each trajectory of this part of the ensemble, in the order of ``rows``.
-        """
+        """Return the constant ``name`` of the plan: a Fraction, or an array (one value per trajectory) if it varies."""
         value = self.variation.constant(name)
         return value if isinstance(value, Fraction) else value[self.rows]
 
     def moments(self) -> tuple[Any, Any]:
-        """Return the moments of inertia across the symmetry axis and about it, kg m^2.
-
-        Each is one Fraction, or an array with one value per trajectory if it varies.
-        """
+        """Return the moments of inertia across the symmetry axis and about it, kg m^2: Fractions, or arrays."""
         assert self.axis is not None
         return self.constant(PRINCIPAL[self.axis - 2]), self.constant(PRINCIPAL[self.axis])
 
@@ -306,8 +271,7 @@ class _Part(NamedTuple):
 def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Rows, "Batch | None", Any]]:
     """Yield groups of the trajectories ``rows``, all of one closed form, as (indices, batch, usual).
 
-    ``batch`` holds the constants of the group as arrays; it is None if the motions must be computed one by one.
-    ``usual`` says for which of the indices the batch gives the same bits as a single motion.
+    ``batch`` is None if the motions must be computed one by one.
     """
     make = BATCHES.get(kind.form.library) if kind.form else None
     if make is None:
@@ -315,6 +279,7 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
         return
     from symrot.closed_form.batches import usual
 
+    # usual: for which indices the batch gives the same bits as a single motion
     for part in _parts(variation, kind, rows):
         batch, fine = make(part)
         if batch is not None and make is _free and not np.all(fine):
@@ -333,15 +298,12 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
 
 
 def _parts(variation: Variation, kind: Kind, rows: Rows) -> Iterator[_Part]:
-    """Yield the trajectories ``rows`` as parts, each for one batch; only heavy tops form two parts.
-
-    If the height of the centre of mass varies, it is positive in the first part and negative or zero in the second: the
-    formulas then use different axes.
-    """
+    """Yield the trajectories ``rows`` as parts, each for one batch; only heavy tops form two parts."""
     groups = [rows]
     if kind.form and kind.form.library == "heavy_top" and variation.columns:
         height = variation.constant(f"{variation.prefix(0)}center_of_mass_{(kind.axis or 0) + 1}")
         if not isinstance(height, Fraction):
+            # the formulas use different axes for positive heights
             groups = [rows[height[rows] > 0], rows[height[rows] <= 0]]
     for group in groups:
         if len(group):
@@ -414,8 +376,7 @@ def _gyrostat(part: _Part) -> tuple["Batch | None", Usual]:
 def _driving(part: _Part, kind: str, field: str, axis: int) -> Any:
     """Return one component of a field, such as ``torque``, summed over all torques of one kind in the scene.
 
-    The component belongs to body axis ``axis``. It is one Fraction, or an array if it varies; the result is None if it
-    varies and there are several such torques, since their sum would have to be computed for each trajectory.
+    None if it varies and there are several such torques.
     """
     variation = part.variation
     components = [
@@ -425,6 +386,7 @@ def _driving(part: _Part, kind: str, field: str, axis: int) -> Any:
     ]
     if all(isinstance(value, Fraction) for value in components):
         return sum(components, Fraction(0))
+    # sums of arrays would have to be computed exactly for each trajectory
     return components[0] if len(components) == 1 else None
 
 

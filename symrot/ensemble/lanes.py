@@ -1,11 +1,7 @@
 """Taylor series with one trajectory in each SIMD lane: Python calls the C functions of :file:`lanes.c`.
 
-A SIMD instruction computes with two, four or eight doubles at once; a lane is the place of one of them. Series, step
-length and compensated sums are the same as in :mod:`symrot.propagation.steppers.taylor`, and each motion has steps of
-its own length. When the motion in a lane has ended, the lane takes the next motion. Lanes are independent: the bits of
-a motion's samples do not depend on the other motions, on its lane or on the number of threads, and a motion that stops
-early does not affect the others. Sample times may lie on both sides of the initial time; the code calls the part of a
-motion on one side a leg.
+A SIMD instruction computes with two, four or eight doubles at once; a lane holds one of them. Each motion has steps of
+its own, so its bits do not depend on other motions. A leg is the part of a motion before or after the initial time.
 """
 
 import ctypes
@@ -60,10 +56,8 @@ ORDERS = (
 
 
 def order_for(tolerance: float) -> int:
-    """Return the order of the Taylor series that takes the least time for a tolerance, from a table of measurements.
-
-    ``python -m symrot.bench.ensemble --orders`` prints the times.
-    """
+    """Return the order of the Taylor series that takes the least time for a tolerance, from a table of measurements."""
+    # `python -m symrot.bench.ensemble --orders` prints the times
     return next(order for least, order in ORDERS if tolerance >= least)
 
 
@@ -92,11 +86,9 @@ def translation_unit(
 
 
 def wrap_translation_unit(definitions: str, width: int | None = None) -> str:
-    """Return the C source of a library that integrates many motions in SIMD lanes, as :func:`translation_unit` does.
+    """Return the C source of a library that integrates motions in SIMD lanes, from the C text of their Taylor series.
 
-    ``definitions`` is the C text of the Taylor series of the motion; the stepper and its headers are put around it.
-    ``width`` is the number of lanes, as in :func:`translation_unit`: 1 (plain C), 2, 4 or 8, or None for as many as the
-    processor's registers hold.
+    ``width`` is as for :func:`translation_unit`.
     """
     head = "" if width is None else "#define SYMROT_PLAIN\n" if width == 1 else f"#define SYMROT_LANES {width}\n"
     paths = ("propagation/steppers/library.h", "ensemble/lanes.h", "propagation/steppers/series.h", "ensemble/lanes.c")
@@ -121,16 +113,12 @@ class _Job(ctypes.Structure):
 
 
 class Outcome(NamedTuple):
-    """The states of n motions at their m times, shape (n, m, N), and the cost of each motion.
+    """The states of n motions at their m times, shape (n, m, N), and the cost of each motion."""
 
-    States are NaN at times that a motion did not reach. ``messages`` holds for each motion the reason why it stopped
-    early, or an empty text.
-    """
-
-    states: Floats
+    states: Floats  # NaN at times that a motion did not reach
     steps: Integers
     evaluations: Integers
-    messages: tuple[str, ...]
+    messages: tuple[str, ...]  # the reason why a motion stopped early, or an empty text
 
 
 class Lanes:
@@ -155,12 +143,9 @@ class Lanes:
             )
 
     def jet(self, t: float, y: Sequence[float], p: Sequence[float], unit: float = 1.0) -> Floats:
-        """Return the Taylor coefficients of the states at time t, shape (order + 1, N), in powers of time/``unit``.
-
-        Row k holds the k-th derivatives times ``unit^k/k!``. ``y`` are the N states at this time, ``p`` the parameters.
-        The function serves tests, which compare the rows with coefficients computed in Python.
-        """
+        """Return the Taylor coefficients of the states at time t, shape (order + 1, N), in powers of time/``unit``."""
         state, values = np.array(y, dtype=np.float64), np.array(p, dtype=np.float64)
+        # row k: the k-th derivatives times unit^k/k!
         coefficients = np.empty((self.order + 1, self.states))
         jet = self._library.symrot_lanes_jet
         pointer, real = ctypes.c_void_p, ctypes.c_double
@@ -171,7 +156,7 @@ class Lanes:
     def work(self, job: _Job, interrupted: Callable[[], bool] = bool) -> None:
         """Integrate all motions of a job to their ends, or until ``interrupted()`` returns true.
 
-        The results are written to the arrays whose addresses the job holds.
+        The job holds the addresses of the results.
         """
         memory = ctypes.create_string_buffer(self._memory)
         self._library.symrot_lanes_clear(memory)
@@ -186,12 +171,9 @@ def lanes(path: str) -> Lanes:
 
 
 class _Legs(NamedTuple):
-    """The legs of all motions (the parts after t0 and before t0), and the sample times of each leg.
+    """The legs of all motions (the parts after t0 and before t0), and the sample times of each leg."""
 
-    The times are sorted by their distance from t0; ``table`` holds them, row after row. See ``symrot_job`` in lanes.c.
-    """
-
-    table: Floats
+    table: Floats  # the times of leg after leg, by their distance from t0; see symrot_job in lanes.c
     rows: Integers  # (4, legs): motion, index of its first time, number of times, row of the first sample
     order: Integers | None  # (m,) or (n, m): sample index of each sorted time; None if the times are already sorted
 
@@ -252,10 +234,8 @@ class LaneIntegration:
         self._rows = self._places(("motion", "first", "count", "row"), self.legs.rows)
 
     def _places(self, names: Sequence[str], table: NDArray[Any]) -> dict[str, int]:
-        """Return the memory address of each row of ``table``, by the row's name.
-
-        The table has one column per leg: a leg is one motion in one direction of time.
-        """
+        """Return the memory address of each row of ``table``, by the row's name."""
+        # one column per leg: one motion in one direction of time
         place = address(table)
         return {name: place + 8 * self.total * k for k, name in enumerate(names)}
 
@@ -284,11 +264,8 @@ class LaneIntegration:
         return Outcome(grid, counted[0], counted[1], messages)
 
     def _messages(self, status: Integers, reached: Floats) -> tuple[str, ...]:
-        """Return, for each motion, the reason why it stopped early, or an empty text.
-
-        ``status`` and ``reached`` hold, for each leg (a motion in one direction of time), how it ended and at which
-        time.
-        """
+        """Return, for each motion, the reason why it stopped early, or an empty text."""
+        # status, reached: how each leg (a motion in one direction of time) ended, and at which time
         motion, first, samples, _ = self.legs.rows
         messages = [""] * len(self.y)
         for leg in np.flatnonzero(status != DONE).tolist():
@@ -303,7 +280,7 @@ class LaneIntegration:
 def follow(*arguments: Any, **options: Any) -> Outcome:
     """Integrate n motions in SIMD lanes, and return their states at the sample times.
 
-    The arguments are as for :class:`LaneIntegration`, which this function creates and runs once.
+    The arguments are those of :class:`LaneIntegration`.
     """
     return LaneIntegration(*arguments, **options).run()
 

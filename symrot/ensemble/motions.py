@@ -44,12 +44,9 @@ QUATERNION = tuple(f"q{i} of t" for i in range(4))
 
 
 class Followed(NamedTuple):
-    """The samples of n motions at m times each, and the method and cost of each motion.
+    """The samples of n motions at m times each, and the method and cost of each motion."""
 
-    Samples are NaN at times that a motion did not reach.
-    """
-
-    omega: Floats  # (n, m, 3)
+    omega: Floats  # (n, m, 3); NaN at times that a motion did not reach
     quaternion: Floats | None  # (n, m, 4)
     methods: tuple[str, ...]
     messages: tuple[str, ...]  # reason why a motion stopped early, or empty
@@ -68,11 +65,8 @@ class Problem(NamedTuple):
     workers: int
 
     def of(self, rows: Integers) -> "Problem":
-        """Return the problem for the motions ``rows`` alone, with a new plan.
-
-        The plan may use more facts than the plan for all motions, such as a constant that is zero in these motions
-        only.
-        """
+        """Return the problem for the motions ``rows`` alone, with a new plan."""
+        # the plan may use more facts, such as a constant that is zero in these motions only
         variation = self.variation.of(rows)
         times = self.times if self.times.ndim == 1 else self.times[rows]
         return self._replace(variation=variation, plan=variation.plan(), times=times)
@@ -104,10 +98,8 @@ def follow(problem: Problem, method: str) -> Followed:
 
 
 def _together(parts: Sequence[Followed], groups: Sequence[Integers]) -> Followed:
-    """Join the results for groups of motions to one result, in the order of the ensemble.
-
-    ``groups[k]`` holds the indices, in the ensemble, of the motions in ``parts[k]``.
-    """
+    """Join the results for groups of motions to one result, in the order of the ensemble."""
+    # groups[k]: the indices, in the ensemble, of the motions in parts[k]
     order = np.argsort(np.concatenate(groups), kind="stable")
 
     def joined(arrays: Sequence[Any]) -> Any:
@@ -129,10 +121,7 @@ def _together(parts: Sequence[Followed], groups: Sequence[Integers]) -> Followed
 
 
 def _follow(problem: Problem, method: str, rows: Integers) -> Followed:
-    """Return the samples of motions with the same equations: in closed form, in SIMD lanes, or one by one.
-
-    ``rows`` are the indices of these motions in the ensemble, for messages; ``method`` is as for :func:`follow`.
-    """
+    """Return the samples of motions with the same equations: in closed form, in SIMD lanes, or one by one."""
     count = len(problem.variation)
     solved = _solved(problem, method)
     by_steps = np.ones(count, dtype=bool)
@@ -140,6 +129,7 @@ def _follow(problem: Problem, method: str, rows: Integers) -> Followed:
         by_steps[each.rows] = False
     stepped = np.flatnonzero(by_steps).tolist()
     if method == "exact" and stepped:
+        # rows: the indices of these motions in the ensemble
         first = int(rows[stepped[0]])
         raise InputError(
             f"method: expected motions with a closed form for 'exact', but trajectory {first} of the scene "
@@ -173,8 +163,7 @@ def _switched(
 ) -> Followed:
     """Compute motions under torques with jumps or kinks one by one; return their methods, messages and costs.
 
-    ``stepped`` contains the indices of these trajectories. Their samples are written into the rows of ``omega`` and
-    ``quaternion``.
+    The samples are written into ``omega`` and ``quaternion``.
     """
     from symrot.propagation.propagate import propagator
 
@@ -209,13 +198,9 @@ def _solved(problem: Problem, method: str) -> list[Solved]:
 
 
 def _stepping_method(problem: Problem) -> str:
-    """Return the method that ``auto`` uses for motions without a closed form.
-
-    It is ``taylor``, ``dop853`` for rates with kinks, ``scipy`` without a C compiler, or ``constant`` if nothing
-    changes.
-    """
+    """Return the method that ``auto`` uses for motions without a closed form."""
     if not problem.plan.states:
-        return "constant"
+        return "constant"  # nothing changes
     if missing_compiler():
         return "scipy"
     rough = has_formulas(problem.plan) and non_smooth_torque(
@@ -225,10 +210,7 @@ def _stepping_method(problem: Problem) -> str:
 
 
 def lane_library(plan: Plan, kernel: SceneKernel, tolerance: float) -> Any:
-    """Return the compiled library that integrates motions of a plan in SIMD lanes.
-
-    ``kernel`` holds the equations of the plan; ``tolerance`` determines the order of the Taylor series.
-    """
+    """Return the compiled library that integrates motions of a plan in SIMD lanes."""
     order = lanes.order_for(tolerance)
     key = f"lanes {order}\n{kernel_key(plan)}"
     system = library.fetch(key)
@@ -264,12 +246,11 @@ class _Stepped:
         return times - self.epoch if self.epoch else times
 
     def clock(self, k: int, make: Callable[[Plan, SceneKernel], Any] = epoch.compiled) -> Any:
-        """Return a function that computes, for motion k, what a stepper needs when it resets its clock, or None.
+        """Return a function that gives the compiled rates and parameters of motion k for times since an epoch.
 
-        The function takes an epoch, the time in s at which the clock is reset to 0, and returns the compiled rates
-        together with the parameter values for times since the epoch. ``make`` compiles the rates from a plan and a
-        kernel. The result is None if the rates do not depend on time. See :func:`symrot.propagation.time_shift.clock`.
+        None if the rates do not depend on time.
         """
+        # the epoch is the time, s, at which a stepper resets its clock to 0; see symrot.propagation.time_shift.clock
         if not self.kernel.rates.uses("t"):
             return None
 
@@ -281,10 +262,10 @@ class _Stepped:
     def read(self, states: Floats, omega: Floats, quaternion: Floats | None) -> None:
         """Write the angular velocity and the attitude that follow from ``states`` into ``omega`` and ``quaternion``.
 
-        ``states`` has shape (n, m, N), for n trajectories, m samples and the plan's N states: a plan may use fewer
-        states than the seven of omega and q, such as one angle.
+        ``states`` has the shape (n, m, N).
         """
         chosen = list(self.chosen)
+        # the plan's N states may be fewer than the seven of omega and q, such as one angle
         values: dict[str, Any] = dict(zip(self.plan.states, np.moveaxis(states, -1, 0), strict=True))
         values["t"] = self.times
         outputs = OMEGA + (QUATERNION if quaternion is not None else ())
@@ -331,6 +312,7 @@ class _Stepped:
 
 def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
     problem = stepped.problem
+    # not in lanes: bounds of formulas limit each step, and motions that may grow as t^3 from rest need checks
     if grows_late(stepped.plan) or formula_deviations(*stepped.moved) is not None:
         return _one_by_one(stepped)
     path = lane_library(*stepped.moved, problem.tolerance)
@@ -341,11 +323,7 @@ def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
 
 
 def _one_by_one(stepped: _Stepped) -> lanes.Outcome:
-    """Integrate the trajectories ``stepped`` one after the other; return their states, costs and messages.
-
-    This is for motions that the stepper in SIMD lanes does not support: under torques given by formulas, whose bounds
-    limit each step, or motions that may grow as t^3 from rest, so that each step needs a check.
-    """
+    """Integrate the trajectories ``stepped`` one after the other; return their states, costs and messages."""
     problem, (plan, kernel) = stepped.problem, stepped.moved
     path = taylor_library(plan, kernel, problem.tolerance, projected=False)
 

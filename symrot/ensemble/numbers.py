@@ -52,12 +52,9 @@ class Numbers:
         return Plan(self._variation.scene_of(self._chosen[k]), self._plan.structure, ()).constants
 
     def bound(self, parameters: Parameters, epoch: float = 0.0) -> Floats:
-        """Return the values of k kernel parameters for each trajectory, shape (n, k), each rounded only once.
-
-        A kernel gets the scene's constants, and formulas in them, as these parameters. A parameter that depends on the
-        time at which the kernel's clock shows 0 is evaluated at ``epoch``, s.
-        """
+        """Return the values of k kernel parameters for each trajectory, shape (n, k), each rounded only once."""
         scene = Plan(self._variation.scene, self._plan.structure, ()).constants
+        # epoch, s: the time at which the kernel's clock shows 0
         known = {"pi": number.PI, EPOCH: Fraction(epoch), **scene}
         fixed = {name: value for name, value in known.items() if name not in self._columns}
         values = np.empty((len(self._chosen), len(parameters)))
@@ -120,12 +117,10 @@ class Numbers:
         return result
 
     def _each(self, node: tuple[object, ...], used: set[str]) -> Floats:
-        """Return the values of the formula ``node``, one for each trajectory.
-
-        ``used`` are the names in the formula. For trajectories with equal constants it is evaluated only once.
-        """
+        """Return the values of the formula ``node``, one for each trajectory."""
         columns = {name: column for name, column in self._columns.items() if name in used}
         table = np.stack(list(columns.values()), axis=1)
+        # evaluated once for trajectories with equal constants
         rows, places = np.unique(table, axis=0, return_inverse=True)
         exact = [dict(zip(columns, map(Fraction, row), strict=True)) for row in rows.tolist()]
         values: Floats = np.array([float(value_of(node, constants)) for constants in exact])[places.ravel()]
@@ -135,10 +130,9 @@ class Numbers:
 def _slope(node: Node, constants: Mapping[str, Fraction], moved: Mapping[str, Fraction], variable: str) -> Fraction:
     """Return the derivative of the formula ``node`` by a variable on which its constants depend.
 
-    ``constants`` has the values of the constants in the formula, ``moved`` their derivatives by the variable.
-    ``variable`` is its name, for messages. For ``A*B`` with the values 2 and 3 and ``moved`` = {"A": 1} the result is
-    3.
+    For ``A*B`` with A = 2, B = 3 and ``moved = {"A": 1}`` it is 3.
     """
+    # moved: the derivatives of the constants by the variable
     ratios = [abs(constants[name] / slope) for name, slope in moved.items() if slope and name in constants]
     size = min((ratio for ratio in ratios if ratio), default=Fraction(1))
 

@@ -17,10 +17,7 @@ __all__ = ["Source"]
 
 
 class Source(NamedTuple):
-    """What :meth:`evaluate` needs to compute quantities: an ensemble's variation, and a plan valid for all its motions.
-
-    The variation holds the initial states and the constants that differ between motions.
-    """
+    """An ensemble's variation (initial states and constants of each motion), and a plan valid for all its motions."""
 
     variation: Variation
     plan: Plan
@@ -30,7 +27,7 @@ class Source(NamedTuple):
     ) -> Floats:
         """Return the named output quantities of the chosen motions, shape (n, m, len(names)).
 
-        ``omega`` and ``quaternion`` are the samples of these motions, ``t`` their times, shape (m,) or (n, m).
+        The times ``t`` have the shape (m,) or (n, m).
         """
         structure = self.plan.structure.unreduced()
         plan = replace(self.plan, structure=replace(structure, attitude=quaternion is not None))

@@ -1,8 +1,8 @@
 """The derivatives of the motions of an ensemble by initial values and constants, in SIMD lanes.
 
-A column consists of the derivatives by one variable. All motions have the same variational equations, in which every
-constant that varies in the ensemble is a parameter; the derivatives of a motion therefore depend on this motion alone.
-The equations are those of :mod:`symrot.propagation.sensitivities.variation`, with one motion in each lane.
+A column consists of the derivatives by one variable. The equations are those of
+:mod:`symrot.propagation.sensitivities.variation`. Every constant that varies in the ensemble is a parameter of them, so
+the derivatives of a motion depend on this motion alone.
 """
 
 from collections.abc import Collection, Sequence
@@ -110,26 +110,18 @@ def follow_sensitivities(problem: Problem, keys: Sequence[str]) -> tuple[Sensiti
 
 
 def read_columns(scene: Scene, keys: Sequence[str], varying: Collection[str]) -> tuple[list[Variable], list[Column]]:
-    """Return the variables that ``keys`` name, and for each a :class:`Column` with the derivatives of the scene by it.
-
-    ``keys`` are the texts with which a user requests derivatives, such as "omega_2". A Column has the derivatives of
-    the initial state and of the constants. ``varying`` are the names of the constants that vary in the ensemble, with
-    ``omega`` and ``quaternion`` if the initial states do. The errors are those of :func:`follow_sensitivities`.
-    """
+    """Return the variables that ``keys`` name, such as ``"omega_2"``, and a :class:`Column` of derivatives for each."""
     require_smooth(scene)
     variables = read_variables(scene, keys)
     columns = columns_of(scene, variables)
+    # varying: names of varying constants, and omega or quaternion if the initial states vary
     for column in columns:
         _require_own(column, varying)
     return variables, columns
 
 
 def _require_own(column: Column, varying: Collection[str]) -> None:
-    """Raise InputError if a variable changes a number that varies in the ensemble under another name.
-
-    An example is the variable ``gravity`` while ``weight`` has a value of its own in each motion, so that ``varying``
-    contains ``weight``.
-    """
+    """Raise InputError if a variable changes a number that varies in the ensemble under another name."""
     variable = column.variable
     if variable.key == ATTITUDE or variable.key.startswith("omega"):
         return
@@ -138,21 +130,19 @@ def _require_own(column: Column, varying: Collection[str]) -> None:
         moved.clear()
     moved |= {"omega"} if any(column.start[:RATES]) else set()
     moved |= {"quaternion"} if any(column.start[RATES:]) else set()
+    # such as the variable gravity, while weight has a value of its own in each motion
     own = sorted(moved.intersection(varying))
     if own:
         raise InputError(
-            f"sensitivities: expected variables that do not set quantities which vary between the motions, but "
-            f"{variable.name} sets {', '.join(own)}, and the motions have different values of it; name the varying "
-            "quantity itself as a variable"
+            "sensitivities: expected a variable that sets only constants shared by all motions, but "
+            f"{variable.name} sets {', '.join(own)}, whose values differ between the motions; "
+            f"name {' or '.join(own)} itself as a variable"
         )
 
 
 def _constant(variable: Variable) -> str:
-    """Return the name of the constant in the equations that ``variable`` sets: its own name, such as ``weight``.
-
-    For a principal moment, such as ``principal_2``, it is the moment of inertia ``I_yy``. For a variable that sets
-    several constants, such as a mass, no constant has the returned name.
-    """
+    """Return the name of the constant that ``variable`` sets: ``weight``, or ``I_yy`` for ``principal_2``."""
+    # for a variable that sets several constants, such as a mass, no constant has this name
     stem, _, number = variable.name.rpartition("_")
     return f"I_{2 * 'xyz'[int(number) - 1]}" if stem == "principal" else variable.name
 
@@ -205,13 +195,7 @@ class _Equations:
         return library.build(lanes.wrap_translation_unit(text), "lanes", lanes.FLAGS)
 
     def follow(self, rows: lanes.Integers) -> tuple[Floats, Floats, list[str]]:
-        """Return states, shape (n, m, 7), their derivatives, (n, m, 7, k), and why each motion stopped early, or "".
-
-        ``rows`` are the indices of the n motions in the ensemble. A column, the derivatives by one variable, is
-        integrated in a unit chosen in advance (:meth:`_units`). If all its numbers stay below SMALL in this unit, the
-        control of errors, which compares errors with 1, hardly sees them. The motion is then integrated again with a
-        unit in which they are near 1.
-        """
+        """Return states, shape (n, m, 7), their derivatives, (n, m, 7, k), and why each motion stopped early, or ""."""
         problem, count, columns = self.problem, len(rows), len(self.columns)
         times = problem.times if problem.times.ndim == 1 else problem.times[rows]
         start, units = self._start(rows), self._units(rows)
@@ -230,6 +214,7 @@ class _Equations:
                 reasons[place] = message
             derivatives = samples[..., SIZE:].reshape(len(again), -1, columns, SIZE)
             largest = np.nan_to_num(np.abs(derivatives[..., RATES:])).max(axis=(1, 3), initial=0.0)
+            # errors are compared with 1: columns below SMALL are integrated again, in a unit in which they are near 1
             small = (largest > 0) & (largest < SMALL)
             if not small.any() or attempt == TRIES - 1:
                 break
@@ -240,11 +225,8 @@ class _Equations:
         return grid[..., :SIZE], slopes_of.transpose(0, 1, 3, 2), reasons
 
     def _start(self, rows: lanes.Integers) -> Floats:
-        """Return the initial states of the motions ``rows`` and their derivatives by k variables, (n, 7, 1 + k).
-
-        The 7 numbers are angular velocity and quaternion. Entry 0 of the last axis is the state, entry j its derivative
-        by variable j.
-        """
+        """Return the initial states of the motions ``rows`` and their derivatives by k variables, (n, 7, 1 + k)."""
+        # 7: angular velocity and quaternion; the states come first on the last axis
         states = self.problem.variation.initial_states[rows]
         start = np.empty((len(rows), SIZE, 1 + len(self.columns)))
         start[..., 0] = states
@@ -255,15 +237,11 @@ class _Equations:
         return start
 
     def _units(self, rows: lanes.Integers) -> Floats:
-        """Return the unit of each derivative in each of the motions ``rows``: a power of two, shape (n, k).
-
-        The derivatives by a variable are multiplied by its unit for the first integration (:meth:`follow`). The unit is
-        near the value of the variable in this motion, which makes the products about as large as the states; it is 1
-        for a rotation of the initial attitude.
-        """
+        """Return the unit of each derivative in each of the motions ``rows``: a power of two, shape (n, k)."""
         variation, units = self.problem.variation, np.ones((len(rows), len(self.columns)))
         for k, column in enumerate(self.columns):
             variable = column.variable
+            # a rotation of the initial attitude has the unit 1
             if variable.moved is None:
                 continue
             if variable.key.startswith("omega"):
@@ -271,21 +249,17 @@ class _Equations:
             else:
                 varied = variation.columns.get(_constant(variable))
                 sizes = np.full(len(rows), abs(float(variable.value))) if varied is None else np.abs(varied[rows])
+            # near the value of the variable, so that the derivatives times it are about as large as the states
             units[:, k] = np.where(sizes > 0, np.ldexp(1.0, np.frexp(sizes)[1]), 1.0)
         return units
 
     def _integrate(self, p: Floats, y: Floats, times: Floats) -> tuple[Floats, Sequence[str]]:
-        """Return the states of n motions and their derivatives by k variables, shape (n, m, 7 (1 + k)), and messages.
-
-        ``p`` has the parameters of each motion, ``y`` its initial state followed by the k columns of derivatives,
-        ``times`` the m sample times. A message is the reason for which a motion stopped early, or "". Steps under
-        torques given by formulas are limited by bounds of the rates, which the stepper in lanes does not support; these
-        motions are integrated one after the other.
-        """
+        """Return the states of n motions and their derivatives by k variables, (n, m, 7 (1 + k)), and messages."""
         problem = self.problem
         if self.in_lanes:
             outcome = lanes.follow(self.path, p, y, problem.t0, times, TOLERANCE, workers=problem.workers)
             return outcome.states, outcome.messages
+        # steps under torques given by formulas are limited by bounds, which the stepper in lanes does not support
         samples, messages = np.full((len(y), times.shape[-1], y.shape[1]), np.nan), []
         for k in range(len(y)):
             motion = taylor.integration(self.path, p[k], y[k], problem.t0 - self.epoch, TOLERANCE)

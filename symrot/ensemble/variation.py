@@ -55,11 +55,9 @@ _caches: dict[int, dict[Hashable, Any]] = {}  # cached values of scenes by their
 
 
 class Place(NamedTuple):
-    """The position of a constant in a scene: in the inertia tensor, or in a field of a torque.
+    """The position of a constant in a scene: in the inertia tensor, or in a field of a torque."""
 
-    Example: component 3 of gravity's ``center_of_mass``, the first torque, is ``(0, "center_of_mass", 2)``.
-    """
-
+    # component 3 of center_of_mass of the first torque is (0, "center_of_mass", 2)
     torque: int  # -1: the inertia
     field: str
     entry: int | str | None  # index in a vector, name of a parameter; None: the field is a number
@@ -67,15 +65,12 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True)
 class Variation:
-    """What differs between the n trajectories of an ensemble: initial states, and a column for each varying constant.
-
-    Constants have the same names as in plans, such as ``weight`` or ``I_xx``.
-    """
+    """What differs between the n trajectories of an ensemble: initial states, and columns of varying constants."""
 
     scene: Scene
     omega: Floats  # (n, 3), rad/s, body components
     quaternion: Floats | None  # (n, 4), of any norm but zero; None: the scene's own
-    columns: dict[str, Floats]  # (n,) each
+    columns: dict[str, Floats]  # (n,) each, by the name of the constant in plans, such as weight or I_xx
     places: dict[str, Place]
 
     def __len__(self) -> int:
@@ -88,27 +83,21 @@ class Variation:
         return replace(self, omega=self.omega[rows], quaternion=quaternion, columns=columns)
 
     def scene_of(self, i: int) -> Scene:
-        """Return the scene of trajectory i: the common scene with this trajectory's initial state and constants.
-
-        The doubles in the arrays become fractions of exactly the same value.
-        """
+        """Return the scene of trajectory i: the common scene with this trajectory's initial state and constants."""
+        # doubles become fractions of exactly the same value
         return self._with(self.initial(i), {name: Fraction(float(column[i])) for name, column in self.columns.items()})
 
     def initial(self, i: int) -> Initial:
-        """Return the initial state of trajectory i; doubles become fractions of exactly the same value.
-
-        A quaternion is divided by its norm. Without an array of quaternions, the attitude is the scene's.
-        """
+        """Return the initial state of trajectory i; its quaternion is divided by its norm."""
+        # doubles become fractions of exactly the same value
         x, y, z = map(Fraction, self.omega[i].tolist())
         if self.quaternion is None:
             return Initial((x, y, z), self.scene.initial.quaternion)
         return Initial((x, y, z), _unit(self.quaternion[i].tolist()))
 
     def cached(self, key: Hashable, make: Callable[[], Any]) -> Any:
-        """Return the value that is cached under ``key``; if there is none, call ``make()`` and cache its result.
-
-        The value may depend only on the scene; ``make`` is called once for all ensembles of the same scene.
-        """
+        """Return the value that is cached under ``key`` for the scene; on first use, ``make()`` computes it."""
+        # the value may depend only on the scene: all ensembles of the scene share it
         place = id(self.scene)
         values = _caches.get(place)
         if values is None:
@@ -153,29 +142,22 @@ class Variation:
     def prefix(self, torque: int) -> str:
         """Return the text before the names of the constants of torque number ``torque`` (from 0), such as ``torque2_``.
 
-        It is empty if the names are unique without it.
+        It is empty if the names are unique.
         """
         structure: Structure = self.cached("structure", lambda: general_structure(self.scene))
         return structure.torques[torque].prefix
 
     def constants_beside(self, name: str) -> list[float]:
-        """Return the constants in the same vector or tensor as the constant ``name`` that do not vary in the ensemble.
-
-        An example: if ``I_xx`` varies, these are ``I_yy`` and the other entries of the tensor. The values of ``name``
-        in the ensemble, which are doubles, are compared with them to detect equal constants. A constant that differs
-        from the nearest double by more than 2^-200 is left out, because it equals none of them.
-        """
+        """Return the entries beside ``name`` in its vector or tensor that do not vary: ``I_yy`` for ``I_xx``."""
         place = self.places[name]
         same = [key for key, other in self.places.items() if other[:2] == place[:2] and key not in self.columns]
         values = {self.constant(key) for key in same if not isinstance(self.places[key].entry, str)}
+        # varying doubles are compared with them; a constant that no double equals, up to 2^-200, is left out
         return [float(x) for x in values if isinstance(x, Fraction) and number.equal(Fraction(float(x)), x)]
 
     @property
     def negligible(self) -> Floats:
-        """The limit, kg m^2, up to which products of inertia count as zero, for each trajectory, shape (n,).
-
-        A trajectory whose products are all this small counts as given in principal axes.
-        """
+        """The limit, kg m^2, up to which products of inertia count as zero, for each trajectory, shape (n,)."""
         bounds: Floats = np.ldexp(abs(self.moments).max(axis=1), -number.NEGLIGIBLE_BITS)
         return bounds
 
@@ -207,10 +189,8 @@ class Variation:
         return replace(self.scene, initial=start, body=body, torques=tuple(torques))
 
     def plan(self) -> Plan:
-        """Return a plan (the choice of equations and states) that is valid for all trajectories.
-
-        The plan makes use of a zero constant or of equal constants only if they are zero or equal in every trajectory.
-        """
+        """Return a plan (the choice of equations and states) that is valid for all trajectories."""
+        # the plan uses zero or equal constants only if they are zero or equal in every trajectory
         values = {name: _representative(column) for name, column in self.columns.items()}
         if not PLACES.keys().isdisjoint(values):
             values |= self._representative_inertia()
@@ -222,11 +202,8 @@ class Variation:
         return plan
 
     def patterns(self) -> list[NDArray[np.intp]]:
-        """Return groups of trajectories, as arrays of row indices, such that all of a group have the same plan.
-
-        The group of a trajectory depends only on its own constants: on which of them are zero, and on which moments of
-        inertia are equal.
-        """
+        """Return groups of trajectories, as arrays of row indices, such that all of a group have the same plan."""
+        # only the trajectory's own constants count: which are zero, and which moments are equal
         bits = [column != 0 for column in self.columns.values()]
         if not PLACES.keys().isdisjoint(self.columns):
             moments = [self.constant(name) for name in PRINCIPAL]
@@ -247,10 +224,8 @@ class Variation:
         return make_plan(self._with(GENERAL_START, values), switched=switched(self.scene))
 
     def _representative_inertia(self) -> dict[str, Fraction]:
-        """Return the entries, by name, of one inertia tensor from which a plan for all trajectories is made.
-
-        Its moments are equal and its products zero only if they are so in every trajectory.
-        """
+        """Return the entries, by name, of one inertia tensor from which a plan for all trajectories is made."""
+        # its moments are equal and its products zero only if they are so in every trajectory
         inertia = self.scene.body.inertia
         tensor: dict[str, Fraction] = {}
         for k, name in enumerate(PRINCIPAL):
@@ -272,22 +247,16 @@ class Variation:
 
 
 def _equal(one: Fraction | Floats, other: Fraction | Floats) -> Any:
-    """Return whether two constants are equal: an array with one entry per trajectory, or one bool if neither varies.
-
-    Two constants that do not vary are equal up to 2^-200 of their size.
-    """
+    """Return whether two constants are equal: one bool, or an array with one entry per trajectory if one varies."""
     if isinstance(one, Fraction) and isinstance(other, Fraction):
-        return number.equal(one, other)
+        return number.equal(one, other)  # up to 2^-200 of their size
     left, right = (float(value) if isinstance(value, Fraction) else value for value in (one, other))
     return left == right
 
 
 def _constant_place(field: str, entry: int | str | None) -> tuple[str, int | None]:
-    """Return the arguments (name, index) with which a :class:`Torque` of a scene reads or replaces one constant.
-
-    ``entry`` is the ``entry`` of a :class:`Place`. If it is the name of a parameter of the torque's formulas, the
-    result is this name and None; otherwise it is ``field`` and the index in a vector (None if the field is a number).
-    """
+    """Return the arguments (name, index) with which a torque of a scene reads or replaces a constant."""
+    # the name of a parameter of formulas; or a field and an index in it, None if the field is a number
     return (entry, None) if isinstance(entry, str) else (field, entry)
 
 
@@ -301,10 +270,8 @@ def _unit(row: list[float]) -> tuple[Fraction, Fraction, Fraction, Fraction]:
 
 
 def _representative(column: Floats) -> Fraction:
-    """Return one value of a column that stands for all of them in a plan.
-
-    It is zero if all values are zero, otherwise one that is not zero: a plan makes use of zeros.
-    """
+    """Return one value of a column that stands for all of them in a plan."""
+    # not zero if one value is not: a plan makes use of zeros
     return Fraction(float(column[np.argmax(column != 0)]))
 
 
@@ -379,10 +346,7 @@ def _quaternions(attitude: Any) -> ArrayLike:
 
 
 def _check_bodies(variation: Variation) -> None:
-    """Raise InputError if a trajectory has moments of inertia that no body has, or that do not determine its motion.
-
-    Principal moments that clearly satisfy the triangle inequalities are checked in doubles, all others exactly.
-    """
+    """Raise InputError if a trajectory has moments of inertia that no body has, or that do not determine its motion."""
     moments: Any = variation.moments
     if not variation.in_principal_axes:
         tensors = np.empty((len(variation), 3, 3))
@@ -391,6 +355,7 @@ def _check_bodies(variation: Variation) -> None:
             tensors[:, i, j] = tensors[:, j, i] = float(value) if isinstance(value, Fraction) else value
         moments = np.linalg.eigvalsh(tensors)  # with errors of about 1e-15 of the largest
     small, middle, large = np.sort(moments, axis=1).T
+    # moments that clearly satisfy the triangle inequalities are checked in doubles, all others exactly
     doubtful = ~((small > CLEARLY * large) & (small + middle > (1 + CLEARLY) * large))
     for i in np.flatnonzero(doubtful).tolist():
         principal = variation.scene_of(i).body.principal
@@ -400,11 +365,8 @@ def _check_bodies(variation: Variation) -> None:
 
 
 def read_times(t: ArrayLike | None, scene: Scene, n: int) -> Floats:
-    """Return the sample times, s, after checks: shape (m,) if all trajectories share them, otherwise (n, m).
-
-    ``t`` is the argument of the user; if it is None, the sample times of the scene are used.
-    """
-    if t is None:
+    """Return the sample times, s, after checks: shape (m,) if all trajectories share them, otherwise (n, m)."""
+    if t is None:  # the sample times of the scene
         span = scene.span
         return np.linspace(float(span.start), float(span.stop), span.samples)
     times = real_array(t, "t", "times in s", ndmin=1)
@@ -431,10 +393,9 @@ def _array(values: ArrayLike, shape: tuple[int, ...], name: str, unit: str) -> F
 
 
 def constant_places(scene: Scene) -> dict[str, Place]:
-    """Return a map from each constant that may vary to its place in the scene: inertia, or torque, field and entry.
+    """Return a map from each constant that may vary, such as ``weight``, to its place in the scene.
 
-    The names are those in the plan, such as ``I_xx``, ``weight`` and ``torque2_stiffness``. Example: the stiffness of
-    the second torque has the place ``(1, "stiffness", None)``.
+    ``torque2_stiffness`` has the place ``(1, "stiffness", None)``.
     """
     places = {name: Place(-1, "inertia", None) for name in PLACES}
     for index, torque in enumerate(general_structure(scene).torques):
@@ -451,8 +412,7 @@ def constant_places(scene: Scene) -> dict[str, Place]:
 def _columns(scene: Scene, places: dict[str, Place], name: str, values: ArrayLike) -> dict[str, Floats]:
     """Return the columns (one value per trajectory) that the entry ``name: values`` of ``parameters`` describes.
 
-    The result is a dict by the name of the constant: ``center_of_mass`` gives the columns ``center_of_mass_1``, ``_2``
-    and ``_3``. ``places`` are the scene's :func:`constant_places`.
+    ``center_of_mass`` gives ``center_of_mass_1``, ``_2`` and ``_3``.
     """
     if name == "principal":
         if not scene.body.principal.given_axes:
@@ -488,8 +448,6 @@ def _columns(scene: Scene, places: dict[str, Place], name: str, values: ArrayLik
 
 
 def _field(key: str, place: Place) -> str:
-    """Return the name of the field that contains a constant: ``center_of_mass`` for ``center_of_mass_3``.
-
-    A constant that is no component of a vector is its own field. ``place`` is the place of the constant ``key``.
-    """
+    """Return the name of the field that contains the constant ``key``: ``center_of_mass`` for ``center_of_mass_3``."""
+    # a constant that is no component of a vector is its own field
     return key.rpartition("_")[0] if isinstance(place.entry, int) else key

@@ -1,12 +1,9 @@
-"""Exact decision whether two formulas are equal at all real points where both are defined.
-
-``normal_form``, ``is_zero`` and ``Decision`` are imported here on first use; the function ``decide`` is in
-:mod:`symrot.exact.decide`.
-"""
+"""Exact decision whether two formulas are equal at all real points where both are defined."""
 
 from importlib import import_module
 from typing import Any
 
+# imported on first use: ``import symrot`` must not load SymPy
 _HOME = {"normal_form": "decide", "is_zero": "decide", "Decision": "decision"}
 
 

@@ -1,9 +1,7 @@
 """A budget for one decision: how many formulas it may convert to polynomials before it gives up.
 
-A formula is converted in a ring of polynomials. Each root inside a root and each inverse function inside another one
-needs a ring of its own, and proofs about them convert both sides again, so nested functions need many conversions. The
-result of a conversion is stored only until the decision ends. So the count, and with it the verdict, is the same on
-every machine and for any order of decisions.
+Nested roots and inverse functions need many conversions. Results are stored only until the decision ends, so the count,
+and with it the verdict, is the same on every machine and for any order of decisions.
 """
 
 from collections.abc import Callable, Hashable, Iterator
@@ -22,14 +20,10 @@ MOST_RINGS = 2000
 
 @dataclass
 class _Budget:
-    """The state of one decision, which bounds its work.
+    """The state of one decision, which bounds its work."""
 
-    ``left`` is the number of formulas that it may still convert to polynomials, ``results`` holds the stored
-    conversions.
-    """
-
-    left: int = MOST_RINGS
-    results: dict[Hashable, Any] = field(default_factory=dict)
+    left: int = MOST_RINGS  # number of formulas that may still be converted to polynomials
+    results: dict[Hashable, Any] = field(default_factory=dict)  # stored conversions
 
 
 _current: ContextVar[_Budget | None] = ContextVar("budget of the decision", default=None)

@@ -1,8 +1,7 @@
 """Congruence closure: among inverse functions or logarithms that are proven equal, one replaces the others.
 
-``asin(x)`` and ``atan2(x, sqrt(1 - x^2))`` are equal, but the polynomial ring of their roots ``sqrt(..)`` has an
-independent variable for each. If a pair f, g is proven to satisfy ``f - g = 0`` or ``f + g = pi/2``, f is replaced by g
-or pi/2 - g in the formula, which is then read again.
+``asin(x)`` and ``atan2(x, sqrt(1 - x^2))`` are equal, but the polynomial ring has an independent variable for each.
+``hypotheses`` are expressions that are zero, ``domain`` formulas that are nonnegative.
 """
 
 from collections.abc import Iterator, Sequence
@@ -26,15 +25,15 @@ MOST_SYMBOLS = 6
 def proof_by_congruence(
     left: Expr, right: Expr, hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> tuple[FormulaRing, ...] | None:
-    """Prove ``left = right`` by replacing inverse functions and logarithms by others that are proven equal.
+    """Prove ``left = right`` by replacing inverse functions by others that are proven equal.
 
-    ``hypotheses`` are expressions that are zero, ``domain`` formulas that are nonnegative. Return the polynomial rings
-    that the proof uses (it holds where their divisors are not zero), or None if no proof was found.
+    Return the polynomial rings of the proof, or None.
     """
     rings: list[FormulaRing] = []
     while True:
         ring = FormulaRing([left, right], hypotheses, domain)
         further_rings = proof(ring, ring.difference(left, right).numerator)
+        # the proof holds where no divisor in these rings is zero
         if further_rings is not None:
             return (*rings, ring, *further_rings)
         names: list[Expr] = [leaf for leaf in ring.symbols if type(leaf) in _NAMES and leaf.free_symbols]
@@ -52,12 +51,7 @@ def proof_by_congruence(
 def _equal_pairs(
     names: Sequence[Expr], hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> Iterator[tuple[Expr, Expr, tuple[FormulaRing, ...]]]:
-    """Yield pairs of members of ``names`` that are proven equal, or to have the sum pi/2, as asin(x) and acos(x).
-
-    ``names`` are the inverse functions and logarithms in the formulas; each is a variable of its own in a polynomial
-    ring. Each pair is yielded as (one, its value in terms of the other, the polynomial rings that the proof uses).
-    ``hypotheses`` are expressions that are zero, and ``domain`` are formulas that are not negative.
-    """
+    """Yield (f, h, rings) with ``f = h`` proven, where f is in ``names`` and h is another name or pi/2 minus it."""
     for first, second in combinations(names, 2):
         for other in (first, pi / 2 - first):
             if not hypotheses and not seems_zero(second - other, domain):

@@ -1,8 +1,7 @@
 """Counterexamples: exact points at which two formulas differ, with numbers that are short enough to read.
 
-There are two kinds. If only symbols, free angles and unit vectors occur, the point is rational, such as
-``cos x = 4/5, sin x = 3/5`` or ``q = (1/2, 1/2, 1/2, 1/2)``, and both sides are rational numbers. Otherwise symbols get
-rational values, both sides become closed-form numbers, and 50-digit interval arithmetic proves that they differ.
+With symbols, angles and unit vectors alone, the point is rational: ``cos x = 4/5, sin x = 3/5``. Otherwise the symbols
+have rational values, and 50-digit interval arithmetic proves that the sides differ.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -54,26 +53,19 @@ _TURNS = [Rational(n, d) * pi for n, d in ((1, 1), (-1, 1), (2, 1), (1, 2), (-1,
 
 @dataclass(frozen=True)
 class FreeChoice:
-    """Variables of the ring whose values are chosen together: one symbol, an angle's sine and cosine, or a unit vector.
+    """Variables of the ring with values chosen together: a symbol, an angle's sine and cosine, or a unit vector."""
 
-    ``generators`` are the indices of the variables, ``simple`` a few short choices of their values, and ``random``
-    draws further ones.
-    """
-
-    generators: tuple[int, ...]
-    simple: tuple[tuple[Fraction, ...], ...]
-    random: Callable[[Random], tuple[Fraction, ...]]
+    generators: tuple[int, ...]  # indices of the variables
+    simple: tuple[tuple[Fraction, ...], ...]  # a few choices with short numbers
+    random: Callable[[Random], tuple[Fraction, ...]]  # draws further choices
     atom: Expr | None = None  # atom of the angle, if the generators are its cosine and sine
 
 
 def rational_witness(
     ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
 ) -> Counterexample | None:
-    """Return a counterexample to ``left = right`` in rational numbers, or None if no such point is found.
-
-    There is no search if a formula contains roots, inverse functions or exponentials. Both sides must be convertible to
-    polynomials of ``ring``. ``entry`` is the place in a matrix, for the report.
-    """
+    """Return a counterexample to ``left = right`` in rational numbers, or None if the search ends without one."""
+    # roots, inverse functions and exponentials are seldom rational: no search
     if ring.outside_scope or ring.roots or ring.fine or ring.exponentials or not _angles_are_free(ring):
         return None
     coordinates, solved = _coordinates(ring)
@@ -81,10 +73,7 @@ def rational_witness(
     domain = [ring.ratio(formula) for formula in ring.domain]
 
     def point(choices: Sequence[tuple[Fraction, ...]]) -> dict[int, Fraction] | None:
-        """Return the value of every variable for one choice of the free ones, if this point is a counterexample.
-
-        Return None if a hypothesis or an assumption is violated, a side is undefined, or both sides are equal.
-        """
+        """Return the value of every variable for one choice of the free ones, or None if it is no counterexample."""
         values: dict[int, Fraction] = {}
         for coordinate, choice in zip(coordinates, choices, strict=True):
             values.update(zip(coordinate.generators, choice, strict=True))
@@ -124,13 +113,11 @@ def rational_witness(
 
 
 def _difference(ring: FormulaRing, left: Expr, right: Expr) -> tuple[Callable[[dict[int, Fraction]], bool], int]:
-    """Return (test, cost): ``test(values)`` says whether both sides are defined and differ at a point.
-
-    ``values`` maps indices of variables of the ring to numbers. The cost is the number of terms that a test evaluates:
-    those of the polynomial left - right or, if that has more terms, those of the formulas as they are written.
-    """
+    """Return (test, cost): ``test(values)`` is True if both sides are defined and differ at a point."""
+    # the shorter of two forms is evaluated: the polynomial left - right, or the formulas as they are written
     written = pieces((left, right))
     try:
+        # cost is the number of terms that a test evaluates
         residual = ring.difference(left, right).numerator
         if len(residual) <= written:
             return lambda values: bool(_value(residual, values)), len(residual)
@@ -150,11 +137,7 @@ def _difference(ring: FormulaRing, left: Expr, right: Expr) -> tuple[Callable[[d
 def closed_form_witness(
     ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
 ) -> Counterexample | None:
-    """Return a counterexample to ``left = right`` whose symbols are rational but whose sides need not be, or None.
-
-    Intervals of 50 digits prove that both sides differ. Hypotheses are satisfied by rational points of spheres and by
-    solving linear equations, as in :func:`rational_witness`. ``entry`` is the place in a matrix, for the report.
-    """
+    """Return a point with rational symbols at which 50-digit intervals prove ``left != right``, or None."""
     places = {number: leaf for leaf, number in ring.symbols.items() if ring.leaves[leaf]}
     if any(number not in places for hypothesis in ring.hypothesis_numerators for number in _occurring(hypothesis)):
         return None
@@ -173,6 +156,7 @@ def closed_form_witness(
     for attempt in range(ATTEMPTS):
         early = attempt < ATTEMPTS // 2
         pool = simple if early else [Rational(n, 7) for n in range(-40, 41) if n]
+        # points of spheres and solutions of linear equations satisfy the hypotheses
         numbers = {number: value for c in tied for number, value in zip(c.generators, c.random(source), strict=True)}
         if not all(_solve(hypothesis, generator, numbers) for generator, hypothesis in solved):
             continue
@@ -184,6 +168,7 @@ def closed_form_witness(
             continue
         for leaf in variables:
             if leaf not in values:
+                # multiples of pi have simple sines and cosines
                 choices = _TURNS if early and leaf in angles else pool
                 values[leaf] = source.choice([v for v in choices if fits_assumptions(leaf, v)] or [Rational(1)])
         if attempt >= UNMOVED:
@@ -204,13 +189,11 @@ def closed_form_witness(
 def _move_within(
     formulas: Sequence[Expr], values: dict[Expr, Expr], movable: Sequence[Expr], simple: Sequence[Expr]
 ) -> None:
-    """Change ``values``, the values of a point, so that those ``formulas`` that are negative there become nonnegative.
-
-    For each of them, one symbol of ``movable`` gets the first value of ``simple`` that achieves this, if there is one.
-    """
+    """Change ``values``, the values of a point, so that negative ``formulas`` become nonnegative, if possible."""
     for formula in formulas:
         if _seems_nonnegative(formula, values) and _nonnegative(formula, values):
             continue
+        # one symbol gets the first simple value that helps
         own = formula.free_symbols
         trials = ({**values, leaf: v} for leaf in movable if leaf in own for v in simple if fits_assumptions(leaf, v))
         moved = next((t for t in trials if _seems_nonnegative(formula, t) and _nonnegative(formula, t)), values)
@@ -218,30 +201,23 @@ def _move_within(
 
 
 def _pure_angles(ring: FormulaRing) -> set[Expr]:
-    """Return the symbols and functions of time that occur only as angles, inside sines and cosines.
-
-    The search for a simple counterexample gives them multiples of pi as values, for which sine and cosine are simple.
-    """
+    """Return the symbols and functions of time that occur only inside sines and cosines."""
     inside = [atom for atom in ring.bases if atom.is_Symbol or isinstance(atom, AppliedUndef)]
     others = [*ring.symbols, *ring.exponent_bases, *(atom for atom in ring.bases if atom not in inside)]
     return {atom for atom in inside if not any(other.has(atom) for other in others)}
 
 
 def _enclosure(formula: Expr, values: dict[Expr, Expr]) -> Any:
-    """Return an interval that contains the value of a formula at a point, or None if none is found.
-
-    If interval arithmetic alone fails, SymPy substitutes the point into the formula first.
-    """
+    """Return an interval that contains the value of a formula at a point, or None without a proof."""
     held = enclosure(formula, values)
+    # SymPy's substitution may succeed where interval arithmetic alone fails
     return enclosure(formula.xreplace(values)) if held is None and _is_flat(formula) else held
 
 
 def _nonnegative(formula: Expr, values: dict[Expr, Expr]) -> bool:
-    """Return whether a formula is proven to be nonnegative at a point.
-
-    The proof works also where the formula is exactly zero, as ``1 + cos(x)`` is at pi.
-    """
+    """Return whether a formula is proven to be nonnegative at a point."""
     is_proven = is_nonnegative_at(formula, values)
+    # SymPy's substitution also proves exact zeros, as of ``1 + cos(x)`` at pi
     return is_proven or (_is_flat(formula) and surely_nonnegative_number(formula.xreplace(values)))
 
 
@@ -265,14 +241,12 @@ def _is_flat(formula: Expr, deep: int = MOST_NESTED) -> bool:
 
 
 def _shortest(number: Expr) -> Expr:
-    """Return a closed-form number as a rational if it is rational, as ``sqrt(4) + 1`` is.
-
-    Any other number is returned unchanged, also one with many roots, which would take long to test.
-    """
+    """Return a closed-form number as a rational if it is rational, as ``sqrt(4) + 1`` is, else unchanged."""
     if number.is_Rational or not number.is_number:
         return number
     try:
         own = FormulaRing([number])
+        # many roots would take long to test
         if len(own.roots) > MOST_ROOTS_SHORTENED:
             return number
         short = own.expression(own.ratio(number))
@@ -290,16 +264,13 @@ def _occurring(poly: PolyElement) -> set[int]:
 
 
 def _coordinates(ring: FormulaRing) -> tuple[list[FreeChoice], list[tuple[int, PolyElement]]]:
-    """Return (free, solved): the choices that determine a point, and the hypotheses that determine the rest of it.
-
-    ``solved`` holds pairs (variable, hypothesis that is linear in it). A hypothesis such as ``q0^2 + q1^2 + q2^2 + q3^2
-    = 1`` makes its variables one free choice, a unit vector.
-    """
+    """Return (free, solved): the free choices of a point, and pairs (variable, hypothesis that determines it)."""
     fixed: set[int] = set()
     coordinates: list[FreeChoice] = []
     solved: list[tuple[int, PolyElement]] = []
     leaf_numbers = set(ring.symbols.values())
     for hypothesis in ring.hypothesis_numerators:
+        # ``q0^2 + q1^2 + q2^2 + q3^2 = 1`` makes its variables one choice, a unit vector
         sphere = _sphere(hypothesis)
         if sphere and not fixed & set(sphere):
             coordinates.append(FreeChoice(sphere, _simple_sphere(len(sphere)), _random_sphere(len(sphere))))
@@ -336,19 +307,14 @@ def _sphere(poly: PolyElement) -> tuple[int, ...] | None:
 
 
 def _simple_circle() -> tuple[tuple[Fraction, ...], ...]:
-    """Return the pairs (sine, cosine) that the search for a counterexample tries first for an angle.
-
-    They belong to 0, pi/2, pi and 3 pi/2, and to the two acute angles of the triangle with the sides 3, 4 and 5.
-    """
+    """Return the pairs (sine, cosine) that the search for a counterexample tries first for an angle."""
+    # the quarter turns, and the acute angles of the triangle with the sides 3, 4 and 5
     points = ("0 1", "1 0", "0 -1", "-1 0", "3/5 4/5", "4/5 3/5")
     return tuple(tuple(map(Fraction, point.split())) for point in points)
 
 
 def _simple_sphere(size: int) -> tuple[tuple[Fraction, ...], ...]:
-    """Return simple rational unit vectors with ``size`` components.
-
-    They lie on the axes, or their components other than zero are (3/5, 4/5), (1, 2, 2)/3 or (1, 1, 1, 1)/2.
-    """
+    """Return simple rational unit vectors with ``size`` components, such as (3/5, 4/5, 0) or (1/3, 2/3, 2/3)."""
     points = [tuple(Fraction(int(i == j)) for i in range(size)) for j in range(size)]
     for numbers in ("3/5 4/5", "1/3 2/3 2/3", "1/2 1/2 1/2 1/2"):
         seed = tuple(map(Fraction, numbers.split()))
@@ -392,17 +358,18 @@ def _random_number(leaf: Expr) -> Callable[[Random], tuple[Fraction, ...]]:
 
 
 def _solve(hypothesis: PolyElement, generator: int, values: dict[int, Fraction]) -> bool:
-    """Store the value of the variable ``generator`` that satisfies a hypothesis, given the others in ``values``.
+    """Store the value of the variable ``generator`` that satisfies a hypothesis linear in it.
 
-    The hypothesis is linear in this variable. Return False if another variable has no value yet, or if the variable
-    drops out.
+    Return False if there is no such value.
     """
     values[generator] = Fraction(0)
+    # another variable has no value yet
     if any(power and place not in values for mono in hypothesis for place, power in enumerate(mono)):
         return False
     constant = _value(hypothesis, values)
     values[generator] = Fraction(1)
     slope = _value(hypothesis, values) - constant
+    # the variable drops out
     if not slope:
         return False
     values[generator] = -constant / slope
@@ -425,9 +392,9 @@ def _ratio_value(ring: FormulaRing, ratio: Ratio, values: dict[int, Fraction]) -
 
 
 def _formula_value(ring: FormulaRing, node: Expr, values: dict[int, Fraction], known: dict[Expr, Fraction]) -> Fraction:
-    """Return the value of the formula ``node`` at the point ``values``, operation by operation.
+    """Return the value of the formula ``node`` at the point ``values``, or raise ``ZeroDivisionError``.
 
-    ``known`` stores values of subexpressions at this point. Raise ``ZeroDivisionError`` at a zero divisor.
+    ``known`` stores values of subexpressions at this point.
     """
     if node in ring.symbols:
         return values[ring.symbols[node]]
@@ -447,10 +414,7 @@ def _formula_value(ring: FormulaRing, node: Expr, values: dict[int, Fraction], k
 def _named(
     ring: FormulaRing, coordinates: list[FreeChoice], values: dict[int, Fraction], used: set[Expr]
 ) -> Iterator[tuple[Expr, Expr]]:
-    """Yield the point of a counterexample as pairs (symbol, value), for symbols and angles that are in ``used``.
-
-    Multiples of pi/2 are shown as angles, all other angles by pairs for their cosine and their sine.
-    """
+    """Yield the point of a counterexample as pairs (symbol, value), for symbols and angles that are in ``used``."""
     zero, one = Fraction(0), Fraction(1)
     quarter_turns = {(zero, one): 0, (one, zero): 1, (zero, -one): 2, (-one, zero): 3}
     for leaf, number in ring.symbols.items():
@@ -464,6 +428,7 @@ def _named(
         if (sine, cosine) in quarter_turns:
             yield coordinate.atom, quarter_turns[sine, cosine] * pi / 2 * coordinate.atom / base
         else:
+            # angles other than multiples of pi/2 are shown by their cosine and their sine
             yield cos(base), _rational(cosine)
             yield sin(base), _rational(sine)
 
@@ -473,11 +438,9 @@ def _rational(value: Fraction) -> Rational:
 
 
 def _angles_are_free(ring: FormulaRing) -> bool:
-    """Return whether the angles can take any values, independently of each other and of the symbols.
-
-    They can if each angle is proportional to a symbol or function of time that occurs in no other angle. Time
-    derivatives at one instant are independent of the value of the function.
-    """
+    """Return whether the angles can take any values, independently of each other and of the symbols."""
+    # each angle must be proportional to a symbol or function of time that occurs in no other angle; time derivatives at
+    # one instant are independent of the value of the function
     holders = [*ring.bases, *(leaf for leaf in ring.symbols if not leaf.is_Derivative)]
     for atom in ring.bases:
         factors = atom.args if atom.is_Mul else (atom,)

@@ -1,14 +1,7 @@
 """Decision whether two formulas are equal: the normal form of their difference, and a verdict with its evidence.
 
-Scope, with its theorem (``docs/exact_decisions.md``, sections 1 to 3). The formulas may be rational functions of
-parameters, rates, exponentials, components of unit vectors or quaternions, and sines and cosines of rational
-combinations of angles. Their normal form is zero if and only if the identity holds at all real points where both sides
-are defined: circles and spheres are rational, irreducible over the complex numbers, and their real points are dense.
-The same holds if an angle or an exponent also occurs outside its function (Ax-Schanuel). Whether a number made of roots
-and cosines of rational angles is zero is proven (:mod:`symrot.exact.angles.constants`). With square roots, inverse
-functions or other hypotheses, a zero normal form still proves the identity wherever all of them are real; a nonzero
-normal form proves nothing, and the verdict "false" needs a counterexample. An equation whose sides are nowhere real is
-never "true".
+Formulas in scope are rational functions of symbols, exponentials, unit vectors, and sines and cosines of angles. Their
+normal form is zero if and only if they are zero at all real points (``docs/exact_decisions.md``, sections 1 to 3).
 """
 
 from collections.abc import Sequence
@@ -45,10 +38,9 @@ __all__ = ["decide", "is_zero", "normal_form"]
 
 
 def normal_form(expression: Any, relations: Sequence[Any] = ()) -> Any:
-    """Return the normal form of a formula: exactly 0 if the formula is zero wherever it is defined.
+    """Return the normal form of a formula; it is 0 only if the formula is zero wherever it is defined.
 
-    The result is nonzero only if the formula is not identically zero, provided that it is in the scope that
-    :mod:`symrot.exact.decide` states.
+    The converse holds in this module's scope.
 
     Parameters
     ----------
@@ -87,12 +79,13 @@ def normal_form(expression: Any, relations: Sequence[Any] = ()) -> Any:
 
 
 def is_zero(expression: Any, relations: Sequence[Any] = ()) -> bool:
-    """Return whether a formula, or each entry of a matrix, is proven to be zero everywhere, since its normal form is 0.
+    """Return whether a formula, or each entry of a matrix, is proven to be zero wherever it is defined.
 
-    ``relations`` are hypotheses, as for :func:`normal_form`. Outside the scope of that function, False proves nothing.
+    ``relations`` are hypotheses, as for :func:`normal_form`.
     """
     entries, _ = flatten(expression)
     ring = FormulaRing(entries, [as_zero(relation) for relation in relations])
+    # outside the scope of normal_form, False proves nothing
     return all(vanishes(ring, ring.ratio(entry).numerator) for entry in entries)
 
 
@@ -126,13 +119,9 @@ def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Decision:
 
 @dataclass
 class _FormulaCase(Case):
-    """An equation between formulas under decision, with what the stages have proven about it.
+    """An equation between formulas under decision, with what the stages have proven about it."""
 
-    The formulas may be complex. The caller knows that some point satisfies the hypotheses. ``normal_forms`` maps the
-    index of an entry of the sides (0 for a scalar) to the normal form of left - right.
-    """
-
-    normal_forms: dict[int, Expr] = field(default_factory=dict)
+    normal_forms: dict[int, Expr] = field(default_factory=dict)  # index of an entry -> normal form of left - right
 
     def residual(self) -> Any:
         """The normal form of left - right, for the report; entries of a matrix that are proven equal are zero."""
@@ -145,15 +134,12 @@ class _FormulaCase(Case):
         return tuple(sorted(unique, key=written))
 
     def confirmed(self) -> Decision:
-        """Return "true", or "undecided" if no point is known where both sides are defined.
-
-        Without roots, logarithms and inverse functions the sides are defined on a dense set; otherwise a search for
-        such a point decides. The caller must know that the hypotheses can be satisfied. Formulas with the imaginary
-        unit ``i`` are complex and defined wherever no divisor is zero.
-        """
+        """Return "true", or "undecided" if no point is known where both sides are defined."""
+        # formulas with ``i`` are complex, and defined wherever no divisor is zero
         needs = [need for need in needs_of(self.sides) if not need.formula.has(I)]
         if not any(side.has(I) for side in self.sides):
             needs += [Need(formula, ">= 0") for formula in split_radicands(self.ring)]
+        # the caller knows that the hypotheses can be satisfied; without roots the domain is dense
         if not needs or (is_dense(self.ring) and all(need.sign == "!= 0" for need in needs)):
             return Decision("true", self.conditions)
         nowhere = next((need for need in needs_of(self.sides) if fails_everywhere(need)), None)
@@ -184,15 +170,14 @@ def witness(case: _FormulaCase) -> None:
 
 
 def leave_open(case: _FormulaCase) -> Decision:
-    """Return the verdict "undecided", with the terms that prevent a decision, such as nested roots.
-
-    This is the last stage. An equation reaches it if no other stage could prove or refute it.
-    """
+    """Return the verdict "undecided", with the terms that prevent a decision, such as nested roots."""
     ring = case.ring
     stopped_by = (*ring.outside_scope, *(root.expression for root in ring.roots), *ring.hypotheses)
     return Decision("undecided", case.conditions, stopped_by=stopped_by)
 
 
+# With roots, inverse functions or other hypotheses, a zero normal form still proves the identity wherever all formulas
+# are real, but a nonzero normal form proves nothing.
 STAGES = (subtract, normalise, prove, witness, refute, arguments, congruence, leave_open)
 
 

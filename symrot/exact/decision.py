@@ -1,9 +1,7 @@
 """The decision engine: an equation passes through named stages until one of them decides it.
 
 A stage is a function of a case (an equation with the evidence so far). It returns a decision, or None to pass the case
-to the next stage, and it stores its proofs or its counterexample in the case for later stages.
-:mod:`symrot.exact.decide` lists the stages for plain formulas, :mod:`symrot.checker.decide.decision` the longer list
-for claims.
+on, and stores its proofs or its counterexample in the case for later stages.
 """
 
 from abc import ABC, abstractmethod
@@ -115,25 +113,16 @@ class Case(ABC):
 
     @abstractmethod
     def conditions_of(self, rings: Sequence[FormulaRing]) -> tuple[Any, ...]:
-        """Return the conditions of a verdict, relations under which the proof of an equation is valid.
-
-        They say where both sides are defined, and that no divisor in ``rings`` is zero. ``rings`` are the polynomial
-        rings, other than that of the case, that the proof uses.
-        """
+        """Return the conditions, such as ``x != 0``, under which a proof in the polynomial rings ``rings`` is valid."""
 
     @abstractmethod
     def confirmed(self) -> Decision:
-        """Return the verdict "true" if a point is known where both sides are defined, else "undecided".
-
-        It is called once all entries of the sides are proven equal. Without such a point the sides may be defined
-        nowhere, and the equation would be true of nothing.
-        """
+        """Return "true" if a point is known where both sides are defined, else "undecided"."""
+        # called once all entries are proven equal: without such a point the equation may be true of nothing
 
     def rely_on(self, rings: tuple[FormulaRing, ...]) -> None:
-        """Add the polynomial rings that a proof uses to the evidence of the case.
-
-        The divisors in these rings, which must not be zero, become conditions.
-        """
+        """Add the polynomial rings that a proof uses to the evidence of the case."""
+        # no divisor in these rings may be zero, so the divisors become conditions
         self.rings, self.conditions = rings, self.conditions_of(rings)
 
     @cached_property
@@ -142,15 +131,15 @@ class Case(ABC):
         return (*self.lefts, *self.rights)
 
     def search(self, *searches: Search, places: Sequence[int] | None = None) -> Counterexample | None:
-        """Return the first counterexample that one of ``searches`` returns for one of the entries ``places``, or None.
+        """Return the first counterexample by one of ``searches`` for the entries with the indices ``places``, or None.
 
-        ``places`` are indices of entries; without it the unproven entries are searched. A search is a function such as
-        :func:`symrot.exact.counterexample.rational_witness`. A point that provably violates a hypothesis is skipped.
+        Without ``places`` the unproven entries are searched.
         """
         for search in searches:
             for place in self.unproven[:MOST_SEARCHED] if places is None else places:
                 entry = place_in_matrix(place, self.shape)
                 witness = search(self.ring, self.lefts[place], self.rights[place], entry)
+                # a point that provably violates a hypothesis refutes nothing
                 if witness is not None and not self._breaks_hypothesis(witness):
                     return witness
         return None
@@ -180,10 +169,7 @@ def first_decision(case: C, stages: Sequence[Callable[[C], Decision | None]]) ->
 
 
 def subtract(case: Case) -> None:
-    """Compute left - right for each entry of an equation and try to prove that it is zero.
-
-    The results are stored in ``case``. This stage decides nothing yet, so it returns None.
-    """
+    """Compute left - right for each entry of an equation, try to prove that it is zero, and store the results."""
     ring = case.ring
     case.residuals = [ring.difference(a, b) for a, b in zip(case.lefts, case.rights, strict=True)]
     proofs = [proof(ring, residual.numerator) for residual in case.residuals]
@@ -192,10 +178,7 @@ def subtract(case: Case) -> None:
 
 
 def prove(case: Case) -> Decision | None:
-    """Return a decision if all entries of the two sides are proven equal; None if some are not.
-
-    The decision is "true", or "undecided" if no point is known where both sides are defined (:meth:`Case.confirmed`).
-    """
+    """Return a decision if all entries of the two sides are proven equal, else None."""
     if case.unproven:
         return None
     case.rely_on(case.proof_rings)
@@ -210,14 +193,10 @@ def refute(case: Case) -> Decision | None:
 
 
 def arguments(case: Case) -> Decision | None:
-    """Return a decision if all entries of the two sides are equal once the arguments of functions are simplified.
-
-    Otherwise return None. The entries that earlier stages have proven equal are not tried again. The decision is
-    "true", or "undecided" if no point is known where both sides are defined (:meth:`Case.confirmed`). See
-    :mod:`symrot.exact.plain_arguments`.
-    """
+    """Return a decision if all entries become equal once the arguments of functions are in normal form, else None."""
     ring = case.ring
     try:
+        # entries that earlier stages have proven equal are not tried again
         proofs = [
             proof_by_arguments(case.lefts[n], case.rights[n], ring.hypotheses, ring.domain) for n in case.unproven
         ]
@@ -231,14 +210,12 @@ def arguments(case: Case) -> Decision | None:
 
 
 def congruence(case: Case) -> Decision | None:
-    """Return a decision if all entries become equal after inverse functions are replaced by equal expressions.
+    """Return a decision if all entries become equal by replacing inverse functions, else None.
 
-    In ``f(asin(x)) = f(pi/2 - acos(x))``, acos(x) is replaced by pi/2 - asin(x), which is proven to be equal. Otherwise
-    return None. Entries that earlier stages have proven equal are not tried again. The decision is "true", or
-    "undecided" if no point is known where both sides are defined (:meth:`Case.confirmed`). See
-    :mod:`symrot.exact.congruence_closure`.
+    For example, acos(x) is replaced by pi/2 - asin(x).
     """
     ring = case.ring
+    # entries that earlier stages have proven equal are not tried again
     proofs = [proof_by_congruence(case.lefts[n], case.rights[n], ring.hypotheses, ring.domain) for n in case.unproven]
     if None in proofs:
         return None
@@ -259,9 +236,7 @@ class ShapeMismatch(InputError):
 
 
 def matched_sides(left: Any, right: Any) -> tuple[list[Expr], list[Expr], Shape]:
-    """Return the entries of both sides of an equation and their common shape.
-
-    0 becomes a zero matrix of any shape, and a 1 x 1 matrix is equal to its entry.
+    """Return (entries of the left side, entries of the right side, common shape) of an equation.
 
     Raises
     ------
@@ -271,10 +246,12 @@ def matched_sides(left: Any, right: Any) -> tuple[list[Expr], list[Expr], Shape]
         If a side is neither a scalar formula nor a matrix of them.
     """
     (lefts, shape), (rights, other) = flatten(left), flatten(right)
+    # 0 becomes a zero matrix of any shape
     if other is None and rights == [0]:
         rights, other = [Integer(0)] * len(lefts), shape
     if shape is None and lefts == [0]:
         lefts, shape = [Integer(0)] * len(rights), other
+    # a 1 x 1 matrix is equal to its entry
     if {shape, other} == {None, (1, 1)}:
         return lefts, rights, None
     if shape != other:
@@ -301,10 +278,11 @@ def flatten(expression: Any) -> tuple[list[Expr], Shape]:
 
 
 def place_in_matrix(number: int, shape: Shape) -> tuple[int, int] | None:
-    """Return (row, column), counted from 1, of entry ``number``, counted row by row from 0.
+    """Return (row, column) of an entry by its ``number`` in reading order; None for a scalar.
 
-    In a 3 x 3 matrix, entry 3 is at (2, 1). Return None if ``shape`` is that of a scalar.
+    Entry 3 of a 3 x 3 matrix is at (2, 1).
     """
+    # rows and columns are counted from 1, entries from 0
     return None if shape is None else (number // shape[1] + 1, number % shape[1] + 1)
 
 

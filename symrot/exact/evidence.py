@@ -64,16 +64,16 @@ class Counterexample:
 
 @dataclass(frozen=True)
 class Requirement:
-    """A condition that makes a claim true: ``zeros`` are zero and ``signs`` nonnegative, with a short code and a text.
+    """A condition that makes a claim true: ``zeros`` are zero and ``signs`` are nonnegative.
 
-    Those of ``signs`` that are also in ``strict`` must be positive. The code names the kind of condition.
+    ``text`` states the condition, ``code`` names its kind.
     """
 
     code: str
     text: str
     zeros: tuple[Expr, ...] = ()
     signs: tuple[Expr, ...] = ()
-    strict: tuple[Expr, ...] = ()
+    strict: tuple[Expr, ...] = ()  # those of signs that must be positive
 
     @property
     def conditions(self) -> list[tuple[Expr, str]]:

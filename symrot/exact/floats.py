@@ -84,11 +84,11 @@ def _computed(node: Expr, values: Mapping[Expr, float], known: dict[Expr, float]
 
 
 def seems_zero(formula: Expr, domain: Sequence[Expr] = ()) -> bool:
-    """Return whether a formula may be zero everywhere: it is nearly zero at random points, in double precision.
+    """Return whether a formula is nearly zero at random points, in double precision.
 
-    Only points count at which the formulas of ``domain`` are nonnegative. The test skips proofs that cannot succeed. A
-    wrong False can only lose a proof; a wrong True only costs time.
+    Only points count at which the formulas of ``domain`` are nonnegative.
     """
+    # this skips proofs that cannot succeed: a wrong False loses a proof, a wrong True only costs time
     source, differences = Random(11), 0
     leaves = sorted(formula.free_symbols.union(*(each.free_symbols for each in domain)), key=str)
     for look in range(LOOKS):

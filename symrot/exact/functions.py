@@ -32,9 +32,7 @@ TRIGONOMETRIC = {
 
 
 def is_function_of_time(node: Expr) -> bool:
-    """Return whether a node of an expression is a function of time, its derivative, or a matrix entry.
-
-    Such a node is a free real number, as a symbol is. Other nodes are functions that exact decisions do not know.
+    """Return whether an expression is a function of time, its derivative, or a matrix entry.
 
     Raises
     ------
@@ -47,6 +45,7 @@ def is_function_of_time(node: Expr) -> bool:
         raise InputError(f"expected a claim made of finite numbers and scalar formulas, got {node}")
     if any(part.is_Float for part in preorder_traversal(node)):
         raise InputError(f"expected exact numbers, such as Rational(1, 2), in a decision; got a float in {node}")
+    # such a node is a free real number, like a symbol
     if isinstance(node, Derivative):
         return isinstance(node.expr, AppliedUndef)
     return isinstance(node, (AppliedUndef, MatrixElement))

@@ -1,9 +1,7 @@
 """Intervals of 50 digits that contain closed-form real numbers, or the value of a formula at a real point.
 
-The arithmetic is mpmath's. Rational numbers stay exact fractions, so that zero is distinguished from a small number. A
-value is returned only if the formula is proven to be a real number: radicands of even and odd roots are not negative,
-arguments of logarithms are positive, denominators are not zero. The work is bounded: a number beyond 2^1000 gets no
-interval.
+A value is returned only if the formula is proven to be a real number. Rational numbers stay exact fractions, so that
+zero is distinguished from a small number. A number beyond 2^1000 gets no interval.
 """
 
 from collections.abc import Mapping

@@ -1,10 +1,7 @@
 """Proofs that sums of inverse trigonometric functions, or of logarithms, are zero.
 
-The proof takes the sine and cosine, or the exponential, of the sum, and bounds the range of the sum.
-
-A rational combination D of ``asin``, ``acos``, ``atan``, ``atan2`` and ``pi`` is zero if ``sin D = 0``, ``cos D = 1``
-and D lies strictly between -2 pi and 2 pi. If D only lies between -4 pi and 4 pi, ``sin(D/2) = 0`` and ``cos(D/2) = 1``
-show that it is zero. A real D with logarithms is zero if and only if ``exp D = 1``.
+A rational combination D of inverse functions and pi, strictly between -2 pi and 2 pi, is zero if ``sin D = 0`` and
+``cos D = 1``. A real D with logarithms is zero if and only if ``exp D = 1``.
 """
 
 from collections.abc import Iterator, Sequence
@@ -34,12 +31,10 @@ _NAMES = (*INVERSE, log)
 
 @dataclass(frozen=True)
 class Lift:
-    """A sufficient condition for a polynomial to be zero: polynomials of another ``ring`` (``numerators``) are zero.
-
-    A lift of ``asin(x) + acos(x) - pi/2`` says that its sine is 0 and its cosine 1; asin and acos do not occur in it.
-    """
+    """A condition that makes a polynomial zero: the polynomials ``numerators`` of another ``ring`` are zero."""
 
     ring: FormulaRing
+    # for asin(x) + acos(x) - pi/2: its sine, and its cosine minus 1, in which asin and acos do not occur
     numerators: tuple[PolyElement, ...]
 
 
@@ -49,17 +44,14 @@ def vanishes(ring: FormulaRing, numerator: PolyElement) -> bool:
 
 
 def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] | None:
-    """Prove that the polynomial ``numerator`` of the ring, such as the numerator of left - right, is zero.
-
-    Return None if no proof was found. The proof may show that a factor such as ``D = asin(x) + acos(x) - pi/2`` is
-    zero, by computing sin D and cos D in another polynomial ring. The result has these further rings; it is () if the
-    relations of ``ring`` suffice. The proof holds where no divisor in these rings is zero.
-    """
+    """Return the rings, besides ``ring``, by which the polynomial ``numerator`` is proven to be zero, or None."""
     numerator = ring.reduce(numerator)
     if not numerator:
         return ()
     if vanishes_for_all_signs(ring, numerator):
         return ()
+    # a factor such as asin(x) + acos(x) - pi/2 is zero by its sine and cosine, in another ring; the proof holds where
+    # no divisor of that ring is zero
     for lift in lifts(ring, numerator, only_zero=not ring.hypotheses):
         further = [proof(lift.ring, poly) for poly in lift.numerators]
         if None not in further:
@@ -68,18 +60,14 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
 
 
 def lifts(ring: FormulaRing, numerator: PolyElement, only_zero: bool = False) -> Iterator[Lift]:
-    """Yield conditions, each of which is sufficient for the polynomial ``numerator`` to be zero.
-
-    ``numerator`` is zero if one of its factors is. Only factors with inverse functions or logarithms give conditions:
-    ``asin(x) + acos(x) - pi/2`` is zero if its sine is 0 and its cosine 1; a factor with logarithms, if its exponential
-    is 1. Each :class:`Lift` has the polynomials, in another ring, that must be zero for that. With ``only_zero``,
-    factors that are clearly nonzero in double precision give none, since their conditions cannot hold.
-    """
+    """Yield conditions, each of which is sufficient for the polynomial ``numerator`` to be zero."""
     places = {number for leaf, number in ring.symbols.items() if isinstance(leaf, _NAMES)}
     if not places or len(numerator) > MOST_TERMS or not any(mono[n] for mono in numerator for n in places):
         return
+    # the polynomial is zero if one of its factors is
     for factor, _ in numerator.factor_list()[1]:
         used = {number for number in places if any(mono[number] for mono in factor)}
+        # with only_zero, factors that are clearly not zero in double precision give no condition
         if used and (not only_zero or seems_zero(factor.as_expr(*ring.generators), ring.domain)):
             with suppress(InputError):  # a condition that cannot be read proves nothing
                 yield from _lifts_of(ring, factor, used)
@@ -95,6 +83,7 @@ def _lifts_of(ring: FormulaRing, factor: PolyElement, used: set[int]) -> Iterato
     elif not any(isinstance(names[n], log) for n in used):
         terms = _combination(ring, factor, names)
         if terms is not None:
+            # with D between -4 pi and 4 pi, the sine and cosine of D/2 decide
             for part, period in ((Integer(1), 2), (Rational(1, 2), 4)):
                 if _keeps_within(terms, period):
                     yield _lifted(ring, [(sin(part * difference), Integer(0)), (cos(part * difference), Integer(1))])
@@ -102,24 +91,15 @@ def _lifts_of(ring: FormulaRing, factor: PolyElement, used: set[int]) -> Iterato
 
 @dataclass(frozen=True)
 class PrincipalValueProof:
-    """A proof that an expression is zero wherever the formulas ``nonnegative`` are >= 0 and ``positive`` are > 0.
+    """A proof that an expression is zero wherever the formulas ``nonnegative`` are >= 0 and ``positive`` are > 0."""
 
-    For ``asin(sin(x)) - x``, ``nonnegative`` has pi/2 - x and pi/2 + x: the expression is zero where x is between -pi/2
-    and pi/2. ``rings`` are the polynomial rings that the proof uses; no divisor in them may be zero.
-    """
-
-    nonnegative: tuple[Expr, ...]
+    nonnegative: tuple[Expr, ...]  # pi/2 - x and pi/2 + x for asin(sin(x)) - x
     positive: tuple[Expr, ...]
-    rings: tuple[FormulaRing, ...]
+    rings: tuple[FormulaRing, ...]  # no divisor in these rings may be zero
 
 
 def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof | None:
-    """Return a proof that ``numerator`` is zero where an angle is a principal value, as asin(sin(x)) - x is; or None.
-
-    The polynomial must have a factor ``asin(S) - w``, and S must be provable to be sin(w). Such a factor is zero
-    exactly where w is a principal value: in [-pi/2, pi/2] for asin. Factors with acos (w in [0, pi]), with atan (w
-    between -pi/2 and pi/2) and ``atan2(r sin w, r cos w) - w`` (w in (-pi, pi], positive r) are proven likewise.
-    """
+    """Return a proof that ``numerator``, as asin(sin(x)) - x, is zero where an angle is a principal value, or None."""
     names = {number: leaf for leaf, number in ring.symbols.items() if type(leaf) in (*_PRINCIPAL, atan2)}
     if not names or len(numerator) > MOST_TERMS:
         return None
@@ -133,6 +113,7 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
         slope = factor.diff(ring.ring.gens[place])
         if not slope.is_ground:
             continue
+        # the factor is a multiple of asin(S) - w; it is zero where S = sin(w) and w is a value of asin
         leaf, number = names[place], slope.as_expr(*ring.generators)
         angle = (leaf - factor.as_expr(*ring.generators) / number).expand()
         if isinstance(leaf, atan2):
@@ -149,12 +130,7 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
 
 
 def _principal_multiple(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> PrincipalValueProof | None:
-    """Return a proof of where a combination of two inverse functions is zero, as ``asin(3*x - 4*x^3) - 3*asin(x)`` is.
-
-    ``factor`` is the combination, a polynomial of ``ring`` in the variables ``names``. In the example, S = 3*x - 4*x^3
-    is proven to be the sine of w = 3*asin(x). So the difference is zero exactly where w lies in [-pi/2, pi/2], and
-    these bounds of w are bounds of x, which the proof lists. Return None for other combinations.
-    """
+    """Return a proof of where a sum like ``asin(3*x - 4*x^3) - 3*asin(x)`` (two inverse functions) is zero, or None."""
     terms = _combination(ring, factor, {**dict(enumerate(ring.generators)), **names})
     leaves = [(leaf, multiple) for leaf, multiple in terms or () if leaf is not pi]
     if len(leaves) != 2 or any(type(leaf) not in _PRINCIPAL for leaf, _ in leaves):
@@ -168,6 +144,7 @@ def _principal_multiple(ring: FormulaRing, factor: PolyElement, names: dict[int,
             other = FormulaRing([function(angle), leaf.args[0]], ring.hypotheses, ring.domain)
             further = proof(other, other.difference(function(angle), leaf.args[0]).numerator)
             if further is not None:
+                # the angle w = 3*asin(x) must lie in [-pi/2, pi/2]; bounds of w are bounds of x
                 bounds = sorted([(least - shift) / factor_of_inner, (most - shift) / factor_of_inner])
                 ends = _ends_of_argument(inner, *bounds)
                 inside, edge = (ends, ()) if isinstance(leaf, atan) else ((), ends)
@@ -176,15 +153,13 @@ def _principal_multiple(ring: FormulaRing, factor: PolyElement, names: dict[int,
 
 
 def _ends_of_argument(inner: Expr, low: Expr, high: Expr) -> tuple[Expr, ...]:
-    """Return formulas that are nonnegative where the value of ``inner``, an asin, acos or atan, lies in [low, high].
-
-    They are bounds of its argument, one for each end that is not an end of the function's range anyway: for asin(x) in
-    [-pi/6, pi/6], they are x + 1/2 and 1/2 - x.
-    """
+    """Return formulas that are nonnegative where the asin, acos or atan ``inner`` lies in [low, high]."""
     function, least, most = _PRINCIPAL[type(inner)]
     sign = -1 if isinstance(inner, acos) else 1  # acos decreases
     ends = []
+    # an end of the function's own range bounds nothing
     if low > least:
+        # asin(x) in [-pi/6, pi/6] gives x + 1/2 and 1/2 - x
         ends.append(sign * (inner.args[0] - function(low)))
     if high < most:
         ends.append(sign * (function(high) - inner.args[0]))
@@ -192,16 +167,13 @@ def _ends_of_argument(inner: Expr, low: Expr, high: Expr) -> tuple[Expr, ...]:
 
 
 def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return a proof that ``atan2(y, x) = w`` wherever r = x cos w + y sin w is positive; None if there is none.
-
-    ``leaf`` is the call of atan2 and ``angle`` is w. The proof requires ``y cos w = x sin w``; then y = r sin w and x =
-    r cos w.
-    """
+    """Return a proof that ``atan2(y, x)``, the ``leaf``, is the ``angle`` w wherever x cos w + y sin w > 0, or None."""
     y, x = leaf.args
     left, right = y * cos(angle), x * sin(angle)
     with suppress(InputError):  # an angle that cannot be read proves nothing
         radius = (x * cos(angle) + y * sin(angle)).expand()
         other = FormulaRing([left, right, radius], ring.hypotheses, ring.domain)
+        # if y cos w = x sin w, then y = r sin w and x = r cos w
         further = proof(other, other.difference(left, right).numerator)
         ratio = other.difference(radius, Integer(0))
         if further is not None:
@@ -213,13 +185,10 @@ def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> Principa
 
 
 def _principal_direction_of_root(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return a proof that ``atan2(y, x) = w`` under conditions, if y or x is a root or an absolute value; else None.
-
-    For ``y = sqrt(P)``, if ``P = r^2 sin(w)^2`` is proven for r = x/cos(w), the value is w for w in [0, pi] and
-    positive r. For ``x = sqrt(P)``, if ``P = r^2 cos(w)^2`` is proven for r = y/sin(w), the value is w for w in
-    [-pi/2, pi/2] and positive r.
-    """
+    """Return a proof that ``atan2(y, x) = w`` under conditions, if y or x is a root or an absolute value; else None."""
     y, x = leaf.args
+    # y = sqrt(P): if P = r^2 sin(w)^2 for r = x/cos(w), the value is w for w in [0, pi] and positive r; for x = sqrt(P)
+    # likewise, with r = y/sin(w) and w in [-pi/2, pi/2]
     for root, other_part, own, other_function, ends in (
         (y, x, sin, cos, (angle, pi - angle)),
         (x, y, cos, sin, (angle + pi / 2, pi / 2 - angle)),
@@ -255,10 +224,9 @@ def _lifted(ring: FormulaRing, equations: Sequence[tuple[Expr, Expr]]) -> Lift:
 
 
 def _combination(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> list[tuple[Expr, Fraction]] | None:
-    """Return a polynomial as a sum of multiples of inverse functions and pi: pairs (function or pi, rational factor).
+    """Return a polynomial as pairs (inverse function or pi, factor), or None.
 
-    ``2*asin(x) - pi`` gives (asin(x), 2) and (pi, -1). Return None for any other polynomial. ``names`` maps the indices
-    of variables to functions.
+    ``2*asin(x) - pi`` gives (asin(x), 2) and (pi, -1).
     """
     terms = []
     for mono, coefficient in factor.items():
@@ -271,10 +239,9 @@ def _combination(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr])
 
 
 def _keeps_within(terms: Sequence[tuple[Expr, Fraction]], period: int) -> bool:
-    """Return whether a sum of multiples of inverse functions lies strictly between -p pi and p pi, p = ``period``.
+    """Return whether a sum of multiples of inverse functions provably lies strictly between -p pi and p pi.
 
-    ``terms`` holds pairs (inverse function or pi, factor). The proof uses the ranges of the functions; False means that
-    they do not suffice.
+    p is ``period``.
     """
     low, high = Fraction(0), Fraction(0)
     low_taken = high_taken = True

@@ -1,8 +1,8 @@
 """Simplified arguments of functions: ``sin(sin(x)^2 + cos(x)^2) = sin(1)``.
 
-The polynomial ring has one variable for each call, as written, of a function that it does not know. Two calls with
-equal arguments, such as ``f(sin(x)^2 + cos(x)^2)`` and ``f(1)``, have equal values but different variables; so
-arguments are replaced by their normal forms first.
+A polynomial ring has a variable for each call of an unknown function as it is written, also if two calls are equal. So
+arguments are replaced by normal forms first. ``hypotheses`` are expressions that are zero, ``domain`` formulas that are
+nonnegative.
 """
 
 from collections.abc import Sequence
@@ -31,9 +31,7 @@ def with_plain_arguments(
 ) -> tuple[list[Expr], tuple[FormulaRing, ...]]:
     """Return (formulas, rings): the formulas with all arguments of functions in normal form.
 
-    ``f(sin(x)^2 + cos(x)^2)`` becomes ``f(1)``. The results equal the formulas passed in wherever no divisor of the
-    rings, in which the normal forms were computed, is zero. There are no rings if no argument contains a function, a
-    root or a divisor. ``hypotheses`` are expressions that are zero, ``domain`` formulas that are nonnegative.
+    ``f(sin(x)^2 + cos(x)^2)`` becomes ``f(1)``.
     """
     formulas, rings = list(formulas), []
     for level in range(MOST_LEVELS):
@@ -46,16 +44,12 @@ def with_plain_arguments(
         values = {node: node.func(*(shorter[argument] for argument in node.args)) for node in nodes}
         formulas = [formula.xreplace(values) for formula in formulas]
         rings += [ring, *further]
+    # equal to the formulas passed in wherever no divisor of the rings is zero
     return formulas, tuple(rings)
 
 
 def _common_forms(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Expr, Expr], tuple[FormulaRing, ...]]:
-    """Return (forms, rings): a map from each argument to its form, the same form for arguments that are proven equal.
-
-    ``arguments`` are those of all functions in some formulas, as x + x and 2*y from ``sin(x + x) + f(2*y)``. The form
-    of x + x is 2*x, as ``ring`` writes it; an argument equal to an earlier one gets the form of that one. ``rings`` are
-    the polynomial rings, besides ``ring``, that the proofs of equality used.
-    """
+    """Return (forms, rings): the normal form of each argument, the same for arguments that are proven equal."""
     shorter: dict[Expr, Expr] = {}
     rings: list[FormulaRing] = []
     for argument in arguments:
@@ -64,6 +58,7 @@ def _common_forms(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Ex
             further = proof(ring, ring.difference(argument, other).numerator)
             if further is not None:
                 shorter[argument] = shorter[other]
+                # the rings, besides ring, that the proofs of equality use
                 rings += further
                 break
     return shorter, tuple(rings)
@@ -72,12 +67,12 @@ def _common_forms(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Ex
 def proof_by_arguments(
     left: Expr, right: Expr, hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> tuple[FormulaRing, ...] | None:
-    """Prove ``left = right`` after all arguments of functions are replaced by their normal forms.
+    """Prove ``left = right`` with all arguments of functions in normal form.
 
-    Return the polynomial rings that the proof uses, or None if no proof was found or no argument changes.
-    ``hypotheses`` and ``domain`` are those of :func:`with_plain_arguments`.
+    Return the polynomial rings that the proof uses, or None without a proof.
     """
     (shorter, other), rings = with_plain_arguments([left, right], hypotheses, domain)
+    # no argument changes: the proof was tried before
     if (shorter, other) == (left, right):
         return None
     ring = FormulaRing([shorter, other], hypotheses, domain)

@@ -1,8 +1,7 @@
 """Chains of equal expressions from the left side of an equation to the right side, as a proof that people can follow.
 
-Each side is rewritten to its normal form: angles become sums of base angles, products are expanded, relations are
-substituted, and common factors are cancelled. Both sides have the same normal form. So the chain is the rewriting of
-the left side followed by the reversed rewriting of the right side; each expression equals the next.
+Each side is rewritten to its normal form, which is the same for both. The chain is the rewriting of the left side,
+followed by the reversed rewriting of the right side.
 """
 
 from collections.abc import Iterator, Sequence
@@ -24,26 +23,20 @@ __all__ = ["Chain", "Link", "chains"]
 
 @dataclass(frozen=True)
 class Link:
-    """One expression of a chain and the ``reason`` why it equals the expression before it.
-
-    ``rule`` is (left, right) of the relation that was substituted, if any. ``cofactors`` holds pairs (polynomial,
-    expression that is zero by the hypotheses); the product of each pair was subtracted.
-    """
+    """One expression of a chain, with the ``reason`` why it equals the expression before it."""
 
     expression: Expr
     reason: str
-    rule: tuple[Expr, Expr] | None = None
+    rule: tuple[Expr, Expr] | None = None  # (left, right) of the relation that was substituted
+    # pairs (polynomial, expression that is zero by the hypotheses) whose products were subtracted
     cofactors: tuple[tuple[Expr, Expr], ...] = ()
 
 
 @dataclass(frozen=True)
 class Chain:
-    """The chain of equal expressions from left to right for a scalar, or for one ``entry`` of a matrix.
+    """The chain of equal expressions from left to right, for a scalar or for one ``entry`` of a matrix."""
 
-    The entry is (row, column), counted from 1; None for a scalar.
-    """
-
-    entry: tuple[int, int] | None
+    entry: tuple[int, int] | None  # (row, column), counted from 1; None for a scalar
     links: tuple[Link, ...]
 
 
@@ -86,14 +79,10 @@ def _chain(left: Expr, right: Expr, hypotheses: list[Expr]) -> tuple[Link, ...]:
 
 
 def _reversed(start: Expr, way: list[Link]) -> Iterator[Link]:
-    """Yield the steps of a chain of equal expressions in reverse, from its end back to ``start``.
-
-    ``way`` has a Link (expression, reason) for each expression after ``start``: for a = b = c, (b, reason 1) and (c,
-    reason 2). The reverse chain c = b = a has the links (b, reason 2) and (a, reason 1), so each reason stays between
-    the same two expressions.
-    """
+    """Yield the links of the chain from ``start`` through ``way`` in reverse: for a = b = c those of c = b = a."""
     places = [start, *(link.expression for link in way)]
     for number in range(len(way) - 1, -1, -1):
+        # each reason stays between the same two expressions
         yield Link(places[number], way[number].reason, way[number].rule, way[number].cofactors)
 
 

@@ -1,7 +1,7 @@
 """Proofs by cases of signs: ``|k| |m| = k m`` where the root ``sqrt(k m)`` is real.
 
-Wherever a formula with absolute values ``|f|`` has a value, each is ``f`` or ``-f``. A radicand that is a product of
-such f excludes half of the choices of signs. A numerator that is zero for all choices that remain is zero everywhere.
+Each absolute value ``|f|`` is ``f`` or ``-f``. A radicand that is a product of such f excludes half of the choices of
+signs. A numerator that is zero for all choices that remain is zero everywhere.
 """
 
 from collections.abc import Iterator, Sequence
@@ -27,18 +27,9 @@ Constraint = tuple[int, frozenset[int]]
 
 
 def vanishes_for_all_signs(ring: FormulaRing, numerator: PolyElement) -> bool:
-    """Return whether a numerator is zero for all signs that the expressions inside absolute values can have.
-
-    ``numerator`` is a polynomial of the ring in normal form. An example is ``|k| |m| - k m`` in formulas that also
-    contain ``sqrt(k m)``: there k and m have equal signs (this is a constraint), and it is zero for both positive and
-    both negative.
-
-    Notes
-    -----
-    The method tries all signs that satisfy the constraints of :func:`_constraints`. This is sound because at every
-    point there are signs s with ``|f| = s f`` that satisfy them: the sign of f where f is not zero, and where f is zero
-    the sign that makes the constraint true.
-    """
+    """Return whether a numerator is zero for all signs that the expressions inside absolute values can have."""
+    # Sound, because at every point some signs s with |f| = s f satisfy the constraints: the sign of f where f is not
+    # zero, and where f is zero the sign that makes the constraint true.
     insides = _insides(ring, numerator)
     if not 1 <= len(insides) <= MOST_SIGNS:
         return False
@@ -67,11 +58,9 @@ def _insides(ring: FormulaRing, numerator: PolyElement) -> dict[int, PolyElement
 
 
 def _constraints(ring: FormulaRing, insides: dict[int, PolyElement]) -> Iterator[Constraint]:
-    r"""Yield constraints (sign, variables) on the signs of the expressions f inside absolute values.
+    """Yield constraints (sign, variables): the product of the signs of these variables is ``sign``.
 
-    ``insides`` maps the variable of each ``|f|`` to f. The product of the signs of the f of the ``variables`` is
-    ``sign``. The constraints follow because no radicand of a square root is negative: sqrt(k m) gives (1, {variable of
-    \|k\|, variable of \|m\|}).
+    ``insides`` maps the variable of each ``|f|`` to f.
     """
     radicands = [
         ring._polynomial(root) for root in ring.roots if root.index == 2 and not isinstance(root.expression, Abs)
@@ -80,6 +69,7 @@ def _constraints(ring: FormulaRing, insides: dict[int, PolyElement]) -> Iterator
         ratio = ring.ratio(formula)
         divisors = [ring.ratios.factors[number] for number, power in ratio.factors if power % 2]
         radicands.append(prod(divisors, start=ring.reduce(ratio.numerator)))
+    # no radicand is negative: sqrt(k m) gives (1, {variable of |k|, variable of |m|})
     for poly in radicands:
         if poly.is_ground or len(poly) > MOST_TERMS:
             continue
@@ -98,18 +88,14 @@ def _constraints(ring: FormulaRing, insides: dict[int, PolyElement]) -> Iterator
 def _consistent(
     ring: FormulaRing, insides: dict[int, PolyElement], constraints: Sequence[Constraint]
 ) -> list[Constraint]:
-    """Return those ``constraints``, in order, that one choice of signs can satisfy together at every point.
-
-    ``insides`` maps the variable of each ``|f|`` to f. A constraint (sign, variables) demands that the product of the
-    signs of the f of these variables is ``sign``. Where f = 0 its sign is free and can be chosen to satisfy one
-    constraint, but perhaps not two. So a constraint is left out if it shares a variable with an earlier one, unless the
-    f of this variable is nowhere zero. An f that is a divisor of a formula counts as nowhere zero, since the formula is
-    only defined there.
-    """
+    """Return those ``constraints``, in order, that one choice of signs can satisfy together at every point."""
+    # formulas are defined only where a divisor is not zero
     divisors = {factor for poly in ring.ratios.factors for factor, _ in poly.factor_list()[1]}
     nonzero = {place for place, inside in insides.items() if inside in divisors or -inside in divisors}
     accepted: dict[frozenset[int], Constraint] = {}
     for sign, places in constraints:
+        # where f = 0 its sign is free and can satisfy one constraint, but perhaps not two: constraints may share only
+        # an f that is nowhere zero
         if all(places & others <= nonzero for others in accepted):
             accepted.setdefault(places, (sign, places))
     return list(accepted.values())

@@ -8,10 +8,7 @@ __all__ = ["pieces"]
 
 
 def pieces(entries: Iterable[Expr]) -> int:
-    """Return the number of subexpressions in formulas as they are written, a measure of the work that they take.
-
-    A repeated subexpression counts every time, but is visited only once.
-    """
+    """Return the number of subexpressions in formulas as they are written; repeated ones count every time."""
     known: dict[Expr, int] = {}
 
     def count(node: Expr) -> int:

@@ -1,8 +1,7 @@
 """Tests that a closed surface is the boundary of a body: winding numbers along lines, and pairs of crossing triangles.
 
-A surface bounds a body if the winding number of each point of space is 0 (outside) or 1 (inside). Along a line, the
-winding numbers follow from the crossings of the line with the surface. A search through all pairs of triangles detects
-each proper crossing; for large meshes only the lines are fast enough.
+A surface bounds a body if each point of space has the winding number 0 (outside) or 1 (inside). Crossings of a line
+with the surface give these numbers. All pairs of triangles are searched only in small meshes.
 """
 
 from typing import Any, NamedTuple
@@ -47,11 +46,10 @@ class _Boxes(NamedTuple):
 
 
 def require_boundary(surface: Surface, where: str) -> str:
-    """Test that a closed surface is the boundary of a body; return a sentence about the tests that it passed.
-
-    ``where`` is the file for error messages. Raise InputError if the surface crosses itself. It may have several
-    shells: parts beside each other, and cavities, whose normals point into the cavity.
+    """Raise InputError if a closed surface crosses itself; otherwise return a sentence about the tests that
+    it passed.
     """
+    # several shells are allowed: separate parts, and cavities, whose normals point into the cavity
     numbers = shells(surface)
     count = int(numbers.max()) + 1
     if count > MOST_SHELLS:
@@ -76,16 +74,13 @@ def require_boundary(surface: Surface, where: str) -> str:
 
 
 def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """Return the indices of the triangles through which straight lines test what is inside the surface.
-
-    A shell is a connected part of the surface. The result has the largest triangle of each shell, and every j-th
-    triangle of the surface: j is so large that the test takes a few seconds at most. ``numbers`` gives the shell of
-    each triangle, and ``count`` is the number of shells.
-    """
+    """Return the indices of triangles through which straight lines test what is inside the surface."""
     edges = corners[1] - corners[0], corners[2] - corners[0]
     areas = sum((edges[0][i] * edges[1][j] - edges[0][j] * edges[1][i]) ** 2 for i, j, _ in AXES)
     order = np.lexsort((areas, numbers)) if count > 1 else np.array([int(areas.argmax())])
     last = np.flatnonzero(np.diff(numbers[order], append=count)) if count > 1 else np.array([0])
+    # the largest triangle of each shell (connected part), and every j-th triangle, so that the test takes a few seconds
+    # at most
     largest = order[last]
     total = len(areas)
     others = np.linspace(0, total - 1, max(1, min(total, MOST_TESTS // total))).astype(np.int64)
@@ -94,20 +89,17 @@ def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[
 
 
 def _passes(corners: Floats, boxes: _Boxes, triangle: int, where: str, surface: Surface) -> int:
-    """Test a line through the triangle number ``triangle``; return 1 if it passes, 0 if no line could be tested.
-
-    A line passes if all its points have the winding number 0 or 1; otherwise InputError is raised, with ``where`` as
-    the place of the surface. A line that meets an edge cannot be tested; three points of the triangle are tried in
-    turn.
-    """
+    """Return whether a line through a triangle could be tested, 1 or 0; raise InputError if the test fails."""
     own = corners[:, :, triangle]
     normal = np.cross(own[1] - own[0], own[2] - own[0])
     axes = AXES[int(np.abs(normal).argmax())]
+    # a line that meets an edge cannot be tested
     for share, other in PLACES:
         target = own[0] + share * (own[1] - own[0]) + other * (own[2] - own[0])
         profile = _profile(corners, boxes, target, axes)
         if profile is not None:
             depths, windings = profile
+            # all points of the line need the winding number 0 or 1
             wrong = np.flatnonzero((windings != 0) & (windings != 1))
             if len(wrong):
                 _refuse(int(windings[wrong[0]]), target, axes[2], depths, int(wrong[0]), where, surface)
@@ -118,11 +110,12 @@ def _passes(corners: Floats, boxes: _Boxes, triangle: int, where: str, surface: 
 def _profile(
     corners: Floats, boxes: _Boxes, target: Floats, axes: tuple[int, int, int]
 ) -> tuple[Floats, NDArray[np.int64]] | None:
-    """Return the depths at which a line crosses the surface, and the winding number behind each crossing.
+    """Return the depths at which a line through ``target`` crosses the surface, and the winding number behind each
+    crossing.
 
-    The line is parallel to a coordinate axis, the last of ``axes``, and passes through the point ``target``; a depth is
-    the coordinate along it. Return None if the line passes too close to an edge.
+    None near an edge.
     """
+    # the line is parallel to the last of the axes; a depth is the coordinate along it
     u, v, depth = axes
     near = np.flatnonzero(boxes.around(u, target[u]))
     near = near[_Boxes(boxes.low[:, near], boxes.high[:, near]).around(v, target[v])]
@@ -157,11 +150,7 @@ def _refuse(winding: int, target: Floats, axis: int, depths: Floats, index: int,
 
 
 def _search_pairs(surface: Surface, boxes: _Boxes, where: str) -> bool:
-    """Raise InputError if two triangles cross; return whether all pairs were examined, False if there are too many.
-
-    Only proper crossings count: an edge of one triangle passes through the interior of another with which it shares no
-    vertex. Triangles that only touch, up to rounding errors, do not cross.
-    """
+    """Raise InputError if two triangles cross; return False if there are too many pairs to examine, otherwise True."""
     low, high = boxes
     axis = int(np.argmin((high - low).mean(axis=1)))
     order = np.argsort(low[axis], kind="stable")
@@ -178,6 +167,8 @@ def _search_pairs(surface: Surface, boxes: _Boxes, where: str) -> bool:
         if other != axis:
             overlap &= (low[other, i] <= high[other, j]) & (low[other, j] <= high[other, i])
     i, j = i[overlap], j[overlap]
+    # A proper crossing: an edge passes through the interior of a triangle without a common vertex. Triangles that only
+    # touch, up to rounding errors, do not cross.
     shared = (surface.triangles[i][:, :, None] == surface.triangles[j][:, None, :]).any(axis=(1, 2))
     i, j = i[~shared], j[~shared]
     for one, other in ((i, j), (j, i)):
@@ -192,10 +183,7 @@ def _search_pairs(surface: Surface, boxes: _Boxes, where: str) -> bool:
 
 
 def _pierces(surface: Surface, edges_of: NDArray[np.int64], through: NDArray[np.int64]) -> int | None:
-    """Return the number of a triangle that has an edge through the other triangle of its pair, or None.
-
-    Pair k consists of the triangles ``edges_of[k]`` and ``through[k]``; only edges of the first are tested.
-    """
+    """Return the number of a triangle in ``edges_of`` that has an edge through its partner in ``through``, or None."""
     corners = surface.triangles
     a, b, c = (corners[through, k] for k in range(3))
     heights = [_sides(surface, a, b, c, corners[edges_of, k]) for k in range(3)]
@@ -213,9 +201,8 @@ def _pierces(surface: Surface, edges_of: NDArray[np.int64], through: NDArray[np.
 
 
 def _sides(surface: Surface, a: Any, b: Any, c: Any, d: Any) -> NDArray[np.int64]:
-    """Return 1 or -1 for the side of the plane (a, b, c) on which each vertex d is.
-
-    All are arrays of indices of vertices. Return 0 if rounding errors could change the side.
+    """Return the side, 1 or -1, of the plane (a, b, c) on which each vertex d is; 0 if rounding errors could
+    change it.
     """
     p, q, r, s = (surface.vertices[index] for index in (a, b, c, d))
     u, v, w = p - s, q - s, r - s

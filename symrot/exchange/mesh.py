@@ -56,9 +56,8 @@ class _Body(NamedTuple):
 
 
 def mesh(path: str | Path, *, mass: Any = None, density: Any = None, scale: Any = 1, flip: bool = False) -> Inertial:
-    """Return mass, centre of mass and inertia of the body that a closed mesh bounds.
-
-    The relative error of the result is at most 1e-12; for meshes of up to 20 000 triangles the result is exact.
+    """Return mass, centre of mass and inertia of the body that a closed mesh bounds, with a relative error of at most
+    1e-12.
 
     Parameters
     ----------
@@ -90,6 +89,7 @@ def mesh(path: str | Path, *, mass: Any = None, density: Any = None, scale: Any 
     >>> part = symrot.mesh("part.stl", density=2700, scale="1/1000")  # doctest: +SKIP
     >>> body = part.table()  # doctest: +SKIP
     """
+    # exact for meshes of up to 20 000 triangles
     return read_mesh(Path(path), str(path), mass=mass, density=density, scale=scale, flip=flip).inertial
 
 
@@ -179,21 +179,15 @@ def _density(density: Any, where: str) -> Any:
 
 
 def _degree(node: Any, source: object, unit: Fraction, where: str) -> int:
-    """Return the highest degree of the monomials to be integrated for the inertia: the degree of the density plus 2.
-
-    ``node`` is the parsed density and ``source`` its text for error messages; ``unit`` is the file's unit of length, m.
-    """
+    """Return the highest degree of the monomials to be integrated for the inertia: the degree of the density plus 2."""
     axes = {name: generator(name) * unit for name in "xyz"}
     powers = density_polynomial(node, axes, source, f"{where}: density").collect(["x", "y", "z"])
     return 2 + max((sum(item) for item in powers), default=0)
 
 
 def _integrated(moments: VolumeMoments, node: Any, source: object, unit: Fraction, where: str) -> _Body:
-    """Return the moments of a density (kg, kg m, kg m^2) from the integrals of monomials of local coordinates.
-
-    ``moments`` are these integrals; their coordinates start from a centre and are in the file's unit of length,
-    ``unit`` m. ``node`` is the parsed density and ``source`` its text for error messages.
-    """
+    """Return the moments of a density (kg, kg m, kg m^2) from the integrals ``moments`` of monomials of coordinates."""
+    # local coordinates start from a centre and are in the file's unit of length
     axes = {
         name: (generator(name) + constant(middle)) * unit for name, middle in zip("xyz", moments.center, strict=True)
     }
@@ -223,11 +217,11 @@ def _integrated(moments: VolumeMoments, node: Any, source: object, unit: Fractio
 def _result(body: _Body, amount: Fraction | None, exact: bool) -> tuple[Fraction, Any, Any, Fraction] | None:
     """Return mass, centre of mass, tensor and relative error, from the moments of a body.
 
-    ``amount`` is the total mass, kg, if it is given instead of a density; ``exact`` says whether the moments have no
-    error. Return None if the error is too large or the mass is not positive.
+    None if error or mass are unusable.
     """
     (mass, mass_error), first = body.mass, body.first
     if mass <= mass_error:
+        # the mass must be clearly positive
         return None
     offset = [value / mass for value, _ in first]
     second = [[body.second[i][j][0] - first[i][0] * offset[j] for j in range(3)] for i in range(3)]
@@ -255,14 +249,11 @@ def _result(body: _Body, amount: Fraction | None, exact: bool) -> tuple[Fraction
 
 
 def _require_volume(moments: VolumeMoments, unit: Fraction, where: str) -> None:
-    """Raise InputError if a mesh encloses no volume: exactly zero, or negative by more than the bound of its error.
-
-    ``moments`` has the volume in the file's unit of length, ``unit`` m. A negative volume means normals that point
-    inwards.
-    """
+    """Raise InputError if a mesh encloses no volume: zero, or negative by more than its error."""
     volume, error = moments.values[0, 0, 0], moments.errors[0, 0, 0]
     if volume == 0 and error == 0:
         raise InputError(f"{where}: expected a mesh that encloses a volume, got a volume of zero")
+    # normals that point inwards
     if volume < -error:
         raise InputError(
             f"{where}: expected a mesh whose normals point outwards, got one that is turned inside out, with a volume "

@@ -70,9 +70,8 @@ def read_surface(path: Path, where: str) -> Surface:
 
 
 def _load(trimesh: Any, content: bytes, kind: str) -> tuple[Any, Any]:
-    """Return the vertices and triangles of a file's ``content``; all bodies in it, at their positions, form one mesh.
-
-    ``kind`` is the format, such as ``stl``; ``trimesh`` is the imported package.
+    """Return the vertices and triangles of a file's ``content``; all bodies in it, at their positions, form
+    one mesh.
     """
     options: dict[str, Any] = {"process": False, "maintain_order": True}
     if kind in ("obj", "glb"):

@@ -24,10 +24,7 @@ class Angles(NamedTuple):
     sequence: str = "xyz"
 
     def angle(self, value: Fraction) -> Angle:
-        """Return the exact angle for the number ``value`` of a file: in degrees if ``self.degrees``, otherwise in rad.
-
-        An :class:`Angle` is a sum of a number of rad and a multiple of pi, so that 90 degrees is exactly pi/2.
-        """
+        """Return the exact angle of the number ``value`` of a file, in degrees or rad: 90 degrees is exactly pi/2."""
         return Angle(Fraction(0), value / 180) if self.degrees else Angle(value, Fraction(0))
 
 
@@ -41,19 +38,14 @@ def _elementary(axis: int, angle: Angle) -> Tensor:
 
 
 def of_roll_pitch_yaw(values: Numbers, angles: Angles) -> Tensor:
-    """Return the rotation matrix of the angles (roll, pitch, yaw): about the fixed axes x, y, z, in this order.
-
-    ``angles`` says whether they are in degrees.
-    """
+    """Return the rotation matrix of the angles (roll, pitch, yaw): about the fixed axes x, y, z, in this order."""
     roll, pitch, yaw = map(angles.angle, values)
     return multiply(_elementary(2, yaw), multiply(_elementary(1, pitch), _elementary(0, roll)))
 
 
 def of_quaternion(values: Numbers, angles: Angles) -> Tensor:
-    """Return the rotation matrix of a quaternion, scalar first, after division by its norm; ``angles`` is not used.
-
-    The signature is that of all functions in this module that read an orientation.
-    """
+    """Return the rotation matrix of a quaternion of any norm, scalar first; ``angles`` is not used."""
+    # all readers of an orientation have the same signature
     w, x, y, z = _direction(values, "a quaternion that is not zero")
     return matrix([
         [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
@@ -69,22 +61,18 @@ def _of_axis_angle(values: Numbers, angles: Angles) -> Tensor:
 
 
 def _of_euler(values: Numbers, angles: Angles) -> Tensor:
-    """Return the rotation matrix of three Euler angles; the sequence and the unit are those of ``angles``.
-
-    An axis in lower case is a moving axis, in upper case a fixed axis.
-    """
+    """Return the rotation matrix of three Euler angles; the sequence and the unit are those of ``angles``."""
     total = matrix(IDENTITY)
     for letter, value in zip(angles.sequence, values, strict=True):
         step = _elementary("xyz".index(letter.lower()), angles.angle(value))
+        # lower case: a moving axis; upper case: a fixed axis
         total = multiply(total, step) if letter.islower() else multiply(step, total)
     return total
 
 
 def _of_two_axes(values: Numbers, angles: Angles) -> Tensor:
-    """Return the rotation whose x axis is given, and whose y axis is the second vector made orthogonal to it.
-
-    ``values`` are the six components of the two vectors.
-    """
+    """Return the rotation matrix of an x axis and of a vector that is made orthogonal to it as y axis."""
+    # values are the six components of the two vectors
     x = _direction(values[:3], "an x axis that is not zero")
     slope = dot(values[3:], x)
     y = _direction(

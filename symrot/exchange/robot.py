@@ -218,12 +218,9 @@ def _inertial(element: Element, reason: str) -> Element:
 def _body(
     element: Element, mass: Fraction, center: tuple[Fraction, ...], tensor: Tensor, rotation: Tensor | None
 ) -> Inertial:
-    """Return the inertial of a link in the link's axes.
-
-    ``tensor`` is about the centre of mass, in the axes of the element ``<inertial>``; ``rotation`` is the rotation
-    matrix from these axes to the link's, or None if they agree.
-    """
+    """Return the inertial of a link in the link's axes, from a tensor about the centre of mass in axes of its own."""
     x, y, z = center
+    # rotation maps the tensor's axes to the link's; None: they agree
     turned = tensor if rotation is None else _symmetric(rotate(tensor, rotation))
     return Inertial(element.get("name", ""), mass, (x, y, z), turned)
 

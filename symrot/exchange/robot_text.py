@@ -22,9 +22,7 @@ ROUNDING = Fraction(1, 10**14)
 
 
 def write_link(source: str | Path, name: str, inertial: Inertial, target: str | Path | None = None) -> Path:
-    """Replace the inertial of a link in a robot file, in principal form; all other text stays unchanged.
-
-    Principal form: the axes of the inertial are the principal axes, and the tensor is diagonal.
+    """Replace the inertial of a link in a robot file by its principal form: principal axes and a diagonal tensor.
 
     Parameters
     ----------
@@ -72,10 +70,7 @@ def write_link(source: str | Path, name: str, inertial: Inertial, target: str | 
 
 
 def _require_same(form: Format, result: bytes, name: str, inertial: Inertial, where: str) -> None:
-    """Raise InputError unless ``result``, the new file, when it is read, gives the mass properties of ``inertial``.
-
-    The test is made before the file is written; ``name`` is the link.
-    """
+    """Raise InputError unless the new file ``result``, not yet written, gives the mass properties of ``inertial``."""
     root = ElementTree.fromstring(result)
     element = next(element for element in form.elements(root) if element.get("name") == name)
     try:

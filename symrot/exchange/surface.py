@@ -36,10 +36,8 @@ class Surface(NamedTuple):
 
 
 def merge(vertices: Floats, triangles: Indices) -> Surface:
-    """Return a surface in which vertices with equal coordinates are one vertex.
-
-    STL files repeat a vertex for each triangle, and other formats repeat it for each normal or colour.
-    """
+    """Return a surface in which vertices with equal coordinates are one vertex."""
+    # STL files repeat a vertex for each triangle, other formats for each normal or colour.
     points = np.ascontiguousarray(vertices, dtype=np.float64) + 0.0  # -0.0 and 0.0 are the same coordinate
     mixed = np.empty(len(points), np.uint64)
     parts = [slice(start, start + CHUNK) for start in range(0, len(points), CHUNK)]
@@ -78,11 +76,10 @@ def _undirected(start: Indices, end: Indices, count: int) -> Indices:
 
 
 def require_closed(surface: Surface, where: str) -> None:
-    """Raise InputError unless the triangles traverse each edge equally often in both directions.
-
-    This is the condition that the surface is the boundary of a region, so that its volume does not depend on the choice
-    of an origin. InputError is also raised for a triangle that occurs twice.
+    """Raise InputError unless the triangles traverse each edge equally often in both directions, and none is
+    repeated.
     """
+    # the condition that the surface bounds a region, so that its volume does not depend on an origin
     start, end = _edges(surface)
     keys = np.sort(_undirected(start, end, len(surface.vertices)) * 2 + (start > end))
     if len(keys) % 2 == 0 and np.array_equal(keys[::2] ^ 1, keys[1::2]) and np.all(keys[2::2] != keys[:-2:2]):
@@ -103,9 +100,8 @@ def require_closed(surface: Surface, where: str) -> None:
 
 
 def _defect(surface: Surface) -> str:
-    """Return a clause for an error message about a surface that is not closed.
-
-    It has the number of open edges, or of edges at which the orientations of triangles disagree.
+    """Return the clause of an error message that counts open edges, or edges whose triangles have opposite
+    orientations.
     """
     start, end = _edges(surface)
     keys, number = np.unique(_undirected(start, end, len(surface.vertices)), return_inverse=True)

@@ -1,11 +1,10 @@
 """Integrals of x^l y^m z^n over a polyhedron, from its triangles: exact, or in doubles with a bound of the error.
 
-Each triangle (a, b, c) spans a tetrahedron with the origin. The integral of x^l y^m z^n over this tetrahedron is
+A triangle (a, b, c) spans a tetrahedron with the origin. Its integral is
 
     det(a, b, c) * l! m! n! / (l + m + n + 3)! * h,
 
-where h is the coefficient of s^l t^m u^n in 1/((1 - a.v)(1 - b.v)(1 - c.v)) with v = (s, t, u). The coefficients
-follow from a recurrence, one factor at a time. The same recurrence serves for integers and for doubles.
+where h is the coefficient of s^l t^m u^n in 1/((1 - a.v)(1 - b.v)(1 - c.v)), v = (s, t, u).
 """
 
 from collections.abc import Mapping
@@ -63,11 +62,9 @@ def _lower(powers: Exponents, axis: int) -> Exponents:
 
 
 def _coefficients(corners: tuple[Corner, Corner, Corner], degree: int, one: Any) -> dict[Exponents, Any]:
-    """Return the coefficients of 1/((1 - a.v)(1 - b.v)(1 - c.v)) up to a degree, by the exponents of v.
-
-    ``corners`` are a, b, c, each three arrays with an entry for each triangle; ``one`` is such an array of ones.
-    """
+    """Return the coefficients of 1/((1 - a.v)(1 - b.v)(1 - c.v)) up to a degree, by the exponents of v."""
     before: dict[Exponents, Any] = {}
+    # a, b, c: three arrays each, with an entry for each triangle; one recurrence for each factor
     for corner in corners:
         now: dict[Exponents, Any] = {(0, 0, 0): one}
         for powers in exponents(degree)[1:]:
@@ -90,11 +87,8 @@ def _columns(points: NDArray[Any]) -> Corner:
 
 
 def _cross(left: Corner, right: Corner, sign: int = -1) -> Corner:
-    """Return the cross products of arrays of vectors; with ``sign`` = 1 their terms are added instead of subtracted.
-
-    ``left`` and ``right`` have an array for each component. For arrays of magnitudes, ``sign`` = 1 gives the sums of
-    the magnitudes of the terms, which bound rounding errors.
-    """
+    """Return the cross products of arrays of vectors; with ``sign`` = 1 their terms are added instead of subtracted."""
+    # added magnitudes bound the rounding errors
     x, y, z = (left[j] * right[k] + sign * (left[k] * right[j]) for j, k in ((1, 2), (2, 0), (0, 1)))
     return x, y, z
 
@@ -122,10 +116,8 @@ def _integers(vertices: NDArray[np.float64]) -> tuple[NDArray[Any], int]:
 
 
 def exact_moments(surface: Surface, degree: int) -> VolumeMoments:
-    """Return the exact integrals up to a degree over the polyhedron that a closed surface bounds.
-
-    Vertices are doubles, so all integrals are rational; integer arithmetic takes about 10 us for each triangle.
-    """
+    """Return the exact integrals up to a degree over the polyhedron that a closed surface bounds."""
+    # Vertices are doubles, so the integrals are rational; integers take about 10 us for each triangle.
     points, unit = _integers(surface.vertices)
     middle = [(min(column) + max(column)) // 2 for column in points.T.tolist()]
     points = points - np.array(middle, dtype=object)
@@ -152,22 +144,14 @@ def _sum(terms: NDArray[np.float64]) -> float:
 
 
 def _bound(powers: Exponents) -> float:
-    """Return a bound of the relative error of one term of an integral, from the number of its rounded operations.
-
-    The operations are: 8 for the determinant (edges and corners are differences of given coordinates), 5 k + 9 for a
-    coefficient of degree k, 1 for the product of both, and BLOCK + 1 for the sum.
-    """
+    """Return a bound of the relative error of one term of an integral, from the number of its rounded operations."""
+    # determinant 8 (edges and corners are differences), coefficient 5 k + 9, product 1, sum BLOCK + 1
     count = 8 + 5 * sum(powers) + 9 + 1 + BLOCK + 1
     return count * ROUNDING * 1.001
 
 
 def approximate_moments(surface: Surface, degree: int) -> VolumeMoments:
-    """Return the integrals over the enclosed volume up to a degree in doubles, each with a bound of its error.
-
-    Each triangle contributes an integral over the tetrahedron that it forms with the middle of the surface's bounding
-    box. Its volume is a determinant of three vectors: one corner, measured from this middle, and the two edges at this
-    corner. Edges instead of corners keep all digits of triangles that are small and far from the middle.
-    """
+    """Return the integrals over the enclosed volume up to a degree in doubles, each with a bound of its error."""
     lowest, highest = surface.vertices.min(axis=0), surface.vertices.max(axis=0)
     middle = lowest / 2 + highest / 2
     shift = frexp(float(np.max(highest - lowest)))[1]
@@ -178,6 +162,8 @@ def approximate_moments(surface: Surface, degree: int) -> VolumeMoments:
         triangles = surface.triangles[start : start + CHUNK]
         a, b, c = (_columns(points[triangles[:, corner]]) for corner in range(3))
         p, q, r = (surface.vertices[triangles[:, corner]] for corner in range(3))
+        # Each triangle spans a tetrahedron with the middle of the bounding box. Edges instead of corners in the
+        # determinant keep all digits of triangles that are small and far from the middle.
         first, second = (_columns(np.ldexp(end - p, -shift)) for end in (q, r))
         determinant = _dot(a, _cross(first, second))
         for powers, value in _coefficients((a, b, c), degree, 1.0).items():

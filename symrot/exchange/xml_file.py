@@ -67,11 +67,7 @@ def read_xml(path: Path, where: str) -> tuple[bytes, ElementTree.Element]:
 
 
 def span_of(content: bytes, owner: str, name: str, element: str) -> tuple[Span, bool]:
-    """Return the place of the element ``element`` inside ``<owner name="name">``, and whether it is present.
-
-    ``content`` are the bytes of the file. If the element is absent, the place is empty and directly behind the start
-    tag of the owner, so that a new element can be inserted there.
-    """
+    """Return the place of ``element`` inside ``<owner name="name">`` in a file's bytes, and whether it is present."""
     parser = expat.ParserCreate()
     stack: list[tuple[str, str]] = []
     places: dict[str, int] = {}
@@ -101,4 +97,5 @@ def span_of(content: bytes, owner: str, name: str, element: str) -> tuple[Span, 
     parser.Parse(content, True)
     if "stop" in places:
         return Span(places["start"], places["stop"]), True
+    # empty, directly behind the owner's start tag: a new element can be inserted there
     return Span(places["inside"], places["inside"]), False

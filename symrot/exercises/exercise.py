@@ -244,16 +244,14 @@ def _si(quantity: Quantity, number: str) -> Expr:
 
 
 def _draw(problem: Problem, source: Random) -> list[tuple[Quantity, str]]:
-    """Choose random numbers for the quantities, and return pairs (quantity, number); ``source`` is the generator.
-
-    Many choices are tried; the one with the shortest answers is returned. Choices for which ``problem.fits`` is false,
-    such as lengths that contradict each other, are skipped.
-    """
+    """Choose random numbers for the quantities; return pairs (quantity, number)."""
+    # of many choices, the one with the shortest answers
     best: tuple[int, list[tuple[Quantity, str]]] | None = None
     for _ in range(DRAWS):
         drawn = [(quantity, source.choice(quantity.numbers)) for quantity in problem.quantities]
         values = {quantity.symbol: _si(quantity, number) for quantity, number in drawn}
         if not problem.fits(values):
+            # such as lengths that contradict each other
             continue
         answers = [asked.formula.xreplace(values) / factor_of(asked.unit) for asked in problem.asked]
         if any(answer.is_finite is False or answer.is_real is False for answer in answers):
@@ -268,11 +266,8 @@ def _draw(problem: Problem, source: Random) -> list[tuple[Quantity, str]]:
 
 
 def _length(answer: Expr) -> int:
-    """Return a measure of the length of an answer, in digits; an exercise prefers numbers whose answers are short.
-
-    A decimal such as 0.25 has its number of digits. Three kinds of answers count as longer, so that they are rarely
-    chosen: zero, fractions such as 1/3, and irrational numbers such as sqrt(2).
-    """
+    """Return a measure of the length of an answer in digits, with a penalty for zero, 1/3 or sqrt(2)."""
+    # an exercise prefers numbers whose answers are short
     if answer.is_zero:
         return ZERO
     if not answer.is_Rational:
@@ -325,16 +320,12 @@ def _exact(asked: Asked, values: Mapping[Symbol, Expr]) -> Expr:
 
 
 def _slips(problem: Problem, asked: Asked, values: Mapping[Symbol, Expr], exact: Expr) -> Iterator[tuple[str, str]]:
-    """Yield the wrong answers that follow from usual slips, as pairs (kind of slip with the symbol, wrong answer).
-
-    The slips are: a diameter used as a radius or the reverse, degrees used as radians, and a unit that is not
-    converted. ``values`` are the quantities in SI units, ``exact`` is the right answer. The grader recognises these
-    answers.
-    """
+    """Yield the wrong answers that follow from usual slips, as pairs (kind of slip with the symbol, wrong answer)."""
     for quantity in problem.quantities:
         symbol = quantity.symbol
         if not asked.formula.has(symbol):
             continue
+        # a diameter used as a radius or the reverse, degrees used as radians, a unit that is not converted
         for code, value in _misused(quantity, values[symbol]):
             number = asked.formula.xreplace({**values, symbol: value}) / factor_of(asked.unit)
             if number.is_finite and number.is_real and number != exact:

@@ -100,11 +100,10 @@ class Asked:
 def chain(
     name: str, law: str, left: Any, written: Any, result: Any, then: str = "This is simplified."
 ) -> tuple[Line, ...]:
-    """Return one or two lines of a solution, which state the value of the quantity ``left``, displayed as ``name``.
-
-    The first line has the value as the law gives it (``written``), with ``law`` as its reason. The second line has the
-    simplified value (``result``), with the reason ``then``; it is left out if the two are the same.
+    """Return the lines of a solution: the value ``written`` by the law, and the simplified value ``result`` if it
+    differs.
     """
+    # each line: reason, quantity, value, displayed name
     first = Line(law, left, written, name)
     return (first,) if written == result else (first, Line(then, left, result, name))
 

@@ -55,9 +55,6 @@ class ExerciseSheet:
     def print(self, form: str, solutions: bool = True) -> str:
         """Return the text of the sheet; ``form`` is ``markdown``, ``latex``, ``html``, ``moodle`` or ``json``.
 
-        If ``solutions`` is false, a sheet of Markdown or LaTeX has the exercises alone, to hand out. The other formats
-        are made to show hints and solutions later.
-
         Raises
         ------
         InputError
@@ -69,6 +66,7 @@ class ExerciseSheet:
             raise InputError(f"format: expected one of {', '.join(FORMATS)}, got {form!r}")
         if solutions:
             return FORMATS[form](self.exercises)
+        # the other formats are made to show hints and solutions later
         if form not in WITHOUT_SOLUTIONS:
             raise InputError(f"format without solutions: expected {' or '.join(WITHOUT_SOLUTIONS)}, got {form!r}")
         return WITHOUT_SOLUTIONS[form](self.exercises, False)

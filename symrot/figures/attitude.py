@@ -231,16 +231,14 @@ def angular_velocity() -> Picture:
 
 
 def rotation_vectors() -> Picture:
-    """Draw the ball of rotation vectors of length up to pi, with two vectors of one rotation.
-
-    One of the two, ``alpha n``, is inside the ball; the other, ``(alpha - 2 pi) n``, points the opposite way beyond it.
-    """
+    """Draw the ball of rotation vectors of length up to pi, with two vectors of one rotation."""
     picture, plane = Picture(), Plane(38)
     turn = np.linspace(0.0, 2 * np.pi, 121)
     circle_points = np.pi * np.stack([np.cos(turn), np.sin(turn)], axis=1)
     picture.area(plane, circle_points)
     picture.curve(plane, circle_points, "blue")
     direction = np.array([np.cos(0.5), np.sin(0.5)])
+    # alpha n is inside the ball; (alpha - 2 pi) n points the opposite way beyond it
     short, long = 2.1 * direction, (2.1 - 2 * np.pi) * direction
     picture.arrow(plane, (0, 0), short, "", "red thick")
     picture.arrow(plane, (0, 0), long, "", "red dashed")

@@ -62,12 +62,10 @@ def arc_between(start: ArrayLike, end: ArrayLike, radius: float, centre: ArrayLi
 
 
 def outline(shape: Floats, view: View) -> Floats:
-    """Return the outline of the ellipsoid ``x · shape x = 1`` as ``view`` shows it: points in space, shape (n, 3).
-
-    At its points the normal of the ellipsoid is perpendicular to the line of sight.
-    """
+    """Return the outline of the ellipsoid ``x · shape x = 1`` as ``view`` shows it: points in space, shape (n, 3)."""
     inverse = np.linalg.inv(shape)
     root = np.linalg.cholesky(inverse)  # maps the unit sphere to the ellipsoid
+    # its normals are perpendicular to the line of sight
     return circle((0, 0, 0), root.T @ shape @ view.toward, 1.0) @ root.T
 
 
@@ -91,11 +89,7 @@ def turning(start: ArrayLike, end: ArrayLike) -> Floats:
 
 
 def cone(axis: ArrayLike, half_angle: float, length: float, view: View) -> tuple[Floats, list[Floats]]:
-    """Return points of the rim of a cone with its apex at the origin, and the two lines that form its visible outline.
-
-    ``length`` is the length of its lines, ``half_angle`` is in rad. There are no two lines (an empty list) if the line
-    of sight lies inside the cone.
-    """
+    """Return the rim of a cone with its apex at the origin, and the two lines of its visible outline."""
     n, radius = unit(axis), length * np.sin(half_angle)
     rim = circle(length * np.cos(half_angle) * n, n, radius)
     first, second = basis(n)
@@ -105,6 +99,7 @@ def cone(axis: ArrayLike, half_angle: float, length: float, view: View) -> tuple
     c = toward @ n * np.tan(half_angle)
     size = np.hypot(a, b)
     if abs(c) >= size:
+        # the line of sight lies inside the cone
         return rim, []
     middle, half = np.arctan2(b, a), np.arccos(c / size)
     angles = np.array([middle - half, middle + half])

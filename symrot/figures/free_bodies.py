@@ -62,11 +62,9 @@ def rolling_ellipsoid() -> tuple[Floats, Trajectory]:
 
 
 def contact_ellipsoid(moments: Floats, motion: Trajectory, place: int) -> Floats:
-    """Return the matrix S of the energy ellipsoid ``x · S x = 1`` in space axes, at sample ``place`` of a motion.
-
-    ``moments`` are the principal moments of the body; the angular velocity is a point of the ellipsoid.
-    """
+    """Return the matrix S of the energy ellipsoid ``x · S x = 1`` in space axes, at sample ``place`` of a motion."""
     dcm = motion.dcm[place]
+    # the angular velocity is a point of it
     shape: Floats = dcm @ np.diag(moments) @ dcm.T / (moments @ motion.omega[place] ** 2)
     return shape
 
@@ -100,11 +98,10 @@ def poinsot() -> Picture:
 
 
 def polhode_curves() -> tuple[list[Floats], Floats]:
-    """Return several polhodes, and the two curves of the separatrix, which separates polhodes about axes 1 and 3.
-
-    Each curve has the shape (n, 3), in rad/s and body axes, and lies on the ellipsoid of the kinetic energy 1/2 for the
-    moments :data:`MOMENTS`.
+    """Return several polhodes, rad/s in body axes, and the two curves of the separatrix between those about axes 1 and
+    3.
     """
+    # the ellipsoid of the kinetic energy 1/2
     axes = 1 / np.sqrt(MOMENTS)
     starts = []
     for axis in (0, 2):
@@ -163,11 +160,8 @@ def momentum_sphere() -> Picture:
 
 
 def cone_vectors(moments: tuple[float, float], nutation: float) -> tuple[Floats, Floats, Floats]:
-    """Return the directions of L, omega and the symmetry axis of a free symmetric body, in space components.
-
-    ``moments`` are (A, C): A about any axis perpendicular to the symmetry axis, C about the symmetry axis.
-    ``nutation``, rad, is the angle from L to the symmetry axis.
-    """
+    """Return the directions of L, omega and the symmetry axis of a free symmetric body, in space components."""
+    # nutation, rad: the angle from L to the symmetry axis
     a, c = moments
     momentum = np.array([np.sin(nutation), 0.0, np.cos(nutation)])  # in the body, |L| = 1
     start = momentum / np.array([a, a, c])

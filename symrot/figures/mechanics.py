@@ -83,11 +83,10 @@ def principal_axes() -> Picture:
 
 
 def struck_velocities(offset: float, points: Floats) -> Floats:
-    """Return the velocity, perpendicular to the rod, of points of a rod just after a blow.
-
-    Mass, half length and impulse are 1. ``offset`` is the distance of the blow from the centre, ``points`` are
-    distances from the centre.
+    """Return the velocity, perpendicular to a rod of length 2, of its points after a blow at ``offset`` from the
+    centre.
     """
+    # mass and impulse are 1
     moment = float(solid("rod", length=2).with_mass(1).inertia[0, 0])
     velocities: Floats = 1.0 + offset / moment * points
     return velocities
@@ -161,13 +160,12 @@ TEETH = {"sun": 24, "planet": 12, "ring": 48}
 def _gear(
     picture: Picture, plane: Plane, centre: Floats, teeth: int, start: float, style: str, inner: bool = False
 ) -> None:
-    """Draw the outline of a gear around ``centre``; its pitch radius in the plane is ``teeth/24``.
-
-    ``start`` is the angle of a tooth's edge, rad. An inner gear (the ring, with teeth inward) is not filled.
-    """
+    """Draw the outline of a gear around ``centre``; ``start`` is the angle of a tooth's edge, rad."""
     angles = start + np.linspace(0, 2 * np.pi, teeth * 12 + 1)
+    # the pitch radius is teeth/24
     radius = teeth / 24 + 0.028 * np.tanh(4 * np.sin(teeth * (angles - start)))
     points = centre + radius[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    # the ring, with teeth inward, is not filled
     if not inner:
         picture.area(plane, points, f"fill-{style}")
     picture.curve(plane, points, style, closed=True)
@@ -231,12 +229,12 @@ BARS = {"a": 0.6, "b": 1.5, "c": 1.2, "ground": 1.55}
 
 
 def four_bar_positions(phi: Floats) -> tuple[Floats, Floats]:
-    """Return the positions of the two moving pins of a four-bar linkage, each of shape (n, 2), at crank angles in rad.
-
-    The lengths of the bars are :data:`BARS`; the second pin is where the circles of two bars intersect.
+    """Return the positions of the two moving pins of a four-bar linkage, each of shape (n, 2), at crank
+    angles in rad.
     """
     first = BARS["a"] * np.stack([np.cos(phi), np.sin(phi)], axis=1)
     ground = np.array([BARS["ground"], 0.0])
+    # the second pin is where the circles of two bars intersect
     between = ground - first
     distance = np.linalg.norm(between, axis=1)
     along = (BARS["b"] ** 2 - BARS["c"] ** 2 + distance**2) / (2 * distance)

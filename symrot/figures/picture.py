@@ -50,13 +50,10 @@ STYLE = (
 
 
 class Picture:
-    """A picture to which lines, areas, arrows and labels are added; :meth:`svg` returns it, cropped to its content.
-
-    Parameters of its methods: ``points`` are rows in the coordinates of ``view``; ``style`` names classes of
-    :data:`STYLE`, a colour among them.
-    """
+    """A picture to which lines, areas, arrows and labels are added; :meth:`svg` returns it, cropped to its content."""
 
     def __init__(self) -> None:
+        # Of all methods: points are rows in the coordinates of view; style names classes of STYLE, a colour among them.
         self._parts: list[str] = []
         self._corners: list[Floats] = []
 
@@ -99,9 +96,8 @@ class Picture:
         self, view: View | Plane, points: ArrayLike, label: str = "", style: str = "ink", head: bool = True,
         out: float = 11.0,
     ) -> None:  # fmt: skip
-        """Draw a curve through ``points`` with an arrow head at its end if ``head``, and ``label`` beside its middle.
-
-        The label lies on the outer, convex side of the curve, ``out`` units of the drawing away from it.
+        """Draw a curve through ``points`` with an arrow head at its end if ``head``, and ``label`` beside
+        its middle.
         """
         places = view.project(points)
         self._path(places, style)
@@ -114,6 +110,7 @@ class Picture:
             middle = places[len(places) // 2]
             away = middle - (places[0] + places[-1]) / 2
             size = float(np.hypot(*away))
+            # the outer, convex side of the curve
             direction = away / size if size > 1e-9 else np.array([0.0, -1.0])
             self._text(middle + out * direction * np.array([max(1.0, _width(label) / 16), 1.0]), label)
 
@@ -182,14 +179,11 @@ def _number(value: float) -> str:
 
 
 def _runs(visible: NDArray[np.bool_]) -> Iterator[tuple[bool, slice]]:
-    """Split a line into visible and hidden sections, so that each is drawn in its own style.
-
-    Yield for each section whether it is visible, and the slice of its points; each section ends with the first point of
-    the next, so that no gap remains.
-    """
+    """Yield the visible and hidden sections of a line: whether the section is visible, and the slice of its points."""
     changes = np.flatnonzero(np.diff(visible.astype(int))) + 1
     bounds = [0, *changes.tolist(), len(visible)]
     for first, last in pairwise(bounds):
+        # each section ends with the first point of the next, so that no gap remains
         yield bool(visible[first]), slice(first, min(last + 1, len(visible)))
 
 

@@ -40,11 +40,10 @@ class Axes:
         self.picture.arrow(self.plane, (left, low), (left, high + 0.06 * (high - low)), y_label, "soft")
 
     def curve(self, x: Floats, y: Floats, style: str = "blue thick", label: str = "", at: float = 1.0) -> None:
-        """Draw a curve through the points (x, y) with a label at its right end.
-
-        If ``at`` is less than 1, the label is above the curve at this fraction of its length. Points above or below the
-        rectangle are left out.
+        """Draw a curve through the points (x, y), with a label at its right end or above the fraction ``at`` of its
+        length.
         """
+        # points above or below the rectangle are left out
         inside = (y >= self.y[0]) & (y <= self.y[1])
         starts = np.flatnonzero(inside & ~np.concatenate([[False], inside[:-1]]))
         ends = np.flatnonzero(inside & ~np.concatenate([inside[1:], [False]])) + 1

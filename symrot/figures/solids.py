@@ -76,11 +76,7 @@ def sized(name: str) -> Solid:
 
 
 def surface_of(body: Solid) -> Surface:
-    """Return the surface of a solid as lines to draw and triangles that hide the lines behind them.
-
-    A solid is described by a formula for the position of its points in coordinates with limits, such as radius, angle
-    and height for a cylinder. On a face one coordinate is at one of its limits; along an edge, all but one.
-    """
+    """Return the surface of a solid as lines to draw and triangles that hide the lines behind them."""
     symbols = [symbol for symbol, _, _ in body.limits]
     function = lambdify(symbols, list(body.position), "numpy")
     limits = [(float(low), float(high)) for _, low, high in body.limits]
@@ -96,8 +92,10 @@ def surface_of(body: Solid) -> Surface:
 
     count = len(limits)
     ends = [(i, end) for i in range(count) for end in limits[i] if limits[i][1] - limits[i][0] < ONCE_AROUND]
+    # along an edge all coordinates but one are at one of their limits
     fixed = [dict(pair) for pair in combinations(ends, max(count - 1, 0)) if len(dict(pair)) == max(count - 1, 0)]
     edges = [mapped(*([at[i]] if i in at else np.linspace(*limits[i], 73) for i in range(count))) for at in fixed]
+    # on a face one coordinate is at one of its limits
     faces = [{i: end} for i, end in ends] if count == 3 else [{}] if count == 2 else []
     triangles, grid, curved = [], [], []
     for face in faces:
@@ -117,12 +115,9 @@ def surface_of(body: Solid) -> Surface:
 
 
 def _grid(mapped: Any, limits: list[tuple[float, float]], face: dict[int, float], free: list[int]) -> list[Floats]:
-    """Return lines on a curved face; along each line only one coordinate of the solid varies.
-
-    ``mapped`` is the function from coordinates to a position, ``limits`` are the limits of all coordinates, ``face``
-    the coordinate that is constant on the face, by its index, and ``free`` the indices of the others.
-    """
+    """Return lines on a curved face; along each line only one coordinate of the solid varies."""
     lines = []
+    # face: index and value of the coordinate that is constant on the face; free: indices of the others
     for constant, along in product(free, free):
         if constant == along:
             continue

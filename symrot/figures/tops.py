@@ -28,11 +28,10 @@ START = np.radians(40.0)  # nutation at the start, a turning point
 
 
 def top_motion(omega: Any, nutation: float, times: Floats, moments: tuple[float, float] = (A, C)) -> Trajectory:
-    """Return the motion, at ``times``, of a heavy symmetric top with weight 1 N and centre of mass 1 m from the tip.
-
-    It starts from the ZXZ angles (0, nutation, 0), rad, with the angular velocity ``omega``, rad/s. ``moments`` are
-    those across and along its axis, about the tip.
+    """Return the motion, at ``times``, of a heavy symmetric top that starts with ``omega``, rad/s, and ``nutation``,
+    rad.
     """
+    # weight 1 N, centre of mass 1 m from the tip, moments across and along the axis about the tip
     scene = {
         "schema": 1,
         "title": "heavy top of a figure",
@@ -52,30 +51,25 @@ def top_motion(omega: Any, nutation: float, times: Floats, moments: tuple[float,
 
 @cache
 def effective_potential() -> Callable[..., Any]:
-    """Return the effective potential (J) of a heavy symmetric top as a function of (theta, p_phi, p_psi, A, C).
-
-    It is the energy at constant nutation for given momenta p_phi and p_psi; the weight is 1 N and the centre of mass is
-    1 m from the tip.
-    """
+    """Return the effective potential (J) of a heavy symmetric top as a function of (theta, p_phi, p_psi, A, C)."""
     dphi, dtheta, dpsi = symbols.angle_rates
     moments = diag(symbols.A, symbols.A, symbols.C)
     omega = rate_jacobian("ZXZ") * Matrix(symbols.angle_rates)
     kinetic = Rational(1, 2) * omega.dot(moments * omega)
     p_phi, _, p_psi = symbols.momenta
     cyclic = solve([kinetic.diff(dphi) - p_phi, kinetic.diff(dpsi) - p_psi], (dphi, dpsi), dict=True)[0]
+    # the energy at constant nutation and momenta
     energy = kinetic.subs(cyclic).subs(dtheta, 0) + symbols.W * symbols.c_3 * cos(symbols.theta)
     names = (symbols.theta, p_phi, p_psi, symbols.A, symbols.C, symbols.W, symbols.c_3, symbols.psi)
     function = lambdify(names, energy, "numpy")
+    # weight 1 N, centre of mass 1 m from the tip
     return lambda theta, phi, psi, a, c: function(theta, phi, psi, a, c, 1.0, 1.0, 0.0)
 
 
 def _potential_and_path(precession: float) -> Picture:
-    """Draw the effective potential with its turning points, and the path of the top's axis on a sphere.
-
-    ``precession`` is the initial rate of precession, rad/s; the path has loops, cusps or waves if it is negative, zero
-    or positive.
-    """
+    """Draw the effective potential with its turning points, and the path of the top's axis on a sphere."""
     picture = Picture()
+    # an initial precession, rad/s, below, at or above zero gives loops, cusps or waves
     motion = top_motion((0.0, precession * np.sin(START), SPIN), START, np.linspace(0.0, 13.6, 681))
     axis = motion.dcm[:, :, 2]
     nutation = np.arccos(np.clip(axis[:, 2], -1, 1))
@@ -289,16 +283,13 @@ def _satellite(picture: Picture, plane: Plane, place: Floats, half: float) -> No
 
 
 def tidal_force(offset: Floats, radius: Floats) -> Floats:
-    """Return the tidal force on a unit mass, to first order in its offset from the satellite's centre.
-
-    It is the derivative of the inverse-square attraction along the offset; ``radius`` is the vector from the attracting
-    centre.
-    """
+    """Return the tidal force on a unit mass at ``offset`` from a satellite's centre, to first order in the offset."""
     step = 1e-6
 
     def pull(place: Floats) -> Floats:
         value: Floats = -place / float(np.linalg.norm(place)) ** 3
         return value
 
+    # the derivative of the inverse-square attraction along the offset
     force: Floats = (pull(radius + step * offset) - pull(radius - step * offset)) / (2 * step)
     return force

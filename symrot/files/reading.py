@@ -42,20 +42,19 @@ def _refuse_mode(mode: int) -> None:
 def read_input(path: Path, largest: int) -> bytes:
     """Return the content of a regular file of at most ``largest`` bytes.
 
-    The function checks the kind of the file before opening it, because the mere opening has an effect on some devices.
-    It checks again after opening, because the file may have been replaced in between.
-
     Raises
     ------
     OSError
         If the file is special or missing (see :func:`refuse_special`), too large, or cannot be read.
     """
     try:
+        # before opening, because the mere opening has an effect on some devices
         refuse_special(path)
         descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     except ValueError as reason:  # the name contains a NUL character
         raise OSError(EINVAL, str(reason)) from None
     with open(descriptor, "rb", buffering=0) as stream:  # noqa: PTH123 - a descriptor has no path
+        # again after opening, because the file may have been replaced in between
         _refuse_mode(os.fstat(descriptor).st_mode)
         parts, rest = [], largest + 1
         while rest and (part := stream.read(rest)):

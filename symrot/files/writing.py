@@ -13,14 +13,12 @@ __all__ = ["check_target", "write"]
 def check_target(path: Path, suffixes: Sequence[str], option: str) -> None:
     """Raise InputError if a file cannot be written at ``path``; commands call this before they compute the content.
 
-    ``suffixes`` are the allowed endings, such as ``.csv``; ``option`` is the option that the message names, such as
-    ``--out``.
-
     Raises
     ------
     InputError
         If the suffix is unknown, the folder is missing, the path is a folder, or a permission is missing.
     """
+    # ``option``, such as --out, is named in messages
     if path.suffix.lower() not in suffixes:
         raise InputError(f"{option}: expected a file name that ends in {', '.join(suffixes)}, got {str(path)!r}")
     try:
@@ -43,10 +41,7 @@ def _refusal(path: Path, reason: Exception) -> InputError:
 
 
 def write(path: Path, content: Callable[[BinaryIO], object]) -> None:
-    """Write a file at ``path`` that is complete or does not exist.
-
-    ``content`` is a function that writes the bytes into an open binary file. This file is temporary, in the same
-    folder, and is renamed to ``path`` when complete.
+    """Write a file at ``path`` completely or not at all; ``content`` writes the bytes into an open binary file.
 
     Raises
     ------
@@ -54,6 +49,7 @@ def write(path: Path, content: Callable[[BinaryIO], object]) -> None:
         If writing fails; an existing file at ``path`` is then unchanged.
     """
     target = path.resolve()  # a link keeps pointing to its file
+    # a temporary file in the same folder, renamed when complete
     passing = target.with_name(f".{target.name[:100]}.{os.getpid()}.part")
     try:
         try:

@@ -97,10 +97,11 @@ def nearest(word: str, known: Collection[str]) -> str:
 
 
 def function_advice(name: str, known: Collection[str]) -> str:
-    """Return what to write instead of the function ``name``, which is unknown or has wrong arguments, or an empty text.
+    """Return what to write instead of the function ``name``, or an empty text: ``write sign(u)`` for ``sgn``.
 
-    ``known`` holds the functions that are allowed here: ``sgn`` gives ``write sign(u)`` if sign is among them.
+    ``known`` holds the functions that are allowed here.
     """
+    # a known function with wrong arguments
     if name in known:
         return f"write {SIGNATURES.get(name, f'{name}(u)')}"
     if name in JUMPING:
@@ -134,10 +135,8 @@ def name_advice(name: str, known: Collection[str]) -> str:
 
 
 def mark_advice(source: str, position: int, known: Collection[str]) -> str:
-    """Return what to write instead of the text at ``position`` of the formula ``source``, or an empty text.
-
-    There the reader met a character that is no operator, as ``^`` (``write ** for a power``), or missed an operator.
-    """
+    """Return what to write instead of the text at ``position`` of a formula: ``write ** for a power`` for ``^``."""
+    # the reader met a character that is no operator, or missed an operator
     rest, before = source[position:], source[:position].rstrip()
     if rest[:1] in MARKS:
         return f"write {MARKS[rest[0]]}"

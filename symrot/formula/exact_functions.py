@@ -1,7 +1,6 @@
 """Values of functions, such as exp, at exact numbers: rational values are exact, other values are rounded once.
 
-Roots, sines and cosines come from :mod:`symrot.formula.exact_numbers`. mpmath computes the other functions; the first
-call that needs mpmath imports it.
+mpmath computes what :mod:`symrot.formula.exact_numbers` does not.
 """
 
 import math
@@ -29,6 +28,7 @@ def _transcendental(name: str, *arguments: Fraction) -> Fraction:
     OverflowError
         If the value exceeds the range of a double.
     """
+    # imported only if a formula needs it
     import mpmath
 
     sizes = [max(x.numerator.bit_length(), x.denominator.bit_length()) for x in arguments]

@@ -1,7 +1,7 @@
-"""The exact numbers of a scene, read from text as :class:`fractions.Fraction`.
+"""The exact numbers of a scene, read from text as :class:`fractions.Fraction`. Standard library only.
 
-A rational value is exact: ``"1/3"``, ``"0.6375"`` (51/80), ``1e-3`` (1/1000). An irrational value (``sqrt``, ``pi``
-and the circular functions) is rounded once, to a relative error below 2^-300. Standard library only.
+A rational value is exact: ``"1/3"``, ``"0.6375"`` (51/80), ``1e-3``. An irrational value, as of ``sqrt``, ``pi`` and
+``sin``, is rounded once, to a relative error below 2^-300.
 """
 
 __all__ = [
@@ -71,10 +71,8 @@ def show(value: object, limit: int = 60) -> str:
 
 
 def rounded(value: Fraction) -> Fraction:
-    """Return a number rounded to an integer times a power of two, with a relative error below 2^-320.
-
-    Rounding keeps the fractions of irrational numbers short.
-    """
+    """Return a number rounded to an integer times a power of two, with a relative error below 2^-320."""
+    # this keeps the fractions of irrational numbers short
     shift = BITS + 2 - value.numerator.bit_length() + value.denominator.bit_length()
     scaled = value.numerator << shift if shift > 0 else value.numerator >> -shift
     quotient = scaled // value.denominator
@@ -112,11 +110,8 @@ def sqrt(value: Fraction) -> Fraction:
 
 
 def unit(vector: Sequence[Fraction | float]) -> tuple[Fraction, ...]:
-    """Return a nonzero vector divided by its norm: exact if the norm is rational, else with a relative error of 2^-320.
-
-    The computation uses integers over one common denominator; with fractions, each sum and product would need a
-    greatest common divisor.
-    """
+    """Return a nonzero vector divided by its norm: exact if the norm is rational, else with an error of 2^-320."""
+    # integers over one common denominator: fractions would need a greatest common divisor for each operation
     ratios = [x.as_integer_ratio() for x in vector]
     shared = lcm(*[bottom for _, bottom in ratios])
     tops = [top * (shared // bottom) for top, bottom in ratios]
@@ -204,11 +199,9 @@ def equal(a: Fraction, b: Fraction) -> bool:
 
 
 class Angle(NamedTuple):
-    """An angle ``rational + half_turns * pi`` in rad, where both numbers are fractions.
+    """An angle ``rational + half_turns * pi`` in rad, where both numbers are fractions; (0, 1/2) is 90 degrees."""
 
-    In this form 90 degrees is (0, 1/2), with the exact sine 1 and cosine 0.
-    """
-
+    # in this form 90 degrees has the exact sine 1 and cosine 0
     rational: Fraction
     half_turns: Fraction
 
@@ -323,10 +316,8 @@ def _from_float(value: float) -> Angle:
 
 
 def _from_scalar(value: SupportsFloat) -> Angle:
-    """Return the double nearest to a NumPy scalar or SymPy number, as an :class:`Angle` without a multiple of pi.
-
-    All readers of numbers return an Angle, since a number in a scene may be an angle in degrees.
-    """
+    """Return the double nearest to a NumPy scalar or SymPy number, as an :class:`Angle` without a multiple of pi."""
+    # an Angle, like the result of every reader, since a number in a scene may be an angle in degrees
     return _from_float(float(value))
 
 
@@ -347,11 +338,8 @@ def _in_range(value: Fraction) -> None:
 
 
 def _read(value: object, where: str, expect: str) -> Angle:
-    """Return a number as an :class:`Angle`, the pair (rational, half_turns) of ``rational + half_turns * pi``.
-
-    ``where`` (file and key) and ``expect`` (what is expected) are texts for the message of the InputError that is
-    raised if the value is not a number.
-    """
+    """Return a number as an :class:`Angle` in rad, so that multiples of pi stay exact."""
+    # where (file and key) and expect are texts for the message of the InputError
     kind = type(value)
     if not isinstance(value, bool):
         reader = _READERS.get(kind) or next((r for k, r in _READERS.items() if isinstance(value, k)), None)
@@ -416,9 +404,9 @@ def read(value: object, where: str = "", expect: str = EXPECTATION) -> Fraction:
 def read_angle(value: object, degrees: bool = False, where: str = "", expect: str = EXPECTATION) -> Angle:
     """Return an angle given in rad, or in degrees if ``degrees`` is true.
 
-    Raise InputError as :func:`read` does, with the texts ``where`` and ``expect``. A rational multiple of pi, such as
-    any rational number of degrees, stays exact, so that ``cos("pi/2")`` is exactly 0.
+    Raise InputError as :func:`read` does.
     """
+    # a rational multiple of pi stays exact: cos("pi/2") is exactly 0
     angle = _read(value, where, expect)
     if not degrees:
         return angle

@@ -1,8 +1,7 @@
 """Sparse polynomials with exact coefficients. Standard library only.
 
-The variables of a polynomial are called generators; all of them are names, or all of them are numbers. In integrals
-over solids the generators are the coordinates, the cosines and sines of the angles, ``pi``, and for closed forms the
-dimensions of the solid. The auxiliary states of Taylor steppers are polynomials in numbered generators.
+The variables of a polynomial are called generators: names such as ``x``, ``cos(phi)`` and ``pi`` in integrals over
+solids, or numbers in Taylor steppers.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -21,10 +20,9 @@ Operand = Union["Polynomial", Fraction, int]
 
 
 class Polynomial:
-    """A polynomial: ``terms`` maps monomials to nonzero coefficients. It must not be changed after it is made.
+    """A polynomial, never changed; ``terms`` maps monomials to coefficients.
 
-    A monomial is a tuple of pairs (generator, power): ``3 z x^2 + 5`` has the terms ``{(("x", 2), ("z", 1)): 3, ():
-    5}``.
+    ``3 z x^2 + 5`` has the terms ``{(("x", 2), ("z", 1)): 3, (): 5}``.
     """
 
     __slots__ = ("terms",)
@@ -94,7 +92,7 @@ class Polynomial:
     def collect(self, names: Iterable[str]) -> dict[tuple[int, ...], "Polynomial"]:
         """Return the coefficients of the polynomial in the generators ``names``, by exponents.
 
-        With the names x and y, ``3 z x^2 + 5`` gives ``{(2, 0): 3 z, (0, 0): 5}``.
+        ``3 z x^2 + 5`` in x gives ``{(2,): 3 z, (0,): 5}``.
         """
         order = tuple(names)
         parts: dict[tuple[int, ...], dict[Monomial, Fraction]] = {}
@@ -105,10 +103,8 @@ class Polynomial:
         return {exponents: Polynomial(part) for exponents, part in parts.items()}
 
     def derivative(self, name: str) -> "Polynomial":
-        """Return the partial derivative by the coordinate or angle ``name``.
-
-        If it is an angle, the generators that represent its cosine and sine are differentiated too.
-        """
+        """Return the partial derivative by the coordinate or angle ``name``."""
+        # the generators for the cosine and sine of an angle depend on it too
         inner = ((generator(name), constant(1)), (cosine(name), -sine(name)), (sine(name), cosine(name)))
         total = constant(0)
         for argument, rate in inner:
@@ -147,11 +143,8 @@ def _join(left: Monomial, right: Monomial) -> Monomial:
 
 
 def products_of_monomials(left: Polynomial, right: Polynomial) -> set[Monomial]:
-    """Return all products of a monomial of ``left`` and one of ``right``.
-
-    These are the terms that appear when ``left * right`` is multiplied out, also those whose coefficients cancel.
-    Callers use their number as the cost of that multiplication.
-    """
+    """Return all products of a monomial of ``left`` and one of ``right``."""
+    # products whose coefficients cancel count too: callers use the number as the cost of left * right
     return {_join(monomial, factor) for monomial in left.terms for factor in right.terms}
 
 
@@ -180,10 +173,8 @@ def sine(angle: str) -> Polynomial:
 
 
 def reduce_circular(source: Polynomial, angles: Iterable[str]) -> Polynomial:
-    """Return an equal polynomial in which ``cos^2`` of each of the ``angles`` is replaced by ``1 - sin^2``.
-
-    In the result no cosine has a power above 1, so that equal formulas give equal polynomials.
-    """
+    """Return an equal polynomial in which ``cos^2`` of each of the ``angles`` is replaced by ``1 - sin^2``."""
+    # no cosine keeps a power above 1, so equal formulas give equal polynomials
     for angle in angles:
         reduced = constant(0)
         for (power,), coefficient in source.collect([f"cos({angle})"]).items():
@@ -223,10 +214,9 @@ def exact_quotient(dividend: Polynomial, divisor: Polynomial) -> Polynomial | No
 
 
 def square_root(source: Polynomial) -> Polynomial:
-    """Return the square root of a polynomial; raise ``ValueError`` if the polynomial is not a square.
+    """Return the square root of a polynomial, with a positive lowest term.
 
-    Of the two square roots, the one with a positive lowest term is returned. It is computed term by term from its
-    lowest term up, as for a power series.
+    Raise ``ValueError`` if the polynomial is not a square.
     """
     order = _exponents(sorted({name for monomial in source.terms for name, _ in monomial}))
     if not source:
@@ -236,6 +226,7 @@ def square_root(source: Polynomial) -> Polynomial:
     if scale**2 != coefficient or any(power % 2 for _, power in monomial):
         raise ValueError("expected the square of a polynomial")
     lowest = tuple((name, power // 2) for name, power in monomial)
+    # term by term from the lowest one up, as for a power series
     root = Polynomial({lowest: scale})
     for _ in source.terms:
         rest = source - root * root

@@ -1,8 +1,7 @@
 """A kernel as data: its signature, and its formulas as a straight-line program. Standard library only.
 
 A straight-line program is a list of assignments without loops and branches: first temporaries (intermediate results),
-then outputs. It connects derivation and computation: code generation writes it, propagation reads it, and a saved
-kernel is read back from JSON without SymPy.
+then outputs. Code generation writes it, propagation evaluates it.
 """
 
 from collections import Counter
@@ -18,9 +17,9 @@ __all__ = ["Argument", "Program", "ProgramRecord", "Signature", "node_from_json"
 
 @dataclass(frozen=True)
 class Argument:
-    """One input or output argument of a kernel: its name, its ``role`` (``"in"`` or ``"out"``), and its numbers.
+    """One input or output argument of a kernel.
 
-    ``components`` holds (name, unit, meaning) for each number in the argument; a scalar has one component.
+    ``components`` holds (name, unit, meaning) for each number in it; a scalar has one.
     """
 
     name: str
@@ -59,14 +58,13 @@ class ProgramRecord(TypedDict):
 
 @dataclass(frozen=True)
 class Program:
-    """A straight-line program: ``temporaries`` in order of computation, each assigned once, then ``outputs``.
+    """A straight-line program: pairs (name, formula) for ``temporaries``, in order, then for ``outputs``.
 
-    Both hold pairs (name, formula). A formula contains names of components of the input arguments and of earlier
-    temporaries: ``temporaries = (("s", a*b),)`` and ``outputs = (("y", s + s*c),)`` with a, b, c as inputs.
+    A temporary is an intermediate result.
     """
 
     signature: Signature
-    temporaries: tuple[tuple[str, Node], ...]
+    temporaries: tuple[tuple[str, Node], ...]  # each name is assigned once, from inputs and earlier temporaries
     outputs: tuple[tuple[str, Node], ...]  # (component of an output argument, formula)
 
     def __post_init__(self) -> None:
@@ -85,12 +83,10 @@ class Program:
         return sum((operations(node) for _, node in self.temporaries + self.outputs), Counter())
 
     def vanishing(self, zeros: Collection[str]) -> frozenset[str]:
-        """Return the outputs that are zero if the inputs ``zeros`` are zero, as far as the formulas show directly.
-
-        An output such as ``a*b`` with a in ``zeros`` counts; one that is zero only because its terms cancel does not.
-        """
+        """Return the outputs that are zero if the inputs ``zeros`` are zero, as ``a*b`` is for a."""
         known = set(zeros)
         for name, node in (*self.temporaries, *self.outputs):
+            # an output that is zero only because its terms cancel does not count
             if vanishes(node, known):
                 known.add(name)
         return frozenset(name for name, _ in self.outputs if name in known)
@@ -109,12 +105,8 @@ class Program:
         number: Callable[[Fraction], Any] = float,
         only: Collection[str] | None = None,
     ) -> dict[str, Any]:
-        """Return the values of the outputs, by name, for the ``values`` of the inputs, by name.
-
-        Values are floats, arrays or Fractions (with ``number=Fraction``). ``functions`` gives the functions such as sin
-        for this kind of number, and ``number`` converts constants to it. If ``only`` is given, only these outputs and
-        the temporaries that they need are computed.
-        """
+        """Return the values of the outputs, by name, for the ``values`` of the inputs: floats, arrays or Fractions."""
+        # only these outputs, and the temporaries that they need
         outputs = [(name, node) for name, node in self.outputs if only is None or name in only]
         needed = set().union(*(names(node) for _, node in outputs))
         temporaries = []
@@ -124,6 +116,7 @@ class Program:
                 temporaries.append((name, node))
         known = dict(values)
         for name, node in reversed(temporaries):
+            # functions and number evaluate functions and constants for this kind of number
             known[name] = evaluate(node, known, functions, number)
         return {name: evaluate(node, known, functions, number) for name, node in outputs}
 

@@ -12,12 +12,9 @@ MOST_TERMS = 60  # largest number of terms of a polynomial that is tested for be
 
 
 def square_under_root(radicand: Node) -> tuple[Node, Node] | None:
-    """Return (u, v) with ``radicand = u^2 v``, so that its root is abs(u) sqrt(v); None if it contains no square.
-
-    A sum such as t**2 - 2*c*t + c**2 also counts as a square if it is the square of a polynomial in its symbols and
-    function calls.
-    """
+    """Return (u, v) with ``radicand = u^2 v``, so that its root is abs(u) sqrt(v); None if it contains no square."""
     root, rest = _split(radicand)
+    # a sum such as t**2 - 2*c*t + c**2 may be the square of a polynomial
     if rest != ONE and (more := _root_of_sum(rest)) is not None:
         root, rest = _joined("*", root, more), ONE
     return None if root == ONE else (root, rest)
@@ -56,10 +53,9 @@ def _root_of_sum(node: Node) -> Node | None:
 
 
 def as_polynomial(node: Node, generators: dict[str, Node]) -> Polynomial | None:
-    """Return a formula as a polynomial whose generators are the texts of its symbols and function calls.
+    """Return a formula as a polynomial in its symbols and function calls, or None.
 
-    ``generators`` gets an entry (text, formula) for each. Return None if the formula is not such a polynomial, or if
-    the polynomial has too many terms.
+    ``generators`` gets an entry (text, formula) for each of them.
     """
     kind = node[0]
     if kind == "number":
@@ -69,6 +65,7 @@ def as_polynomial(node: Node, generators: dict[str, Node]) -> Polynomial | None:
         generators[name] = node
         return generator(name)
     parts = [as_polynomial(child, generators) for child in children(node)]
+    # too long to go on
     if any(part is None or len(part.terms) > MOST_TERMS for part in parts):
         return None
     first, *others = (part for part in parts if part is not None)

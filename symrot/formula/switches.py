@@ -1,34 +1,7 @@
 """Formulas with jumps or kinks, rewritten as smooth formulas that a stepper integrates from one jump to the next.
 
-A switch is a place at which a formula jumps or has a kink. It has a guard, which is a formula whose sign changes there,
-and a mode, which is the number that replaces the jump in the smooth formula. As long as no guard changes sign, the
-smooth formula with the current values of the modes equals the original formula:
-
-=====================  =============================  ==========================================
-formula                smooth formula                 guard
-=====================  =============================  ==========================================
-``sign(u)``            ``s``                          ``u``, s = 1 or -1
-``step(u)``            ``(1 + s)/2``                  ``u``
-``abs(u)``             ``s u``                        ``u``; none if u contains only modes
-``sqrt(u^2 v)``        ``s u sqrt(v)``                ``u``
-``max(a, b)``          ``b + (1 + s)/2 (a - b)``      ``a - b``
-``where(c, a, b)``     ``b + p (a - b)``, or only     guards of the condition c, p = 1 or 0
-                       a or b (see below)
-``floor(u)``           ``n``                          ``u - n`` and ``n + 1 - u``, n whole
-``mod(a, b)``          ``a - b n``                    guards of ``floor(a/b)``
-``atan2(y, x)``        as it is for x > 0, else       ``x``, and ``y`` where x < 0
-                       ``s pi - atan2(y, -x)``
-=====================  =============================  ==========================================
-
-The arc tangent of two arguments jumps across the negative x axis. The form for x < 0, with s the sign of y, is smooth
-there. A formula ``abs(u)`` in which u contains only modes is constant between switches and remains as it is.
-
-In ``where(t > 1, sqrt(t - 1), 0)`` the root has no value before t = 1, and zero times an undefined value is undefined.
-A part may also have a short pulse at a time when it does not apply, and the stepper would shorten its steps for
-nothing. So a ``where`` with a part that may be undefined or have a pulse stays in the smooth formula until the modes
-are known. :func:`chosen` then replaces it by the part that applies; guards inside the other part are ignored.
-
-Standard library only.
+A switch is a jump or kink. Its guard is a formula whose sign changes there; its mode is the number that replaces the
+jump: ``sign(u)`` has the guard u and the mode s = 1 or -1. Standard library only.
 """
 
 from collections.abc import Collection, Iterable, Mapping
@@ -91,23 +64,14 @@ class Switch(NamedTuple):
 
 
 class Smooth(NamedTuple):
-    """Formulas with all jumps and kinks replaced by smooth expressions, and the switches at which these change.
+    """Smooth formulas in place of formulas with jumps and kinks, and the switches at which they change."""
 
-    A mode is a number, such as s = 1 or -1 for sign(u), that replaces a jump. Its switch has a guard, here u: when the
-    guard changes sign, the mode changes. ``formulas`` and guards may contain modes, and ``where(p, a, b)``, in which p
-    is a formula of modes with the value 1 or 0; see :func:`chosen`. Each of the ``switches`` comes after those whose
-    modes occur in its guard.
-    """
-
-    formulas: tuple[Node, ...]
-    switches: tuple[Switch, ...]
+    formulas: tuple[Node, ...]  # with modes, and with where(p, a, b), p a formula of modes with the value 1 or 0
+    switches: tuple[Switch, ...]  # each after those whose modes occur in its guard
 
 
 def has_switches(node: Node) -> bool:
-    """Return whether a formula contains a function that jumps or has a kink, such as sign, abs or max.
-
-    Only then must it be rewritten by :func:`smooth`.
-    """
+    """Return whether a formula contains a function that jumps or has a kink, such as sign, abs or max."""
     if node[0] == "call" and node[1] in SWITCHING:
         return True
     if node[0] == "call" and node[1] in BENDING and names(node) & CHANGING:
@@ -118,10 +82,7 @@ def has_switches(node: Node) -> bool:
 
 
 def condition_error(node: Node) -> str:
-    """Return what to write instead of the first wrong condition of ``where`` in a formula; empty if all are right.
-
-    For ``1 < t < 2`` the text is "one comparison at a time: '1 < t and t < 2' instead of '1 < t < 2'".
-    """
+    """Return what to write instead of the first wrong condition of ``where``, as ``1 < t < 2``, or an empty text."""
 
     def wrong(node: Node, condition: bool) -> str:
         if node[0] != "call" or node[1] not in CONDITIONS:
@@ -141,11 +102,11 @@ def condition_error(node: Node) -> str:
 
 
 def hold(conditions: Iterable[tuple[Node, int]], modes: Mapping[str, int], held: Collection[str] = ()) -> bool:
-    """Return whether all conditions hold: whether each formula, a function of ``modes``, has the value paired with it.
+    """Return whether each pair (formula, value) of ``conditions`` is satisfied by the present ``modes``.
 
-    ``modes`` maps names of modes (see the module) to their present values. While the motion slides along a switch, its
-    mode is in ``held`` and has no fixed value. A condition that contains such a mode counts as true.
+    ``held`` names modes without a fixed value.
     """
+    # while the motion slides along a switch, its mode has no fixed value; a condition with this mode counts as true
     return all(names(share) & set(held) or evaluate(share, modes) == value for share, value in conditions)
 
 
@@ -155,17 +116,12 @@ def has_choices(node: Node) -> bool:
 
 
 def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> Node:
-    """Return a formula in which each ``where(p, a, b)`` is replaced by a if p is 1, or by b if p is 0.
-
-    p is a formula of modes, the numbers such as 1 or -1 that replace jumps. Its value follows from ``modes``, which
-    maps each mode to its present number: for s = 1, ``where((1 + s)/2, a, b)`` is a. Modes in ``held`` change too fast
-    to be either number, because a motion slides along their switch (its guard stays at zero). A ``where`` whose p
-    contains such a mode is replaced by the sum ``b + p (a - b)``.
-    """
+    """Return a formula with a, if p is 1, or b, if p is 0, in place of each ``where(p, a, b)``; ``modes`` gives p."""
     if not has_choices(node):
         return node
     if node[:2] == ("call", "where"):
         share, yes, no = node[2]
+        # a motion slides along the switch: the mode changes too fast to be 1 or -1, and the sum b + p (a - b) is a mean
         if names(share) & set(held):
             return _blend(share, chosen(yes, modes, held), chosen(no, modes, held))
         return chosen(yes if evaluate(share, modes) == 1 else no, modes, held)
@@ -174,10 +130,8 @@ def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> 
 
 
 def blended(node: Node) -> Node:
-    """Return a smooth formula in which each ``where(p, a, b)`` is replaced by the sum ``b + p (a - b)``.
-
-    It equals a where p is 1 and b where p is 0, but needs values of both.
-    """
+    """Return a smooth formula in which each ``where(p, a, b)`` is replaced by the sum ``b + p (a - b)``."""
+    # equal to where(p, a, b) for p = 1 and p = 0, but it needs the values of both a and b
     return chosen(node, {}, names(node))
 
 
@@ -190,25 +144,22 @@ def placed(node: Node, values: Mapping[str, Node]) -> Node:
 
 
 def on_line(node: Node) -> tuple[Any, int]:
-    """Return (key, sign) of a formula, where proportional formulas such as ``t - 1`` and ``2 - 2*t`` have the same key.
+    """Return (key, sign): the formulas ``t - 1`` and ``2 - 2*t``, being proportional, have the same key.
 
-    The sign is that of the factor between the formula and its key. Formulas with the same key have the same zeros, so
-    that one search for zeros is enough for all of them. If a formula is not a polynomial in symbols and function calls,
-    the key is the formula itself.
+    Their signs differ.
     """
     polynomial = as_polynomial(node, {})
     if polynomial is None or not polynomial.terms:
+        # not a polynomial in symbols and function calls
         return node, 1
     (_, first), *_ = terms = sorted(polynomial.terms.items())
+    # formulas with one key have the same zeros, so that one search for zeros is enough for all of them
     return tuple((monomial, coefficient / first) for monomial, coefficient in terms), 1 if first > 0 else -1
 
 
 def between_sides(node: Node, mode: str) -> Node:
-    """Return a formula that is linear in a mode and equals the formula ``node`` if the mode is 1 or -1.
-
-    The rates of a motion that slides along a switch are a mean of the rates for positive and for negative guards (A. F.
-    Filippov). A formula that is linear in the mode already describes such means and is returned unchanged.
-    """
+    """Return a formula that is linear in a mode and equals the formula ``node`` if the mode is 1 or -1."""
+    # a motion that slides along a switch has a mean of the rates on both sides (A. F. Filippov), linear in the mode
     if _is_linear(node, mode):
         return node
     above, below = (placed(node, {mode: ("number", Fraction(side))}) for side in (1, -1))
@@ -229,11 +180,7 @@ def _is_linear(node: Node, mode: str) -> bool:
 
 
 def _degree(node: Node) -> int:
-    """Return the degree of a formula as a polynomial in time, states and sines of time, between two switches.
-
-    The result is RISKY if the formula may be anything else: undefined, with a pole or with a short pulse. Such a part
-    of a ``where`` is not evaluated while the other part applies.
-    """
+    """Return the degree of a formula in time, states and sines of time, or RISKY if it may have a pole or pulse."""
     kind = node[0]
     if kind in ("number", "symbol"):
         return int(kind == "symbol" and node[1] in CHANGING)
@@ -263,10 +210,9 @@ def _degree(node: Node) -> int:
 
 @lru_cache(maxsize=256)
 def smooth(sources: tuple[str, ...]) -> Smooth:
-    """Return formulas, given as text, in smooth form, together with the switches that replace jumps and kinks.
+    """Return formulas, given as text, in smooth form, with their switches.
 
-    The formula ``abs(t)`` becomes ``s*t`` with a mode s, which is the sign of t. The table of the module lists the
-    smooth form of each function.
+    ``abs(t)`` becomes ``s*t``, where the mode s is the sign of t.
     """
     nodes = [parse(source, switching=True) for source in sources]
     used_names = set().union(*map(names, nodes))
@@ -277,6 +223,24 @@ def smooth(sources: tuple[str, ...]) -> Smooth:
     return Smooth(tuple(map(writer.smooth, nodes)), tuple(writer.switches))
 
 
+# formula            smooth formula                guard
+# sign(u)            s                             u, s = 1 or -1
+# step(u)            (1 + s)/2                     u
+# abs(u)             s u                           u; as it is if u contains only modes, constant between switches
+# sqrt(u^2 v)        s u sqrt(v)                   u
+# max(a, b)          b + (1 + s)/2 (a - b)         a - b
+# where(c, a, b)     b + p (a - b), or a, or b     guards of the condition c, p = 1 or 0
+# floor(u)           n                             u - n and n + 1 - u, n whole
+# mod(a, b)          a - b n                       guards of floor(a/b)
+# atan2(y, x)        as it is for x > 0, else      x, and y where x < 0: atan2 jumps across the negative x axis
+#                    s pi - atan2(y, -x)
+#
+# In where(t > 1, sqrt(t - 1), 0) the root has no value before t = 1, and zero times an undefined value is undefined. A
+# part may also have a short pulse at a time when it does not apply, for which the stepper would shorten its steps. So a
+# where with such a part stays in the smooth formula until the modes are known; chosen() then replaces it by the part
+# that applies, and guards inside the other part are ignored.
+
+
 class _Writer:
     def __init__(self, prefix: str) -> None:
         self.prefix, self.switches = prefix, list[Switch]()
@@ -285,12 +249,7 @@ class _Writer:
         self.conditions: Conditions = ()  # conditions under which the part being rewritten applies
 
     def mode(self, kind: str, guard: Node, where: Conditions = (), at_zero: int = 1) -> Node:
-        """Return the symbol of the mode that belongs to a guard, such as s for ``u`` in the table of the module.
-
-        The first call with this guard adds a switch; later calls return its mode. ``kind``, ``where`` and ``at_zero``
-        are those of :class:`Switch`. A switch that exists already is also used if it applies under fewer conditions
-        than ``where``.
-        """
+        """Return the symbol of the mode that belongs to a guard, and add a :class:`Switch` for a new guard."""
         where = self.conditions + where
         for count in range(len(where) + 1):  # a mode that applies under fewer of the conditions serves as well
             if (mode := self.known.get((kind, guard, where[:count], at_zero))) is not None:
@@ -301,13 +260,12 @@ class _Writer:
         return ("symbol", name)
 
     def part(self, node: Node, share: Node, value: int) -> Node:
-        """Return ``node``, which is the part a or b of ``where(c, a, b)``, as a smooth formula.
+        """Return ``node``, the part a or b of ``where(c, a, b)``, as a smooth formula.
 
-        ``share`` is a formula with the value 1 where c holds and 0 where it does not (see :meth:`share`). ``value`` is
-        1 for the part a, and 0 for b. The switches in the part affect the motion only where ``share`` has that value;
-        this condition is stored with them.
+        ``value`` is 1 for a and 0 for b.
         """
         outside = self.conditions
+        # the switches in the part matter only where share has that value
         self.conditions = (*outside, (share, value))
         smooth = self.smooth(node)
         self.conditions = outside
@@ -320,6 +278,7 @@ class _Writer:
         if kind == "call" and node[1] == "where":
             condition, yes, no = node[2]
             share = self.share(condition)
+            # a risky part is not evaluated while the other part applies
             if max(_degree(yes), _degree(no)) < RISKY:
                 return _blend(share, self.smooth(yes), self.smooth(no))
             return ("call", "where", (share, self.part(yes, share, 1), self.part(no, share, 0)))
@@ -338,11 +297,7 @@ class _Writer:
         return getattr(self, f"_{node[1]}")(*parts)  # type: ignore[no-any-return]
 
     def share(self, condition: Node) -> Node:
-        """Return a formula that is 1 if a condition such as ``t < 1 and omega_1 < 0`` holds, otherwise 0.
-
-        Its symbols are modes, the numbers 1 and -1 that change at the switches: ``(1 + s1)/2 * (1 + s2)/2`` in this
-        example. ``where(c, a, b)`` is b + share*(a - b).
-        """
+        """Return a formula of modes that is 1 if a condition holds, otherwise 0: ``(1 + s)/2`` for ``t < 1``."""
         name, parts = condition[1], condition[2]
         if name == "less":
             left, right = map(self.smooth, parts)
@@ -351,6 +306,7 @@ class _Writer:
         shares = [self.share(part) for part in parts]
         if name == "not":
             return ("-", ONE, shares[0])
+        # t < 1 and omega_1 < 0 gives (1 + s1)/2 * (1 + s2)/2
         both: Node = ("*", *shares)
         return both if name == "and" else ("-", ("+", *shares), both)
 

@@ -1,12 +1,9 @@
 """Formulas as text and as trees: read without ``eval``, evaluated with any kind of number. Standard library only.
 
-A formula tree is a nested tuple, called a node. Formulas of scenes, printed closed forms and kernels all have this
-form::
+A formula tree is a nested tuple, called a node::
 
     ("number", Fraction)   ("symbol", name)   ("neg", a)   ("call", function, (arguments,))
     ("+", a, b)   ("-", a, b)   ("*", a, b)   ("/", a, b)   ("**", a, integer)
-
-No text is ever passed to Python's own evaluator.
 """
 
 import re
@@ -220,9 +217,9 @@ def parse(source: str, where: str = "", switching: bool = False) -> Node:
 
 
 def children(node: Node) -> tuple[Node, ...]:
-    """Return the operands of the operation at the root of a formula tree.
+    """Return the operands at the root of a formula tree: (a, b) for ``("+", a, b)``.
 
-    They are (a, b) for ``("+", a, b)``; a number or a symbol has none.
+    A number or a symbol has none.
     """
     kind = node[0]
     if kind in ("number", "symbol"):
@@ -255,13 +252,11 @@ def names(node: Node) -> set[str]:
 
 
 def operations(node: Node) -> Counter[str]:
-    """Return the numbers of operations in a formula: ``add`` (and subtract), ``mul``, ``div``, ``neg``, and functions.
-
-    A power with exponent n counts as ``|n| - 1`` multiplications, and one division if n is negative.
-    """
+    """Return the numbers of operations in a formula, by name: ``add`` (and subtract), ``mul``, ``neg``, ``sin``.."""
     count: Counter[str] = sum((operations(child) for child in children(node)), Counter())
     kind = node[0]
     if kind == "**":
+        # x^-3 is two multiplications and a division
         count["mul"] += max(abs(node[2]) - 1, 0)
         count["div"] += node[2] < 0
     elif kind not in ("number", "symbol"):
@@ -273,13 +268,11 @@ ODD = {"sqrt", "sin", "tan", "sinh", "tanh", "asin", "atan", "abs"}  # functions
 
 
 def vanishes(node: Node, zeros: Collection[str]) -> bool:
-    """Return whether a formula, as it is written, is zero if the symbols ``zeros`` are zero, as ``a*b`` is for a.
-
-    A formula that is zero only because its terms cancel gives False.
-    """
+    """Return whether a formula, as it is written, is zero if the symbols ``zeros`` are zero, as ``a*b`` is for a."""
     kind = node[0]
     if kind in ("number", "symbol"):
         return node[1] == 0 if kind == "number" else node[1] in zeros
+    # terms that cancel are not recognised: x - x gives False
     parts = [vanishes(part, zeros) for part in children(node)]
     if kind == "*":
         return any(parts)
@@ -336,12 +329,10 @@ _INFIX = {"+": (10, " + "), "-": (10, " - "), "*": (20, "*"), "/": (20, "/")}
 
 
 def text(node: Node, binding: int = 0, literal: Callable[[Fraction], str] = str) -> str:
-    """Return a formula as infix text with the fewest brackets that preserve its order of evaluation.
-
-    :func:`parse` converts the text back to the same tree, except that a fraction becomes a quotient.
-    """
+    """Return a formula as infix text with the fewest brackets that preserve its order of evaluation."""
     kind = node[0]
     if kind == "number":
+        # parse converts the text back to the same tree, except that a fraction becomes a quotient
         number_text = literal(node[1])
         loose = binding > 10 and ("/" in number_text or number_text.startswith("-"))
         return f"({number_text})" if loose else number_text

@@ -30,12 +30,8 @@ def _table() -> dict[str, dict[str, str]]:
 
 @cache
 def closed_form(shape: str) -> dict[str, Node]:
-    """Return the formulas of a uniform shape of mass ``m``, by name, as formula trees in its dimensions.
-
-    The names are ``measure`` (volume, area or length), ``center_x``, ``center_y``, ``center_z`` for the centre of mass,
-    and ``xx`` to ``yz`` for the inertia tensor about it. ``shape`` is the shape's name, such as ``"cone"``, whose
-    ``center_z`` is ``height/4``.
-    """
+    """Return the formulas of a uniform shape of mass ``m``, by name: ``"cone"`` has ``center_z``, height/4."""
+    # measure (volume, area or length), center_x to center_z, and xx to yz of the inertia tensor about the centre
     return {key: parse(text) for key, text in _table()[shape].items()}
 
 

@@ -21,19 +21,17 @@ _ROTATION_TOLERANCE = Fraction(1, 10**9)  # rejects a matrix of rounded decimals
 
 
 class Part(NamedTuple):
-    """A part of a body, with its entries as the scene gives them.
-
-    ``at`` is the position (m) of the part's origin in the axes of the body; ``rotation`` is the 3x3 matrix that maps
-    components in the part's axes to components in the body's axes. A part has either a ``mass`` (kg) or a ``density``
-    (kg per m^3, m^2 or m; a number, or the text of a polynomial in the part's coordinates x, y, z). Point masses have
-    neither: their masses are among their dimensions.
-    """
+    """A part of a body, with its entries as the scene gives them."""
 
     shape: str
     dimensions: Mapping[str, Any]
+    # kg; point masses have theirs among the dimensions
     mass: Any = None
+    # instead of a mass: kg per m^3, m^2 or m, a number or the text of a polynomial in x, y, z
     density: Any = None
+    # position of the part's origin, m, in the axes of the body
     at: Sequence[Any] = _ORIGIN
+    # maps components in the part's axes to components in the body's axes
     rotation: Sequence[Sequence[Any]] = IDENTITY
     subtract: bool = False
 
@@ -75,10 +73,7 @@ def _positive(value: Any, name: str, where: str) -> Fraction:
 
 
 def _density_node(density: Any, where: str) -> Node:
-    """Return the formula tree of a part's density, given as a positive number or as text in x, y, z.
-
-    A number that is not positive raises InputError, which names the place ``where``.
-    """
+    """Return the formula tree of a part's density, given as a positive number or as text in x, y, z."""
     if isinstance(density, str):
         node = parse(density, f"{where}.density" if where else "density")
         if node[0] != "number":

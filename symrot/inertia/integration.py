@@ -1,10 +1,7 @@
 """Exact integrals of polynomials over shapes such as cylinders, by a map and its Jacobian. Standard library only.
 
-A shape is described by a map from coordinates to positions. The Jacobian of the map is computed: the determinant for a
-solid, the root of the Gram determinant for a surface or a curve. Every integrand is a polynomial in the coordinates and
-in cosines and sines of angles, so every integral is exact: powers have polynomial antiderivatives, and integrals of
-products of powers of cos and sin, between multiples of pi/2, follow from Wallis' recursion. The result is a polynomial
-in the dimensions and pi.
+A map gives the position for coordinates such as radius and angle. Integrands are polynomials in coordinates, cosines
+and sines, so every integral is exact (powers, and Wallis' recursion): a polynomial in the dimensions and pi.
 """
 
 from collections.abc import Mapping
@@ -40,22 +37,16 @@ _PI = {"pi": PI}
 
 
 class Domain(NamedTuple):
-    """A shape as a map from coordinates, such as radius and angle, to positions (m): map, Jacobian and limits.
-
-    The Jacobian is volume (area, length) per unit of the coordinates. All are polynomials in coordinates and
-    dimensions.
-    """
+    """A shape as a map from coordinates, such as radius and angle, to positions (m): map, Jacobian and limits."""
 
     position: tuple[Polynomial, ...]
+    # volume (area, length) per unit of the coordinates
     jacobian: Polynomial
     limits: tuple[tuple[Coordinate, Polynomial, Polynomial], ...]
 
 
 class Moments(NamedTuple):
-    """The integrals of 1, x_i and x_i x_j over a shape, weighted by a density.
-
-    With the density in kg per m^3 they give the mass, the centre of mass and the inertia tensor.
-    """
+    """The integrals of 1, x_i and x_i x_j over a shape, weighted by a density: mass, centre and inertia follow."""
 
     zeroth: Any
     first: tuple[Any, ...]
@@ -81,13 +72,10 @@ def _determinant(rows: list[list[Polynomial]]) -> Polynomial:
 
 
 def _jacobian(position: tuple[Polynomial, ...], coordinates: tuple[Coordinate, ...]) -> Polynomial:
-    """Return the Jacobian of a map to positions: volume, area or length per unit of the coordinates.
-
-    Three coordinates (a solid) give the determinant of the derivatives; two or one give the root of the Gram
-    determinant.
-    """
+    """Return the Jacobian of a map to positions: volume, area or length per unit of the coordinates."""
     columns = [[component.derivative(c.name) for component in position] for c in coordinates]
     angles = [c.name for c in coordinates if c.angle]
+    # a solid: the determinant of the derivatives; otherwise the root of the Gram determinant
     if len(columns) == 3:
         return reduce_circular(_determinant(columns), angles)
     gram = [[sum((a * b for a, b in zip(p, q, strict=True)), constant(0)) for q in columns] for p in columns]
@@ -95,12 +83,9 @@ def _jacobian(position: tuple[Polynomial, ...], coordinates: tuple[Coordinate, .
 
 
 def domain(shape: Shape, known: Mapping[str, Fraction] | None = None) -> Domain:
-    """Return a shape's map from coordinates to positions, with its Jacobian and limits, as polynomials.
-
-    Dimensions in ``known`` are inserted as numbers, the others stay symbols; its keys are names from
-    :func:`symrot.inertia.shapes.scalar_names`.
-    """
+    """Return a shape's map from coordinates to positions, with its Jacobian and limits, as polynomials."""
     numbers = known or {}
+    # Dimensions in known (names as in shapes.scalar_names) are numbers, the others symbols.
     values = {n: constant(numbers[n]) if n in numbers else generator(n) for n in scalar_names(shape)}
     values["pi"] = generator("pi")
     limits = tuple((c, _lifted(c.lower, values), _lifted(c.upper, values)) for c in shape.coordinates)
@@ -111,10 +96,8 @@ def domain(shape: Shape, known: Mapping[str, Fraction] | None = None) -> Domain:
 
 @cache
 def _quarter_turn(cosines: int, sines: int) -> tuple[Fraction, int]:
-    """Return the integral of cos^cosines sin^sines from 0 to pi/2, as a rational factor and a power of pi.
-
-    Example: cos^2 has the integral pi/4, so ``_quarter_turn(2, 0)`` is ``(Fraction(1, 4), 1)``.
-    """
+    """Return the integral of cos^m sin^n from 0 to pi/2 as (rational, power of pi): cos^2 gives ``(1/4, 1)``."""
+    # Wallis' recursion
     if sines > 1:
         rational, power = _quarter_turn(cosines, sines - 2)
         return rational * Fraction(sines - 1, cosines + sines), power
@@ -143,9 +126,8 @@ def _quarters(limit: Polynomial) -> int:
 
 
 def integrate(integrand: Polynomial, limits: tuple[tuple[Coordinate, Polynomial, Polynomial], ...]) -> Polynomial:
-    """Return the integral of ``integrand`` over all coordinates, as a polynomial in the dimensions and ``pi``.
-
-    ``limits`` gives each coordinate with its lower and upper limit.
+    """Return the integral of ``integrand`` over all coordinates between their limits, as a polynomial in dimensions and
+    ``pi``.
     """
     for coordinate, lower, upper in limits:
         total = constant(0)
@@ -161,10 +143,8 @@ def integrate(integrand: Polynomial, limits: tuple[tuple[Coordinate, Polynomial,
 
 
 def _degree(node: Node) -> int:
-    """Return an upper bound of a formula's degree in x, y, z, without expanding it; a high degree is refused early.
-
-    A formula that calls a function is no polynomial and raises ValueError.
-    """
+    """Return an upper bound of a formula's degree in x, y, z; raise ValueError if it calls a function."""
+    # not expanded, so that a high degree is refused early
     kind = node[0]
     if kind == "number":
         return 0
@@ -181,9 +161,7 @@ def _degree(node: Node) -> int:
 
 
 def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: object, where: str = "") -> Polynomial:
-    """Return a density, a formula in x, y, z, as a polynomial in the coordinates that describe the shape.
-
-    Such coordinates are, for a cylinder, radius, angle and height. ``values`` expresses x, y and z by them.
+    """Return a density, a formula in x, y, z, as a polynomial in the shape's coordinates, such as radius and angle.
 
     Parameters
     ----------
@@ -217,12 +195,8 @@ def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: 
 
 
 def moments(region: Domain, density: Polynomial | None = None) -> Moments:
-    """Return the integrals of 1, x_i and x_i x_j over a shape, as polynomials in the dimensions and ``pi``.
-
-    ``region`` describes the shape by coordinates with limits, such as radius and angle, and by the position as a
-    function of them. The integrals are weighted by ``density``, a polynomial in these coordinates; the default is the
-    density 1.
-    """
+    """Return the integrals of 1, x_i and x_i x_j over a shape, as polynomials in the dimensions and ``pi``."""
+    # the density is a polynomial in the coordinates of the map
     weight = region.jacobian if density is None else region.jacobian * density
     first = tuple(integrate(p * weight, region.limits) for p in region.position)
     second = [[constant(0)] * 3 for _ in range(3)]
@@ -232,14 +206,12 @@ def moments(region: Domain, density: Polynomial | None = None) -> Moments:
 
 
 def moments_per_measure(region: Domain, density: Polynomial | None = None) -> tuple[Polynomial, Moments]:
-    """Return the measure of a shape (its volume, area or length), and its moments divided by the measure.
-
-    The Jacobian is divided by the measure before the integration, which saves time for a tetrahedron with twelve
-    symbols. If it is not divisible by the measure, return 1 and the moments themselves.
-    """
+    """Return the measure of a shape (its volume, area or length), and its moments divided by the measure."""
     measure = integrate(region.jacobian, region.limits)
+    # Dividing before the integration saves time for a tetrahedron with twelve symbols.
     share = exact_quotient(region.jacobian, measure)
     if share is None:
+        # not divisible: 1 and the moments themselves
         return constant(1), moments(region, density)
     return measure, moments(region._replace(jacobian=share), density)
 
@@ -247,12 +219,7 @@ def moments_per_measure(region: Domain, density: Polynomial | None = None) -> tu
 def exact_moments(
     shape: Shape, dimensions: Mapping[str, Any], density: Node, source: object, where: str = ""
 ) -> Moments:
-    """Return the moments of a shape with a polynomial density as numbers, in kg, kg m, kg m^2.
-
-    They are the integrals of the density times 1, x_i and x_i x_j. ``dimensions`` come from
-    :func:`symrot.inertia.shapes.check_dimensions`; pi is correct to 2^-320. ``source`` is the density as the user wrote
-    it and ``where`` its place, for errors.
-    """
+    """Return the moments of a shape with a polynomial density as numbers, in kg, kg m, kg m^2."""
     numbers = scalars(shape, dimensions)
     region = domain(shape, numbers)
     measure = integrate(region.jacobian, region.limits).value(_PI)
@@ -263,6 +230,7 @@ def exact_moments(
         region = region._replace(jacobian=-region.jacobian)
     values = dict(zip("xyz", region.position, strict=True))
     values |= {name: constant(value) for name, value in numbers.items()}
+    # pi is correct to 2^-320; source is the density as the user wrote it, for errors
     integrals = moments(region, density_polynomial(density, values | {"pi": constant(PI)}, source, where))
     return Moments(
         integrals.zeroth.value(_PI),

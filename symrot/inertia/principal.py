@@ -1,8 +1,7 @@
 """Principal axes and moments of inertia, the symmetry of a body, and the test that a body can have these moments.
 
-The symmetry (spherical, symmetric, asymmetric) is decided with 120 digits, and moments count as equal if they agree to
-2^-200. So bodies whose moments differ in the last digit of a double are distinguished, and equal moments stay equal
-after a rotation by an irrational angle. Only the standard library is used.
+Moments have 120 digits and count as equal if they agree to 2^-200: bodies whose moments differ in the last digit of a
+double are distinguished, and a rotation keeps equal moments equal. Only the standard library is used.
 """
 
 from decimal import Decimal, localcontext
@@ -24,15 +23,12 @@ _Work = list[list[Decimal]]
 
 
 class Principal(NamedTuple):
-    """Principal moments and axes of a body, and its kind of symmetry.
+    """Principal moments and axes of a body, and its kind of symmetry."""
 
-    ``moments`` are in kg m^2; rational moments are exact, and two equal moments are the same number. Column k of
-    ``axes`` is principal axis k in the given axes: ``v_given = axes * v_principal``; the columns are right-handed, and
-    orthonormal to 1e-110. If the given axes are already principal, ``axes`` is the identity and the moments keep their
-    order; otherwise each principal axis gets the number and the direction of the closest given axis.
-    """
-
+    # kg m^2; rational moments are exact, two equal moments are the same number
     moments: tuple[Fraction, Fraction, Fraction]
+    # v_given = axes * v_principal: right-handed, orthonormal to 1e-110. The identity if the given axes are principal;
+    # otherwise each principal axis gets number and direction of the closest given axis.
     axes: Tensor
     kind: str  # spherical | symmetric | asymmetric
     symmetry_axis: int | None  # 0, 1 or 2 for a symmetric body, otherwise None
@@ -73,10 +69,8 @@ def _prefix(where: str) -> str:
 
 
 def _jacobi(tensor: Tensor) -> tuple[list[Decimal], _Work]:
-    """Return eigenvalues and eigenvectors (columns) of a symmetric tensor by Jacobi's method, with 120 digits.
-
-    Each step makes one entry beside the diagonal zero (Golub & Van Loan, section 8.5).
-    """
+    """Return eigenvalues and eigenvectors (columns) of a symmetric tensor by Jacobi's method, with 120 digits."""
+    # Each step makes one entry beside the diagonal zero (Golub & Van Loan, section 8.5).
     work = [[Decimal(entry.numerator) / Decimal(entry.denominator) for entry in row] for row in tensor]
     vectors = [[Decimal(int(i == j)) for j in range(3)] for i in range(3)]
     scale = max(abs(entry) for row in work for entry in row)
@@ -90,10 +84,8 @@ def _jacobi(tensor: Tensor) -> tuple[list[Decimal], _Work]:
 
 
 def _eliminate(work: _Work, vectors: _Work, p: int, q: int) -> None:
-    """Rotate the axes p and q by the smallest angle that makes ``work[p][q]`` zero: one step of Jacobi's method.
-
-    The tensor ``work`` and the columns ``vectors``, its axes, are changed in place.
-    """
+    """Rotate the axes p and q by the smallest angle that makes ``work[p][q]`` zero; change tensor and axes in place."""
+    # one step of Jacobi's method; the columns of vectors are the axes
     cotangent = (work[q][q] - work[p][p]) / (2 * work[p][q])  # of twice the rotation angle
     tangent = 1 / (abs(cotangent) + (cotangent * cotangent + 1).sqrt())
     tangent = tangent if cotangent >= 0 else -tangent
@@ -136,10 +128,8 @@ def _directed(columns: list[tuple[Fraction, ...]]) -> Tensor:
 
 
 def _settle(moments: list[Fraction]) -> tuple[Fraction, Fraction, Fraction]:
-    """Return principal moments in which negligible ones are set to zero and nearly equal ones to the same number.
-
-    The limit is 2^-200 of their size. The kind of symmetry then follows from exact comparisons.
-    """
+    """Return the moments with negligible ones as zero and nearly equal ones as the same number."""
+    # 2^-200 of their size; exact comparisons then give the kind of symmetry
     limit = max(map(abs, moments)) * NEGLIGIBLE
     settled = [Fraction(0) if abs(moment) <= limit else moment for moment in moments]
     for i, j in _PAIRS:
@@ -201,16 +191,13 @@ def _listed(moments: tuple[Fraction, Fraction, Fraction]) -> str:
 
 
 def require_admissible(body: Principal, where: str = "") -> None:
-    """Raise InputError unless some distribution of mass has the principal moments of ``body``.
-
-    No moment of inertia may be negative or exceed the sum of the other two. It may equal this sum (a flat body), and
-    one moment may be zero (a needle); the tolerance is 2^-200.
-    """
+    """Raise InputError unless some distribution of mass has the principal moments of ``body``."""
     small, middle, large = sorted(body.moments)
     if small < 0:
         raise InputError(
             f"{_prefix(where)}expected principal moments of inertia that are not negative, got {_listed(body.moments)}"
         )
+    # It may equal this sum (a flat body), and one moment may be zero (a needle).
     if small + middle < large and not equal(small + middle, large):
         raise InputError(
             f"{_prefix(where)}expected principal moments of inertia none of which exceeds the sum of the other two "

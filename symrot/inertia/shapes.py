@@ -1,8 +1,7 @@
 """The shapes of symrot as data: dimensions, conditions, axes, and the map of each shape. Standard library only.
 
-A map gives positions, in the axes of the shape, as formulas (texts) in coordinates; each coordinate has limits that are
-formulas in the dimensions. The limits of a coordinate inside ``cos`` and ``sin`` are multiples of pi/2. Volume, mass,
-centre of mass and inertia all follow from the map (:mod:`symrot.inertia.integration`).
+A map gives positions, in the axes of the shape, as formulas (texts) in coordinates, with limits in the dimensions. The
+limits of an angle are multiples of pi/2. Volume, mass, centre of mass and inertia all follow from the map.
 """
 
 from collections.abc import Callable, Mapping
@@ -23,25 +22,21 @@ DENSITY_UNITS = {"solid": "kg/m^3", "surface": "kg/m^2", "curve": "kg/m", "point
 
 
 class Dimension(NamedTuple):
-    """A dimension of a shape: a length in m, or a list of points (m) or of masses (kg).
-
-    ``size`` is the number of items in a list; None allows any number.
-    """
+    """A dimension of a shape: a length in m, or a list of points (m) or of masses (kg)."""
 
     name: str
     meaning: str
     symbol: str
     least: str = "positive"  # positive | zero (allowed) | any
     form: str = "length"  # length | points | masses
+    # the number of items in a list; None: any number
     size: int | None = None
 
 
 class Coordinate(NamedTuple):
-    """One coordinate of a shape's map to positions, with its limits as formulas in the dimensions.
+    """One coordinate of a shape's map to positions, with its limits as formulas in the dimensions."""
 
-    ``s, u, v, w`` are lengths in m, ``f_1, f_2, f_3`` fractions from 0 to 1, ``theta, phi`` angles in rad.
-    """
-
+    # s, u, v, w: lengths, m; f_1, f_2, f_3: fractions from 0 to 1; theta, phi: angles, rad
     name: str
     lower: str
     upper: str
@@ -53,17 +48,14 @@ class Coordinate(NamedTuple):
 
 
 class Shape(NamedTuple):
-    """A shape of the table: dimensions, conditions such as ``inner < outer``, axes, and map.
-
-    The map gives the position (m) for each value of the coordinates, as three formulas ``position``, which are missing
-    for point masses.
-    """
+    """A shape of the table: dimensions, conditions such as ``inner < outer``, axes, and map to positions."""
 
     name: str
     kind: str  # a key of DENSITY_UNITS
     dimensions: tuple[Dimension, ...]
     axes: str
     coordinates: tuple[Coordinate, ...] = ()
+    # m, in terms of the coordinates; missing for point masses
     position: tuple[str, str, str] | tuple[()] = ()
     conditions: tuple[tuple[str, str, str], ...] = ()  # (dimension, "<" or "<=", dimension)
 
@@ -96,11 +88,11 @@ _HALF_TURN = Coordinate("theta", "0", "pi")
 
 
 def _corner(axis: str) -> str:
-    """Return the formula for one coordinate (x, y or z) of a point in a tetrahedron with the corners c1, c2, c3 and c4.
-
-    The point depends on three fractions f_1, f_2, f_3 from 0 to 1. It is c1 + f_1 (P - c1), with P = c2 + f_2 (Q - c2)
-    on the opposite face and Q = c3 + f_3 (c4 - c3) on an edge of this face.
+    """Return the formula for one coordinate (x, y or z) of a point in a tetrahedron with the corners c1, c2,
+    c3 and c4.
     """
+    # c1 + f_1 (P - c1), with P = c2 + f_2 (Q - c2) on the opposite face and Q = c3 + f_3 (c4 - c3) on an edge of it;
+    # f_1, f_2, f_3 are fractions from 0 to 1.
     return f"{axis}1 + f_1*({axis}2 - {axis}1 + f_2*({axis}3 - {axis}2 + f_3*({axis}4 - {axis}3)))"
 
 
@@ -300,10 +292,8 @@ def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str 
 
 
 def scalar_names(shape: Shape) -> tuple[str, ...]:
-    """Return the names of the numbers among a shape's dimensions, as they occur in its formulas.
-
-    A length has its own name. A list of corners gives three names for each: ``x1, y1, z1, x2, ..``. :func:`scalars`
-    returns the values in the same order.
+    """Return the names of the numbers among a shape's dimensions: a length's own, and ``x1, y1, z1, x2, ..`` for
+    corners.
     """
     names: list[str] = []
     for d in shape.dimensions:
@@ -313,10 +303,7 @@ def scalar_names(shape: Shape) -> tuple[str, ...]:
 
 
 def scalars(shape: Shape, dimensions: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the numbers among the dimensions of a shape as a dict by the names of :func:`scalar_names`.
-
-    Example: the corners ``((0, 0, 0), (1, 0, 0), ..)`` of a tetrahedron give ``x1 = 0``, .., ``x2 = 1`` and so on.
-    """
+    """Return the numbers among a shape's dimensions by name: corners ``((0, 0, 0), (1, 0, 0), ..)`` give ``x2 = 1``."""
     values: list[Any] = []
     for d in shape.dimensions:
         value = dimensions[d.name]

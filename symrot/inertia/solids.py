@@ -57,13 +57,13 @@ _MAP_SYMBOLS = {str(symbol): symbol for symbol in (*symbols.map_lengths, *symbol
 
 @dataclass(frozen=True)
 class Integral:
-    """One integral over a shape, for a derivation page: integrand times Jacobian, limits, and value.
-
-    ``quantity`` says what it computes; each limit is (coordinate, lower, upper).
+    """One integral over a shape, for a derivation page: what it computes, integrand times Jacobian, limits,
+    and value.
     """
 
     quantity: str
     integrand: Expr
+    # (coordinate, lower, upper)
     limits: tuple[tuple[Symbol, Expr, Expr], ...]
     value: Expr
 
@@ -120,10 +120,7 @@ class Solid:
 
     @cached_property
     def position(self) -> ImmutableMatrix:
-        """The map of the shape: position (m), shape (3, 1), as a function of coordinates such as a radius and an angle.
-
-        It is empty for point masses.
-        """
+        """The map of the shape: position (m), shape (3, 1), as a function of coordinates; empty for point masses."""
         known = {**_CONSTANTS, **_MAP_SYMBOLS, **self.dimensions}
         return ImmutableMatrix([evaluate(parse(t), known, _FUNCTIONS, _rational) for t in self.shape.position])
 
@@ -187,11 +184,9 @@ def _tidied(rows: tensor.Tensor) -> ImmutableMatrix:
 
 
 def _expression(polynomial: Polynomial, values: Mapping[str, Expr]) -> Expr:
-    """Return a polynomial as a SymPy expression, with ``values`` in place of its names.
-
-    Names without a value stand for pi, or for cos or sin of a coordinate.
-    """
+    """Return a polynomial as a SymPy expression, with ``values`` in place of its names."""
     known = {**_CONSTANTS, **values}
+    # a name without a value is pi, or cos or sin of a coordinate
     used = {name for monomial in polynomial.terms for name, _ in monomial}
     generators = {name: known[name] if name in known else evaluate(parse(name), known, _FUNCTIONS) for name in used}
     terms = [
@@ -208,24 +203,20 @@ def _mapped(name: str) -> Domain:
 
 @cache
 def _default_dimensions(name: str) -> dict[str, Symbol]:
-    """Return a map from each dimension of a shape to the symbol that stands for it if the user gives no value.
-
-    The keys are the names of single numbers (:func:`scalar_names`), such as "radius" of a cone, with the symbol R; a
-    corner of a tetrahedron has three, such as "x1", "y1" and "z1".
-    """
+    """Return the default symbol for each dimension of a shape: ``"radius"`` of a cone has the symbol R."""
     shape = SHAPES[name]
     plain = {d.name: d.symbol for d in shape.dimensions if d.form == "length"}
+    # a corner of a tetrahedron has three names, such as "x1", "y1" and "z1"
     return {n: _DIMENSION_SYMBOLS[plain.get(n, f"{n[0]}_{n[1:]}")] for n in scalar_names(shape)}
 
 
 def _properties(
     region: Domain, values: Mapping[str, Expr], density: Polynomial | None = None
 ) -> tuple[Expr, ImmutableMatrix, ImmutableMatrix]:
-    """Return the mass, the centre of mass, and the inertia tensor about this centre divided by the mass, of a shape.
-
-    ``region`` describes the shape by coordinates with limits, and ``values`` are its dimensions. ``density`` is a
-    polynomial in these coordinates; without it the density is 1, and the mass is the volume.
+    """Return mass, centre of mass, and inertia per mass about this centre, of a shape with the dimensions
+    ``values``.
     """
+    # density is a polynomial in the coordinates; without it the mass is the volume
     measure, specific_moments = moments_per_measure(region, density)
     if not specific_moments.zeroth:
         raise InputError("expected a density with a positive mass, got a density with a mass of 0 kg")
@@ -246,20 +237,14 @@ def _ratio(numerator: Polynomial, denominator: Polynomial, values: Mapping[str, 
 
 @cache
 def _uniform(name: str) -> tuple[Expr, ImmutableMatrix, ImmutableMatrix]:
-    """Return measure (volume, area or length), centre of mass, and inertia per unit mass of a uniform shape.
-
-    The dimensions are the default symbols; the result is cached, and :func:`solid` inserts other values.
-    """
+    """Return measure (volume, area or length), centre of mass, and inertia per unit mass of a uniform shape."""
+    # in default symbols; solid inserts other values
     measure, center, specific = _properties(_mapped(name), _default_dimensions(name))
     return _tidy_measure(measure), center, specific
 
 
 def _scalar(value: Any) -> Expr:
-    """Return a dimension or mass as an exact expression.
-
-    ``value`` is an expression, a number, or a text, which may contain the symbols of the table of shapes, as in
-    ``"2*R"``.
-    """
+    """Return a dimension or mass (expression, number, or text such as ``"2*R"``) as an exact expression."""
     if isinstance(value, Expr):
         return value
     if isinstance(value, str):
@@ -268,10 +253,7 @@ def _scalar(value: Any) -> Expr:
 
 
 def _formula(text: str, known: Mapping[str, Expr]) -> Expr:
-    """Return the formula ``text`` as an expression, with the values of ``known`` in place of its names.
-
-    A name that is not in ``known`` raises InputError.
-    """
+    """Return the formula ``text`` as an expression, with the values of ``known`` in place of its names."""
     values = {**known, **_CONSTANTS}
     try:
         return sympify(evaluate(parse(text), values, _FUNCTIONS, _rational))
@@ -295,10 +277,7 @@ def _dimension(value: Any, dimension: Dimension, shape: Shape) -> Expr:
 
 
 def _dimensions(shape: Shape, dimensions: Mapping[str, Any]) -> dict[str, Expr]:
-    """Return an expression for each number among a shape's dimensions: the user's value, or the default symbol.
-
-    A violated condition, such as ``inner < outer``, raises InputError.
-    """
+    """Return an expression for each number among a shape's dimensions: the user's value, or the default symbol."""
     check_names(shape, {d.name: None for d in shape.dimensions} | dict(dimensions))
     numbers: dict[str, Expr] = dict(_default_dimensions(shape.name))
     for d in shape.dimensions:
@@ -330,10 +309,7 @@ def _points(corners: Any, dimension: Dimension) -> list[tuple[Expr, ...]]:
 
 
 def _density(density: Any, dimensions: Mapping[str, Expr]) -> Poly:
-    """Return a user's density as a polynomial in x, y, z, whose coefficients may contain the values ``dimensions``.
-
-    A density that is no polynomial raises InputError.
-    """
+    """Return a density as a polynomial in x, y, z, with ``dimensions`` inserted; otherwise raise InputError."""
     axes = {str(axis): axis for axis in symbols.position}
     if isinstance(density, str):
         formula = _formula(density, {**_DIMENSION_SYMBOLS, "rho": symbols.rho, **dimensions, **axes})
@@ -418,15 +394,12 @@ _MASS = Dimension("mass", "kg", "m")
 
 
 def _weighted(shape: Shape, values: Mapping[str, Expr], profile: Poly, measure: Expr) -> Solid:
-    """Return the solid of a shape whose density, ``profile``, is a polynomial in x, y, z.
-
-    ``values`` are its dimensions and ``measure`` its volume, area or length. The integration treats the coefficients of
-    the density as symbols.
-    """
+    """Return the solid of a shape whose density, ``profile``, is a polynomial in x, y, z."""
     known = {name: Fraction(value.p, value.q) for name, value in values.items() if value.is_Rational}
     region = domain(shape, known)
     density, coefficients = constant(0), {}
     for n, (powers, coefficient) in enumerate(profile.terms()):
+        # the integration treats the coefficients as symbols
         coefficients[f"density_{n}"] = coefficient
         term = generator(f"density_{n}")
         for component, power in zip(region.position, powers, strict=True):

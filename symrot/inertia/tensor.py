@@ -1,8 +1,7 @@
 """Algebra of 3x3 tensors as nested tuples of Fractions, floats or SymPy expressions. Standard library only.
 
-The same functions are used for the exact mass properties of a scene and for the symbolic bodies of a derivation.
-Arguments may be nested sequences, SymPy matrices or NumPy arrays; results are tuples. Convention: products of inertia
-have a minus sign, ``I_xy = -integral of x y dm``.
+Exact mass properties of a scene and symbolic bodies use the same functions. Arguments may be sequences, SymPy matrices
+or NumPy arrays; results are tuples. Products of inertia have a minus sign, ``I_xy = -integral of x y dm``.
 """
 
 from collections.abc import Callable, Iterable
@@ -111,10 +110,7 @@ def determinant(tensor: Any) -> Any:
 
 
 def rotate(tensor: Any, dcm: Any) -> Tensor:
-    """Return the components of a tensor in other axes: ``dcm * tensor * dcm^T``.
-
-    ``dcm`` maps components in the old axes to components in the new axes, as ``dcm_sb`` maps body to space.
-    """
+    """Return a tensor in other axes, ``dcm * tensor * dcm^T``; ``dcm`` maps old components to new components."""
     return multiply(multiply(dcm, tensor), transpose(dcm))
 
 
@@ -151,8 +147,7 @@ def about_point(inertia: Any, mass: Any, offset: Any) -> Tensor:
 
 
 def about_center_of_mass(inertia: Any, mass: Any, offset: Any) -> Tensor:
-    """Return the inertia tensor about the centre of mass from the tensor about a point.
-
-    ``offset`` (m) is the vector from the point to the centre of mass, or its negative.
+    """Return the inertia tensor about the centre of mass from the tensor about a point; ``offset``, m, joins
+    the two.
     """
     return subtract(inertia, inertia_of_point(mass, offset))

@@ -19,32 +19,26 @@ Box = dict[str, tuple[Fraction, Fraction]]  # name of an input component -> smal
 
 @dataclass(frozen=True)
 class Law:
-    """An identity that the outputs of a kernel satisfy for all inputs, such as "the norm is 1".
+    """An identity that the outputs of a kernel satisfy for all inputs, such as "the norm is 1"."""
 
-    The formulas ``vanishing`` are zero wherever the formulas ``relations`` (hypotheses) are zero. Both contain the
-    symbols of inputs and outputs. A law describes the outputs independently of the way in which their formulas were
-    derived; a certificate proves the law from the formulas.
-    """
-
+    # A certificate proves the law from the formulas; it says nothing about how they were derived.
     text: str
+    # formulas in inputs and outputs that are zero wherever the relations (hypotheses) are zero
     vanishing: tuple[Expr, ...]
     relations: tuple[Expr, ...] = ()
 
 
 @dataclass(frozen=True)
 class Definition:
-    """A kernel of the library as symrot derives it: arguments, formulas, and what is known about them.
-
-    ``inputs`` are the input arguments; ``results`` pairs each output argument with its formulas. ``domain`` says in
-    words for which inputs the formulas hold, ``derivation`` names the page that derives them. ``box`` gives the range
-    of each input for which rounding errors are bounded; ``laws`` returns identities that the outputs satisfy.
-    """
+    """A kernel of the library as symrot derives it: arguments, formulas, and what is known about them."""
 
     name: str
     title: str
     inputs: tuple[Argument, ...]
     results: tuple[tuple[Argument, tuple[Expr, ...]], ...]  # output argument, formula of each component
+    # for which inputs the formulas hold, in words
     domain: str
+    # the page that derives the formulas
     derivation: str
     box: Box  # ranges of the inputs for which rounding errors are bounded by default
     laws: Callable[[], tuple[Law, ...]]
@@ -61,12 +55,10 @@ class Definition:
 
 
 def argument(name: str, role: str, components: Sequence[Symbol | str], meaning: str, unit: str = "") -> Argument:
-    """Return an input or output array (``role`` is ``"in"`` or ``"out"``) with one entry per component.
-
-    Components are symbols of :mod:`symrot.symbols`, which knows their units, or texts, all with the unit ``unit``.
-    """
+    """Return an input or output array (``role`` is ``"in"`` or ``"out"``) with one entry per component."""
     described = []
     for component in components:
+        # symrot.symbols knows the units of its symbols; texts need ``unit``
         known = unit or symbols.UNIT[component]
         described.append((str(component), known, meaning))
     return Argument(name, role, tuple(described))

@@ -1,11 +1,7 @@
 """Exact derivatives of the formulas of kernels, which reuse quantities that the kernel computes for its values.
 
-Three rules keep the derivatives short and finite where the values are finite:
-
-- a quantity with a name, such as ``angle = sqrt(v . v)``, keeps its name: the chain rule multiplies by its derivative;
-- the derivative of a quotient ``y = a/b`` is ``(a' - y b')/b``, and of a root ``r = sqrt(a)`` it is ``a'/(2 r)``;
-- the sine in the derivative of ``cos(angle/2)`` is written ``angle/2 * sinc(angle/2)``, so that a division by a root
-  that may be zero cancels.
+A named quantity, such as ``angle = sqrt(v . v)``, keeps its name in the chain rule; a quotient ``y = a/b`` gives ``(a'
+- y b')/b``, a root ``r = sqrt(a)`` gives ``a'/(2 r)``. Derivatives stay short, and finite where values are.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -58,11 +54,8 @@ def exact_derivative(expr: Expr, variable: Symbol) -> Expr:
 
 
 def _plain(expr: Expr, variable: Symbol, back: Mapping[Expr, Expr]) -> Expr:
-    """Return the derivative of an expression in which symbols stand for the calls of functions such as sinc.
-
-    These functions are symrot's own, and SymPy cannot differentiate them; their symbols are constants here. ``back``
-    maps each symbol to its call, which replaces it in the result.
-    """
+    """Return the derivative of an expression whose symbols in ``back`` stand for calls of functions such as sinc."""
+    # SymPy cannot differentiate symrot's own functions; their symbols are constants here.
     slope = expr.diff(variable).replace(sign, lambda value: copysign(Integer(1), value))
     return slope.xreplace(dict(back))
 
@@ -77,12 +70,10 @@ def _is_outermost(call: Expr, expr: Expr) -> bool:
 
 
 def _slope(call: Expr, variable: Symbol) -> Expr:
-    """Return the derivative of a call of one of symrot's own functions, such as sinc(u), by the chain rule.
-
-    For a choice between two formulas (``select_ge``) it is the choice between their derivatives.
-    """
+    """Return the derivative of a call of one of symrot's own functions, such as sinc(u), by the chain rule."""
     name = call.func.__name__
     if name == "select_ge":
+        # a choice between two formulas: the choice between their derivatives
         left, right, *choices = call.args
         one, other = (exact_derivative(choice, variable) for choice in choices)
         return one if one == other else select_ge(left, right, one, other)
@@ -97,8 +88,6 @@ def _slope(call: Expr, variable: Symbol) -> Expr:
 
 class Derivatives:
     """Computes derivatives of formulas that contain named quantities, such as ``angle = sqrt(v . v)``.
-
-    The chain rule multiplies by the derivative of each quantity, so that its formula need not be substituted.
 
     Parameters
     ----------
@@ -121,12 +110,11 @@ class Derivatives:
         self.slopes: dict[tuple[Symbol, Symbol], Expr] = {}
 
     def of(self, expr: Expr, variable: Symbol, value: Expr | None = None) -> Expr:
-        """Return the derivative of ``expr`` by the input ``variable``; it may contain the symbols of named quantities.
+        """Return the derivative of ``expr`` by the input ``variable``, in terms of named quantities.
 
-        Named quantities are those that the constructor was called with, and their named derivatives. ``value`` is the
-        symbol y of the quantity whose formula is ``expr``, or None. With it the derivatives of a quotient and of a root
-        are shorter: ``(a' - y b')/b`` for y = a/b, and ``a'/(2 y)`` for y = sqrt(a).
+        ``value`` is the symbol that names ``expr``, if any.
         """
+        # With the symbol y of y = a/b the derivative is (a' - y b')/b, of y = sqrt(a) it is a'/(2 y).
         root_of = expr.base if expr.is_Pow and expr.exp == Rational(1, 2) else None
         if value is not None and root_of is not None:
             return self.of(root_of, variable) / (2 * value)
@@ -154,9 +142,8 @@ class Derivatives:
         return self.slopes[key]
 
     def _by_named(self, expr: Expr, symbol: Symbol, slope: Expr) -> Expr:
-        """Return the term of the chain rule for the named quantity ``symbol`` in ``expr``.
-
-        It is the derivative of ``expr`` by the symbol, times ``slope``, the derivative of the quantity by the input.
+        """Return the derivative of ``expr`` by the named quantity ``symbol``, times this quantity's derivative
+        ``slope``.
         """
         partial = exact_derivative(expr, symbol)
         if symbol in self.roots:
@@ -170,13 +157,10 @@ def _is_product(expr: Expr) -> bool:
 
 
 def _with_sinc(expr: Expr, symbol: Symbol, partial: Expr) -> Expr:
-    """Return ``partial``, the derivative of ``expr`` by ``symbol``, with sin(x) written as ``x*sinc(x)``.
-
-    ``symbol`` stands for a root, such as angle = sqrt(v . v); x is each argument of a cosine in ``expr`` that contains
-    it. For cos(angle), ``partial`` is -sin(angle), and the result is -angle*sinc(angle). The caller multiplies it by
-    the derivative of the root, v_i/angle, which has no value at angle = 0; now SymPy cancels the angle, and
-    -sinc(angle)*v_i remains.
+    """Return ``partial``, the derivative of ``expr`` by a root, with sine as sinc: ``-sin(angle)`` becomes
+    ``-angle*sinc(angle)``.
     """
+    # The caller multiplies by the root's derivative v_i/angle, which has no value at angle = 0; now the angle cancels.
     angles = [call.args[0] for call in expr.atoms(cos) if symbol in call.free_symbols]
     for angle in angles:
         partial = partial.xreplace({sin(angle): angle * sinc(angle)})

@@ -64,11 +64,7 @@ def _symbols(name: str, count: int = 3) -> tuple[Symbol, ...]:
 
 
 def _solved(inertia: Matrix, omega: Matrix, torque: Matrix) -> tuple[Named, Matrix]:
-    """Return (definitions, formulas) of the angular acceleration from Euler's equations.
-
-    Definitions are pairs (symbol, formula) of intermediate quantities, whose symbols the formulas contain. There are
-    none if the inertia is diagonal.
-    """
+    """Return intermediate quantities as pairs (symbol, formula), and the angular acceleration in these symbols."""
     if inertia.is_diagonal():
         return (), angular_acceleration(inertia, omega, torque)
     momentum, moment = Matrix(_symbols("L")), Matrix(_symbols("M"))
@@ -140,12 +136,10 @@ _DISTANCE = symbols.h
 
 
 def _heavy_top(name: str, body: str) -> Definition:
-    """Return the kernel ``name``, the equations of motion of a heavy top about its fixed point.
-
-    ``body`` is ``"principal"`` or ``"symmetric"``; in a symmetric top the centre of mass lies on body axis 3.
-    """
+    """Return the kernel ``name``, the equations of motion of a heavy top about its fixed point."""
     _, inertia = _BODIES[body]
     symmetric = body == "symmetric"
+    # in a symmetric top the centre of mass lies on body axis 3
     center = Matrix([0, 0, _DISTANCE]) if symmetric else Matrix(symbols.center_of_mass)
     omega, upward = Matrix(symbols.omega_b), quaternion_to_dcm().T.col(2)
     vertical = Matrix(_symbols("half_vertical"))
@@ -173,11 +167,8 @@ def _heavy_top(name: str, body: str) -> Definition:
 
 
 def _weighed(center: Matrix) -> tuple[Matrix, Named]:
-    """Return (vector, definitions) of 2 W r, for the weight W and the position r = ``center`` of the centre of mass.
-
-    The vector consists of symbols, except zeros; definitions are pairs (symbol, formula). The factor 2 is here because
-    the torque is the cross product of half the vertical with this vector: half of it needs fewer operations.
-    """
+    """Return the vector 2 W r in symbols, for weight W and centre of mass r, and the formulas of the symbols."""
+    # The torque is half the vertical times this vector: fewer operations. Zeros stay zeros.
     components = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]
     return Matrix(components), tuple(
         (symbol, 2 * _WEIGHT * c) for symbol, c in zip(components, center, strict=True) if c

@@ -26,11 +26,10 @@ QUATERNION = argument("q", "in", symbols.quaternion, "attitude, body to space")
 
 
 def prefix(sequence: str) -> str:
-    """Return the beginning of the names of the kernels for an Euler sequence, such as ``"euler_zxz"``.
-
-    For an extrinsic sequence, given in lower case, it is ``"euler_extrinsic_zxz"``: the names of files must differ in
-    more than upper and lower case.
+    """Return the beginning of a sequence's kernel names: ``"euler_zxz"`` for ``"ZXZ"``, ``"euler_extrinsic_zxz"`` for
+    ``"zxz"``.
     """
+    # Names of files must differ in more than upper and lower case.
     return f"euler_{sequence.lower()}" if parse_sequence(sequence)[1] else f"euler_extrinsic_{sequence}"
 
 
@@ -53,21 +52,16 @@ def _lock(sequence: str) -> str:
 
 
 def _regular_box(sequence: str) -> Box:
-    """Return a box (angle -> range of values) of Euler angles away from gimbal lock, where rates are bounded.
-
-    The middle angle differs by at most about 1.5 rad from its best value: pi/2 if the first and the last axis are
-    equal, as in ZXZ, otherwise 0.
-    """
+    """Return a box (angle -> range of values) of Euler angles away from gimbal lock, where rates are bounded."""
     axes, _ = parse_sequence(sequence)
+    # The middle angle is within about 1.5 rad of its best value, pi/2 or 0.
     proper = axes[0] == axes[2]
     return ANGLE_BOX | {"theta": interval("1/10", "304/100") if proper else interval("-7/5", "7/5")}
 
 
 def _by_outer_products(entries: Iterable[Expr]) -> tuple[Named, list[Expr]]:
-    """Return (definitions, entries): the entries of a matrix, with symbols for products such as ``sin(phi)*cos(psi)``.
-
-    Definitions are pairs (symbol, product). The factors of such a product are functions of the first and of the last
-    angle; several entries contain it. In a sum, a common factor, which depends on the middle angle, is factored out.
+    """Return pairs (symbol, product) for products such as ``sin(phi)*cos(psi)``, and matrix entries in these
+    symbols.
     """
     named: dict[Expr, Symbol] = {}
     formulas = []
@@ -75,10 +69,12 @@ def _by_outer_products(entries: Iterable[Expr]) -> tuple[Named, list[Expr]]:
         sums: dict[Expr, Expr] = {}
         for term in Add.make_args(expand(entry)):
             coefficient, factors = term.as_coeff_mul()
+            # functions of the first and of the last angle; several entries contain their product
             outer = [f for f in factors if f.free_symbols & {symbols.phi, symbols.psi}]
             product = Mul(*outer)
             if len(outer) == 2:
                 product = named.setdefault(product, Symbol(f"outer_{len(named) + 1}", real=True))
+            # a common factor, which depends on the middle angle
             middle = Mul(*(f for f in factors if f not in outer))
             sums[middle] = sums.get(middle, Integer(0)) + coefficient * product
         formulas.append(Add(*(middle * value for middle, value in sums.items())))
@@ -138,14 +134,10 @@ def _rates(frame: str, name: str, sequence: str) -> Definition:
 
 
 def _solved(jacobian: RateMatrix, omega: Matrix) -> tuple[Named, list[Expr]]:
-    """Return (definitions, formulas) of the rates of the Euler angles from ``omega``, with a single division.
-
-    ``definitions`` has one pair (symbol, formula). Of the first and the last angle of the sequence, one rotates about a
-    coordinate axis of the frame in which omega is given. The rate of the other one is divided by the determinant; this
-    is the pair, with the symbol ``turning``. The rate of the former then follows from one component of omega and this
-    symbol, without a division by the determinant.
-    """
+    """Return a quotient as a pair (symbol, formula), and the rates of the Euler angles in terms of this symbol."""
     matrix, determinant = Matrix(jacobian), jacobian.determinant
+    # Of the outer angles, this one rotates about a coordinate axis of the frame of omega: its rate follows from one
+    # component of omega and the other rate, without a division by the determinant.
     last = next(place for place in (0, 2) if not matrix[:, place].free_symbols)
     first, along = 2 - last, next(i for i in range(3) if matrix[i, last])
     turning = Symbol("turning", real=True)
@@ -172,10 +164,7 @@ def _quaternion(name: str, sequence: str) -> Definition:
 
 
 def _wrapped(angle: Expr) -> Expr:
-    """Return the formula that adds a multiple of 2 pi to ``angle`` so that it lies in [-pi, pi].
-
-    The angle must lie between -2 pi and 2 pi.
-    """
+    """Return the formula that moves an angle between -2 pi and 2 pi into [-pi, pi] by a multiple of 2 pi."""
     return select_ge(pi, angle, select_ge(angle, -pi, angle, angle + 2 * pi), angle - 2 * pi)
 
 

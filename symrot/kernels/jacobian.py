@@ -28,10 +28,7 @@ def jacobian_name(kernel: str, variables: Sequence[str]) -> str:
 
 
 def unit_of_quotient(above: str, below: str) -> str:
-    """Return the unit of a derivative, a quotient of the units ``above`` and ``below``, such as ``(rad/s)/(kg m^2)``.
-
-    An empty ``below``, an unknown unit, gives an empty text.
-    """
+    """Return the unit of a derivative, such as ``(rad/s)/(kg m^2)``; empty if the unit ``below`` is empty (unknown)."""
     if not below:
         return ""  # a constant of a scene, whose unit the scene does not say
     if below == "1" or above == below:
@@ -43,13 +40,10 @@ def unit_of_quotient(above: str, below: str) -> str:
 
 
 def jacobian_argument(target: Argument, name: str, variables: Sequence[tuple[str, str, str]]) -> Argument:
-    """Return the output array of the derivatives of the output ``target`` by the components ``variables`` of an input.
-
-    ``name`` is that of the input, and ``variables`` holds (name, unit, meaning). The derivatives are stored row by row,
-    one row per component of the output.
-    """
+    """Return the output array of the derivatives of ``target`` by components of the input ``name``, row by row."""
     components = tuple(
         (f"{output}{BY}{variable}", unit_of_quotient(unit, by), f"derivative of {target.name} by {name}")
+        # one row per component of the output; variables are (name, unit, meaning)
         for (output, unit, _), (variable, by, _) in product(target.components, variables)
     )
     return Argument(f"{target.name}{BY}{name}", "out", components)
@@ -93,12 +87,9 @@ def jacobian_kernel(kernel: Definition, variables: Sequence[str]) -> Definition:
 
 
 def _symbols(kernel: Definition) -> dict[str, Symbol]:
-    """Return a map from the name of each input to the SymPy symbol for it in the kernel's formulas.
-
-    SymPy counts two symbols with one name but different assumptions, such as positive or only real, as different, so
-    the one in the formulas must be used. An input that no formula contains gets a real symbol.
-    """
+    """Return a map from the name of each input to the SymPy symbol for it in the kernel's formulas."""
     formulas = [formula for _, formula in (*kernel.formulas, *kernel.named)]
+    # Symbols of one name but other assumptions (positive, real) differ for SymPy, so the formulas' own are used.
     held = {str(symbol): symbol for formula in formulas for symbol in formula.free_symbols}
     return {name: held.get(name, Symbol(name, real=True)) for a in kernel.inputs for name, *_ in a.components}
 
@@ -114,10 +105,7 @@ def _distinct(kernel: Definition, variables: Sequence[str]) -> Sequence[str]:
 
 
 def _components(kernel: Definition, name: str) -> tuple[tuple[str, str, str], ...]:
-    """Return the components of the input ``name`` as (name, unit, meaning): all of an argument, or a single one.
-
-    Raises InputError if the kernel has no input of this name.
-    """
+    """Return the components of the input ``name`` as (name, unit, meaning): all of an argument, or a single one."""
     for argument in kernel.inputs:
         if argument.name == name:
             return argument.components
@@ -129,10 +117,8 @@ def _components(kernel: Definition, name: str) -> tuple[tuple[str, str, str], ..
 
 
 def _laws(kernel: Definition, chosen: dict[str, tuple[tuple[str, str, str], ...]]) -> tuple[Law, ...]:
-    """Return the laws of a kernel with derivatives: those of ``kernel``, and that each derivative is exact.
-
-    A law is an identity that a certificate proves. ``chosen`` maps the names of inputs to their components. For an
-    output ``y = a/b`` the law is ``b y' = a' - y b'``, which is shorter than the derivative of the quotient.
+    """Return the laws (provable identities) of a kernel with derivatives: those of ``kernel``, and that each derivative
+    is exact.
     """
     symbols, laws = _symbols(kernel), list(kernel.laws())
     roots = {symbol: value for symbol, value in kernel.named if value.is_Pow and value.exp == Rational(1, 2)}
@@ -144,16 +130,15 @@ def _laws(kernel: Definition, chosen: dict[str, tuple[tuple[str, str, str], ...]
             above, below = explicit(formula).as_numer_denom()
             own, entry = (Symbol(each, real=True) for each in (output, f"{output}{BY}{variable}"))
             slopes = [_slope(part, symbols[variable], roots) for part in (above, below)]
+            # for an output y = a/b: b y' = a' - y b', shorter than the derivative of the quotient
             vanishing.append(below * entry - slopes[0] + own * slopes[1])
         laws.append(Law(f"the derivatives by {name} are those of the outputs", tuple(vanishing)))
     return tuple(laws)
 
 
 def _slope(formula: Expr, variable: Symbol, roots: dict[Symbol, Expr]) -> Expr:
-    """Return the derivative of ``formula`` by the input ``variable``.
-
-    ``formula`` contains symbols in place of square roots that depend on the input; ``roots`` maps each symbol to its
-    root. Their derivatives are included by the chain rule.
+    """Return the derivative of ``formula`` by ``variable``, where symbols stand for square roots (the map
+    ``roots``).
     """
     through = [
         exact_derivative(formula, root) * exact_derivative(value.base, variable) / (2 * root)

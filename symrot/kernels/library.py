@@ -24,19 +24,14 @@ def kernel_names() -> tuple[str, ...]:
 
 
 def is_kernel(name: object) -> bool:
-    """Return whether ``name`` is the name of a kernel of the library, with or without derivatives.
-
-    A kernel with derivatives has the name of a kernel and the suffix ``_by_`` with an argument, such as
-    ``quaternion_dcm_by_q``; only the part before the suffix is checked.
-    """
+    """Return whether ``name`` is the name of a kernel of the library, with or without derivatives."""
+    # The name of a kernel with derivatives has the suffix "_by_" with an argument, which is not checked.
     return isinstance(name, str) and name.split(BY, maxsplit=1)[0] in _table()
 
 
 @cache
 def definition(name: str) -> Definition:
-    """Return the definition of a kernel; its formulas are derived on the first call and then cached.
-
-    A name such as ``quaternion_dcm_by_q`` is that of a kernel with its derivatives by an input.
+    """Return the definition of a kernel, or of one with derivatives, such as ``quaternion_dcm_by_q``; cached.
 
     Raises
     ------

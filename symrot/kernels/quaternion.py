@@ -39,14 +39,14 @@ def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
 
 
 def dcm_by_halves(scalar: Expr, axis: Sequence[Expr], doubled: Sequence[Expr]) -> tuple[Named, ImmutableMatrix]:
-    """Return (definitions, matrix) of the rotation matrix ``1 + scalar [t] + [t][axis]`` with t = ``doubled``.
-
-    The matrix contains symbols for the components of t, and the definitions are pairs (symbol, formula). Here [v] is
-    the matrix of the cross product with v, and t is parallel to the axis. For a unit quaternion (q0, u), the arguments
-    are q0, u and 2 u. As [t][axis] is symmetric, each of its products is computed once.
+    """Return (definitions of symbols, matrix): the rotation matrix ``1 + scalar [t] + [t][axis]`` with t =
+    ``doubled``.
     """
+    # [v] is the matrix of the cross product with v, t is parallel to the axis; a unit quaternion (q0, u) gives q0, u, 2
+    # u.
     twice = tuple(Symbol(f"twice_{i}", real=True) for i in "123")
     square = skew(twice) * skew(axis)
+    # [t][axis] is symmetric, so each product is computed once.
     symmetric = ImmutableMatrix(3, 3, lambda i, j: square[min(i, j), max(i, j)])
     matrix = (eye(3) + scalar * skew(twice) + symmetric).as_mutable()
     lost = Symbol("lost_2", real=True)  # 1 - (a + b) has a shorter chain of operations than 1 - a - b
@@ -61,9 +61,8 @@ def halved(omega: Sequence[Expr]) -> tuple[Named, tuple[Symbol, ...]]:
 
 
 def quaternion_rate(q: Sequence[Expr], half: Sequence[Expr], frame: str = "body") -> ImmutableMatrix:
-    """Return ``dq/dt`` of the quaternion ``q`` from half the angular velocity, ``half``.
-
-    In quaternion products it is q (0, half) for body components, and (0, half) q for space components (``frame``).
+    """Return ``dq/dt`` from half the angular velocity: ``q (0, half)`` for body components, ``(0, half) q`` for space
+    components.
     """
     return quaternion_product(q, [0, *half]) if frame == "body" else quaternion_product([0, *half], q)
 
@@ -120,24 +119,21 @@ Branch = tuple[Expr, list[Expr]]  # four times the square of a component, and it
 
 
 def _branch(matrix: Matrix, pivot: int) -> Branch:
-    """Return (``4 q_k^2``, components of ``4 q_k q``) for k = ``pivot``, from the rotation matrix of a quaternion q.
-
-    Both are linear in the matrix. ``4 q_k q`` divided by twice the root of ``4 q_k^2`` is q or -q, without loss of
-    digits if ``q_k`` is large.
+    """Return ``4 q_k^2`` and the components of ``4 q_k q``, k = ``pivot``, from the rotation matrix of a
+    quaternion q.
     """
     q = quaternion_of_dcm(matrix, pivot)
+    # Both are linear in the matrix. A large q_k gives q or -q without loss of digits.
     square = 4 * q[pivot] ** 2
     return square, [entry * 2 * sqrt(square) for entry in q]
 
 
 def _larger(left: Branch, right: Branch) -> Branch:
-    """Return the branch with the larger ``4 q_k^2``, as formulas that choose between two branches at run time.
-
-    A branch is a pair (square, components) for one index k from 0 to 3: the formula of ``4 q_k^2``, and the four
-    formulas of ``4 q_k q_0`` to ``4 q_k q_3``. Each of the five formulas in the result is a conditional: it compares
-    the two squares and has the value of that branch whose square is larger.
+    """Return the branch (formulas for one pivot) with the larger ``4 q_k^2``, as conditionals that are evaluated at run
+    time.
     """
     (a, row_a), (b, row_b) = left, right
+    # A branch is 4 q_k^2 and 4 q_k q_0 to 4 q_k q_3; each formula compares the two squares.
     return select_ge(a, b, a, b), [select_ge(a, b, x, y) for x, y in zip(row_a, row_b, strict=True)]
 
 
@@ -199,12 +195,9 @@ def _rotate(towards: str, name: str) -> Definition:
 
 
 def turned(q: Sequence[Expr], vector: Matrix) -> tuple[Named, Matrix]:
-    """Return (definitions, components) of the vector v rotated by the unit quaternion q = (q0, u).
-
-    The formula is ``v + q0 h + u x h`` with ``h = 2 u x v``, which takes fewer operations than the rotation matrix.
-    Definitions are pairs (symbol, formula) for the components of h.
-    """
+    """Return (definitions of symbols, components): the ``vector`` rotated by the unit quaternion ``q``."""
     scalar, axis = q[0], Matrix([*q][1:])
+    # v + q0 h + u x h with h = 2 u x v takes fewer operations than the rotation matrix
     half = Matrix([Symbol(f"twice_cross_{i}", real=True) for i in "123"])
     named = tuple(zip(half, 2 * axis.cross(vector), strict=True))
     return named, vector + scalar * half + axis.cross(half)

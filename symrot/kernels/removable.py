@@ -1,25 +1,8 @@
 """Functions with a removable singularity, such as sin(x)/x at zero, computed accurately for all numbers.
 
-``sin(x)/x`` is accurate except at zero, where a conditional returns its limit. A difference of nearly equal terms, such
-as ``(x - sin x)/x^3``, is computed near zero from its Taylor series, with a truncation error that is proven to be below
-half the last bit, and directly for larger x. The boundary between the two ranges is a property of the function, not a
-threshold to be chosen.
-
-The functions and their errors, measured by ``python -m symrot.bench.ulps`` in double and float, with and without fused
-operations, in units in the last place (ulp):
-
-- ``sinc``, sin(x)/x, and ``sine_gap``, (x - sin x)/x^3: within 4 ulp at every finite number (measured 1.4 and 2.1).
-- ``tangent_gap``, (sin x - x cos x)/x^3: within 4 ulp for |x| <= pi (measured 2.3). For larger |x| the function
-  decreases as cos(x)/x^2 and has zeros, the solutions of x = tan x, which are no floating-point numbers, so its
-  relative error has no bound. Its absolute error is at most 4 * 2^-53/x^2, in float 4 * 2^-24/x^2, or half the least
-  subnormal number (the largest factor measured, over all x, is 2.5 instead of 4).
-- ``sine_bend`` and ``tangent_bend``, parts of the derivatives of ``sine_gap`` and ``tangent_gap``: within 4 ulp, the
-  second for |x| <= pi (measured 3.1 and 3.2). For larger |x| its absolute error is at most 4 * 2^-53/x^2 (the largest
-  factor measured is 1.1 instead of 4).
-- ``arc_ratio``, atan2(s, c)/s for the sine and cosine of half an angle of rotation: within 4 ulp for c >= 0 (measured
-  1.6; batches 1.2). Kernels call it with c = abs(q0).
-
-Batches compute these functions without a branch, with the sine, cosine and arc tangent of ``symrot_math.h``.
+Near zero, ``(x - sin x)/x^3`` and other differences of nearly equal terms are Taylor series, with a truncation error
+proven to be below half the last bit. ``python -m symrot.bench.ulps`` measures all errors in ulp (units in the last
+place).
 """
 
 from collections.abc import Callable
@@ -54,17 +37,14 @@ _x = Symbol("x", real=True)
 
 @dataclass(frozen=True)
 class Removable:
-    """An even analytic function of x, such as sinc, written as ``numerator / x^power``, which is undefined at zero.
-
-    ``split`` is the square of the |x| below which the Taylor series is used; there its terms alternate in sign and
-    decrease. For larger |x|, the function is computed as ``scaled/x/x``. The formula ``scaled`` is the numerator
-    divided by x^(power - 2); so the quotient is the same, without a high power of x, which could overflow.
-    """
+    """An even analytic function of x, such as sinc, written as ``numerator / x^power``, which is undefined at zero."""
 
     name: str
     numerator: Expr  # a formula in x
     power: int
+    # the square of the abs(x) below which the Taylor series is used; there its terms alternate and decrease
     split: Fraction
+    # computed as scaled/x/x beyond the split: a high power of x could overflow
     scaled: str  # a formula of numerator / x^(power - 2) whose terms neither overflow nor cancel beyond the split
     about: str
 
@@ -73,12 +53,11 @@ class Removable:
         return self.numerator.xreplace({_x: x}) / x**self.power
 
     def coefficients(self, precision: str = "binary64") -> tuple[Fraction, ...]:
-        """Return as many Taylor coefficients of the function, in powers of x^2, as ``precision`` needs, lowest first.
-
-        ``precision`` is ``"binary64"`` or ``"binary32"``. The first omitted term at x^2 = ``split`` is less than a
-        quarter of a unit in the last place of the smallest value of the function in this range. Because the series
-        alternates, this bounds the truncation error.
+        """Return as many Taylor coefficients of the function, in powers of x^2, as ``precision`` needs,
+        lowest first.
         """
+        # The first omitted term at x^2 = split is below a quarter of the last place of the function's smallest value
+        # there. The series alternates, so this bounds the truncation error.
         return _summed(self, precision)
 
     def taylor(self, count: int) -> tuple[Fraction, ...]:
@@ -112,6 +91,11 @@ def _derivative(which: Removable, order: int) -> Expr:
     return _derivative(which, order - 1).diff(_x) if order else which.numerator
 
 
+# Errors are within 4 ulp: sinc (measured 1.4), sine_gap (2.1) and sine_bend (3.1) at every finite number, tangent_gap
+# (2.3) and tangent_bend (3.2) for |x| <= pi, arc_ratio (1.6; batches 1.2) for c >= 0. For larger |x|, tangent_gap
+# decreases as cos(x)/x^2. Its zeros, the solutions of x = tan x, are no floating-point numbers, so its relative error
+# has no bound. Its absolute error, and that of tangent_bend, is at most 4 * 2^-53/x^2 (float: 4 * 2^-24/x^2) or
+# half the least subnormal number (factors measured: 2.5 and 1.1 instead of 4).
 REMOVABLE: dict[str, Removable] = {
     each.name: each
     for each in (
@@ -141,10 +125,7 @@ _EXPLICIT: dict[str, Callable[..., Any]] = {
 
 
 def explicit(expr: Expr) -> Expr:
-    """Return an expression in which functions such as sinc(x) are written as quotients, here sin(x)/x.
-
-    Proofs compute with the quotients, which are valid except where their denominators are zero.
-    """
+    """Return an expression with functions such as sinc(x) written as quotients, here sin(x)/x, for proofs."""
     for name, formula in _EXPLICIT.items():
         expr = expr.replace(
             lambda e, name=name: getattr(e.func, "__name__", "") == name, lambda e, formula=formula: formula(*e.args)

@@ -44,13 +44,10 @@ _SQUARE = Symbol("square", real=True)  # square of the length of the parameters
 
 
 def _ray(which: Projection) -> tuple[Named, Expr]:
-    """Return (definitions, s) such that the quaternion (s, parameters), of any norm, describes the attitude.
-
-    Definitions are pairs (symbol, formula) for the symbols in s. For classical parameters s is 1; for modified
-    parameters it is (1 - p^2)/2.
-    """
+    """Return (definitions of symbols, s) such that the quaternion (s, parameters) describes the attitude."""
     if not which.centre:
         return (), Integer(1)
+    # (1 - p^2)/2 for modified parameters, 1 for classical ones
     return ((_SQUARE, sum(p**2 for p in which.parameters)),), (1 - _SQUARE) / 2
 
 

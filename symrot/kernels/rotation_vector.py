@@ -30,10 +30,7 @@ def definitions() -> Iterator[tuple[str, Callable[[], Definition]]]:
 
 
 def _of_skew(c1: Expr, c2: Expr) -> ImmutableMatrix:
-    """Return the matrix ``1 + c1 K + c2 K^2`` with the coefficients c1 and c2.
-
-    K is the skew matrix of the rotation vector v: K x is the cross product of v and x.
-    """
+    """Return the matrix ``1 + c1 K + c2 K^2``, K the cross-product matrix of the rotation vector."""
     matrix = skew(_VECTOR)
     return ImmutableMatrix(eye(3) + c1 * matrix + c2 * matrix**2)
 

@@ -33,12 +33,9 @@ _SIZE = {"scalar": 1, "vector": 3, "scalar or vector": 3, "attitude": 4}
 
 
 class _Turned(Motion):
-    """A motion that rotates vectors of space into the body by the quaternion itself, without a rotation matrix.
+    """A motion that rotates vectors of space into the body by the quaternion itself, without a rotation matrix."""
 
-    A torque law, such as that of gravity, asks the motion for the body components of a vector of space. This class
-    takes fewer operations for them than :class:`Motion`, which computes the whole rotation matrix.
-    """
-
+    # fewer operations than :class:`Motion`, which computes the whole matrix
     def to_body(self, vector_s: Matrix) -> Matrix:
         named, components = turned(conjugate(self.quaternion), vector_s)
         return components.xreplace(dict(named))

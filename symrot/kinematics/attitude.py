@@ -45,10 +45,6 @@ def chart(name: str) -> Chart:
 def convert(source: str, target: str, values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
     """Return the parameters of the description ``target`` as expressions in those of ``source``, shape (n, 1).
 
-    The conversion goes through the quaternion, to and from which every description can be converted. The direction
-    cosine matrix is not among the descriptions: ``chart(name).dcm`` returns it, and
-    :func:`symrot.kinematics.quaternion.quaternion_of_dcm` or :func:`symrot.kinematics.euler.euler_of_dcm` converts it.
-
     Parameters
     ----------
     source, target : str
@@ -57,6 +53,7 @@ def convert(source: str, target: str, values: Sequence[Any] | Matrix | None = No
         Values of the parameters of ``source``; default: its symbols. The values must satisfy the constraint of
         ``source``, such as unit norm.
     """
+    # Every description converts to and from the quaternion. The dcm is none of them: chart(name).dcm, euler_of_dcm.
     start = chart(source)
     parameters = expressions(start.parameters if values is None else values, len(start.parameters), source)
     q = start.quaternion.xreplace(dict(zip(start.parameters, parameters, strict=True)))

@@ -1,8 +1,8 @@
 """The common interface of all attitude descriptions ("charts").
 
 A chart describes an attitude by parameters p, such as Euler angles or a quaternion. It provides the direction cosine
-matrix, conversions to and from the unit quaternion, and in both frames the rate matrix B(p) of ``omega = B(p) dp/dt``
-with its inverse, determinant, condition number and singular parameters, at which B has no inverse.
+matrix, conversions to and from the unit quaternion, and in both frames the rate matrix B(p) of ``omega = B(p) dp/dt``.
+B has no inverse at singular parameters.
 """
 
 from collections.abc import Callable
@@ -50,9 +50,7 @@ _NUMBERS = {S.Integers: "n any integer", S.Naturals: "n = 1, 2, ...", S.Naturals
 
 @dataclass(frozen=True)
 class SingularSet:
-    """The set of real values of one variable at which an expression is zero, computed exactly.
-
-    For a rate matrix the expression is its determinant, and the zeros are the singular points, such as gimbal lock.
+    """The set of real values of one variable at which an expression is zero, such as the determinant of a rate matrix.
 
     Attributes
     ----------
@@ -79,12 +77,11 @@ class SingularSet:
         return bool(self.values is S.EmptySet)
 
     def points(self) -> tuple[Expr, ...]:
-        """Return the values of the variable at which the chart is singular, in increasing order; there may be none.
+        """Return the values of the variable in one period at which the chart is singular: all n pi give ``(0, pi)``.
 
-        If the values repeat with the period 2 pi, those of [0, 2 pi) are returned: for the set of all n pi the result
-        is (0, pi). A set whose smallest value lies in [2 pi, 4 pi), such as the rotation vectors of length 2 pi, 4 pi,
-        .., gives its values there, here (2 pi,).
+        Empty if there are none.
         """
+        # Rotation vectors of length 2 pi, 4 pi, .. have their first singular value in the second interval.
         for turn in (Interval.Ropen(0, 2 * pi), Interval.Ropen(2 * pi, 4 * pi)):
             points = self.values.intersect(turn)
             if points is not S.EmptySet:
@@ -104,10 +101,10 @@ class SingularSet:
 
 
 def condition_of(gram: Matrix) -> Expr:
-    """Return the condition number of a rate matrix B from ``gram``, its Gram matrix ``B^T B`` or ``B B^T``.
-
-    It is the square root of the ratio of the largest to the smallest eigenvalue of ``gram``; 1 is the best value.
+    """Return the condition number of a rate matrix B from its Gram matrix ``gram``, ``B^T B`` or ``B B^T``;
+    at least 1.
     """
+    # the singular values of B are the roots of these eigenvalues
     values = list(gram.eigenvals())
     return sqrt(cancel(Max(*values) / Min(*values)))
 
@@ -115,9 +112,6 @@ def condition_of(gram: Matrix) -> Expr:
 @cache
 def zeros_of(equation: Expr, variable: Symbol, domain: Set = S.Reals) -> Set:
     """Return the exact set of zeros of an expression in one variable.
-
-    If the numerator has the period 4 pi (a function of angles and half angles) and its zeros are evenly spaced, the set
-    is one family ``first + n * spacing``; otherwise the set is the result of SymPy's ``solveset``.
 
     Parameters
     ----------
@@ -136,6 +130,7 @@ def zeros_of(equation: Expr, variable: Symbol, domain: Set = S.Reals) -> Set:
     period = periodicity(fraction(together(equation))[0], variable)
     if period is None or not (4 * pi / period).is_integer:
         return solution
+    # functions of angles and half angles: evenly spaced zeros are one family first + n * spacing
     zeros = sorted(solution.intersect(Interval.Ropen(4 * pi, 8 * pi)), key=float)
     spacing, first = 4 * pi / len(zeros), zeros[0] - 4 * pi
     if any(after - before != spacing for before, after in pairwise(zeros)):
@@ -148,9 +143,8 @@ def zeros_of(equation: Expr, variable: Symbol, domain: Set = S.Reals) -> Set:
 
 @dataclass(frozen=True)
 class Limit:
-    """The limit of the inverse rate matrix as the parameters approach a singular point from one side.
-
-    It shows which rates grow without bound near the point, and with which sign and factor.
+    """The limit of the inverse rate matrix at a singular point from one side: which rates grow without bound, and how
+    fast.
 
     Attributes
     ----------
@@ -181,12 +175,7 @@ class Limit:
 
 @dataclass(frozen=True)
 class RateFacts:
-    """What a :class:`RateMatrix` knows besides its entries: frame, parameters, determinant, inverse.
-
-    The determinant depends on the parameters only through ``variable`` (an angle or a length). ``along(x)`` returns the
-    determinant and the inverse with ``variable`` set to x, for x in ``domain``. The limits at the singular values of
-    the variable are computed from ``along``.
-    """
+    """What a :class:`RateMatrix` knows besides its entries: frame, parameters, determinant, inverse."""
 
     name: str
     frame: str
@@ -195,17 +184,15 @@ class RateFacts:
     inverse: ImmutableMatrix | None
     determinant: Expr
     condition_number: Expr
+    # an angle or a length; the determinant depends on no other combination of the parameters
     variable: Expr
+    # (determinant, inverse) at the value x of variable, for x in domain; gives the limits
     along: Callable[[Expr], tuple[Expr, ImmutableMatrix | None]]
     domain: Set = S.Reals
 
 
 class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
     """The rate matrix B(p) of ``omega = B(p) dp/dt``: an immutable SymPy matrix with its inverse and singular set.
-
-    Arithmetic with a rate matrix gives plain SymPy matrices. A chart with four parameters and one constraint (unit
-    norm) has a 3 x 4 rate matrix. The inverse is then 4 x 3, and the rates that it gives preserve the constraint; the
-    determinant is the determinant of B with the gradient of the constraint as a fourth row.
 
     Attributes
     ----------
@@ -235,11 +222,9 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
     facts: RateFacts
 
     def __new__(cls, *args: Any, **kwargs: Any) -> Any:
-        """Return a plain matrix of the entries: SymPy rebuilds matrices with ``func(*args)`` after each operation.
-
-        A product with a rate matrix, or a substitution in it, is therefore a plain matrix. It does not carry over the
-        stored inverse and determinant, which would be wrong for the new entries. :meth:`build` makes rate matrices.
-        """
+        """Return a plain matrix of the entries; :meth:`build` makes rate matrices."""
+        # SymPy rebuilds a matrix with func(*args) after each operation; the stored inverse and determinant would be
+        # wrong for the new entries.
         return ImmutableDenseMatrix(*args, **kwargs)
 
     @classmethod
@@ -354,9 +339,8 @@ class Chart:
     about: str
 
     def rates(self, frame: str = "body") -> ImmutableMatrix:
-        """Return the matrix M of ``dp/dt = M * omega`` for the parameters p: the inverse of ``rate_matrix(frame)``.
-
-        ``frame`` is ``"body"`` or ``"space"``: the components of omega.
+        """Return the matrix M of ``dp/dt = M * omega``, for omega in components of ``frame``, ``"body"`` or
+        ``"space"``.
         """
         return self.rate_matrix(check_frame(frame)).inverse
 
@@ -366,8 +350,7 @@ class Chart:
 
     @property
     def singular_set(self) -> SingularSet:
-        """The values of the parameters at which the rate matrix has no inverse; they are the same in both frames.
-
-        For example, the middle angles at gimbal lock.
+        """The parameters at which the rate matrix has no inverse, in either frame, such as the middle angles at gimbal
+        lock.
         """
         return self.rate_matrix("body").singular_set

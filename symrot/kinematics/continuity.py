@@ -1,10 +1,8 @@
 """Quaternions and Euler angles without jumps along a trajectory. NumPy alone.
 
-The samples of the trajectory follow each other along the first dimension. The functions of
-:mod:`symrot.kinematics.conversions` return each attitude in a standard range, so that neighbouring samples may jump.
-Each attitude has several equivalent values: q and -q, angles plus multiples of 2 pi, two sets of Euler angles, and at
-gimbal lock many pairs of first and third angle. The functions here choose the value that is closest to the sample
-before.
+The samples follow each other along the first dimension. An attitude has several equivalent values: q and -q, angles
+plus multiples of 2 pi, two sets of Euler angles, at gimbal lock many. The functions choose the value closest to the
+sample before.
 """
 
 from typing import Any
@@ -17,12 +15,12 @@ __all__ = ["continuous_quaternion", "unwrap_euler"]
 
 
 def continuous_quaternion(q: Any) -> Array:
-    """Return the quaternions ``q``, shape (n, ..., 4), with signs chosen so that neighbours have positive dot products.
-
-    The first sample is unchanged. q and -q describe the same attitude, so a sign may jump where a conversion chose it.
+    """Return the quaternions ``q``, shape (n, ..., 4), with signs chosen so that neighbours have positive
+    dot products.
     """
     q = array_of(q, 4, what="a quaternion")
     turns_over = np.einsum("...i,...i->...", q[1:], q[:-1]) < 0
+    # q and -q are the same attitude; the first sample is unchanged
     sign = np.ones(q.shape[:-1])
     sign[1:] = np.where(np.cumsum(turns_over, axis=0) % 2, -1.0, 1.0)
     continuous: Array = q * sign[..., None]
@@ -67,10 +65,8 @@ def unwrap_euler(angles: Any, sequence: str, locked: Any = None) -> Array:
 
 
 def _step(before: Array, after: Array) -> Array:
-    """Return the squared distance between two sets of Euler angles, with each difference taken modulo one revolution.
-
-    Differences are measured in revolutions. Of the two sets that describe the next attitude, the one with the smaller
-    distance from the present set continues the angles without a jump.
+    """Return the squared distance between two sets of Euler angles, in revolutions, each difference modulo one
+    revolution.
     """
     turns = (after - before) / (2 * np.pi)
     step: Array = np.sum((turns - np.rint(turns)) ** 2, axis=-1)
@@ -78,15 +74,12 @@ def _step(before: Array, after: Array) -> Array:
 
 
 def _take_over(angles: Array, locked: Any, sequence: str) -> None:
-    """Give each locked sample, in place, the third angle of the last unlocked sample, and adjust its first angle.
-
-    At lock the first and the last rotation are about the same line. If the middle rotation maps the last axis to the
-    first axis, the attitude depends on the sum of first and third angle; if it maps the last axis to minus the first
-    axis, the attitude depends on their difference. The adjustment preserves this sum or difference.
-    """
+    """Give each locked sample, in place, the third angle of the last unlocked sample, and adjust its first angle."""
     if not locked.any():
         return
     (first, _, last), _, _, sign = places(sequence)
+    # At lock, first and last rotation are about the same line: the attitude depends on q1 + q3 if the middle rotation
+    # maps the last axis to the first, on q1 - q3 if to minus it. The adjustment preserves this.
     here = np.arange(len(angles)).reshape(-1, *[1] * (locked.ndim - 1))
     source = np.maximum.accumulate(np.where(locked, 0, here), axis=0)
     third = np.take_along_axis(angles[..., 2], source, axis=0)

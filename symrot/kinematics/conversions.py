@@ -1,17 +1,8 @@
 """Numeric conversions between attitude descriptions, for arrays of any leading shape. NumPy alone.
 
-Conventions: :mod:`symrot.conventions`: quaternions ``(..., 4)`` scalar first, body to space; dcm ``(..., 3, 3)`` is
-``dcm_sb``; Euler angles ``(..., 3)`` in order of application; angles in rad unless ``degrees=True``.
-
-Accuracy. Errors are a few units of 1e-16 for every attitude: near the identity (relative error, down to angles of
-1e-300 rad), near rotations by pi, and at gimbal lock. No formula uses acos or asin.
-
-Bad rows. Quaternions may have any norm. A zero, infinite or NaN quaternion gives NaN in its own row and leaves the
-other rows unchanged, without a warning. If a result is not unique, the docstring says which value is returned; for
-Euler angles and Rodrigues parameters a mask marks such rows. Only wrong shapes and types raise ``InputError``.
-
-Implementation. Arrays are processed in blocks with one contiguous row per component, so that each operation runs over
-many samples and its temporaries stay in the processor's cache.
+Conventions: :mod:`symrot.conventions`; angles in rad unless ``degrees=True``. Errors are a few units of 1e-16 for every
+attitude, also at gimbal lock. A zero, infinite or NaN quaternion gives NaN in its own row, without a warning. Wrong
+shapes and types raise ``InputError``.
 """
 
 from collections.abc import Callable, Sequence
@@ -79,13 +70,11 @@ def array_of(values: Any, *shape: int, what: str) -> Array:
 
 @np.errstate(all="ignore")
 def _by_components(function: Callable[..., Components], rows: Array, width: int) -> Array:
-    """Apply ``function`` to the components of ``rows``, shape (..., n), and return its results, shape (..., width).
-
-    ``function`` takes n arrays and returns ``width`` arrays; it is called for one block of samples after the other.
-    """
+    """Apply ``function`` to the n components of ``rows``, shape (..., n); return its results, shape (..., width)."""
     flat = rows.reshape(-1, rows.shape[-1])
     result: Array = np.empty((len(flat), width))
     for start in range(0, len(flat), BLOCK):
+        # With blocks of contiguous components, the temporaries stay in the processor's cache.
         block = slice(start, start + BLOCK)
         for place, component in enumerate(function(*np.ascontiguousarray(flat[block].T))):
             result[block, place] = component
@@ -105,17 +94,14 @@ def _largest(components: Components) -> Array:
 
 
 def _in_range(*components: Array) -> tuple[Components, Array]:
-    """Return the components of samples and their squared lengths; samples of extreme size are scaled.
-
-    A sample whose squares would overflow or underflow is divided by its largest component. Samples that are zero,
-    infinite or NaN become NaN.
-    """
+    """Return the components of samples and their squared lengths; samples of extreme size are scaled."""
     squares = _sum_of_squares(components)
     extreme = ~((squares > SAFE[0]) & (squares < SAFE[1]))
     if not extreme.any():
         return components, squares
     fixed = np.array(components)
     largest = _largest(fixed[:, extreme])
+    # Squares would overflow or underflow; samples that are zero, infinite or NaN become NaN.
     fixed[:, extreme] = np.where(np.isfinite(largest), fixed[:, extreme] / largest, np.nan)
     return fixed, _sum_of_squares(fixed)
 
@@ -150,10 +136,7 @@ def _normalize(*q: Array) -> Components:
 
 
 def normalize(q: Any) -> Array:
-    """Return quaternions divided by their norms, shape (..., 4), without overflow or underflow.
-
-    A row with the norm 0, or with a component that is not finite, gives NaN.
-    """
+    """Return quaternions divided by their norms, shape (..., 4); NaN for norm 0 or components that are not finite."""
     return _by_components(_normalize, array_of(q, 4, what="a quaternion"), 4)
 
 
@@ -226,11 +209,11 @@ def _quaternion_of_dcm(*r: Array) -> Components:
 def dcm_to_quaternion(dcm: Any) -> Array:
     """Return the unit quaternions with ``q0 >= 0``, shape (..., 4), of rotation matrices ``dcm_sb``.
 
-    The formula divides by the largest of the four squares ``4 q_i^2``, so that the divisor is never small. A matrix
-    that is only nearly a rotation is not corrected first. A matrix with determinant <= 0 or with an entry that is not
-    finite gives NaN.
+    NaN if an entry is not finite or the determinant <= 0.
     """
     dcm = array_of(dcm, 3, 3, what="a dcm")
+    # The formula divides by the largest of the squares 4 q_i^2, so that the divisor is never small. A matrix that is
+    # only nearly a rotation is not corrected first.
     return _by_components(_quaternion_of_dcm, dcm.reshape(*dcm.shape[:-2], 9), 4)
 
 
@@ -260,11 +243,11 @@ def _logarithm(*q: Array) -> Components:
 
 
 def quaternion_to_rotation_vector(q: Any) -> Array:
-    """Return rotation vectors in rad, shape (..., 3), of length at most pi (the logarithm of the quaternion).
+    """Return rotation vectors in rad, shape (..., 3), of length at most pi.
 
-    A rotation by pi (q0 = 0) has two rotation vectors; the vector whose first nonzero component is positive is
-    returned.
+    For a rotation by pi, the first nonzero component is positive.
     """
+    # A rotation by pi (q0 = 0) has two; the one whose first nonzero component is positive is returned.
     return _by_components(_logarithm, array_of(q, 4, what="a quaternion"), 3)
 
 
@@ -277,14 +260,12 @@ def _quaternion_of_axis_angle(n1: Array, n2: Array, n3: Array, angle: Array) -> 
 
 
 def axis_angle_to_quaternion(axis: Any, angle: Any, degrees: bool = False) -> Array:
-    """Return unit quaternions, shape (..., 4), of rotations about axes of any length by angles, broadcast together.
-
-    A zero axis gives NaN, unless its angle is zero.
-    """
+    """Return unit quaternions, shape (..., 4), of rotations about axes of any length by angles, broadcast together."""
     axis, angle = array_of(axis, 3, what="an axis"), array_of(angle, what="an angle")
     angle = np.radians(angle) if degrees else angle
     shape = np.broadcast_shapes(axis.shape[:-1], angle.shape)
     rows = np.concatenate([np.broadcast_to(axis, (*shape, 3)), np.broadcast_to(angle[..., None], (*shape, 1))], axis=-1)
+    # A zero axis gives NaN, unless its angle is zero.
     return _by_components(_quaternion_of_axis_angle, rows, 4)
 
 
@@ -299,9 +280,9 @@ def _axis_angle(*q: Array) -> Components:
 def quaternion_to_axis_angle(q: Any, degrees: bool = False) -> tuple[Array, Array]:
     """Return unit axes, shape (..., 3), and angles in [0, pi], shape (...).
 
-    At zero angle, where no axis is defined, the axis is (1, 0, 0). A rotation by pi gets the axis whose first nonzero
-    component is positive.
+    At zero angle, the axis is (1, 0, 0).
     """
+    # A rotation by pi gets the axis whose first nonzero component is positive.
     axis_angle = _by_components(_axis_angle, array_of(q, 4, what="a quaternion"), 4)
     return axis_angle[..., :3], np.degrees(axis_angle[..., 3]) if degrees else axis_angle[..., 3]
 
@@ -328,9 +309,8 @@ def _rodrigues(*q: Array) -> Components:
 
 
 def quaternion_to_rodrigues(q: Any) -> tuple[Array, Mask]:
-    """Return classical Rodrigues parameters, shape (..., 3), and a mask of rotations by pi, shape (...).
-
-    A rotation by pi has no finite parameters: its mask is True and its row is NaN.
+    """Return classical Rodrigues parameters, shape (..., 3), and a mask: True for rotations by pi, whose parameters are
+    NaN.
     """
     rodrigues = _by_components(_rodrigues, array_of(q, 4, what="a quaternion"), 4)
     return rodrigues[..., :3], rodrigues[..., 3] == 1
@@ -384,20 +364,15 @@ def _shadow(*s: Array) -> Components:
 
 
 def mrp_shadow(s: Any) -> Array:
-    """Return the other set of modified Rodrigues parameters of the same attitude, ``-s / |s|^2``, called its shadow.
-
-    ``s`` and the result have shape (..., 3). A row with s = 0 (the identity) has no finite shadow and gives NaN.
-    """
+    """Return the shadow ``-s / |s|^2``, the other modified Rodrigues parameters of the same attitude; NaN for s = 0."""
     return _by_components(_shadow, array_of(s, 3, what="a set of modified Rodrigues parameters"), 3)
 
 
 @np.errstate(all="ignore")
 def mrp_switch(s: Any) -> tuple[Array, Mask]:
-    """Return, for each row s, the shorter of s and its shadow ``-s / |s|^2``, and a mask of the switched rows.
-
-    A propagation in modified Rodrigues parameters that switches whenever ``|s| > 1`` never exceeds ``|s| = 1``.
-    """
+    """Return the shorter of s and its shadow ``-s / |s|^2`` for each row, and a mask of the switched rows."""
     s = array_of(s, 3, what="a set of modified Rodrigues parameters")
+    # A propagation that switches whenever |s| > 1 never exceeds 1.
     switched = np.asarray(_length(*np.moveaxis(np.atleast_2d(s), -1, 0)) > 1).reshape(s.shape[:-1])
     return np.where(switched[..., None], mrp_shadow(s), s), switched
 
@@ -406,14 +381,13 @@ def mrp_switch(s: Any) -> tuple[Array, Mask]:
 
 
 def places(sequence: str) -> tuple[tuple[int, int, int], tuple[int, int, int], int, int]:
-    """Return, for the Euler sequence, the axes of the three rotations whose product is ``dcm_sb``, and their angles.
+    """Return the axes of the three rotations whose product is ``dcm_sb``, the positions of their angles, and m, sign.
 
-    The result is (axes, order, m, sign): ``axes`` are numbers 0 to 2, ``order`` says which angle belongs to each
-    rotation, and ``e_1 x e_2 = sign e_m`` holds for the axes of the first two. Example: ``"ZYX"`` gives (2, 1, 0), (0,
-    1, 2), 0, -1.
+    ``"ZYX"`` gives (2, 1, 0), (0, 1, 2), 0, -1.
     """
     axes, intrinsic = parse_sequence(sequence)
     (first, middle, last), order = (axes, (0, 1, 2)) if intrinsic else (axes[::-1], (2, 1, 0))
+    # e_1 x e_2 = sign e_m for the axes of the first two rotations
     return (first, middle, last), order, 3 - first - middle, 1 if (middle - first) % 3 == 1 else -1
 
 
@@ -507,13 +481,11 @@ def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: floa
 
 
 def _sum(x: Array, y: Array, odd: Mask) -> Array:
-    """Return the angles ``x + y``, rounded once, for x and y in [-pi/2, pi/2].
-
-    Where ``odd`` is true, return ``x + y - pi`` if x + y is positive, and ``x + y + pi`` if it is negative.
-    """
+    """Return the angles ``x + y``, rounded once, for x and y in [-pi/2, pi/2]."""
     total = x + y
     back = total - x
     error = (x - (total - back)) + (y - back)
+    # subtracts pi (or adds pi to a negative sum) where odd is true
     half_turn = np.copysign(odd, total)
     total -= half_turn * np.pi
     error -= half_turn * PI_LOW
@@ -529,9 +501,8 @@ def euler_to_dcm(angles: Any, sequence: str, degrees: bool = False) -> Array:
 
 
 def dcm_to_euler(dcm: Any, sequence: str, degrees: bool = False, lock: float = LOCK) -> tuple[Array, Mask]:
-    """Return Euler angles of direction cosine matrices, and a mask of gimbal lock, as :func:`quaternion_to_euler` does.
+    """Return Euler angles of matrices ``dcm_sb``, and a mask of gimbal lock; details in :func:`quaternion_to_euler`.
 
-    A matrix ``dcm`` maps body components to space components. ``lock`` is the distance from gimbal lock below which the
-    mask is True. A matrix that is no rotation (determinant <= 0) gives NaN.
+    NaN for a determinant <= 0.
     """
     return quaternion_to_euler(dcm_to_quaternion(dcm), sequence, degrees, lock)

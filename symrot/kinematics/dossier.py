@@ -102,10 +102,7 @@ class SingularityDossier:
 
     @property
     def limits(self) -> tuple[Limit, ...]:
-        """The limits of the inverse body rate matrix at the locked middle angles, from both sides.
-
-        They show which rates grow without bound near gimbal lock.
-        """
+        """The limits of the inverse body rate matrix at the locked middle angles: which rates grow without bound."""
         return self.jacobian_b.limits
 
     def text(self) -> str:
@@ -186,17 +183,15 @@ def _rows(matrix: Matrix, indent: str = "  ") -> list[str]:
 
 
 def _locked_point(sequence: str, middle: Expr) -> LockedPoint:
-    """Return the data of gimbal lock at the middle angle ``middle``: rates without effect, and the lost axis.
-
-    At gimbal lock the first and the last axis coincide up to sign, ``b_first = s b_last``. So the rates ``1, 0, -s`` do
-    not rotate the body, and no rates rotate it about the axis perpendicular to the last and the middle axis.
-    """
+    """Return the data of gimbal lock at a middle angle: the rates that do not rotate the body, and the lost axis."""
     first, _, third = symbols.angles
     jacobian = rate_jacobian(sequence, "body", (first, middle, third))
     columns = [jacobian.col(i) for i in range(3)]
     lost = columns[1].cross(columns[2]).applyfunc(factor_terms)
     left, turn, right = factors(sequence, (first, middle, third))
     sense = (left.direction.T * turn.rotation * right.direction)[0]
+    # The first and the last axis coincide up to sign, b_first = s b_last; the lost axis is perpendicular to the last
+    # and the middle axis.
     silent = ImmutableMatrix([1, 0, -sense])
     return LockedPoint(middle, silent, ImmutableMatrix(lost))
 

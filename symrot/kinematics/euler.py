@@ -1,10 +1,8 @@
-"""Euler angles: all 12 intrinsic and 12 extrinsic sequences, from the name of the sequence.
+"""Euler angles: all 12 intrinsic and 12 extrinsic sequences, each computed from three elementary rotations.
 
-No sequence has formulas of its own: all formulas are computed from three elementary rotations. An extrinsic sequence
-equals the intrinsic sequence of the reversed name (``zyx`` with q1, q2, q3 is ``XYZ`` with q3, q2, q1), so every
-formula uses three factors from left to right, ``dcm_sb = R_first R_middle R_last``. A sequence is proper if its first
-and last axis are the same (``ZXZ``), otherwise Tait-Bryan (``ZYX``). At gimbal lock, first and last rotation are about
-the same line. Convention: :mod:`symrot.conventions`. Proof: ``derivations/euler_body_rates.md``.
+Every sequence is a product of three factors, ``dcm_sb = R_first R_middle R_last``; the extrinsic ``zyx`` equals the
+intrinsic ``XYZ`` with reversed angles. Proper sequences have equal first and last axes (``ZXZ``), the others are
+Tait-Bryan. Convention: :mod:`symrot.conventions`. Proof: ``derivations/euler_body_rates.md``.
 """
 
 from collections.abc import Sequence
@@ -51,13 +49,11 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Factor:
-    """One of the three rotations whose product is ``dcm_sb``: its axis, its angle, and which of the angles that is.
-
-    For an extrinsic sequence, the first factor belongs to the last angle.
-    """
+    """One of the three rotations whose product is ``dcm_sb``: its axis, its angle, and the number of this angle."""
 
     axis: int
     angle: Expr
+    # for an extrinsic sequence, the first factor belongs to the last angle
     place: int
 
     @cached_property
@@ -128,28 +124,24 @@ def dcm(sequence: str, angles: Sequence[Any] | None = None) -> ImmutableMatrix:
 
 
 def lock_indicator(sequence: str, dcm_sb: Matrix) -> Expr:
-    """Return the entry of ``dcm_sb`` that is +1 or -1 if and only if the sequence is in gimbal lock.
-
-    The entry ``e_first^T dcm e_last`` is the cosine of the angle between the first axis and the rotated last axis.
-    """
+    """Return the entry ``e_first^T dcm e_last``, which is +1 or -1 if and only if the sequence is in gimbal lock."""
     first, _, last = factors(sequence)
+    # the cosine of the angle between the first axis and the rotated last axis
     return dcm_sb[first.axis, last.axis]
 
 
 def _core(sequence: str, frame: str, angles: Sequence[Any] | None) -> tuple[Matrix, Matrix, Matrix]:
-    """Return the factors ``carry, core, order`` of the rate matrix ``B = carry * core * order``.
-
-    ``core`` depends on the middle angle only, so it is easy to invert: its columns are the three rotation axes in the
-    frame of the middle rotation. ``carry`` rotates them to components in ``frame``, and ``order`` sorts the columns in
-    order of application.
-    """
+    """Return the factors ``carry, core, order`` of the rate matrix ``B = carry * core * order``."""
     first, middle, last = factors(sequence, angles)
+    # core has the three axes in the frame of the middle rotation, and depends on the middle angle only; carry rotates
+    # them to components in frame.
     if check_frame(frame) == "body":
         carry = last.rotation.T
         core = Matrix.hstack(middle.rotation.T * first.direction, middle.direction, last.direction)
     else:
         carry = first.rotation
         core = Matrix.hstack(first.direction, middle.direction, middle.rotation * last.direction)
+    # sorts the columns in order of application
     order = zeros(3)
     for row, factor in enumerate((first, middle, last)):
         order[row, factor.place] = 1
@@ -157,10 +149,8 @@ def _core(sequence: str, frame: str, angles: Sequence[Any] | None) -> tuple[Matr
 
 
 def _solved(carry: Matrix, core: Matrix, order: Matrix) -> tuple[Expr, ImmutableMatrix | None]:
-    """Return (determinant, inverse) of the rate matrix ``carry * core * order``; no inverse if the determinant is 0.
-
-    Only ``core``, which depends on one angle, is inverted: ``carry`` is a rotation and ``order`` a permutation.
-    """
+    """Return (determinant, inverse) of the rate matrix ``carry * core * order``; no inverse if the determinant is 0."""
+    # Only core, which depends on one angle, is inverted: carry is a rotation, order a permutation.
     core_determinant = core.det(method="berkowitz")
     determinant = core_determinant * order.det()
     if core_determinant == 0:
@@ -201,16 +191,15 @@ class EulerRateMatrix(RateMatrix):
         return tuple(other for other, met in meetings.items() if met is S.EmptySet)
 
     def regular_at(self, angles: Sequence[Any] | None = None) -> tuple[str, ...]:
-        """Return the sequences, of all 24, that are not in gimbal lock at one attitude.
-
-        ``angles`` (default: the symbols) give this attitude as angles of the present sequence. If some are symbols, a
-        sequence is left out only if it locks for all values of the symbols. A float stands for the exact rational
-        number that it represents.
+        """Return the sequences, of all 24, that are not in gimbal lock at the attitude ``angles`` (default: the
+        symbols).
         """
         own_angles = expressions(
             self.parameters if angles is None else angles, 3, f"the Euler sequence {self.sequence}"
         )
+        # a float is the exact rational number that it represents
         attitude = dcm(self.sequence, [Rational(angle) if angle.is_Float else angle for angle in own_angles])
+        # With symbols, a sequence is left out only if it locks for all their values.
         return tuple(other for other in SEQUENCES if not _is_one(lock_indicator(other, attitude) ** 2))
 
 
@@ -221,9 +210,7 @@ def _is_one(value: Expr) -> bool:
 
 
 def rate_jacobian(sequence: str, frame: str = "body", angles: Sequence[Any] | None = None) -> EulerRateMatrix:
-    """Return the rate matrix B(q) of an Euler sequence, with ``omega = B(q) * dq/dt``.
-
-    Column i is the axis of rotation i, in components of ``frame``.
+    """Return the rate matrix B(q) of an Euler sequence, ``omega = B(q) * dq/dt``; column i is the axis of rotation i.
 
     Parameters
     ----------
@@ -284,14 +271,12 @@ def _rate_jacobian(sequence: str, frame: str, parameters: tuple[Expr, ...]) -> E
 
 @cache
 def sequences_at_lock(sequence: str) -> dict[str, Set]:
-    """Return a map from each other sequence to the gimbal-lock attitudes of ``sequence`` at which it locks too.
-
-    In gimbal lock the attitude depends only on the sum or difference of the first and the last angle. So one of these
-    two angles is set to zero (the last of an intrinsic sequence, the first of an extrinsic one), and the attitude is
-    described by the other of the two. Each set contains values of this angle, rad. It is empty for a sequence that is
-    regular at all these attitudes, and contains all real numbers for one that locks at all of them.
+    """Return, for each other Euler sequence, the gimbal-lock attitudes of ``sequence`` at which it locks too, as a set
+    of one angle, rad.
     """
     left, _, _ = factors(sequence)
+    # In gimbal lock only the sum or difference of the outer angles matters, so one of them is zero. The set is empty
+    # for a sequence that is regular at all these attitudes.
     chi = left.angle
     attitudes = []
     for point in rate_jacobian(sequence).singular_set.points():
@@ -306,20 +291,15 @@ def sequences_at_lock(sequence: str) -> dict[str, Set]:
 
 
 def quaternion_of_euler(sequence: str, angles: Sequence[Any] | None = None) -> ImmutableMatrix:
-    """Return the unit quaternion, shape (4, 1), of Euler angles: the product of the three rotations of ``sequence``.
-
-    ``angles`` are in rad, in order of application; default: the symbols phi, theta, psi.
-    """
+    """Return the unit quaternion, shape (4, 1), of Euler angles in rad, default phi, theta, psi."""
     turns = (elementary_quaternion(factor.axis, factor.angle) for factor in factors(sequence, angles))
     return ImmutableMatrix(quaternion_product(*turns).applyfunc(expand))
 
 
 def euler_of_quaternion(sequence: str, q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-    """Return the Euler angles of a quaternion of any norm, shape (3, 1), rad, in order of application.
+    """Return the Euler angles of a quaternion of any norm, shape (3, 1), rad.
 
-     The middle angle is in [0, pi] (proper) or [-pi/2, pi/2] (Tait-Bryan). The other angles are in (-2 pi, 2 pi);
-     reduce them modulo 2 pi if needed. All angles follow from half-angle sums and differences by ``atan2``, without
-     ``acos`` or ``asin``, so they keep full accuracy up to gimbal lock.
+    The first and last angle are in (-2 pi, 2 pi).
 
     Notes
     -----
@@ -337,8 +317,10 @@ def euler_of_quaternion(sequence: str, q: Sequence[Any] | Matrix = symbols.quate
         quarter = [1, *unit_vector(middle.axis)]
         q = quaternion_product(q, quarter)
     a, b, c, d = q[0], q[1 + first.axis], q[1 + middle.axis], sign * q[1 + cross]
+    # Sums and differences of half angles by atan2 keep full accuracy up to gimbal lock, where acos does not.
     half_sum, half_difference = atan2(b, a), atan2(d, c)
     low, high = sqrt(a**2 + b**2), sqrt(c**2 + d**2)
+    # middle angle in [0, pi] or [-pi/2, pi/2] (Tait-Bryan); the others in (-2 pi, 2 pi)
     values = {
         first.place: half_sum + half_difference,
         middle.place: 2 * atan2(high, low) if proper else atan2(expand(c**2 + d**2 - a**2 - b**2), 2 * low * high),
@@ -348,14 +330,11 @@ def euler_of_quaternion(sequence: str, q: Sequence[Any] | Matrix = symbols.quate
 
 
 def euler_of_dcm(sequence: str, dcm_sb: Matrix) -> ImmutableMatrix:
-    """Return the Euler angles of the matrix ``dcm_sb`` as expressions, shape (3, 1), rad, in order of application.
-
-    Each angle is an ``atan2`` of two expressions and has its range, -pi to pi; middle angles have half of it. The image
-    of the last axis under the dcm gives the first and the middle angle; the image of the first axis under the
-    transposed dcm gives the last angle.
-    """
+    """Return the Euler angles of the matrix ``dcm_sb`` as expressions, shape (3, 1), rad, in order of application."""
     first, middle, last = factors(sequence)
     proper = first.axis == last.axis
+    # The image of the last axis gives the first and the middle angle, that of the first axis under the transposed dcm
+    # the last angle. Ranges: -pi to pi, middle angle half of it.
     image, back = dcm_sb * last.direction, dcm_sb.T * first.direction
     lifted = middle.direction.cross(last.direction)  # direction in which the middle rotation moves the last axis
     across = lifted if proper else last.direction

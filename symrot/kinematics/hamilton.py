@@ -11,11 +11,7 @@ __all__ = ["hamilton"]
 
 
 def hamilton(left: Sequence[Any], right: Sequence[Any]) -> tuple[Any, Any, Any, Any]:
-    """Return the Hamilton product of two quaternions, scalar first.
-
-    The components may be of any type that has addition, subtraction and multiplication: integers, fractions, floats of
-    any precision, arrays, dual numbers. The order of the operations is fixed, because the last bits of sums of floats
-    depend on it.
+    """Return the Hamilton product of two quaternions, scalar first, with components of any number type (or arrays).
 
     Examples
     --------
@@ -24,6 +20,7 @@ def hamilton(left: Sequence[Any], right: Sequence[Any]) -> tuple[Any, Any, Any, 
     """
     a0, a1, a2, a3 = left
     b0, b1, b2, b3 = right
+    # a fixed order of operations, because the last bits of sums of floats depend on it
     return (
         a0 * b0 - a1 * b1 - a2 * b2 - a3 * b3,
         a0 * b1 + a1 * b0 + a2 * b3 - a3 * b2,

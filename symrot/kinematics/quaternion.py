@@ -37,10 +37,7 @@ FORMS = ("unit", "homogeneous", "normalised")
 
 @cache
 def _unit_product(left: int, right: int) -> tuple[int, int]:
-    """Return ``(k, sign)`` with ``e_left e_right = sign e_k``, where e_0 to e_3 are the units 1, i, j, k.
-
-    Example: i j = k gives ``_unit_product(1, 2) = (3, 1)``.
-    """
+    """Return ``(k, sign)`` with ``e_left e_right = sign e_k`` for the units 1, i, j, k: i j = k gives ``(3, 1)``."""
     if left == 0 or right == 0:
         return left + right, 1
     if left == right:
@@ -125,10 +122,7 @@ def unit_relation(q: Sequence[Any] | Matrix = symbols.quaternion) -> Expr:
 
 
 def rotation_relations(matrix: Matrix) -> tuple[Expr, ...]:
-    """Return expressions in the entries of a 3 x 3 matrix that are all zero if and only if it is a rotation.
-
-    Proofs about a general rotation assume them.
-    """
+    """Return expressions in the entries of a 3 x 3 matrix that are all zero if and only if it is a rotation."""
     columns = [matrix[:, i] for i in range(3)]
     cyclic = [*columns, columns[0]]
     crossed = [a.cross(b) - columns[(k + 2) % 3] for k, (a, b) in enumerate(pairwise(cyclic))]
@@ -138,10 +132,7 @@ def rotation_relations(matrix: Matrix) -> tuple[Expr, ...]:
 
 
 def elementary_quaternion(axis: int | str, angle: Any) -> ImmutableMatrix:
-    """Return the unit quaternion, shape (4, 1), of a rotation by ``angle`` (rad) about a coordinate axis.
-
-    ``axis`` is 0, 1, 2 or a letter X, Y, Z.
-    """
+    """Return the unit quaternion, shape (4, 1), of a rotation by ``angle``, rad, about an axis 0, 1, 2 or X, Y, Z."""
     half = sympify(angle) / 2
     return ImmutableMatrix([cos(half), *(sin(half) * unit_vector(axis))])
 
@@ -197,25 +188,19 @@ def _dcm(q: tuple[Expr, ...], form: str) -> ImmutableMatrix:
 
 
 def quaternion_of_dcm(dcm_sb: Matrix, pivot: int = 0) -> ImmutableMatrix:
-    """Return a quaternion of a dcm, shape (4, 1), by a formula that divides by the component ``q_pivot``.
-
-    The result is row ``pivot`` of the matrix ``4 q q^T``, whose entries are linear in the dcm, divided by ``2 sqrt`` of
-    its diagonal entry. All four pivots give the same quaternion up to sign, if the divisor is not zero. The pivot with
-    the largest divisor (at least 1/2) loses no digits (:func:`symrot.kinematics.conversions.dcm_to_quaternion`).
-    """
+    """Return a quaternion of a dcm, shape (4, 1), by a formula that divides by the component ``q_pivot``."""
     if dcm_sb.shape != (3, 3):
         raise InputError(f"expected a dcm of shape (3, 3), got shape {dcm_sb.shape}")
     if pivot not in range(4):
         raise InputError(f"pivot: expected 0, 1, 2 or 3, the index of the component to divide by; got {pivot!r}")
+    # All pivots give the same quaternion up to sign, if the divisor is not zero. The largest divisor (at least 1/2)
+    # loses no digits.
     squares = _four_q_q(dcm_sb)
     return ImmutableMatrix(squares[pivot, :].T / (2 * squares[pivot, pivot] ** Rational(1, 2)))
 
 
 def _four_q_q(dcm_sb: Matrix) -> Matrix:
-    """Return the matrix ``4 q q^T``, shape (4, 4), of a unit quaternion, from the entries of its dcm.
-
-    Each row is a multiple of q; :func:`quaternion_of_dcm` divides one of them by its length.
-    """
+    """Return the matrix ``4 q q^T``, shape (4, 4), of a unit quaternion, from its dcm; each row is a multiple of q."""
     trace = dcm_sb.trace()
     matrix = Matrix.zeros(4)
     matrix[0, 0] = 1 + trace
@@ -228,10 +213,7 @@ def _four_q_q(dcm_sb: Matrix) -> Matrix:
 
 
 def quaternion_rates(frame: str = "body", q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-    """Return the matrix M(q) of ``dq/dt = M(q) * omega``.
-
-    Its columns are the last three columns of L(q)/2 (body) or R(q)/2 (space), with ``q p = L(q) p`` and ``p q = R(q)
-    p``. The rates preserve the norm of q exactly, whatever that norm is.
+    """Return the matrix M(q) of ``dq/dt = M(q) * omega``; these rates preserve the norm of q, whatever it is.
 
     Parameters
     ----------
@@ -260,19 +242,18 @@ def quaternion_rates(frame: str = "body", q: Sequence[Any] | Matrix = symbols.qu
     >>> symrot.quaternion_rates("body").row(0)
     Matrix([[-q1/2, -q2/2, -q3/2]])
     """
+    # with q p = L(q) p and p q = R(q) p
     product = left_matrix(q) if check_frame(frame) == "body" else right_matrix(q)
     return ImmutableMatrix(product[:, 1:] / 2)
 
 
 def quaternion_rate_jacobian(frame: str = "body", q: Sequence[Any] | Matrix = symbols.quaternion) -> RateMatrix:
-    """Return the rate matrix B(q), shape (3, 4), of ``omega = B(q) * dq/dt`` for unit q: ``2 q* dq`` or ``2 dq q*``.
-
-    B has rank 3 for every q, so that each omega has a dq. Proof: the gradient of ``|q|^2`` is added as a fourth row;
-    the determinant of this square matrix is a constant other than zero.
-    """
+    """Return the rate matrix B(q), shape (3, 4), of ``omega = B(q) * dq/dt`` for unit q: ``2 q* dq`` or ``2 dq q*``."""
     q = expressions(q, 4, "a quaternion")
     product = (left_matrix if check_frame(frame) == "body" else right_matrix)(conjugate(q))
     matrix = 2 * product[1:, :]
+    # The gradient of |q|^2 as a fourth row gives a constant determinant other than zero: B has rank 3, and each omega
+    # has a dq.
     bordered = Matrix.vstack(2 * Matrix([q]), matrix)
     norm = norm_squared(q)
     determinant = factor(bordered.det(method="berkowitz")).subs(norm, 1)

@@ -22,9 +22,8 @@ def _is_body(frame: str) -> bool:
 
 
 def quaternion_rate(q: Any, omega: Any, frame: str = "body") -> Array:
-    """Return ``dq/dt``, shape (..., 4), in 1/s, from a quaternion q and the angular velocity ``omega``, rad/s.
-
-    It is ``1/2 q (0, omega_b)`` with body components (``frame="body"``), ``1/2 (0, omega_s) q`` with space components.
+    """Return ``dq/dt``, shape (..., 4), 1/s: ``1/2 q (0, omega_b)`` in the frame ``"body"``, ``1/2 (0, omega_s) q`` in
+    ``"space"``.
     """
     q, omega = array_of(q, 4, what="a quaternion"), array_of(omega, 3, what="an angular velocity")
     pure = np.concatenate([np.zeros_like(omega[..., :1]), omega], axis=-1)
@@ -32,9 +31,8 @@ def quaternion_rate(q: Any, omega: Any, frame: str = "body") -> Array:
 
 
 def angular_velocity(q: Any, dq: Any, frame: str = "body") -> Array:
-    """Return omega, shape (..., 3), rad/s, from a unit quaternion q and its rate dq, 1/s.
-
-    It is ``2 q* dq`` in body components (``frame="body"``) and ``2 dq q*`` in space components.
+    """Return omega, shape (..., 3), rad/s: ``2 q* dq`` in the frame ``"body"``, ``2 dq q*`` in ``"space"``,
+    for unit q.
     """
     q, dq = array_of(q, 4, what="a quaternion"), array_of(dq, 4, what="the rate of a quaternion")
     inverse = q * np.array([1.0, -1.0, -1.0, -1.0])
@@ -93,9 +91,8 @@ def euler_rates(angles: Any, omega: Any, sequence: str, frame: str = "body") -> 
 
 
 def euler_angular_velocity(angles: Any, rates: Any, sequence: str, frame: str = "body") -> Array:
-    """Return omega, shape (..., 3), rad/s, from Euler angles (rad) and their rates (rad/s).
-
-    ``sequence`` is the Euler sequence; omega has components in ``frame``, ``"body"`` or ``"space"``.
+    """Return omega, shape (..., 3), rad/s, in components of ``frame``, from Euler angles, rad, and their
+    rates, rad/s.
     """
     (first, middle, last), order, _, _ = places(sequence)
     angles = array_of(angles, 3, what=f"a set of {sequence} angles")

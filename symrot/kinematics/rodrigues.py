@@ -1,9 +1,8 @@
 """Rodrigues parameters: classical, axis times tan(angle/2), and modified, axis times tan(angle/4).
 
-Both are projections of the unit quaternions from a point on the scalar axis: the classical parameters from the centre
-of the unit sphere, the modified parameters from (-1, 0, 0, 0). Each projection is described by a quaternion h(p) of any
-norm, polynomial in the parameters; the dcm and the rates follow from h by the Hamilton product and are rational in p.
-Convention: :mod:`symrot.conventions`. Proof: ``derivations/rodrigues.md``.
+Both are projections of the unit quaternions, from the centre of the unit sphere or from (-1, 0, 0, 0). A projection is
+described by a quaternion h(p) of any norm, polynomial in the parameters. Convention: :mod:`symrot.conventions`. Proof:
+``derivations/rodrigues.md``.
 """
 
 from collections.abc import Sequence
@@ -24,10 +23,7 @@ __all__ = ["CLASSICAL", "MODIFIED", "Projection", "chart", "projection", "shadow
 
 @dataclass(frozen=True)
 class Projection:
-    """The projection ``p = (q1, q2, q3) / (centre + q0)`` of unit quaternions onto three parameters.
-
-    ``centre`` is 0 for classical and 1 for modified Rodrigues parameters.
-    """
+    """The projection ``p = (q1, q2, q3) / (centre + q0)`` of unit quaternions onto Rodrigues parameters."""
 
     name: str
     parameters: tuple[Symbol, ...]
@@ -35,20 +31,16 @@ class Projection:
     about: str
 
     def of_quaternion(self, q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-        """Return the parameters, shape (3, 1), of a unit quaternion: its vector part divided by ``centre + q0``.
-
-        ``centre`` is 0 for classical and 1 for modified parameters. They are infinite where the divisor is zero: at
-        rotations by pi (classical) or 2 pi (modified).
-        """
+        """Return the parameters, shape (3, 1), of a unit quaternion: its vector part divided by ``centre + q0``."""
         q0, *vector = expressions(q, 4, "a quaternion")
+        # infinite at rotations by pi (classical) or 2 pi (modified)
         return ImmutableMatrix([component / (self.centre + q0) for component in vector])
 
     def homogeneous(self, values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
-        """Return a quaternion h(p) of the attitude, polynomial in the parameters, of any norm, shape (4, 1).
-
-        The quaternion is ``(1, p)`` for classical and ``(1 - p^2, 2 p)`` for modified parameters. A free norm avoids
-        the square root in the unit quaternion.
+        """Return a quaternion of any norm, shape (4, 1): ``(1, p)`` for classical, ``(1 - p^2, 2 p)`` for modified
+        parameters.
         """
+        # A free norm avoids the square root of the unit quaternion.
         p = expressions(self.parameters if values is None else values, 3, self.name)
         if self.centre == 0:
             return ImmutableMatrix([1, *p])
@@ -56,9 +48,8 @@ class Projection:
         return ImmutableMatrix([1 - square, *(2 * component for component in p)])
 
     def norm(self, values: Sequence[Any] | Matrix | None = None) -> Expr:
-        """Return the norm of the quaternion of :meth:`homogeneous`, for the parameters ``values`` (default: symbols).
-
-        It is the polynomial ``1 + p^2`` for modified parameters and the root ``sqrt(1 + p^2)`` for classical ones.
+        """Return the norm of the quaternion of :meth:`homogeneous`: ``sqrt(1 + p^2)`` (classical) or ``1 + p^2``
+        (modified).
         """
         base, exponent = factor(norm_squared(self.homogeneous(values))).as_base_exp()
         return base ** (exponent / 2)
@@ -72,10 +63,8 @@ class Projection:
         return _dcm(self, expressions(self.parameters if values is None else values, 3, self.name))
 
     def rate_matrix(self, frame: str = "body") -> RateMatrix:
-        """Return the rate matrix B(p), shape (3, 3), with ``omega = B(p) * dp/dt``; it is never singular.
-
-        B follows from the vector part of ``omega = 2 h* dh / |h|^2``, which holds for a quaternion h of any norm.
-        """
+        """Return the rate matrix B(p), shape (3, 3), with ``omega = B(p) * dp/dt``; it is never singular."""
+        # B follows from the vector part of omega = 2 h* dh / |h|^2, which holds for a quaternion h of any norm.
         return _rate_matrix(self, check_frame(frame))
 
     def chart(self) -> Chart:
@@ -135,11 +124,8 @@ def _rate_matrix(which: Projection, frame: str) -> RateMatrix:
 def _along(
     parameters: tuple[Symbol, ...], determinant: Expr, inverse: ImmutableMatrix, size: Expr
 ) -> tuple[Expr, ImmutableMatrix]:
-    """Return (determinant, inverse), those of a rate matrix at the parameters ``size * n``, for a unit axis n.
-
-    The arguments ``determinant`` and ``inverse`` are the formulas of the same quantities in terms of ``parameters``.
-    The determinant depends only on the length of the vector of parameters, so that it needs no n.
-    """
+    """Return the determinant and the inverse of a rate matrix at the parameters ``size * n``, for a unit axis n."""
+    # The determinant depends only on the length of the parameters, so any axis will do.
     straight = dict(zip(parameters, (size, Integer(0), Integer(0)), strict=True))
     turned = dict(zip(parameters, (size * n for n in symbols.axis), strict=True))
     return determinant.xreplace(straight), inverse.xreplace(turned)
@@ -150,11 +136,7 @@ MODIFIED = Projection("mrp", symbols.mrp, 1, "modified Rodrigues parameters, axi
 
 
 def projection(name: str) -> Projection:
-    """Return the :class:`Projection` called ``name``: Rodrigues (``"rodrigues"``) or modified Rodrigues (``"mrp"``).
-
-    Either is a map from unit quaternions to three parameters: it projects the unit sphere in four dimensions from a
-    point onto a space of three dimensions. The result has methods for the conversion from and to quaternions.
-    """
+    """Return the :class:`Projection` to Rodrigues (``"rodrigues"``) or modified Rodrigues parameters (``"mrp"``)."""
     for which in (CLASSICAL, MODIFIED):
         if which.name == name:
             return which
@@ -170,8 +152,8 @@ def chart(name: str) -> Chart:
 
 
 def shadow(values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
-    """Return the other set of modified Rodrigues parameters of the same attitude, ``-s / |s|^2``: that of -q.
-
-    One of the two sets has length at most 1; switching to it keeps the parameters bounded for every motion.
+    """Return the shadow ``-s / |s|^2`` of modified Rodrigues parameters s: the other parameters of the same
+    attitude.
     """
+    # the parameters of -q. One set has length at most 1; switching to it keeps every motion bounded.
     return ImmutableMatrix(MODIFIED.of_quaternion(-MODIFIED.quaternion(values)).applyfunc(cancel))

@@ -51,19 +51,15 @@ _size = Symbol("a", positive=True)
 
 
 def _stretch(z: Expr) -> Expr:
-    """Return ``sinh(z/2) / (z/2)``, the factor by which :func:`jacobian` scales components normal to the vector.
-
-    For z = i a, with the length a of the rotation vector, rad, the factor is ``sin(a/2) / (a/2)``.
-    """
+    """Return ``sinh(z/2) / (z/2)``; for z = i a, ``sin(a/2) / (a/2)``."""
+    # the factor by which the rate matrix scales components normal to a rotation vector of length a
     return 2 * sinh(z / 2) / z
 
 
 def _jacobian_function(frame: str) -> Callable[[Expr], Expr]:
-    """Return the function f of the rate matrix ``B = f(K)``, K the skew matrix of the rotation vector.
-
-    f(K) is the mean over s in [0, 1] of ``exp(-s K)`` (body) or ``exp(s K)`` (space). For the body,
-    ``f(z) = (1 - exp(-z)) / z = exp(-z/2) sinh(z/2) / (z/2)``: a rotation by half the angle, times a scale factor.
-    """
+    """Return the function f of the rate matrix ``B = f(K)``, K the skew matrix of the rotation vector."""
+    # The mean over s in [0, 1] of exp(-s K) (body) or exp(s K) (space). For the body, f(z) = (1 - exp(-z)) / z: a
+    # rotation by half the angle, times a scale factor.
     sign = {"body": -1, "space": 1}[check_frame(frame)]
     return lambda z: exp(sign * z / 2) * _stretch(z)
 
@@ -98,19 +94,21 @@ def dcm(vector: Sequence[Any] | Matrix = symbols.rotation_vector) -> ImmutableMa
 
 
 def jacobian(frame: str = "body", vector: Sequence[Any] | Matrix = symbols.rotation_vector) -> RateMatrix:
-    """Return B(v), shape (3, 3), with ``omega = B(v) * dv/dt``: the Jacobian of the exponential map.
-
-    In body components B is the right Jacobian ``1 - (1 - cos a)/a^2 K + (a - sin a)/a^3 K^2`` with a = |v| and K the
-    skew matrix of v; in space components it is the left Jacobian, the transpose of the right Jacobian. B is singular at
-    ``a = 2 pi n`` with n > 0, where vectors of all directions describe the same attitude.
+    """Return B(v), shape (3, 3), with ``omega = B(v) * dv/dt``; singular for lengths 2 pi n of v, n > 0.
 
     Raises
     ------
     InputError
         If the frame is unknown, or the vector does not have three components.
+
+    Notes
+    -----
+    With a = ``|v|`` and K the skew matrix of v, B is the right Jacobian of the exponential map in body components,
+    ``1 - (1 - cos a)/a^2 K + (a - sin a)/a^3 K^2``, and its transpose, the left Jacobian, in space components.
     """
     vector = expressions(vector, 3, "a rotation vector")
     size = length(vector)
+    # At lengths 2 pi n, vectors of all directions describe the same attitude.
     stretch = sin(size / 2) / (size / 2)
     return RateMatrix.build(
         _combine(check_frame(frame), vector, size),
@@ -143,12 +141,9 @@ def quaternion_of_rotation_vector(vector: Sequence[Any] | Matrix = symbols.rotat
 
 
 def rotation_vector_of_quaternion(q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-    """Return the rotation vector, shape (3, 1), rad, of a quaternion q of any norm: its length is at most 2 pi.
-
-    It is at most pi if q0 >= 0. If the vector part is (0, 0, 0) and q0 a positive number, it is zero, the limit of the
-    formula; for other such q0 it is undefined, as in :func:`axis_angle_of_quaternion`.
-    """
+    """Return the rotation vector, shape (3, 1), rad, of a quaternion of any norm: its length is at most 2 pi."""
     q0, *vector = expressions(q, 4, "a quaternion")
+    # the limit of the formula; for other q0 without a vector part, the result is undefined
     if q0.is_positive and not any(vector):
         return ImmutableMatrix(vector)
     axis_and_angle = axis_angle_of_quaternion(q)
@@ -172,24 +167,15 @@ def quaternion_of_axis_angle(
 
 
 def axis_angle_of_quaternion(q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-    """Return axis and angle, ``(n1, n2, n3, alpha)``, of a quaternion of any norm, shape (4, 1).
-
-    At zero angle they are undefined. ``alpha = 2 atan2(|(q1, q2, q3)|, q0)`` is in [0, 2 pi] and accurate for small
-    angles, where ``2 acos(q0)`` is not.
-    """
+    """Return axis and angle, ``(n1, n2, n3, alpha)``, of a quaternion of any norm, shape (4, 1)."""
     q0, *vector = expressions(q, 4, "a quaternion")
     size = length(vector)
+    # Undefined at zero angle. The angle, in [0, 2 pi], is accurate when small; 2 acos(q0) is not.
     return ImmutableMatrix([*(component / size for component in vector), 2 * atan2(size, q0)])
 
 
 def axis_angle_jacobian(frame: str = "body") -> RateMatrix:
     """Return the rate matrix B, shape (3, 4), with ``omega = B * d(n1, n2, n3, alpha)/dt`` for a unit axis n.
-
-    In body components ``omega_b = n dalpha + sin(alpha) dn - (1 - cos(alpha)) n x dn``; in space components the last
-    sign is plus. B is singular at ``alpha = 2 pi k``, where no axis is defined.
-
-    The result also has attributes. Its ``determinant`` is that of the 4x4 matrix with B below the row (n1, n2, n3, 0),
-    the gradient of ``|n|^2 / 2``. Its ``condition_number`` is that of B for rates that preserve ``|n| = 1``.
 
     Notes
     -----
@@ -201,6 +187,8 @@ def axis_angle_jacobian(frame: str = "body") -> RateMatrix:
     sign = {"body": -1, "space": 1}[check_frame(frame)]
     stretch, matrix = 2 * sin(alpha / 2), skew(n)
     real, imaginary = stretch * cos(alpha / 2), sign * stretch * sin(alpha / 2)
+    # omega_b = n dalpha + sin(alpha) dn - (1 - cos(alpha)) n x dn; in space components the last sign is plus. Singular
+    # at alpha = 2 pi k, where no axis is defined.
     determinant, inverse = _axis_angle_along(frame, alpha)
     return RateMatrix.build(
         Matrix.hstack(real * eye(3) + imaginary * matrix, Matrix(n)),
@@ -210,7 +198,9 @@ def axis_angle_jacobian(frame: str = "body") -> RateMatrix:
             parameters=(*n, alpha),
             relations=(sum(component**2 for component in n) - 1,),
             inverse=inverse,
+            # of the 4 x 4 matrix with B below the row (n, 0), the gradient of |n|^2 / 2
             determinant=determinant,
+            # for rates that preserve |n| = 1
             condition_number=Max(1, Abs(stretch)) / Min(1, Abs(stretch)),
             variable=alpha,
             along=partial(_axis_angle_along, frame),
@@ -246,10 +236,7 @@ def chart() -> Chart:
 
 @cache
 def axis_angle_chart() -> Chart:
-    """Return the chart (attitude description) of a unit axis and an angle: it describes every attitude.
-
-    It is singular at zero angle, where no axis is defined.
-    """
+    """Return the chart (attitude description) of a unit axis and an angle; it is singular at zero angle."""
     n, alpha = symbols.axis, symbols.alpha
     return Chart(
         name="axis_angle",

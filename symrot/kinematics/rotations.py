@@ -66,10 +66,7 @@ def unit_vector(axis: int | str) -> ImmutableMatrix:
 
 
 def cross_sign(first: int, second: int) -> tuple[int, int]:
-    """Return ``(m, sign)`` with ``e_first x e_second = sign * e_m``, for two different axes with numbers 0 to 2.
-
-    Example: axes 0 and 2 give (1, -1).
-    """
+    """Return ``(m, sign)`` with ``e_first x e_second = sign * e_m``: axes 0 and 2 give ``(1, -1)``."""
     ((m, sign),) = ((k, int(LeviCivita(i, j, k))) for i, j, k in permutations(range(3)) if (i, j) == (first, second))
     return m, sign
 
@@ -81,12 +78,10 @@ def skew(vector: Sequence[Any] | Matrix) -> ImmutableMatrix:
 
 
 def vee(matrix: Matrix) -> ImmutableMatrix:
-    """Return the vector of a skew matrix, shape (3, 1): the inverse of :func:`skew`.
-
-    Only the entries (3,2), (1,3), (2,1) are read; the caller must ensure that the matrix is skew.
-    """
+    """Return the vector of a skew matrix, shape (3, 1): the inverse of :func:`skew`."""
     if matrix.shape != (3, 3):
         raise InputError(f"vee: expected a 3 x 3 matrix, got shape {matrix.shape}")
+    # The caller ensures that the matrix is skew.
     return ImmutableMatrix([matrix[2, 1], matrix[0, 2], matrix[1, 0]])
 
 
@@ -116,21 +111,14 @@ def _elementary_rotation(axis: int, angle: Expr) -> ImmutableMatrix:
 
 
 def angular_velocity(dcm_sb: Matrix, parameter: Expr, frame: str = "body") -> ImmutableMatrix:
-    """Return omega per unit rate of ``parameter``, shape (3, 1), by differentiating the dcm.
-
-    Body components: ``vee(dcm^T d(dcm))``; space components: ``vee(d(dcm) dcm^T)``. This is the definition of omega;
-    every other rate matrix is proven against it.
-    """
+    """Return omega per unit rate of ``parameter``, shape (3, 1), by differentiating the dcm."""
     rate = dcm_sb.diff(parameter)
+    # the definition of omega, against which every other rate matrix is proven
     return vee(dcm_sb.T * rate if check_frame(frame) == "body" else rate * dcm_sb.T)
 
 
 def function_of_skew(function: Callable[[Expr], Expr], at_zero: Expr, size: Expr) -> tuple[Expr, Expr, Expr]:
     """Return ``c0, c1, c2`` with ``function(K) = c0 + c1 K + c2 K^2`` for the skew matrix K of a vector.
-
-    Because ``K^3 = -size^2 K``, the eigenvalues of K are 0 and +-i size, and the matrix function is the polynomial that
-    agrees with ``function`` at the eigenvalues. ``function`` must have real Taylor coefficients, so that its values at
-    +-i size are conjugate.
 
     Parameters
     ----------
@@ -141,5 +129,7 @@ def function_of_skew(function: Callable[[Expr], Expr], at_zero: Expr, size: Expr
     size : Expr
         Length of the vector, positive.
     """
+    # Because K^3 = -size^2 K, the eigenvalues of K are 0 and +-i size, where the polynomial agrees with function. The
+    # function has real Taylor coefficients, so its values at +-i size are conjugate.
     real, imaginary = function(I * size).as_real_imag()
     return sympify(at_zero), imaginary / size, (at_zero - real) / size**2

@@ -1,6 +1,6 @@
 """The cursor with which interpreters read the tree of a LaTeX formula, item by item.
 
-An item is a node of a row: a token, a fraction, a root, a table and so on.
+An item is a token, a fraction, a root, a table or another node of a row.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -16,10 +16,9 @@ Value = TypeVar("Value")
 
 
 class Cursor:
-    """A position in a row of items of the LaTeX tree, from which the next item is read.
+    r"""A position in a row of items of the LaTeX tree, from which the next item is read.
 
-    Spaces are skipped, ``\\left`` and ``\\right`` are removed from delimiters, and the indices and the power of an
-    item are separate items after it.
+    Spaces, ``\left`` and ``\right`` are skipped.
 
     Attributes
     ----------
@@ -40,10 +39,7 @@ class Cursor:
         self.enter(row)
 
     def fail(self, expected: str, item: Node | None = None) -> InputError:
-        """Return an InputError whose message names the text ``expected`` and the position of ``item`` in the formula.
-
-        Without ``item`` it is the position of the next item. The caller raises the error.
-        """
+        """Return an InputError that names the text ``expected`` and the position of ``item`` or of the next item."""
         return complaint(self.source, self.where, (item or self.peek()).start, expected)
 
     def enter(self, node: Node) -> None:
@@ -56,6 +52,7 @@ class Cursor:
     def flatten(self, nodes: Iterable[Node]) -> None:
         space = False
         for node in nodes:
+            # an index or a power is an item after its symbol
             if isinstance(node, Scripts):
                 self.flatten((node.base, *node.scripts))
             elif isinstance(node, Delimited):
@@ -71,16 +68,16 @@ class Cursor:
                 space = False
 
     def inside(self, node: Node, read: Callable[[], Value], closing: str = "'}'") -> Value:
-        """Call ``read`` with the cursor at the start of ``node``, and return its value; then move back.
+        """Call ``read`` with the cursor at the start of ``node``, move back, and return its value.
 
-        ``read`` must read all items of ``node``; if some are left, the InputError says that ``closing`` was expected
-        there.
+        ``read`` must read all items of the node.
         """
         outside = self.items, self.index, self.open_bars
         self.enter(node)
         self.open_bars = ()
         value = read()
         if self.peek().kind != "end":
+            # items are left
             raise self.fail(closing)
         self.items, self.index, self.open_bars = outside
         return value
@@ -101,7 +98,7 @@ class Cursor:
     def barred(self, read: Callable[[], Value], bar: str) -> Value:
         """Parse a value between two bars, as in ``|x|``, by ``read``, and return it.
 
-        The cursor is after the opening bar, and moves past the closing bar; ``bar`` is the text of the latter.
+        The cursor is after the opening bar.
         """
         outside, self.open_bars = self.open_bars, (*self.open_bars, bar)
         value = read()

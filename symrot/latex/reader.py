@@ -35,14 +35,12 @@ class _Reader:
         return complaint(self.source, self.where, token.start, expected)
 
     def row(self, closing: str, *stops: str) -> Row:
-        """Parse items up to a token whose kind or text is in ``stops``, which stays unread; return the row of items.
-
-        If the formula ends before such a token, the error message says that ``closing`` was expected.
-        """
+        """Parse items up to a token whose kind or text is in ``stops``, which stays unread; return the row of items."""
         items: list[Node] = []
         first = token = self.tokens[self.place]
         while token.kind not in stops and token.text not in stops:
             if token.kind in ("end", "right", "close"):
+                # the formula or the group ends too early
                 raise self.fail(f"'{closing}'" if closing else "\\left or \\begin before this", token)
             if token.kind in READERS or self.tokens[self.place + 1].kind in AFTER:
                 items.append(self.item())
@@ -53,10 +51,7 @@ class _Reader:
         return Row(tuple(items), first.start, token.start)
 
     def group(self, opening: Token, closing: str = "}") -> Row:
-        """Parse a row of items and the token ``closing``, such as a brace, that closes it; return the row.
-
-        ``opening`` is the token before the row, which has been read; the row's position is that of this token.
-        """
+        """Parse a row of items and the bracket ``closing``; return the row, with the position of ``opening``."""
         row = self.row(closing, closing)
         self.place += 1
         return Row(_with_old_fractions(row).items, opening.start, row.end)

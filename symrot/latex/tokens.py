@@ -42,13 +42,10 @@ class Token(NamedTuple):
 
 
 def tokens(source: str, start: int = 0, stop: int | None = None) -> list[Token]:
-    """Return the tokens of ``source[start:stop]``, without blanks; the last token has the kind ``end``.
-
-    A character that belongs to no other token becomes a token of its own, so that each interpreter can report its
-    position.
-    """
+    """Return the tokens of ``source[start:stop]``, without blanks; the last token has the kind ``end``."""
     stop = len(source) if stop is None else stop
     pieces = []
+    # every other character is a token of its own, so that an interpreter can report its position
     for match in _TOKEN.finditer(source, start, stop):
         kind, text = str(match.lastgroup), match[0]
         if kind == "command":

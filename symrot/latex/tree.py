@@ -1,8 +1,8 @@
 """The tree of a LaTeX formula: how the formula is written, without its meaning.
 
-Operators, relations and brackets such as ``(`` and ``|`` are separate tokens of a row, because only the meaning tells
-which bracket closes which and what is a product. Every node has ``start``, its position in the source, ``text``, its
-first command or mark, and ``kind``, which is the same for all nodes of a class, except for tokens.
+Operators, relations and brackets such as ``(`` are separate tokens of a row, because only the meaning tells which
+brackets match. Every node has ``start``, its position in the source, ``text``, its first command or mark, and a
+``kind``.
 """
 
 from dataclasses import dataclass
@@ -15,14 +15,11 @@ __all__ = ["Accent", "Delimited", "Font", "Fraction", "Node", "Root", "Row", "Sc
 
 @dataclass(frozen=True)
 class Row:
-    """A row of items (nodes): a whole formula, a group in braces, or a cell of a table.
-
-    ``end`` is the position of the row's end in the source.
-    """
+    """A row of items (nodes): a whole formula, a group in braces, or a cell of a table."""
 
     items: tuple["Node", ...]
     start: int
-    end: int
+    end: int  # position of the row's end in the source
     kind, text = "row", "{"
 
 
@@ -48,10 +45,9 @@ class Font(Command):
 
 
 class Script(Command):
-    """An index, power or primes of a symbol; ``text`` is the mark ``_``, ``^`` or ``'``, ``inside`` the index or power.
+    """An index, power or primes of a symbol; ``text`` is the mark ``_``, ``^`` or ``'``."""
 
-    For primes, as in ``f'``, ``inside`` is the token of the primes.
-    """
+    # ``inside`` is the index or power; for primes, as in f', the token of the primes
 
 
 @dataclass(frozen=True)

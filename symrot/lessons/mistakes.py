@@ -38,9 +38,8 @@ def _verdict(claim: str, facts: tuple[str, ...], body: str) -> Verdict:
 
 
 def mistake_passages(mistake: Mistake) -> Iterator[Passage]:
-    """Yield the paragraphs of the section "A common mistake": wrong formula, counterexample, true formula, command.
-
-    The command is the line for a shell with which the reader repeats the check.
+    """Yield the paragraphs of the section "A common mistake": wrong formula, counterexample, true formula, shell
+    command.
     """
     verdict = refutation(mistake)
     yield Passage(f"{mistake.words} They write `{mistake.claim}`.")
@@ -59,11 +58,8 @@ def mistake_passages(mistake: Mistake) -> Iterator[Passage]:
 
 
 def _facts(facts: tuple[str, ...]) -> str:
-    """Return a sentence with the hypotheses of a claim: first the equations, then the names of positive symbols.
-
-    ``facts`` are the hypotheses as ``symrot check`` takes them, such as ``A == B`` or ``m > 0``. The sentence is empty
-    if there are none.
-    """
+    """Return a sentence with the hypotheses of a claim, equations first; empty if there are none."""
+    # as symrot check takes them, such as A == B or m > 0
     equations = [f"`{text}`" for text in facts if not text.endswith(" > 0")]
     positive = [f"`{text.removesuffix(' > 0')}`" for text in facts if text.endswith(" > 0")]
     clauses = []

@@ -26,10 +26,8 @@ LONGEST = 300  # letters of LaTeX of a formula that is printed again beside its 
 
 
 def numbers_of(page: Page, lesson: Lesson) -> Iterator[Passage]:
-    """Yield the paragraphs of the section "With numbers" at the end of a page.
-
-    If the lesson has numbers, they are formulas of the page evaluated for the lesson's scene; otherwise the paragraphs
-    show an exercise with its solution.
+    """Yield the paragraphs "With numbers" of a page: formulas evaluated for a scene, or an exercise with its
+    solution.
     """
     if lesson.numbers:
         yield from _of_scene(page, lesson)
@@ -38,9 +36,7 @@ def numbers_of(page: Page, lesson: Lesson) -> Iterator[Passage]:
 
 
 def value_of(page: Page, number: Number, scene: str) -> tuple[Expr, Expr]:
-    """Return the formula of a number, in symbols that have a value in the scene, and the value of the number.
-
-    ``scene`` is the name of a shipped scene or the path of a scene file. The value is rounded.
+    """Return the formula of a number, in symbols that have a value in the scene, and its rounded value.
 
     Raises
     ------
@@ -110,11 +106,9 @@ def _bare(latex: str) -> str:
 
 
 def _quantity(value: Expr, unit: str) -> str:
-    r"""Return a number with its unit as LaTeX, such as ``2.5\,\mathrm{J}``, rounded to :data:`DIGITS` digits.
-
-    A number smaller in size than :data:`NOTHING` is a rounding error and is printed as 0.
-    """
+    r"""Return a number with its unit as LaTeX, such as ``2.5\,\mathrm{J}``, rounded to :data:`DIGITS` digits."""
     number = float(value)
+    # a smaller number is a rounding error
     text = "0" if abs(number) < NOTHING else f"{number:.{DIGITS}g}"
     if "e" in text:
         digits, exponent = text.split("e")

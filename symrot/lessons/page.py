@@ -25,9 +25,6 @@ Items = list[Section | Passage | Step | Table | Figure]
 def taught(page: Page, figures: Sequence[Figure] = ()) -> Page:
     """Return a page with its lesson: question, figures, prerequisites in front; numbers, mistake, links at the end.
 
-    ``page`` is the page of a derivation of the catalogue; its lesson is looked up by its name. The result does not have
-    the sections that only symrot's numeric code needs: :func:`appendix` has them, and a sentence in front links to it.
-
     Raises
     ------
     InputError
@@ -40,6 +37,7 @@ def taught(page: Page, figures: Sequence[Figure] = ()) -> Page:
     """
     lesson = LESSONS[page.name]
     opening: list[Passage | Figure] = [Passage(f"**{lesson.question}**"), *figures, Passage(_before(lesson))]
+    # the sections that only symrot's numeric code needs go to the appendix
     course, library = _divided(page, lesson.library)
     if library:
         opening.append(Passage(_to_the_appendix(page, course, library)))
@@ -52,10 +50,7 @@ def taught(page: Page, figures: Sequence[Figure] = ()) -> Page:
 
 
 def appendix(page: Page) -> Page | None:
-    """Return the page with the steps of a derivation that only symrot's numeric code needs, or None if there are none.
-
-    ``page`` is the page of a derivation of the catalogue. The steps keep their numbers: if ``page`` has 34 steps and
-    the numeric code needs the last 26, those of the appendix are numbered 9 to 34.
+    """Return the page with the steps that only symrot's numeric code needs, or None if there are none.
 
     Raises
     ------
@@ -76,6 +71,7 @@ def appendix(page: Page) -> Page | None:
         f"This page continues {_link(page.name)}, with the notation and the results of that page. Only symrot's "
         "numeric code needs its steps; a course can leave them out."
     )
+    # the steps keep their numbers: the appendix of 34 steps with 26 for the code begins with step 9
     first = page.first + len(replace(_plain(page), items=course).steps)
     title = f"{page.title}: for the numeric code"
     return replace(_plain(page), name=f"{page.name}{APPENDIX}", title=title, about=about, items=library, first=first)
@@ -110,10 +106,8 @@ def _divided(page: Page, sections: Sequence[str]) -> tuple[Items, Items]:
 
 
 def _to_the_appendix(page: Page, course: Items, library: Items) -> str:
-    """Return the sentence in a lesson that links to its appendix and tells which steps of the derivation are there.
-
-    ``course`` are the items of the page that the lesson prints, ``library`` those that the appendix prints. For
-    example: "Steps 7 to 9, which only symrot's numeric code needs, are on a page of their own."
+    """Return the sentence in a lesson that links to its appendix, such as "Steps 7 to 9, .., are on a page of their
+    own."
     """
     before, count = (len(Page("", "", items=items).steps) for items in (course, library))
     first, last = page.first + before, page.first + before + count - 1

@@ -16,11 +16,6 @@ __all__ = ["scene_values"]
 def scene_values(scene: Scene) -> dict[Expr, Expr]:
     """Return a map from symbols of derivations to the exact numbers of a scene at its start.
 
-    ``A``, ``B``, ``C`` are the moments of inertia about the body axes of the scene file. ``theta`` is the angle
-    between the body's third axis and the vertical; ``alpha`` and ``n`` are angle and axis of the attitude; ``R_ij`` are
-    the entries of the matrix from body to space; ``p_psi`` and ``p_phi`` are the angular momenta about the third axis
-    and about the vertical.
-
     Examples
     --------
     >>> from symrot.scene.scene import load_scene
@@ -33,6 +28,8 @@ def scene_values(scene: Scene) -> dict[Expr, Expr]:
     quaternion = [_exact(value) for value in start.quaternion]
     dcm_sb = Matrix(quaternion_to_dcm()).subs(dict(zip(symbols.quaternion, quaternion, strict=True)))
     momentum = inertia * omega
+    # alpha, n: angle and axis of the attitude; R_ij: entries of the dcm; p_psi, p_phi: angular momenta about the third
+    # axis and about the vertical; theta: between the two; A, B, C: about the scene file's axes
     values: dict[Expr, Expr] = dict(zip(symbols.omega_b, omega, strict=True))
     values |= dict(zip(symbols.omega_s, dcm_sb * omega, strict=True))
     values |= dict(zip(symbols.quaternion, quaternion, strict=True))
@@ -69,11 +66,7 @@ def _exact(value: Fraction) -> Rational:
 
 
 def _of_torque(torque: Torque) -> dict[Expr, Expr]:
-    """Return the constants of a torque, such as the components of a rotor's angular momentum.
-
-    The keys are the symbols that derivations use for these constants. The map is empty for a torque without such
-    symbols.
-    """
+    """Return the constants of a torque by the symbols of derivations; empty for a torque without such symbols."""
     vectors = {
         ("constant_body", "torque"): symbols.torque_b,
         ("rotor", "angular_momentum"): symbols.rotor,

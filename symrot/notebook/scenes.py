@@ -48,10 +48,7 @@ def _torque(torque: Torque) -> str:
 
 
 def plan(one: Plan) -> str:
-    """Return an HTML table of the plan of a scene: which quantities are computed, which are skipped, and why.
-
-    For each quantity the table names the rule, such as a conserved quantity, and the derivation that proves it.
-    """
+    """Return an HTML table of the plan of a scene: which quantities are computed or skipped, by which rule."""
     report = explain.facts(one)
     rows = [
         (row["item"], "skipped" if row["skipped"] else "kept", row["why"], row["derivation"])

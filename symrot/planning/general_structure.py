@@ -1,8 +1,7 @@
 """The most general structure of a scene, from which a plan starts, and the exact values of its constants.
 
-A structure is the form of the equations of motion: which constants of body and torques are zero, one, equal, or free (a
-parameter that may have any value). In the most general structure every constant is free, the inertia is a full tensor,
-and the full attitude is computed. A plan simplifies it (:mod:`symrot.planning.rules`).
+A structure says which constants of body and torques are zero, one, equal, or free (a parameter of any value). In the
+most general one every constant is free, the inertia is a full tensor, and the full attitude is computed.
 """
 
 from fractions import Fraction
@@ -38,10 +37,10 @@ RESERVED = frozenset(
 
 
 def switched(scene: Scene) -> bool:
-    """Return whether a torque formula of a scene contains a function with a jump or kink, such as ``sign`` or ``abs``.
-
-    Such a motion has to be computed part by part: the equations change where the function switches.
+    """Return whether a torque formula of a scene contains a function with a jump or kink, such as ``sign``
+    or ``abs``.
     """
+    # The equations of such a motion change where the function switches.
     return any(
         has_switches(expression.parse(formula, switching=True))
         for torque in scene.torques
@@ -50,38 +49,28 @@ def switched(scene: Scene) -> bool:
 
 
 def switching_function(scene: Scene) -> str:
-    """Return the name of a function with a jump or kink in a scene's torques, for messages; empty if there is none.
-
-    Of several names it is the alphabetically first, such as ``"abs"`` for the formula ``sign(t) + abs(omega_1)``.
-    """
+    """Return the name of a function with a jump or kink in a scene's torques, for messages; empty if there is none."""
     calls = {
         name
         for torque in scene.torques
         for formula in torque.formulas
         for name in expression.operations(expression.parse(formula, switching=True))
     }
+    # the alphabetically first
     return min(calls & set(expression.SWITCHING), default="")
 
 
 def general_structure(scene: Scene, switched: bool = False) -> Structure:
-    """Return the structure of a scene that assumes nothing: full inertia tensor, free constants, full attitude.
-
-    The rules of a plan simplify this structure. If ``switched`` is true, each function with a jump or kink in a torque
-    formula is replaced by a constant, its mode (such as 1 for ``sign(omega_3)`` while omega_3 > 0). If it is false,
-    such functions stay in the formulas.
-    """
+    """Return the structure of a scene that assumes nothing: full inertia tensor, free constants, full attitude."""
     names: set[str] = set(RESERVED)
+    # With switched, each function with a jump or kink in a torque formula becomes a constant, its mode (such as 1 for
+    # sign(omega_3) while omega_3 > 0).
     torques = [_general_torque(number, torque, names, switched) for number, torque in enumerate(scene.torques, start=1)]
     return Structure(InertiaTensor(tuple(sorted([*MOMENTS, *PRODUCTS]))), tuple(torques))
 
 
 def _general_torque(number: int, torque: Torque, known: set[str], switched: bool) -> TorqueStructure:
-    """Return the structure of one torque with all constants free; the names of the constants are added to ``known``.
-
-    ``number`` counts the torques of the scene from 1. ``known`` holds the names that are in use already: if they
-    contain a name of a constant of this torque, all its constants get a prefix such as ``torque2_``. ``switched`` is
-    explained in :func:`general_structure`; only torques with formulas use it.
-    """
+    """Return the structure of torque ``number``, all constants free; the constants' names are added to ``known``."""
     if torque.formulas:
         general = _formula_torque(torque, switched)
         prefix = _prefix(number, list(general.parameters), known)
@@ -94,14 +83,11 @@ def _general_torque(number: int, torque: Torque, known: set[str], switched: bool
 
 
 def _formula_torque(torque: Torque, switched: bool) -> FormulaTorque:
-    """Return the structure of a torque given by formulas; its constants keep their names in the scene.
-
-    If ``switched`` is true, functions such as sign are replaced by constants (their modes), which are listed as further
-    parameters of the torque. Otherwise the formulas stay as the scene writes them.
-    """
+    """Return the structure of a torque given by formulas; its constants keep their names in the scene."""
     formulas, parameters, frame = torque.formulas, tuple(torque.values), torque.frame
     if not (switched and any(has_switches(expression.parse(text, switching=True)) for text in formulas)):
         return FormulaTorque("", formulas, parameters, frame)
+    # Modes, constants in place of functions such as sign, become further parameters.
     form = smooth(formulas)
     choices = any(map(has_choices, (*form.formulas, *(switch.guard for switch in form.switches))))
     return FormulaTorque(
@@ -122,10 +108,8 @@ def _switch(switch: Switch) -> TorqueSwitch:
 
 
 def _prefix(number: int, names: list[str], known: set[str]) -> str:
-    """Return a prefix that makes the names of a torque's constants unique; the new names are added to ``known``.
-
-    ``names`` are the constants of torque ``number``, and ``known`` the names in use. The prefix is empty if no name is
-    in use, otherwise ``torque2_`` for number 2, with more underscores if those names are in use too.
+    """Return a prefix, empty or such as ``"torque2_"``, that makes ``names`` differ from ``known``; add the new names
+    to ``known``.
     """
     prefix = ""
     while known & {f"{prefix}{name}" for name in names}:
@@ -135,13 +119,7 @@ def _prefix(number: int, names: list[str], known: set[str]) -> str:
 
 
 def constants_of(scene: Scene, structure: Structure) -> dict[str, Fraction]:
-    """Return the exact values, by name, of those constants of body and torques that the structure leaves free.
-
-    An example is ``{"A": Fraction(1), "C": Fraction(1, 2)}`` for a symmetric body with the moments A, A, C and no
-    torque. A constant that the structure treats as zero or one is not listed. Where a torque contains a function such
-    as ``sign(omega_3)``, the equations have a constant in its place, called a mode, which changes when the argument
-    passes through zero. It is listed with the value 1; propagation sets it to the value that belongs to the state.
-    """
+    """Return the exact values, by name, of the constants that the structure leaves free: ``{"A": Fraction(1), ..}``."""
     inertia, pattern = scene.body.inertia, structure.inertia
     constants: dict[str, Fraction] = {}
     if isinstance(pattern, PrincipalInertia):
@@ -154,6 +132,8 @@ def constants_of(scene: Scene, structure: Structure) -> dict[str, Fraction]:
         prefix = torque.prefix
         if isinstance(torque, FormulaTorque):
             constants |= {f"{prefix}{name}": scene_torque.number(name) for name in scene_torque.values}
+            # A mode (the value of a jump such as sign) changes during the motion; propagation sets it to the value that
+            # belongs to the state.
             constants |= {f"{prefix}{switch.mode}": Fraction(1) for switch in torque.switches}
             continue
         for name, field in torque.fields:

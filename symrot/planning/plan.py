@@ -1,9 +1,8 @@
 """The plan of a scene: the smallest set of equations that gives the requested output. Does not use SymPy.
 
-The structure of a motion says which constants of the scene are zero, equal or free (have any other value). It
-determines the equations of motion and thus the kernel, which is the code generated from them: scenes of the same
-structure share a kernel. A plan starts from the most general structure (full inertia tensor, every constant free, full
-attitude) and applies the table of rules of :mod:`symrot.planning.rules`.
+The structure of a motion says which constants are zero, equal or free (any other value); scenes of the same structure
+share a kernel, the code of their equations. A plan simplifies the most general structure by the rules of
+:mod:`symrot.planning.rules`.
 """
 
 from collections.abc import Hashable
@@ -71,38 +70,27 @@ class Plan:
 
     @cached_property
     def constants(self) -> dict[str, Fraction]:
-        """The exact values, by name, of all constants in the equations, including those of the initial state.
-
-        A mode, which stands for a function such as sign or abs and changes during the motion, is listed with the value
-        1; propagation sets it to the value that belongs to the state.
-        """
+        """The exact values, by name, of all constants in the equations, including those of the initial state."""
+        # Modes, which stand for functions such as sign, are 1; propagation sets them to the values that belong to the
+        # state.
         return self.scene_constants | self.start_constants
 
     @cached_property
     def scene_constants(self) -> dict[str, Fraction]:
-        """The constants of body and torques, which do not depend on the initial state: their exact values, by name.
-
-        An example is ``{"A": Fraction(1), "C": Fraction(1, 2)}``; see
-        :func:`~symrot.planning.general_structure.constants_of`.
-        """
+        """The exact values, by name, of the constants of body and torques, such as ``{"A": Fraction(1)}``."""
         return constants_of(self.scene, self.structure)
 
     @property
     def start_constants(self) -> dict[str, Fraction]:
-        """The constants that belong to the initial state, such as a constant omega_3, with their exact values, by name.
-
-        An example is ``{"omega_3": Fraction(3)}`` for a symmetric top with constant spin. The dictionary is empty if
-        the equations contain no number of the initial state.
+        """The exact values, by name, of constants that belong to the initial state, such as ``{"omega_3":
+        Fraction(3)}``.
         """
         initial = self.scene.initial
         return {name: initial[part][place] for name, part, place in self._start_places}
 
     @cached_property
     def _start_places(self) -> tuple[tuple[str, int, int], ...]:
-        """For each constant of the initial state: (name, 0 for omega or 1 for the quaternion, index of component).
-
-        An example is ``(("omega_3", 0, 2),)``: the constant omega_3 is component 2 of the initial angular velocity.
-        """
+        """For each constant of the initial state: (name, 0 for omega or 1 for the quaternion, index of component)."""
         rates = enumerate(self.structure.constant)
         quaternion = enumerate(self.structure.initial_quaternion or ())
         return (
@@ -112,19 +100,14 @@ class Plan:
 
     @property
     def switches(self) -> list[str]:
-        """The functions with jumps or kinks in the torques, as the scene writes them, such as ``"sign(omega_3)"``.
-
-        The list is empty if the plan was made without modes, see :func:`make_plan`.
-        """
+        """The functions with jumps or kinks in the torques, as the scene writes them, such as ``"sign(omega_3)"``."""
+        # empty if the plan was made without modes
         return [switch.label for torque in self.structure.formula_torques for switch in torque.switches]
 
     @cached_property
     def states(self) -> tuple[str, ...]:
-        """The names of the states, in the order that the kernel expects: angular velocity, then attitude.
-
-        An example is ``("omega_1", "omega_2", "q0", "q1", "q2", "q3")`` for a constant omega_3. If the body rotates
-        about one axis only, the attitude is the single angle ``theta``. The tuple is empty if nothing has to be
-        integrated.
+        """The names of the states in the order of the kernel, such as ``("omega_1", "omega_2", "q0", "q1", "q2",
+        "q3")``.
         """
         structure, axis = self.structure, self.structure.planar
         names = [f"omega_{i + 1}" for i in structure.moving]
@@ -132,6 +115,7 @@ class Plan:
             if axis is None:
                 names += ["q0", "q1", "q2", "q3"]
             elif structure.constant[axis] is not ZERO:
+                # the attitude of a body that rotates about one axis only
                 names.append("theta")
         return tuple(names)
 
@@ -149,11 +133,10 @@ class Plan:
         return tuple([STATES.index(name) for name in self.states])
 
     def from_start(self, initial: Initial) -> "Plan":
-        """Return the plan of the same scene and structure for another initial state.
-
-        The rules that simplify the equations are not examined again, which saves time. They must have the same results:
-        ``initial`` must have the same :func:`structure_key` as the initial state of this plan. This is not checked.
+        """Return the plan of the same scene and structure for ``initial``, which must have the same
+        :func:`structure_key`.
         """
+        # The rules are not examined again, which saves time. The key is not checked.
         scene, plan = object.__new__(Scene), object.__new__(Plan)
         scene.__dict__.update(self.scene.__dict__, initial=initial)
         plan.__dict__.update(self._shared, scene=scene)
@@ -161,9 +144,8 @@ class Plan:
 
     @cached_property
     def _shared(self) -> dict[str, Any]:
-        """The attributes of a plan, by name, that are the same for every initial state; :meth:`from_start` copies them.
-
-        They follow from the scene's body and torques. One is ``structure``: which terms the equations have.
+        """The attributes of a plan, by name, that are the same for every initial state; :meth:`from_start`
+        copies them.
         """
         names = ("structure", "rows", "scene_constants", "states", "_places", "_start_places")
         attributes: dict[str, Any] = {name: getattr(self, name) for name in names}
@@ -220,15 +202,13 @@ def make_plan(
 
 
 def structure_key(scene: Scene, initial: Initial) -> Hashable:
-    """Return a key of an initial state; if two states of a scene have equal keys, their plans differ only in numbers.
-
-    The key says which components of omega are not zero. If at most one is, so that the body may rotate about a single
-    axis, it also says which components of the quaternion are 0, 1 or -1, and which body components of torques fixed in
-    space are zero. A propagator keeps one prepared motion for each key.
-    """
+    """Return a key of an initial state; states of a scene with equal keys have plans that differ only in numbers."""
+    # A propagator keeps one prepared motion for each key.
     rotates_about = tuple([x.numerator != 0 for x in initial.omega_b])
     if rotates_about.count(True) > 1:
         return rotates_about
+    # The body may rotate about a single axis: the rules also examine which components of the quaternion are 0, 1 or -1,
+    # and which body components of torques fixed in space are zero.
     attitude = tuple([pattern(q, unit=True) for q in initial.quaternion])
     fixed = [torque for torque in scene.torques if torque.kind in DIRECTED]
     small = tuple([small_components(torque.vector(DIRECTED[torque.kind]), initial) for torque in fixed])

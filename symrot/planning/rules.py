@@ -1,9 +1,8 @@
 """The rules by which a plan simplifies the structure of a scene, each with its reason.
 
-A structure is the form of the equations of motion: which constants of body and torques are zero, one, equal or free
-(have any other value), and which states are computed. Each rule takes the scene and the structure so far, examines the
-exact numbers of the scene, simplifies the structure or leaves it unchanged, and names the derivation (a page that
-symrot derives and proves) that justifies the change. :mod:`symrot.planning.plan` applies the rules.
+A structure says which constants of body and torques are zero, one, equal or free (any other value), and which states
+are computed. A rule examines the exact numbers of the scene, simplifies the structure, and names the derivation that
+justifies this.
 """
 
 from collections.abc import Callable
@@ -76,14 +75,11 @@ class RuleOutcome(NamedTuple):
 
 
 def pattern(value: Fraction, unit: bool) -> Pattern:
-    """Return how the equations may treat a number: as zero, as one or minus one (only if ``unit`` is true), or as free.
-
-    Free means that the equations contain the number as a parameter. ``unit`` is true for components of unit vectors and
-    quaternions, where the values 1 and -1 are common.
-    """
+    """Return how the equations treat a number: as zero, as 1 or -1 (only if ``unit``), or as free, a parameter."""
     top, bottom = value.as_integer_ratio()
     if not top:
         return ZERO
+    # components of unit vectors and quaternions, where 1 and -1 are common
     if unit and bottom == 1 == abs(top):
         return ONE if top > 0 else MINUS_ONE
     return FREE
@@ -142,11 +138,8 @@ def _special_constants(scene: Scene, structure: Structure) -> RuleOutcome:
 
 
 def _silent(torque: FormulaTorque, scene_torque: Torque) -> list[str]:
-    """Return a list with one sentence that names the axes about which a torque's formulas are zero, or an empty list.
-
-    An example is ``["the formulas give no torque about body axes 1 and 2"]``; a plan shows it among the reasons for its
-    equations. ``scene_torque`` is the torque with its formulas and numbers as the scene gives it. ``torque`` is the
-    same torque with parameters in place of numbers; only its frame is used.
+    """Return a list with one sentence that names the axes about which a torque's formulas are zero, or an
+    empty list.
     """
     axes = [str(i + 1) for i, formula in enumerate(scene_torque.formulas) if _is_zero(formula)]
     if not axes:
@@ -186,21 +179,17 @@ def _attitude(scene: Scene, structure: Structure) -> RuleOutcome:
 
 
 def _only_along(vector: tuple[Pattern, ...], axis: int) -> bool:
-    """Return whether a vector is parallel to body axis ``axis`` (0 to 2): its other two components are zero.
-
-    The vector may be zero. Its components are given as patterns: zero, or free for an unknown value.
-    """
+    """Return whether a vector is zero or parallel to body axis ``axis``, 0 to 2."""
     return all(vector[i] is ZERO for i in range(3) if i != axis)
 
 
 def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, scene_torque: Torque) -> bool:
-    """Return whether a torque is always parallel to body axis ``axis`` while the body rotates only about this axis.
+    """Return whether a torque is parallel to body axis ``axis`` while the body rotates only about this axis.
 
-    If this holds for all torques of a scene, its motion is a rotation about this axis, with one angle as attitude.
-    ``torque`` is the structure of the torque, ``scene_torque`` the same torque with its numbers. For a torque that a
-    scene gives by its own formulas (FormulaTorque) the result is False, since the direction is not examined.
+    False also if not decided.
     """
     if isinstance(torque, FormulaTorque):
+        # the direction of formulas is not examined
         return False
     if torque.kind == "constant_body":
         return _only_along(torque.vector("torque"), axis)
@@ -215,11 +204,9 @@ def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, scene_torque
 
 
 def _in_body(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[Fraction, ...]:
-    """Return the body components, at the initial attitude, of a vector that is given in space components.
-
-    They are exact. If the quaternion is not exactly of norm 1, they are multiplied by the square of its norm.
-    """
+    """Return the exact body components, at the initial attitude, of a vector in space components."""
     q0, *q = initial.quaternion
+    # A quaternion of another norm than 1 multiplies them by the square of its norm.
     twice = [2 * sum(a * b for a, b in zip(q, vector_s, strict=True)) * c for c in q]
     turned = (
         q[1] * vector_s[2] - q[2] * vector_s[1], q[2] * vector_s[0] - q[0] * vector_s[2],
@@ -237,23 +224,17 @@ def _negligible(value: Fraction, vector: tuple[Fraction, ...]) -> bool:
 
 
 def small_components(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[bool, ...]:
-    """Return, for each body component of a vector, whether it is zero (to 2^-200) at the initial attitude.
-
-    The vector is given in space components, ``vector_s``. A component counts as zero if it is at most 2^-200 times the
-    largest one: the quaternion of most attitudes is irrational and therefore rounded.
-    """
+    """Return, for each body component of a vector in space components, whether it is zero at the initial attitude."""
     if _all_large(vector_s, initial):
         return False, False, False
+    # Zero to 2^-200 of the largest one: the quaternion of most attitudes is irrational and therefore rounded.
     vector = _in_body(vector_s, initial)
     return tuple([_negligible(component, vector) for component in vector])
 
 
 def _all_large(vector_s: tuple[Fraction, ...], initial: Initial) -> bool:
-    """Return whether a computation in doubles proves that no body component of a vector is zero at the start.
-
-    The vector is given in space components, ``vector_s``. The computation takes a tenth of the time of exact
-    arithmetic. If it returns False, a component may be zero or not: exact arithmetic has to decide.
-    """
+    """Return whether a computation in doubles proves that no body component of a vector is zero at the start."""
+    # a tenth of the time of exact arithmetic, which decides if the result is False
     ratios = [x.as_integer_ratio() for x in (*initial.quaternion, *vector_s)]
     q0, q1, q2, q3, x, y, z = [top / bottom for top, bottom in ratios]
     along, scalar = 2 * (q1 * x + q2 * y + q3 * z), q0 * q0 - q1 * q1 - q2 * q2 - q3 * q3
@@ -314,10 +295,9 @@ def _constant_spin(scene: Scene, structure: Structure) -> RuleOutcome:
 
 
 def _constant(scene: Scene, *axes: int) -> tuple[Pattern | None, Pattern | None, Pattern | None]:
-    """Return, for each component of omega_b, how it enters the equations: zero or free if constant, None if it changes.
+    """Return, for each component of omega_b, None if it changes, else its pattern: zero, or free (a parameter).
 
-    ``axes`` holds the indices (0 to 2) of the components that are constant. Such a component is not a state; its
-    pattern is zero if its initial value is zero, and free (a parameter) otherwise.
+    ``axes`` lists the constant ones.
     """
     first, second, third = (
         pattern(w, unit=False) if axis in axes else None for axis, w in enumerate(scene.initial.omega_b)
@@ -326,9 +306,8 @@ def _constant(scene: Scene, *axes: int) -> tuple[Pattern | None, Pattern | None,
 
 
 def _no_moment_about(torque: TorqueStructure, axis: int) -> bool:
-    """Return whether a torque never has a component along the body's symmetry axis, the body axis ``axis`` (0 to 2).
-
-    The spin about this axis is then constant. False means that the torque may have such a component.
+    """Return whether a torque never has a component along the symmetry axis ``axis``, 0 to 2, which keeps the spin
+    constant.
     """
     if isinstance(torque, FormulaTorque):
         return torque.frame == "body" and torque.formulas[axis].strip() in ("0", "0.0")

@@ -1,8 +1,7 @@
 """Kernels of plans as saved data: a kernel consists of the equations of a plan as programs, and of their C text.
 
-A program is a list of arithmetic operations without branches, which can be printed as C or as Python.
-:mod:`symrot.codegen.scene_kernels` derives the kernels, the cache stores them as JSON, and the propagator assigns
-values to their parameters. This module does not use SymPy.
+A program is a list of arithmetic operations without branches, which can be printed as C or as Python. The cache stores
+kernels as JSON, and the propagator assigns values to their parameters. No SymPy.
 """
 
 from collections.abc import Mapping
@@ -61,8 +60,6 @@ class KernelRecord(TypedDict):
 class SceneKernel:
     """The equations of a structure, ready to be evaluated: derived once and used for every scene of the structure.
 
-    Programs are restored from the saved data on first use: a propagation in C never needs the program of the rates.
-
     Examples
     --------
     >>> import symrot
@@ -71,6 +68,7 @@ class SceneKernel:
     """
 
     def __init__(self, record: KernelRecord) -> None:
+        # Programs are restored on first use: a propagation in C never needs the program of the rates.
         self.record = record
 
     @classmethod
@@ -78,9 +76,8 @@ class SceneKernel:
         cls, rates: Program, rate_parameters: Parameters, quantities: Program, quantity_parameters: Parameters,
         conserved: tuple[Conserved, ...], source: str,
     ) -> "SceneKernel":  # fmt: skip
-        """Return the kernel that consists of the given programs, parameters, conserved quantities and C text.
-
-        Each argument becomes the property of the same name; ``source`` is the C text of ``rates``.
+        """Return the kernel that consists of the given programs, parameters, conserved quantities and C text of
+        ``rates``.
         """
         return cls(
             {
@@ -94,10 +91,10 @@ class SceneKernel:
         )
 
     def without_invariants(self, reason: str) -> "SceneKernel":
-        """Return the kernel with all candidates for conserved quantities marked as not conserved.
-
-        ``reason`` says why, for example that a torque without a formula acts, about which nothing can be proven.
+        """Return the kernel with all candidates for conserved quantities marked as not conserved, for the
+        ``reason``.
         """
+        # for example, nothing can be proven about a torque without a formula
         lost = [(name, unit, output, False, reason) for name, unit, output, *_ in self.record["conserved"]]
         return SceneKernel({**self.record, "conserved": lost})
 
@@ -108,9 +105,8 @@ class SceneKernel:
 
     @cached_property
     def rate_parameters(self) -> Parameters:
-        """The parameters of the rates, as pairs (name, formula in terms of the constants of the scene).
-
-        The first pair may be ``"p0"`` with the formula ``(B - C)/A``. The pairs are in the order of the C array ``p``.
+        """The parameters of the rates in C order, as pairs (name, formula in the scene's constants): ``("p0", (B -
+        C)/A)``.
         """
         return _loaded(self.record["rate_parameters"])
 
@@ -121,10 +117,7 @@ class SceneKernel:
 
     @cached_property
     def quantity_parameters(self) -> Parameters:
-        """The parameters of the quantities, as pairs (name, formula in terms of the constants of the scene).
-
-        The order is that of the parameters of the program :attr:`quantities`.
-        """
+        """The parameters of :attr:`quantities`, in order, as pairs (name, formula in the scene's constants)."""
         return _loaded(self.record["quantity_parameters"])
 
     @cached_property
@@ -134,10 +127,8 @@ class SceneKernel:
 
     @property
     def source(self) -> str:
-        """The C text of the rates: the function ``symrot_rates``, which always takes an array of parameters.
-
-        A kernel without parameters ignores this array, so that all kernels are called in the same way.
-        """
+        """The C text of the rates: the function ``symrot_rates``, which always takes an array of parameters."""
+        # A kernel without parameters ignores the array, so that all are called in the same way.
         return self.record["source"]
 
 
@@ -150,10 +141,8 @@ def _loaded(saved: SavedParameters) -> Parameters:
 
 
 def bind(parameters: Parameters, constants: Mapping[str, Fraction]) -> list[float]:
-    """Return the values of the parameters of a kernel, computed exactly from a scene's constants and rounded once.
-
-    ``parameters`` are pairs (name, formula), and ``constants`` the exact values of the names in the formulas: with A =
-    1, B = 3 and C = 2 the formula ``(B - C)/A`` gives 1.0.
+    """Return the values of the parameters, pairs (name, formula), computed exactly from the constants and
+    rounded once.
     """
     values = {"pi": number.PI, **constants}
     return [float(evaluate(node, values, EXACT_FUNCTIONS)) for _, node in parameters]

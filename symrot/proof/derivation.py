@@ -1,8 +1,8 @@
 """Derivations: sequences of equations, each proven when it is added.
 
-A :class:`Derivation` is built step by step. A step states that the two sides of an equation are equal; if the exact
-normal form (:mod:`symrot.exact`) shows that they are not, :class:`ProofError` is raised. So every equation of a
-finished derivation has been proven. Its page is the text, with formulas, that a reader sees.
+A step of a :class:`Derivation` states that the two sides of an equation are equal. :class:`ProofError` is raised if
+the exact normal form (:mod:`symrot.exact`) shows that they are not. The page is the text, with formulas, that a reader
+sees.
 """
 
 from collections.abc import Mapping, Sequence
@@ -138,11 +138,9 @@ class Derivation(PrintedPage):
             self._note(left, right)
 
     def nonzero(self, text: str, expression: Expr, named: str) -> None:
-        """State on the page that ``expression`` is not zero: ``text``, then the LaTeX ``named``, then "is not 0".
-
-        A step in which the expression is a denominator need not repeat this condition.
-        """
+        """State on the page that an expression is not zero: ``text``, then its LaTeX ``named``, then "is not 0"."""
         self.items.append(Passage(f"{text} ${named} \\neq 0$."))
+        # a step in which the expression is a denominator need not repeat this condition
         self.assumed += [part.expand() for part in (expression, *_factors(expression))]
 
     def define(self, text: str, left: Any, right: Any) -> Any:
@@ -255,15 +253,14 @@ class Derivation(PrintedPage):
         return self._add(Step(claim, _frozen(expression), S.Zero, because, ">", named=named, display=reduced))
 
     def _proven(self, claim: str, left: Any, right: Any, relations: Sequence[Any]) -> Decision:
-        """Return the verdict of :func:`symrot.exact.decide.decide` on the equation ``left = right``, which holds.
+        """Return the verdict on the equation ``left = right`` under the hypotheses ``relations``.
 
-        ``relations`` are the hypotheses under which it must hold. If it does not hold, ProofError is raised; its
-        message
-        has the number of the step and ``claim``, the sentence that the step states.
+        ProofError is raised if it does not hold.
         """
         verdict = decide(left, right, relations)
         if verdict.verdict != "true":
             where = f" ({verdict.counterexample})" if verdict.counterexample else ""
+            # ``claim`` is the sentence that the step states
             raise ProofError(
                 f"{self.name}, step {len(self.steps) + 1}, {claim!r} does not hold: left - right = "
                 f"{_short(verdict.residual)}{where}"
@@ -275,21 +272,20 @@ class Derivation(PrintedPage):
     ) -> bool:
         """Return whether ``display``, the form printed for a side, was parsed and proven equal to ``side``.
 
-        The result is False if the form is LaTeX with a name that has no declared meaning, or has another shape: then it
-        is
-        only a label. It is True if ``display`` is None, because then the page prints the side itself. ``sides`` are
-        both
-        sides of the equation, whose symbols the LaTeX may contain; ``claim`` is for the message.
+        A form that cannot be parsed is only a label, and gives False.
 
         Raises
         ------
         ProofError
             If the displayed form can be parsed and is not equal to the side under the hypotheses ``relations``.
         """
+        # the page prints the side itself
         if display is None:
             return True
         try:
+            # the symbols of both ``sides`` may occur in the LaTeX
             values = self._read(display, sides) if isinstance(display, str) else [display]
+        # a name in the LaTeX has no declared meaning
         except Unread:
             return False
         values = [_as_side(value, side) for value in values]
@@ -301,12 +297,8 @@ class Derivation(PrintedPage):
         return True
 
     def _read(self, text: str, sides: tuple[Any, Any] = (S.Zero, S.Zero)) -> list[Any]:
-        """Return the values of the LaTeX ``text``, which is displayed for a side of an equation, as a list.
-
-        A formula gives one value; a chain ``X = Y`` gives the value of each of its sides. ``sides`` are the two sides
-        of the equation that the step proves: symbols that occur in them need no definition on the page to be read.
-        Unread is raised if the text cannot be parsed.
-        """
+        """Return the value of the LaTeX ``text``, or the values of the sides of a chain ``X = Y``, as a list."""
+        # symbols in the ``sides`` of the equation need no definition on the page
         used = {symbol for side in sides for symbol in side.free_symbols}
         names = {key(formula(symbol)): symbol for symbol in used} | self.names
         chains = parts(text)
@@ -329,14 +321,12 @@ class Derivation(PrintedPage):
         return values
 
     def _note(self, left: Any, right: Any) -> None:
-        """Declare in ``names`` that ``left``, a symbol or the LaTeX of a name, stands for ``right``.
-
-        Then later LaTeX may contain the name. If ``right`` is LaTeX that cannot be parsed, the name loses its meaning.
-        """
+        """Declare that ``left``, a symbol or the LaTeX of a name, stands for ``right`` in later LaTeX."""
         if isinstance(right, str):
             try:
                 right = self._read(right)[-1]
             except Unread:
+                # LaTeX that cannot be parsed: the name loses its meaning
                 self.names.pop(key(left) if isinstance(left, str) else "", None)
                 return
         if isinstance(left, str) and left:
@@ -356,16 +346,13 @@ class Derivation(PrintedPage):
 
 
 def _tidied(conditions: Sequence[Any]) -> list[Any]:
-    """Return the conditions of a step (``Ne(x, 0)``, ``x >= 0``, ..) without repetitions.
-
-    A product that is not zero gives one condition per factor. The condition that a root is not zero becomes the
-    condition that its radicand is not zero. So ``Ne(a*sqrt(b), 0)`` gives ``Ne(a, 0)`` and ``Ne(b, 0)``.
-    """
+    """Return a step's conditions without repetitions: ``Ne(a*sqrt(b), 0)`` gives ``Ne(a, 0)`` and ``Ne(b, 0)``."""
     independent: dict[Any, Any] = {}
     for condition in conditions:
         if not isinstance(condition, Ne):
             independent.setdefault((type(condition), normal_form(condition.lhs)), condition)
             continue
+        # a product that is not zero gives one condition per factor, and a root gives one for its radicand
         for piece in Mul.make_args(condition.lhs):
             base = piece.base if piece.is_Pow and piece.exp.is_Rational else piece
             base = base.args[0] if isinstance(base, Abs) else base
@@ -377,10 +364,7 @@ def _tidied(conditions: Sequence[Any]) -> list[Any]:
 
 
 def _factors(expression: Expr) -> list[Expr]:
-    """Return the factors of a polynomial as a list, such as ``[x, x + 1]`` for ``x**2 + x``; else ``[expression]``.
-
-    The list contains only the expression itself if it does not factor, is a number, or is not a polynomial.
-    """
+    """Return the factors of a polynomial, such as ``[x, x + 1]`` for ``x**2 + x``, or ``[expression]`` without any."""
     plain = not expression.is_number and expression.is_polynomial(*expression.free_symbols)
     factors = [base for base, _ in factor_list(expression)[1]] if plain else []
     return factors if len(factors) > 1 else [expression]
@@ -391,13 +375,10 @@ def _shape(side: Any) -> Any:
 
 
 def _as_side(display: Any, side: Any) -> Any:
-    """Return the value of ``display``, which the page prints instead of ``side``, in the shape of ``side``.
-
-    If the side is a matrix, 0 becomes the zero matrix; if it is square, another number becomes this multiple of the
-    identity matrix.
-    """
+    """Return ``display``, which the page prints instead of ``side``, in the shape of ``side``."""
     display = _frozen(display)
     if isinstance(side, MatrixBase) and not isinstance(display, MatrixBase):
+        # the zero matrix; below, a number stands for this multiple of the identity matrix
         if display == 0:
             return ImmutableMatrix.zeros(*side.shape)
         return ImmutableMatrix.eye(side.rows) * display if side.is_square else display
@@ -412,11 +393,9 @@ def _frozen(side: Any) -> Any:
 
 
 def _short(residual: Any) -> str:
-    """Return a residual, left minus right side of a refuted equation, as text of at most 160 characters for a message.
-
-    Of a matrix, the text is its first nonzero entry and its place: ``a - b in entry (1, 2)``.
-    """
+    """Return the residual of a refuted equation as short text for a message, such as ``a - b in entry (1, 2)``."""
     if isinstance(residual, MatrixBase):
+        # the first nonzero entry of a matrix
         place = next(n for n, entry in enumerate(residual) if entry != 0)
         text = f"{residual[place]} in entry ({place // residual.cols + 1}, {place % residual.cols + 1})"
     else:

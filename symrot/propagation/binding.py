@@ -1,9 +1,8 @@
 """Numerical values of the parameters of kernels, for many initial states of one scene.
 
-A kernel is the generated code that computes the rates (time derivatives) of the states, or the output quantities. Its
-parameters are formulas in the constants of a scene, such as ``(B - C)/A``. Most of them depend on the scene alone:
-masses, moments of inertia, torques. They are evaluated once. Only parameters whose formulas contain a number of the
-initial state, such as a constant spin, are evaluated again for another initial state.
+A kernel is the generated code for the rates (time derivatives) of the states or for the output quantities. Its
+parameters are formulas such as ``(B - C)/A``. Only those that contain a number of the initial state are evaluated
+again for another state.
 """
 
 from collections.abc import Callable, Mapping
@@ -29,18 +28,12 @@ def one_double(top: int, bottom: int) -> tuple[float, ...]:
 
 
 def two_doubles(top: int, bottom: int) -> tuple[float, ...]:
-    """Return two doubles whose sum approximates the ratio top/bottom to 31 digits, as :class:`Binding` expects them.
-
-    They are the double nearest to the ratio, and the rounded remainder: about 0.333 and 1.85e-17 for the ratio 1/3.
-    """
+    """Return two doubles whose sum is the ratio top/bottom to 31 digits: about ``(0.333, 1.85e-17)`` for 1/3."""
     return quotient(top, bottom)
 
 
 class Binding:
-    """Function that returns the values of a kernel's parameters for one initial state of a scene.
-
-    It takes a plan that contains this initial state, and returns a list of doubles. Values that do not depend on the
-    initial state are computed once.
+    """Function that takes a plan, with any initial state, and returns the values of a kernel's parameters as doubles.
 
     Parameters
     ----------
@@ -67,6 +60,7 @@ class Binding:
         known: Mapping[str, Fraction] | None = None,
     ) -> None:
         constants = {"pi": number.PI, **(known or {}), **plan.constants}
+        # values that do not depend on the initial state are computed once, here
         fixed = {name: value for name, value in constants.items() if name not in START_CONSTANTS}
         values = [value_of(node, constants).as_integer_ratio() for _, node in parameters]
         self._rounded, self._numbers = rounded, [x for value in values for x in rounded(*value)]
@@ -78,36 +72,25 @@ class Binding:
         ]
 
     def __call__(self, plan: Plan) -> list[float]:
-        """Return the parameter values for ``plan``, which may differ from the constructor's in its initial state.
-
-        Each value is computed exactly and rounded once, by the function ``rounded`` that was passed to the constructor:
-        to one double, or to two doubles whose sum has about 32 digits, for closed forms. The list has one or two
-        doubles per parameter, accordingly.
-        """
+        """Return the parameter values for ``plan``, a plan of the same scene with any initial state."""
         numbers = self._numbers.copy()
         if self._moving:
             constants = plan.start_constants
             for place, moving in self._moving:
+                # exact, then rounded once: to one double or, for closed forms, to two doubles with 32 digits
                 numbers[place] = self._rounded(*moving.ratio(constants))
         return numbers
 
 
 class _Moving:
-    """A formula that is evaluated exactly for each initial state, since it contains numbers of the initial state.
-
-    A monomial in one name, such as ``3*omega_1**2``, is evaluated with integers, which is faster than with Fractions.
-    ``formula`` is a tree of operations in which all other constants have been replaced by their values.
-    """
+    """A formula in numbers of the initial state, such as ``3*omega_1**2``, to be evaluated for many initial states."""
 
     def __init__(self, formula: Node) -> None:
+        # a monomial in one name is evaluated with integers, which is faster than with Fractions
         self._formula, self._monomial = formula, _monomial(formula)
 
     def ratio(self, constants: Mapping[str, Fraction]) -> tuple[int, int]:
-        """Return the value of the formula as a pair of integers: numerator and positive denominator.
-
-        ``constants`` maps names to exact values. The formula contains only numbers of the initial state, such as
-        ``omega_1``; all other constants have been replaced by their values.
-        """
+        """Return the formula's value for the given constants as integers: (numerator, positive denominator)."""
         if self._monomial is None:
             return value_of(self._formula, constants).as_integer_ratio()
         top, bottom, name, power = self._monomial
@@ -116,9 +99,9 @@ class _Moving:
 
 
 def _monomial(node: Node) -> tuple[int, int, str, int] | None:
-    """Return a monomial in one name as (numerator, denominator, name, power >= 1), or None for any other formula.
+    """Return a monomial in one name as (numerator, denominator, name, power): ``3*a**2/2`` gives ``(3, 2, "a", 2)``.
 
-    An example is ``(3, 2, "omega_1", 2)`` for the formula ``3*omega_1**2/2``.
+    Return None for any other formula.
     """
     if node[0] == "symbol":
         return 1, 1, node[1], 1
@@ -150,9 +133,9 @@ def value_of(formula: Node, constants: Mapping[str, Fraction]) -> Fraction:
 
 
 def folded(node: Node, known: Mapping[str, Fraction]) -> Node:
-    """Return a formula in which each subexpression without unknown names is replaced by its value.
+    """Return a formula with its known names replaced by their values.
 
-    ``known`` has the values of names. With ``known`` = {"A": 2} the formula ``(A + 1)*omega_1`` becomes ``3*omega_1``.
+    For ``known = {"A": 2}``, ``(A + 1)*omega_1`` becomes ``3*omega_1``.
     """
     if names(node) <= known.keys():
         return ("number", value_of(node, known))

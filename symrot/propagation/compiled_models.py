@@ -1,8 +1,7 @@
 """Kernels of plans: loaded from the cache, or derived, printed as C, compiled and stored in the cache.
 
 A kernel is the generated code for the rates (time derivatives) of the states and for the output quantities. Its key in
-the cache consists of the structure of the plan and the version of symrot's own files, without the numbers of the scene.
-While the compiler works on the rates, symrot proves which quantities are conserved.
+the cache contains the structure of the plan and the version of symrot's files, but no numbers of the scene.
 """
 
 import json
@@ -53,10 +52,8 @@ RATE_SCALE = 0.0  # an error of omega counts relative to omega
 
 @cache
 def _version() -> str:
-    """Return a text that identifies the version of the files that derive kernels: their names, sizes and times.
-
-    If one of these files changes, kernels in the cache are not used any more.
-    """
+    """Return a text with the names, sizes and times of the files that derive kernels."""
+    # if a file changes, kernels in the cache are not used any more
     states = [(file, (PACKAGE / file).stat()) for file in FILES]
     folders = [str(PACKAGE / folder) for folder in FOLDERS]
     for folder in folders:  # the loop appends to this list
@@ -70,11 +67,7 @@ def _version() -> str:
 
 
 def kernel_key(plan: Plan) -> str:
-    """Return the key under which the cache stores the kernel of a plan.
-
-    It is the text of the structure of the plan and of the version of symrot's files: equal for scenes that differ only
-    in numbers.
-    """
+    """Return the key under which the cache stores the kernel of a plan; scenes that differ only in numbers share it."""
     return f"scene kernel\n{_structure_text(plan.structure)}\n{_version()}"
 
 
@@ -86,15 +79,14 @@ def _structure_text(structure: Structure) -> str:
 def scene_kernel(plan: Plan, on_rates: Callable[[Program, str], object] = lambda rates, source: None) -> SceneKernel:
     """Return the kernel of a plan, from the cache or newly derived.
 
-    As soon as the rates (time derivatives of the states) are derived, ``on_rates`` is called with their program and
-    their C text, so that a compiler can work on them while the conserved quantities are derived. For a cached kernel it
-    is not called.
+    ``on_rates(program, c_text)`` is called once the rates are derived, and never for a cached kernel.
     """
     saved = library.fetch(kernel_key(plan))
     if saved is not None:
         return SceneKernel(json.loads(saved))
     from symrot.codegen.scene_kernels import derive_scene_kernel
 
+    # the compiler can already work on the rates while the conserved quantities are derived
     kernel = derive_scene_kernel(plan.structure, on_rates)
     library.store(kernel_key(plan), json.dumps(kernel.record))
     return kernel
@@ -132,18 +124,14 @@ def _parameter_count(rates: Program) -> int:
 
 
 def motion_library(plan: Plan, kernel: SceneKernel) -> Path:
-    """Return the path of the compiled library that integrates the motion of a plan by DOP853, Dormand-Prince 8(5,3).
-
-    The library is compiled if the cache does not have it. ``kernel`` is the kernel of the plan.
-    """
+    """Return the path of the library that integrates the motion of a plan by DOP853, compiled unless it is cached."""
     return library.build(library_source(plan, kernel), "motion")
 
 
 def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected: bool = True) -> Path:
     """Return the path of the compiled library that integrates the motion of a plan by Taylor series.
 
-    The order of the series is chosen for the tolerance. ``projected`` says whether the library corrects the states
-    after steps so that conserved quantities keep their values.
+    ``projected`` says whether states are corrected after steps to conserve quantities.
 
     Raises
     ------
@@ -153,6 +141,7 @@ def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected:
     from symrot.propagation.invariants import invariant_source
     from symrot.propagation.steppers import taylor
 
+    # the order of the series suits the tolerance
     order = taylor.order_for(tolerance, kernel.rates)
     key = f"taylor {order}{'' if projected else ' not projected'}\n{kernel_key(plan)}"
     source = library.fetch(key)
@@ -164,73 +153,61 @@ def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected:
 
 
 def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:
-    """Return the blocks of states (omega, attitude) whose errors are measured separately, as edges and scales.
+    """Return (edges, scales) of the blocks of states: ``([0, 3, 7], [0.0, 1.0])`` for omega and quaternion.
 
-    Edges: block k consists of the states from edge k up to edge k + 1. Scales: the error of a block is divided by its
-    scale or, if the scale is 0, by the norm of the states in the block. For the states omega_1..3 and q0..q3 the result
-    is ``([0, 3, 7], [0.0, 1.0])``; a block without states is left out.
+    The error of a block is divided by its scale, or by its norm if that is 0.
     """
     rates = sum(name.startswith("omega") for name in plan.states)
     count = len(plan.states)
     edges = [0, *([rates] if 0 < rates < count else []), count]
+    # block k has the states from edge k up to edge k + 1; its error is divided by its scale or, if 0, by its norm
     return edges, [RATE_SCALE] * (rates > 0) + [ATTITUDE_SCALE] * (count > rates)
 
 
 def library_source(plan: Plan, kernel: SceneKernel) -> str:
-    """Return the C text of the library that integrates the motion of a plan by DOP853: the kernel and the stepper.
-
-    If the torques have formulas, the text also contains bounds of the rates, which limit the steps.
-    """
+    """Return the C text of the library that integrates the motion of a plan by DOP853: kernel and stepper."""
     return _unit(plan, kernel.source, len(kernel.rate_parameters), lambda: kernel.rates)
 
 
 def _unit(plan: Plan, source: str, parameters: int, rates: Callable[[], Program]) -> str:
     edges, scales = error_blocks(plan)
+    # bounds of the rates limit the steps, which might miss a short pulse of a torque formula
     bounds = (enclosure_text(plan, rates, edges),) if has_formulas(plan) else ()
     return translation_unit(source, "symrot_rates", len(plan.states), parameters, edges, scales, *bounds)
 
 
 def has_formulas(plan: Plan) -> bool:
-    """Return whether a torque of the plan is given by formulas.
-
-    If so, the steps need limits, because a long step may miss a short pulse in such a torque.
-    """
+    """Return whether a torque of the plan is given by formulas."""
+    # the steps then need limits, because a long step may miss a short pulse
     return any(plan.structure.formula_torques)
 
 
 def grows_late(plan: Plan) -> bool:
-    """Return whether a torque's formulas may make a motion from rest grow as the third or a higher power of time.
-
-    The criterion is a formula of degree 3 or more in time and states, such as ``t**3``. The first Taylor coefficients
-    of this motion are zero, so that they do not show how large it becomes. An ensemble therefore integrates such
-    motions one by one, since only then each step can be checked.
-    """
+    """Return whether a torque formula has degree 3 or more in time and states, such as ``t**3``."""
+    # A motion from rest then starts with Taylor coefficients that are zero and hide how large it becomes: an ensemble
+    # follows such motions one by one, so that each step can be checked.
     formulas = [text for torque in plan.structure.formula_torques for text in torque.formulas]
     return any(_degree(parse(text)) >= 3 for text in formulas)
 
 
 def _degree(node: Node) -> int:
-    """Return an estimate of how fast a formula can vary: its degree as a polynomial in time and states.
-
-    It is 3 for ``a*t**2*omega_1``, and 0 for a formula of constants. A function counts as degree 1 if its argument is
-    not constant, because it is no polynomial: 1 for ``sin(t**3)``. A negative power counts as a positive one.
-    """
+    """Return a formula's degree as a polynomial in time and states: 3 for ``a*t**2*omega_1``."""
     if node[0] == "symbol":
         return int(node[1] in CHANGING)
     degrees = [_degree(child) for child in children(node)]
     if node[0] == "**":
+        # an estimate of how fast the formula can vary: 1/t**2 counts as t**2
         return degrees[0] * abs(int(node[2]))
     if node[0] == "call":
+        # a function of time or states is no polynomial, and counts as degree 1
         return min(1, max(degrees))
     return sum(degrees) if node[0] == "*" else max(degrees, default=0)
 
 
 def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[str, float]], Deviations] | None":
-    """Return a function from the parameters of the rates to bounds that limit SciPy's steps; None without a limit.
+    """Return a function from the rates' parameters to bounds on torque changes, which limit SciPy's steps.
 
-    The bounds (:class:`symrot.propagation.enclosures.step_limit.Deviations`) say how far the torque formulas can
-    deviate from their values at the start of a step. The result is None if no torque has formulas, if no formula can
-    have a pulse that a step misses, or if the rates have no Taylor series.
+    None if no step needs a limit.
     """
     if not has_formulas(plan):
         return None
@@ -242,20 +219,18 @@ def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[st
         terms = enclosure(recurrences(kernel.rates))
     except InputError:  # no Taylor series, for example of abs
         return None
+    # None: no formula can have a pulse that a step misses
     return None if terms is None else deviations_of(terms)
 
 
 def enclosure_text(plan: Plan, rates: Callable[[], Program], edges: Sequence[int]) -> str:
-    """Return C code that bounds the rates of a plan on discs of the complex plane, from the cache or newly generated.
-
-    The bounds limit the steps of DOP853. ``rates`` returns the program of the rates; it is called only if the cache
-    does not have the code. ``edges`` are those of :func:`error_blocks`.
-    """
+    """Return C code that bounds how far the rates of a plan can change in a step, from the cache or newly generated."""
     key = f"enclosure {DENSE_ORDER}\n{kernel_key(plan)}"
     text = library.fetch(key)
     if text is None:
         from symrot.codegen.enclosure.source import enclosure_source
 
+        # rates() is called only here, as it may have to derive the program
         text = enclosure_source(rates(), DENSE_ORDER, edges)
         library.store(key, text)
     return text

@@ -1,12 +1,8 @@
 """Euler angles as state variables, for teaching: their singularity, and a change of Euler sequence that avoids it.
 
-The states are omega_b and the three angles q of an Euler sequence such as ``"ZXZ"``, with ``dq/dt = B(q)^-1 omega_b``.
-The rate matrix B is singular at gimbal lock: near it the angles change ever faster and steps shrink; at gimbal lock the
-motion cannot be followed. With switching, the states change well before gimbal lock to the angles of another sequence,
-which is regular there (:func:`partner`).
-
-The result is an ordinary trajectory whose quaternion is computed from the angles, so that it can be compared with any
-other trajectory of the scene.
+The states are omega_b and the angles q of a sequence such as ``"ZXZ"``, with ``dq/dt = B(q)^-1 omega_b``. Near gimbal
+lock, where B is singular, steps shrink; with switching, the states change to the angles of another sequence
+(:func:`partner`).
 """
 
 import json
@@ -51,22 +47,18 @@ NAMES = ("phi", "theta", "psi")
 
 
 def partner(sequence: str) -> str:
-    """Return the Euler sequence to use near gimbal lock of a given sequence; only its third axis differs.
-
-    The partner of ``"ZXZ"`` is ``"ZXY"``, and the reverse. Each sequence is singular where a certain entry of the
-    attitude matrix is 1 or -1. The entries of the two sequences lie in the same row (extrinsic: column), so that their
-    squares add up to at most 1. Where one sequence is singular, its partner therefore has ``|det B| = 1``; everywhere,
-    at least one of the two has ``|det B| >= sqrt(1/2)``.
-    """
+    """Return the Euler sequence to use near gimbal lock of ``sequence``: ``"ZXY"`` for ``"ZXZ"``, and the reverse."""
     axes, intrinsic = parse_sequence(sequence)
+    # Each sequence is singular where an entry of the attitude matrix is 1 or -1. The entries of the two sequences lie
+    # in one row (extrinsic: column), so that |det B| >= sqrt(1/2) for one of them, and 1 where the other is singular.
     other = ({0, 1, 2} - {axes[1], axes[2]}).pop()
     return sequence[:2] + ("XYZ" if intrinsic else "xyz")[other]
 
 
 def regularity(sequence: str, angles: ArrayLike) -> Floats:
-    """Return ``|det B|``, shape (...), of the rate matrix B of an Euler sequence: 0 at gimbal lock, at most 1.
+    """Return ``|det B|``, shape (...), of the rate matrix B for angles, rad, shape (..., 3); it is 0 at gimbal lock.
 
-    ``angles``, rad, has shape (..., 3). For ``"ZXZ"`` the result is ``|sin(theta)|``, where theta is the second angle.
+    For ``"ZXZ"`` it is ``|sin(theta)|``.
     """
     axes, _ = parse_sequence(sequence)
     middle = np.asarray(angles, dtype=np.float64)[..., 1]
@@ -75,49 +67,38 @@ def regularity(sequence: str, angles: ArrayLike) -> Floats:
 
 
 def angles_of(quaternion: Floats, sequence: str) -> Floats:
-    """Return Euler angles, rad, shape (3,), whose quaternion equals the given quaternion including its sign.
-
-    A quaternion and its negative are the same attitude. If the angles give the negative, a full rotation about the
-    first axis is added. The sign has to be preserved since a torque formula may contain odd powers of the quaternion
-    components.
-    """
+    """Return Euler angles, rad, shape (3,), whose quaternion equals the given quaternion including its sign."""
     angles: Floats = conversions.quaternion_to_euler(quaternion, sequence)[0]
+    # A torque formula may contain odd powers of the quaternion. A full rotation about the first axis changes its sign
+    # but not the attitude.
     if conversions.euler_to_quaternion(angles, sequence) @ quaternion < 0.0:
         angles[0] -= math.copysign(2.0 * math.pi, angles[0])
     return angles
 
 
 class _Kernel(NamedTuple):
-    """The compiled equations of motion in the angles of one Euler sequence: library with stepper, parameters, clock.
-
-    ``clock`` returns the same equations with the time counted from any epoch; it is None if they do not contain the
-    time.
-    """
+    """The compiled equations of motion in the angles of one Euler sequence, with their parameters."""
 
     library: Path
     parameters: list[float]
+    # returns the same equations with the time counted from any epoch; None if they do not contain the time
     clock: dop853.Clock | None
 
 
 class _Block(NamedTuple):
-    """Part of a motion in which the states are angles of one Euler sequence: first and last time, s, and a function.
-
-    The function takes times, s, and returns omega and quaternion, one row for each time: shape (n, 7), or fewer columns
-    if the plan leaves out components of omega because they are constant.
-    """
+    """Interval of a motion in which one Euler sequence is used: first time, last time, s, and states."""
 
     first: float
     last: float
+    # takes n times, s, and returns omega and quaternion, shape (n, 7); constant components of omega may be left out
     states: Callable[[Floats], Floats]
 
 
 @final
 class EulerMotion(Motion):
-    """Motion of a scene whose attitude is stepped as Euler angles instead of a quaternion.
+    """Motion of a scene whose attitude is stepped as Euler angles of ``sequence``.
 
-    ``sequence`` is the Euler sequence at the start. If ``switching`` is true, the states change near gimbal lock to the
-    angles of another sequence, the partner of the first, which is regular there. All times are scene times, not times
-    since the start, so that they stay the same when the Euler sequence changes.
+    With ``switching``, the angles of another sequence are used near gimbal lock.
     """
 
     def __init__(self, plan: Plan, method: str, tolerance: float, sequence: str, switching: bool) -> None:
@@ -130,6 +111,7 @@ class EulerMotion(Motion):
             method = "dop853" if non_smooth_torque(plan) else "taylor"
         other = f", {partner(sequence)} near its gimbal lock" if switching else ", without switching"
         choice = Choice(method, f"the state is the Euler angles {sequence}{other}")
+        # all times are scene times: they stay the same when the Euler sequence changes
         start = float(plan.scene.span.start)
         super().__init__(Setup(plan, choice, tolerance, start, lambda: scene_kernel(plan)), plan)
         self.sequence, self.switching = sequence, switching
@@ -192,16 +174,14 @@ class EulerMotion(Motion):
         )
 
     def _blocks(self, end: float) -> Iterator[_Block]:
-        """Compute the motion from its start to ``end``, s, and yield its parts, each of which uses one Euler sequence.
-
-        The costs of the parts are added up, with the number of changes of the sequence.
-        """
+        """Compute the motion from its start to ``end``, s, and yield intervals that each use one Euler sequence."""
         count, t, sequence = self._moving, self.start, self.sequence
         whole = np.array(self.plan.initial_state)
         while t != end:
             angles = angles_of(whole[count:], sequence)
             if self.switching and regularity(sequence, angles) < SWITCH:
                 sequence = partner(sequence)
+                # the fourth count: changes of the sequence
                 self._count[3] += 1
                 angles = angles_of(whole[count:], sequence)
             integration = self._integration(sequence, t, np.concatenate([whole[:count], angles]))
@@ -213,11 +193,7 @@ class EulerMotion(Motion):
                 whole = block.states(np.array([t]))[0]
 
     def _steps(self, integration: Integration, sequence: str, end: float) -> Iterator[tuple[float, float, Floats]]:
-        """Yield groups of steps as (first time, last time, recorded steps) until ``end`` or near gimbal lock.
-
-        ``integration`` steps the angles of ``sequence``. Near gimbal lock the iterator ends, and the caller continues
-        with another Euler sequence.
-        """
+        """Yield groups of steps as (first time, last time, recorded steps) until ``end`` or near gimbal lock."""
         count, broken = self._moving, None
         try:
             with closing(integration.runs(end)) as runs:
@@ -236,6 +212,7 @@ class EulerMotion(Motion):
                         if near.any():
                             place = int(np.argmax(near))
                             yield first, float(ends[place]), rows[: place + 1]
+                            # the caller continues with another Euler sequence
                             return
                     if broken is not None:
                         raise self._with_hint(broken, sequence)
@@ -258,15 +235,15 @@ class EulerMotion(Motion):
         return states
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return omega and quaternion at the times, one row for each, and the cost of the motion.
+        """Return omega and quaternion at the times, shape (n, 7), and the cost.
 
-        The shape is (n, 7); there are fewer columns if the plan leaves out components of omega because they are
-        constant. ``in_order`` is not used: the times are sorted in any case.
+        Constant components of omega may be left out.
         """
         began = perf_counter()
         self._count = [0, 0, 0, 0]
         states = np.empty((len(times), len(self.plan.states)))
         states[times == self.start] = self.plan.initial_state
+        # sorts the times, so that in_order is not used
         for part in split_at(times, self.start):
             distances = np.abs(times[part] - self.start)
             for block in self._blocks(float(times[part[-1]])):
@@ -278,10 +255,7 @@ class EulerMotion(Motion):
         return states, Stats(accepted, rejected, evaluations, perf_counter() - began, switches)
 
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return a function that takes n times, s, within ``span`` and returns omega and quaternion, shape (n, 7).
-
-        There are fewer columns if the plan leaves out components of omega because they are constant.
-        """
+        """Return a function from n times, s, within ``span`` to omega and quaternion, shape (n, 7)."""
         sides = [list(self._blocks(end)) if end != self.start else [] for end in span]
 
         def at(times: Floats) -> Floats:
@@ -299,11 +273,7 @@ class EulerMotion(Motion):
 
 
 def _derived(structure: Structure) -> KernelRecord:
-    """Return the equations of motion in Euler angles, derived from a structure, in the form that the cache stores.
-
-    The structure is the form of the equations: which constants are zero, equal or free. Its field ``sequence`` names
-    the Euler sequence.
-    """
+    """Return the equations of motion in the Euler angles of ``structure.sequence`` as a record for the cache."""
     from symrot.codegen.scene_kernels import RATES, rates_program, rates_source
     from symrot.dynamics.equations import equations_of_motion
 
@@ -328,10 +298,9 @@ class EulerPropagator(Propagator):
         return EulerMotion(plan, self._method, self.tolerance, self._sequence, self._switching)
 
     def __call__(self, t: ArrayLike | None = None, *, events: Any = None, **state: Any) -> Trajectory:
-        """Return the motion at the times t, as a call of :class:`symrot.propagation.propagator.Propagator` does.
+        """Return the motion at the times t; ``state`` holds another initial state, such as ``omega``.
 
-        ``state`` holds its arguments for another initial state, such as ``omega``. Events are not supported: they raise
-        InputError.
+        Raise InputError for events, which are not supported.
         """
         if events is not None:
             raise InputError("events: expected state='quaternion'; events are not located with Euler angles as state")

@@ -1,9 +1,7 @@
 """Torques without a formula: a function in Python or C, or a table of samples, with declared switching times.
 
-Such a torque acts in addition to the torques of the scene. The motion is integrated by Dormand and Prince's method. A
-step ends exactly at every switching time and the method restarts there, so that a jump costs no accuracy and no
-rejected steps. A feature of the torque is a short part that differs from its surroundings, such as a pulse; a long step
-may pass over it.
+Such a torque is added to the torques of the scene. Dormand and Prince's method restarts at each switching time, so
+that a jump costs no accuracy. A long step may pass over a short pulse of the torque.
 """
 
 import copy
@@ -51,8 +49,8 @@ BEND = 2.0**-50  # relative to the torque: rounded samples alone make the third 
 OVERSHOOT = 100.0  # times the largest sample: a spline with larger values does not represent the torque
 MOST_STEPS = 30_000_000  # limit of steps under a table, some 20 s; for functions it is stepping.MAX_STEPS
 UNKNOWN = (
-    "the torque is a function without a formula: each step is checked inside, but a feature narrower than a step may "
-    "be missed; give max_step, in s, below the width of the narrowest feature"
+    "the torque has no formula: a pulse that is shorter than a step may be missed; give max_step, in s, shorter than "
+    "every pulse"
 )
 FORMS = "a function of (t, omega, quaternion), a C function of ctypes, or a table (times, samples)"
 
@@ -88,18 +86,12 @@ class TorqueSource(ABC):
 
     @abstractmethod
     def failure(self) -> BaseException | None:
-        """Return the exception that the torque raised during the last motion, or None if it raised none.
-
-        The C stepper only reports that it cannot continue; this exception says why.
-        """
+        """Return the exception that the torque raised during the last motion, or None if it raised none."""
 
 
 @final
 class _Function(TorqueSource):
-    """A torque that is a Python function of (t, omega, quaternion), called from C.
-
-    If the function raises an exception or does not return three finite numbers, the motion ends with an error.
-    """
+    """A torque that is a Python function of (t, omega, quaternion), called from C."""
 
     def __init__(self, function: Callable[[float, Floats, Floats], ArrayLike]) -> None:
         self.function = function
@@ -127,6 +119,7 @@ class _Function(TorqueSource):
         try:
             values = np.asarray(self.function(t, np.array(omega[:3]), np.array(quaternion[:4])), dtype=np.float64)
             if values.shape != (3,) or not np.isfinite(values).all():
+                # ends the motion with an error, as does an exception of the function
                 raise InputError(
                     f"torque: expected three finite numbers in N m, got {number.show(values.tolist())} at t = {t!r} s"
                 )
@@ -145,11 +138,8 @@ class _Function(TorqueSource):
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Accept a motion from any time ``low`` to any time ``high``, s, and remove the last exception of the function.
-
-        It is accepted without a test, because it is not known at which times the user's Python function is defined.
-        ``self.error`` becomes None, so that :meth:`failure` reports only exceptions of the motion that follows.
-        """
+        """Accept a motion over any times, and forget the last exception of the function."""
+        # it is not known where the user's function is defined; failure() reports only exceptions from here on
         self.error = None
 
     def failure(self) -> BaseException | None:
@@ -159,10 +149,7 @@ class _Function(TorqueSource):
 
 @final
 class _CFunction(TorqueSource):
-    """A torque that is a C function of type ``int (double, const double[3], const double[4], double[3], void *)``.
-
-    Its arguments are time, omega, quaternion, the array for the torque, and a null pointer.
-    """
+    """A torque ``int f(double t, const double omega[3], const double q[4], double torque[3], void *)`` in C."""
 
     def __init__(self, function: Any) -> None:
         self.pointer = function
@@ -191,11 +178,7 @@ class _CFunction(TorqueSource):
 
 @final
 class _Table(TorqueSource):
-    """A torque that is a table of samples, interpolated by cubic splines between switching times.
-
-    ``switching`` holds these times, s, at which the torque may jump. InputError is raised if the times of the table do
-    not increase, if the shapes of times and samples do not fit, or if a spline far exceeds the samples.
-    """
+    """A torque given by a table of samples, interpolated by cubic splines between switching times."""
 
     samples = True
     most_steps = MOST_STEPS
@@ -220,6 +203,7 @@ class _Table(TorqueSource):
             )
         self.span = float(t[0]), float(t[-1])
         self.longest_step = SAMPLES_PER_STEP * float(np.diff(t).max())
+        # the torque may jump at a switching time
         self.user, self.knots = _pieces(t, values, switching)
 
     def pointer_in(self, library: Path) -> Any:
@@ -240,13 +224,10 @@ class _Table(TorqueSource):
 
 
 def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floats, list[float]]:
-    """Return the splines of a table as one array for the C function ``symrot_table_torque``, and its knots, s.
-
-    ``t`` and ``values`` are the times and samples, shapes (n,) and (n, 3). A separate spline is fitted between any two
-    consecutive times of ``switching``. Knots are the times at which a derivative of a spline jumps.
-    """
+    """Return the splines of a table as one array for C, and the times, s, at which a spline's derivative jumps."""
     from scipy.interpolate import CubicSpline
 
+    # a separate spline between any two consecutive switching times
     cuts = [0]
     for switch in switching:
         inside = np.flatnonzero(t == switch)
@@ -265,42 +246,35 @@ def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floa
         knots += [float(spline.x[0]), *_bends(spline)]
         coefficients.append(np.ascontiguousarray(np.moveaxis(spline.c, 0, 2)).reshape(-1, 12))
     count = sum(map(len, edges))
+    # the layout that the C function symrot_table_torque reads
     return np.concatenate([[float(count)], *edges, t[-1:], *(part.ravel() for part in coefficients)]), knots
 
 
 def _check_overshoot(spline: Any, largest: float) -> None:
-    """Raise InputError if a spline far exceeds the largest sample, which happens for very unevenly spaced samples.
-
-    The limit is 100 times ``largest``, the largest sample of the table.
-    """
+    """Raise InputError if a spline exceeds 100 times the largest sample, as for very unevenly spaced samples."""
     starts, gaps = spline.x[:-1], np.diff(spline.x)
     reach = np.max([np.abs(spline(starts + part * gaps)).max(axis=1) for part in (0.25, 0.5, 0.75)], axis=0)
     worst = int(np.argmax(reach))
     before, after = map(float, spline.x[worst : worst + 2])
     if not reach[worst] <= OVERSHOOT * largest:
         raise InputError(
-            f"torque: expected samples that a cubic spline can follow, but samples of at most {largest:.3g} N m give "
-            f"a spline that reaches {reach[worst]:.3g} N m between {before!r} and {after!r} s; if the torque jumps, "
-            "give a switching time and two samples at it, before and after the jump"
+            f"torque: expected samples that a cubic spline can follow, got a spline of {reach[worst]:.3g} N m between "
+            f"{before!r} and {after!r} s for samples up to {largest:.3g} N m; if the torque jumps, give two samples "
+            "at the time of the jump, and this time as a switching time"
         )
 
 
 def _bends(spline: Any) -> list[float]:
-    """Return the sample times, s, at which the third derivative of a spline jumps by more than a rounding error.
-
-    A step of the motion has to end there. The list is empty for samples of one cubic polynomial.
-    """
+    """Return the sample times, s, at which the third derivative of a spline jumps by more than a rounding error."""
     gaps, cubic = np.diff(spline.x)[:, None], spline.c[0]
     jumps = np.abs(np.diff(cubic, axis=0)) * np.minimum(gaps[1:], gaps[:-1]) ** 3
+    # none for samples of one cubic polynomial
     bends: list[float] = spline.x[1:-1][(jumps > BEND * np.abs(spline.c[3]).max(axis=0)).any(axis=1)].tolist()
     return bends
 
 
 def _torque_source(torque: Any, switching: Sequence[float]) -> TorqueSource:
-    """Wrap a torque, in any form that :func:`symrot.propagator` accepts, in an object with a common interface.
-
-    ``switching`` holds the times, s, at which a table may jump. InputError is raised for a torque in any other form.
-    """
+    """Return a torque, in any form that :func:`symrot.propagator` accepts, as an object with a common interface."""
     if isinstance(torque, ctypes._CFuncPtr):  # type: ignore[attr-defined]
         return _CFunction(torque)
     if callable(torque):
@@ -311,10 +285,8 @@ def _torque_source(torque: Any, switching: Sequence[float]) -> TorqueSource:
 
 
 def _bits(address: int) -> float:
-    """Return the double with the same 64 bits as an address, so that a kernel parameter can hold the address.
-
-    All parameters of kernels are doubles.
-    """
+    """Return the double with the same 64 bits as an address, so that an array of doubles can hold the address."""
+    # kernel parameters are doubles, and one of them has to hold the address
     return ctypes.c_double.from_buffer_copy(ctypes.c_uint64(address)).value
 
 
@@ -356,12 +328,11 @@ class ExternalSetup:
 def external_setup(
     plan: Plan, tolerance: float, source: TorqueSource, in_space: bool, switching: Sequence[float], max_step: float
 ) -> ExternalSetup:
-    """Return the data that all motions under a torque without a formula share.
+    """Compile kernel, torque and stepper into one library, and return the setup of all motions with this torque.
 
-    Kernel, torque and stepper are compiled into one library. ``in_space`` says whether the torque has space components
-    instead of body components, ``switching`` holds the times, s, at which it jumps, and ``max_step`` is the longest
-    step, s.
+    ``in_space``: the torque has space components.
     """
+    # max_step: the longest step, s; switching: times, s, at which the torque jumps
     plan = replace(plan, structure=replace(plan.structure.unreduced(), attitude=True))
     scene_alone = scene_kernel(plan)
     own = len(scene_alone.rate_parameters)
@@ -395,11 +366,7 @@ def external_setup(
 
 @final
 class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
-    """Motion of a scene under a torque that is a function or a table, evaluated at the times of the scene.
-
-    ``shared`` holds the parts that all motions of this scene share, and ``plan`` the scene's plan with the initial
-    state of this motion.
-    """
+    """Motion of a scene under a torque that is a function or a table of the scene's time."""
 
     has_external_torque = True
 
@@ -408,11 +375,8 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
         self._shared = shared
 
     def from_start(self, initial: Initial) -> "ExternallyDrivenMotion":
-        """Return the motion from another initial state; nothing is derived or compiled again.
-
-        Every initial state is accepted: under a torque without a formula all states are integrated, whatever their
-        start.
-        """
+        """Return the motion from any other initial state; nothing is derived or compiled again."""
+        # every start is accepted, since all states are integrated in any case
         return ExternallyDrivenMotion(self._shared, self.setup.plan.from_start(initial))
 
     @cached_property
@@ -425,11 +389,7 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
         )  # fmt: skip
 
     def _guarded(self, low: float, high: float, run: Callable[[], Result]) -> Result:
-        """Check that the torque is defined from ``low`` to ``high``, s, then return the result of ``run()``.
-
-        If the torque function raised an exception during ``run()``, this exception is raised instead of the stepper's
-        error.
-        """
+        """Return the result of ``run()``, after a check that the torque is defined from ``low`` to ``high``, s."""
         source = self._shared.source
         source.check(min(low, self.start), max(high, self.start))
         try:
@@ -438,22 +398,16 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
             failure = source.failure()
             if failure is None:
                 raise
+            # the exception of the torque function, which says more than the stepper's error
             raise failure from failure.__cause__
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at ``times``, s, in any order, shape (n, N), and the cost of the motion.
-
-        ``in_order``, whether the times increase, is not used. An exception of the torque function is raised again.
-        """
+        """Return the states at ``times``, s, in any order, shape (n, N), and the cost of the motion."""
         low, high = (float(times.min()), float(times.max())) if len(times) else (self.start, self.start)
         return self._guarded(low, high, lambda: self.stepping.restarted().sample(times))
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N).
-
-        The motion is integrated and its steps are recorded. An exception that the torque function raises is raised
-        again.
-        """
+        """Return a function from n times, s, within ``span`` to the states, shape (n, N), from recorded steps."""
         return self._guarded(*span, lambda: self.stepping.restarted().record(span))
 
 

@@ -1,8 +1,4 @@
-"""Conserved quantities for the Taylor stepper, which corrects the states so that these quantities stay constant.
-
-The module provides their C text and the values of their parameters. The derivation of the kernel proves which
-quantities are conserved; the norm of the quaternion is added.
-"""
+"""C text and parameters of the conserved quantities, which the Taylor stepper keeps constant."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -17,21 +13,16 @@ __all__ = ["invariant_parameters", "invariant_source"]
 
 
 def invariant_source(kernel: SceneKernel, states: Sequence[str]) -> str:
-    """Return C code that computes the conserved quantities, whose values the Taylor stepper keeps constant.
-
-    ``states`` are the names of the states, in the order of the C array that the code reads.
-    """
+    """Return C code that computes the conserved quantities from an array of the states, in the order of ``states``."""
     from symrot.codegen.taylor.invariant_source import invariant_definitions
 
+    # those that the derivation of the kernel has proved; invariant_definitions adds the norm of the quaternion
     outputs = [item.output for item in kernel.conserved if item.holds]
     return invariant_definitions(kernel.quantities, outputs, states, [name for name, _ in kernel.quantity_parameters])
 
 
 def invariant_parameters(kernel: SceneKernel, plan: Plan) -> list[float]:
-    """Return the parameters of the conserved quantities, each as two doubles: the nearest one and the rounded rest.
-
-    The order is that of the kernel's quantities: for two parameters the list is [first, its rest, second, its rest].
-    """
+    """Return the parameters of the conserved quantities, each as two doubles: the nearest one and the rounded rest."""
     values = {"pi": number.PI, **plan.constants}
     pairs: list[float] = []
     for _, node in kernel.quantity_parameters:

@@ -23,10 +23,7 @@ METHODS = {
 
 
 class Choice(NamedTuple):
-    """The chosen method, such as ``"taylor"``, the reason for the choice as text, and the closed form of the motion.
-
-    ``form`` is None unless the method is ``exact``.
-    """
+    """The chosen method, such as ``"taylor"``, the reason as text, and, only for ``exact``, the closed form."""
 
     method: str
     reason: str
@@ -34,15 +31,12 @@ class Choice(NamedTuple):
 
 
 def _automatic(plan: Plan) -> Choice:
-    """Return the first method that can follow the motion of a plan, with the reason.
-
-    The order is: constant (no state to integrate), closed form, Taylor series, Dormand-Prince, SciPy. Without a C
-    compiler, SciPy takes the place of the two before it.
-    """
+    """Return the first method that can follow the motion of a plan, with the reason."""
     if not plan.states:
         return Choice("constant", "the plan leaves no state to integrate")
     if form := exact_form(plan.scene):
         return Choice("exact", form.name, form)
+    # without a compiler, SciPy takes the place of Taylor series and Dormand-Prince
     if no_compiler := library.missing():
         return Choice("scipy", no_compiler)
     if rough := non_smooth_torque(plan):

@@ -1,11 +1,7 @@
-"""Motions: a plan with numbers and one initial state, from which the states at any times can be computed.
+"""Motions: a plan with numbers and one initial state, from which the states at any time can be computed.
 
-A :class:`Motion` starts from one initial state of a scene. Its :class:`Setup` holds what it shares with the motions
-from other initial states: the method, the kernel and the numbers of the scene. Each method has its own subclass.
-
-Words used here: the *rates* are the time derivatives of the states. The *clock* of a motion is the time that its
-stepper counts; the *epoch* is the time of the scene at which this clock shows 0. Two initial states have the same
-*structure* if their equations have the same form (:func:`symrot.planning.plan.structure_key`).
+The *rates* are the time derivatives of the states. The *epoch* is the time of the scene from which a stepper counts
+time: the zero of its *clock*. Initial states with equations of equal form have the same *structure*.
 """
 
 from abc import ABC, abstractmethod
@@ -50,10 +46,7 @@ Floats = NDArray[np.float64]
 
 
 def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
-    """Return the rates of a plan as a NumPy function ``f(t, y, p)``, generated from the kernel.
-
-    The rates are the time derivatives of the states y; p are the parameters of the kernel.
-    """
+    """Return the rates of a plan as a NumPy function ``f(t, y, p)`` of time, states and parameters."""
     from symrot.codegen.numpy_kernel import load_numpy_kernel
 
     function = load_numpy_kernel(kernel.rates)
@@ -61,11 +54,8 @@ def python_rates(plan: Plan, kernel: SceneKernel) -> Callable[..., Any]:
 
 
 def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
-    """Return the plan without the simplifications that eliminate states, for a motion in the closed form ``form``.
-
-    A closed form gives all states at no cost, since nothing has to be integrated. The last row of the plan names the
-    closed form as the reason.
-    """
+    """Return the plan without simplifications that eliminate states, for a motion in the closed form ``form``."""
+    # a closed form gives all states at no cost, since nothing has to be integrated
     structure = plan.structure.unreduced()
     rows, before = [], structure.reductions
     for row in plan.rows:
@@ -73,6 +63,7 @@ def with_full_state(plan: Plan, form: ClosedForm) -> Plan:
             rows.append(row)
         before = row.structure.reductions
     why = f"the motion has a closed form: {form.name}"
+    # the last row of the plan names the closed form as the reason
     rows.append(RuleOutcome(structure, True, why, form.derivation, "stepping"))
     return replace(plan, structure=structure, rows=tuple(rows))
 
@@ -127,10 +118,7 @@ class Setup:
 
     @cached_property
     def moves_clock(self) -> bool:
-        """Whether the stepper counts time from an epoch that moves along, so that phases such as ``a*t`` keep digits.
-
-        This is so if the rates depend on time, unless :attr:`allows_time_shift` is false.
-        """
+        """Whether the stepper moves the epoch from which it counts time, so that phases such as ``a*t`` keep digits."""
         return self.allows_time_shift and self.kernel.rates.uses("t")
 
     @cached_property
@@ -153,47 +141,36 @@ class Setup:
 
     @cached_property
     def deviations(self) -> "Callable[[Mapping[str, float]], Deviations] | None":
-        """Function from the parameters of the rates to bounds that limit SciPy's steps; None if no limit is needed.
+        """Function from the parameters of the rates to bounds on torque changes, which limit SciPy's steps.
 
-        The bounds ensure that no step passes over a short pulse of a torque. They are needed only for torques with
-        formulas.
+        None if no step needs a limit.
         """
         return formula_deviations(self.plan, self.kernel)
 
     def shifted(self) -> tuple[Plan, SceneKernel]:
-        """Return a plan and its kernel that count time from an epoch, a parameter that a stepper can change.
-
-        If the rates do not depend on time, the present plan and kernel are returned.
-        """
+        """Return plan and kernel with time counted from an epoch, a parameter that a stepper can change."""
+        # time_shifted returns both unchanged if the rates do not depend on time
         is_shifted = self.plan.structure.clock is not None
         return (self.plan, self.kernel) if is_shifted else time_shift.time_shifted(self.plan, self.kernel)
 
     @cached_property
     def on_own_clock(self) -> "Setup":
-        """A copy of the setup whose clock, the time that the stepper counts, shows 0 at the start of the motion.
-
-        Times near a late start then keep more digits, see :mod:`symrot.propagation.time_shift`.
-        """
+        """A copy of the setup with time counted from the start of the motion, so that late times keep more digits."""
         plan, kernel = time_shift.time_shifted(self.plan, self.kernel)
         return replace(self, plan=plan, start=0.0, epoch=self.start, load_kernel=lambda: kernel)
 
 
 @final
 class SteppedSetup:
-    """The data shared by all motions of one plan that are integrated in C: the setup, and the compiled library.
-
-    The library contains the kernel of the plan and the stepper.
-    """
+    """Setup shared by all motions of one plan that are integrated in C, with the compiled library."""
 
     def __init__(self, setup: Setup, library: Path) -> None:
         self.setup, self.library = setup, library
 
     @cached_property
     def integration(self) -> Integration:
-        """The integration from the initial state of ``setup.plan``, the plan that all motions of the scene share.
-
-        Motions from other initial states copy this integration, so that tolerance and library are checked only once.
-        """
+        """The integration from the initial state of the shared plan; motions from other initial states copy it."""
+        # thus tolerance and library are checked only once
         setup, plan = self.setup, self.setup.plan
         parameters, state = setup.rate_binding(plan), plan.initial_state
         if setup.choice.method == "dop853":
@@ -203,14 +180,11 @@ class SteppedSetup:
 
     @cached_property
     def on_own_clock(self) -> "SteppedSetup":
-        """A copy of the setup whose clock, the time that the stepper counts, shows 0 at the start of the motion.
-
-        Times near a late start then keep all digits. If the rates depend on time, the copy has another compiled
-        library, whose rates take the epoch, the scene time at which the clock shows 0, as a parameter.
-        """
+        """A copy with time counted from the start of the motion, so that times near a late start keep all digits."""
         setup = self.setup.on_own_clock
         if setup.plan is self.setup.plan:  # the rates do not depend on the time
             return SteppedSetup(setup, self.library)
+        # another library, whose rates take the epoch as a parameter
         return _stepped_on_own_clock(setup)
 
 
@@ -229,26 +203,22 @@ class ClosedFormSetup:
 
     @cached_property
     def starts(self) -> Starts:
-        """Function that takes an initial state and returns the motion in closed form, for this body and its torques.
-
-        The result of the function can be evaluated at any time.
-        """
+        """Function from an initial state to the motion in closed form, which can be evaluated at any time."""
         return self.form.starts(self.setup.plan.scene)
 
 
 # ------------------------------------------------------------------------------------------------ motions
 
 
+# Each method has its own subclass. A Setup holds what a motion shares with those from other initial states.
 class Motion(ABC):
-    """The motion of a scene from one initial state; its clock shows 0 at the scene time ``epoch``.
+    """The motion of a scene from one initial state; its stepper counts time from ``epoch``, a time of the scene, s."""
 
-    ``setup`` holds what it shares with motions from other initial states; ``plan`` contains its own initial state.
-    ``has_external_torque`` says whether a torque without a formula acts on the body.
-    """
-
+    # whether a torque without a formula acts on the body
     has_external_torque = False
 
     def __init__(self, setup: Setup, plan: Plan) -> None:
+        # setup is shared with motions from other initial states; plan contains this initial state
         self.setup, self.plan = setup, plan
 
     @property
@@ -258,26 +228,17 @@ class Motion(ABC):
 
     @property
     def tolerance(self) -> float:
-        """Error of the trajectory to aim for.
-
-        It is in rad for the attitude, and relative to its size for the angular velocity.
-        """
+        """Error of the trajectory to aim for: in rad for the attitude, relative for the angular velocity."""
         return self.setup.tolerance
 
     @property
     def start(self) -> float:
-        """Initial time, s, on the clock of the motion; 0 if the clock starts with the motion.
-
-        The clock is the time that the stepper counts.
-        """
+        """Initial time, s after the epoch: 0 if the stepper counts time from the start of the motion."""
         return self.setup.start
 
     @property
     def epoch(self) -> float:
-        """Time of the scene, s, at which the clock of the motion shows 0.
-
-        The clock is the time that the stepper counts. If it counts the time of the scene, the epoch is 0.
-        """
+        """Time of the scene, s, from which the stepper counts time; often 0."""
         return self.setup.epoch
 
     @property
@@ -297,13 +258,11 @@ class Motion(ABC):
 
     @cached_property
     def rate_parameters(self) -> list[float]:
-        """The values of the parameters of the rates, for this initial state, in the order of the kernel's array p.
-
-        IntegrationStopped is raised if a value exceeds the range of doubles.
-        """
+        """The values of the parameters of the rates, for this initial state, in the order of the kernel's array p."""
         try:
             return self.setup.rate_binding(self.plan)
         except OverflowError:
+            # a value exceeds the range of doubles
             raise IntegrationStopped(self.start, NOT_FINITE_SENTENCE) from None
 
     @cached_property
@@ -312,9 +271,9 @@ class Motion(ABC):
         return dict(zip(names, self.setup.quantity_binding(self.plan)[::2], strict=True))
 
     def evaluate(self, t: Floats, states: Floats, names: Sequence[str]) -> Floats:
-        """Return the named output quantities, shape (n, len(names)), from states of shape (n, N) at n times.
+        """Return output quantities, such as ``"omega_1 of t"``, shape (n, len(names)), from n states, shape (n, N).
 
-        The times are on the clock of the motion. A name is that of an output of the kernel, such as ``"omega_1 of t"``.
+        The times ``t`` are in s after the epoch.
         """
         columns = [name.removesuffix(" of t") for name in names]
         if set(columns) <= set(self.plan.states):  # every quantity is a state
@@ -339,33 +298,26 @@ class Motion(ABC):
 
     @abstractmethod
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats | tuple[Floats, ...], Stats]:
-        """Return the states at the times, shape (n, N), and the cost of the motion.
+        """Return the states at times of the scene, s, shape (n, N), or two arrays for a closed form, and the cost.
 
-        The times, s, are times of the scene, in any order. A motion in closed form returns separate arrays for angular
-        velocity and attitude. ``in_order`` promises that the times are finite and never decrease.
+        ``in_order``: the times are finite and never decrease.
         """
 
     @abstractmethod
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N).
+        """Return a function from n times, s, within ``span`` to the states, shape (n, N).
 
-        Span and times are on the clock of the motion; :meth:`path` takes times of the scene.
+        Times and span are counted from the epoch.
         """
 
     def integrate(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at the times in one array, shape (n, N), and the cost of the motion.
-
-        It differs from :meth:`follow`, which explains the arguments, only for a motion in closed form, whose separate
-        arrays are joined.
-        """
+        """Return the states at times of the scene, s, in one array, shape (n, N), and the cost of the motion."""
+        # a closed form has separate arrays for angular velocity and attitude
         states, stats = self.follow(times, in_order)
         return np.concatenate(states, axis=1) if isinstance(states, tuple) else states, stats
 
     def path(self, times: Floats) -> Callable[[Floats], Floats]:
-        """Return a function that takes n times of the scene, s, and returns the states, shape (n, N).
-
-        It is defined on the shortest interval that contains the start and all ``times``.
-        """
+        """Return a function from n times of the scene, s, to the states, shape (n, N), from the start to ``times``."""
         span = (
             (min(self.start, float(times.min())), max(self.start, float(times.max())))
             if len(times)
@@ -380,11 +332,7 @@ class Motion(ABC):
         return lambda t: states(t - zero if zero else t)
 
     def solution(self, path: Callable[[Floats], Floats], with_attitude: bool) -> Callable[[ArrayLike], Floats]:
-        """Return a function that takes n times, s, and returns omega, shape (3, n), or with the quaternion, (7, n).
-
-        ``path`` is a result of :meth:`path`, and ``with_attitude`` says whether the function returns the quaternion.
-        For a single time the shape is (3,) or (7,).
-        """
+        """Return a function from n times to omega, shape (3, n), or to omega and quaternion, shape (7, n)."""
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if with_attitude else []
 
@@ -392,24 +340,18 @@ class Motion(ABC):
             instants = np.asarray(t, dtype=float)
             flat = np.atleast_1d(instants).ravel()
             values = self.evaluate(flat, path(flat), names).T
+            # shape (3,) or (7,) for a single time
             return values.reshape(len(names), *instants.shape)
 
         return at
 
 
 class RestartableMotion(Motion):
-    """A motion that can restart from another initial state of the same structure; nothing is derived again.
-
-    Two initial states have the same structure if the equations have the same form for both, that is, if they have the
-    same :func:`symrot.planning.plan.structure_key`.
-    """
+    """A motion that can restart, without a derivation, from another initial state with equations of the same form."""
 
     @abstractmethod
     def from_start(self, initial: Initial) -> "RestartableMotion":
-        """Return the motion from another initial state, for which the equations must have the same form.
-
-        This is not checked; :func:`symrot.planning.plan.structure_key` tells whether it is so.
-        """
+        """Return the motion from another initial state with equations of the same form, which is not checked."""
 
 
 class SteppedInC(ABC):
@@ -422,34 +364,28 @@ class SteppedInC(ABC):
 
 
 class ShiftableMotion(RestartableMotion):
-    """A numerically integrated motion whose clock can show 0 at the scene's t = 0 or at the motion's own start.
-
-    The clock is the time that the stepper counts. If it shows 0 at the start, times near a late start keep more digits.
-    """
+    """An integrated motion whose time can be counted from its start, so that late times keep more digits."""
 
     @property
     @abstractmethod
     def on_own_clock(self) -> "ShiftableMotion":
-        """The same motion on a clock (the time that the stepper counts) that shows 0 at the start.
-
-        Times near a late start keep all digits on this clock.
-        """
+        """The same motion with time counted from its start, so that times near a late start keep all digits."""
 
     @abstractmethod
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times on the clock of the motion, shape (n, N), and the cost of the motion.
+        """Return the states at times, s after the epoch, shape (n, N), and the cost.
 
-        ``in_order`` promises that the times are finite and never decrease.
+        ``in_order``: the times are finite and never decrease.
         """
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at ``times``, s, of the scene, shape (n, N), and the cost in steps and evaluations.
+        """Return the states at times of the scene, s, shape (n, N), and the cost.
 
-        The stepper counts the time of the scene, or the time since the start if all times lie near a late start and
-        keep more digits then. ``in_order`` promises that the times are finite and never decrease.
+        ``in_order``: the times are finite and never decrease.
         """
         if not self._shifts(times):
             return self.steps(times, in_order)
+        # all times lie near a late start, and keep more digits if counted from the start
         motion = self.on_own_clock
         try:
             return motion.steps(times - motion.epoch, in_order)
@@ -457,20 +393,16 @@ class ShiftableMotion(RestartableMotion):
             raise error.later(motion.epoch) from None
 
     def _shifts(self, times: Floats) -> bool:
-        """Return whether these times of the scene keep more digits on a clock that shows 0 at the start.
-
-        They do if all lie between half the start and twice the start, which is not 0.
-        """
+        """Return whether these times of the scene, s, lie between half and twice the start, which is not 0."""
         if not (self.start and self.setup.allows_time_shift and len(times)):
             return False
+        # they keep more digits on a clock that shows 0 at the start
         return time_shift.starts_far(self.start, float(times.min()), float(times.max()))
 
 
 def on_clock(motion: Motion, times: Floats) -> Motion:
-    """Return the motion on the clock that keeps the most digits of these times: its own, or one with 0 at the start.
-
-    ``times`` are times of the scene, s. A motion that cannot change its clock is returned itself.
-    """
+    """Return the motion with time counted from 0 or from its start, so that these times, s, keep the most digits."""
+    # its own clock, or one that shows 0 at the start
     return motion.on_own_clock if isinstance(motion, ShiftableMotion) and motion._shifts(times) else motion
 
 
@@ -514,15 +446,12 @@ class ClosedFormMotion(RestartableMotion):
         return self._shared.starts(self.plan.scene.initial)
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[tuple[Floats, ...], Stats]:
-        """Return the states at the times, and the cost of the closed form: the seconds, and zero steps.
-
-        The states are the arrays of angular velocity, shape (n, 3), and attitude, shape (n, 4), if it is computed.
-        ``in_order`` promises that the times are finite and never decrease.
-        """
+        """Return angular velocity, shape (n, 3), and attitude, (n, 4), if it is computed, and the cost: zero steps."""
         attitude, exact = self.plan.structure.attitude, self.exact
         began, start = perf_counter(), self.setup.start
         omega, quaternion = exact.evaluate(times - start if start else times, quaternion=attitude)
         assert omega is not None
+        # in_order promises that the times are finite and never decrease
         if not (in_order and len(times) and times.item(0) > start):  # exactly, as with every other method
             at_start: Any
             if not in_order:
@@ -560,27 +489,18 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def on_own_clock(self) -> "SteppedMotion":
-        """The same motion on a clock (the time that the stepper counts) that shows 0 at the start.
-
-        Times near a late start keep all digits on this clock.
-        """
+        """The same motion with time counted from its start, so that times near a late start keep all digits."""
         shared = self._shared.on_own_clock
         return SteppedMotion(shared, shared.setup.plan.from_start(self.plan.scene.initial))
 
     @cached_property
     def taylor_parameters(self) -> list[float]:
-        """The parameters of the Taylor library: first for the rates, then for the conserved quantities.
-
-        The rates have one double per parameter, the conserved quantities two.
-        """
+        """The parameters of the Taylor library: one double for each of the rates, two for each conserved quantity."""
         return [*self.rate_parameters, *self.setup.quantity_binding(self.plan)]
 
     @cached_property
     def stepping(self) -> Integration:
-        """The object that integrates this motion in C from its initial state.
-
-        Its methods return the states at sample times, or the polynomials of all steps.
-        """
+        """The object that integrates this motion in C, at sample times or with all steps recorded."""
         state = self.plan.initial_state
         if self.choice.method == "taylor":  # the Taylor stepper holds the time in two doubles and moves no clock
             parameters = self.taylor_parameters
@@ -593,23 +513,21 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def _clock(self) -> dop853.Clock:
-        """Function that takes an epoch, s, and returns a pair: a library of rates, and the parameters of these rates.
-
-        The rates are functions of the time since that epoch. The epoch is a time on the clock of the motion.
-        """
+        """Function from an epoch, s, to a library whose rates take the time since it, and to their parameters."""
+        # the epoch is a time on the clock of the motion
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch)
 
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times on the clock of the motion, shape (n, N), and the cost of the motion.
+        """Return the states at times, s after the epoch, shape (n, N), and the cost.
 
-        ``in_order`` promises that the times are finite and never decrease, which saves time.
+        ``in_order``: the times are finite and never decrease.
         """
         return self.stepping.sample_sorted(times, in_order)
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N).
+        """Return a function from n times, s, within ``span`` to the states, shape (n, N), by recorded steps.
 
-        Span and times are on the clock of the motion. The motion is integrated and its steps are recorded.
+        Times and span are counted from the epoch.
         """
         recording = self.stepping.restarted().record(span)
         recording.epoch = self.epoch
@@ -626,37 +544,25 @@ class SciPyMotion(ShiftableMotion):
 
     @cached_property
     def on_own_clock(self) -> "SciPyMotion":
-        """The same motion on a clock (the time that the stepper counts) that shows 0 at the start.
-
-        Times near a late start keep all digits on this clock.
-        """
+        """The same motion with time counted from its start, so that times near a late start keep all digits."""
         setup = self.setup.on_own_clock
         return SciPyMotion(setup, setup.plan.from_start(self.plan.scene.initial))
 
     @cached_property
     def _clock(self) -> Callable[[float], Any]:
-        """Function that takes an epoch, s, and returns a pair: rates in Python, and the parameters of these rates.
-
-        The rates are functions of the time since that epoch. The epoch is a time on the clock of the motion.
-        """
+        """Function from an epoch, s, to rates in Python that take the time since the epoch, and to their parameters."""
+        # the epoch is a time on the clock of the motion
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch, python_rates)
 
     def deviations(self, parameters: Sequence[float]) -> "Deviations | None":
-        """Return the function that bounds how far the rates may change within a step of SciPy.
-
-        SciPy's steps are limited by it, so that none passes over a short pulse of a torque. None means that no torque
-        has a formula, so that no limit is needed. ``parameters`` are the parameters of the rates.
-        """
+        """Return bounds on changes of the rates, which limit SciPy's steps; None if no step needs a limit."""
         if self.setup.deviations is None:
             return None
         names = [name for name, _ in self.kernel.rate_parameters]
         return self.setup.deviations(dict(zip(names, parameters, strict=True)))
 
     def options(self, parameters: Sequence[float]) -> "Options":
-        """Return SciPy's method, its error control and the limits of its steps for this motion.
-
-        ``parameters`` are the parameters of the rates; bounds of the rates keep a step from passing over a short pulse.
-        """
+        """Return SciPy's method, its error control and step limits, for the given parameters of the rates."""
         from symrot.propagation.steppers.fallback import Options
 
         blocks, scales = error_blocks(self.plan)
@@ -665,19 +571,17 @@ class SciPyMotion(ShiftableMotion):
         return Options(self.choice.method, blocks, scales, deviations=deviations, clock=clock)
 
     def steps(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at times on the clock of the motion, shape (n, N), and the cost of the motion.
-
-        ``in_order`` is not used: the times are sorted in any case.
-        """
+        """Return the states at times, s after the epoch, shape (n, N), and the cost."""
         from symrot.propagation.steppers import fallback
 
         start = (self.rate_parameters, self.plan.initial_state, self.start)
+        # it sorts the times, so that in_order is not used
         return fallback.integrate(self.rates, *start, times, self.tolerance, self.options(self.rate_parameters))
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N).
+        """Return a function from n times, s, within ``span`` to the states, shape (n, N), by SciPy's interpolants.
 
-        Span and times are on the clock of the motion. The motion is integrated and SciPy's interpolants are stored.
+        Times and span are counted from the epoch.
         """
         from symrot.propagation.steppers import fallback
 
@@ -688,28 +592,18 @@ class SciPyMotion(ShiftableMotion):
 
 
 class MotionInParts(Motion):
-    """Interface of a motion under torques that jump or bend at certain times (switches) and are smooth in between.
-
-    Its method ``parts`` returns the smooth parts, in which events are searched.
-    """
+    """Interface of a motion under torques that jump or bend at certain times; it is smooth in between."""
 
     @abstractmethod
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
-        """Return the motion from its start to ``end``, s: a list of polynomials, and a function from times to states.
-
-        If an error ends the motion early, it is appended to ``broken``.
-        """
+        """Return the motion from its start to ``end``, s, as polynomials and as a function from times to states."""
 
 
 # ------------------------------------------------------------------------------------------------ from plans to motions
 
 
 def make_motion(plan: Plan, choice: Choice, tolerance: float) -> RestartableMotion:
-    """Return the motion of a plan by the chosen method, from the initial state of the plan's scene.
-
-    ``choice`` is a result of :func:`symrot.propagation.method.choose_method`, and ``tolerance`` is the error of the
-    trajectory to aim for.
-    """
+    """Return the motion of a plan by the chosen method, from the initial state of the plan's scene."""
     if choice.form is not None:
         choice.form.begin()
         plan = with_full_state(plan, choice.form)
@@ -736,15 +630,13 @@ def stepped_motion(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotio
 
 
 def on_own_clock(plan: Plan, choice: Choice, tolerance: float) -> SteppedMotion | SciPyMotion:
-    """Return the numerically integrated motion of a plan; if its rates depend on time, on a clock of its own.
-
-    This clock shows 0 at the start of the motion; the epoch, the time of the scene at which it shows 0, is a parameter
-    of the rates. Otherwise the motion keeps the clock that shows the time of the scene.
-    """
+    """Return the integrated motion of a plan, with time counted from its start if its rates depend on time."""
     setup = _setup(plan, choice, tolerance)
     timed, steps_in_c = setup.kernel.rates.uses("t"), choice.method in ("taylor", "dop853")
     if not timed:
+        # the clock remains scene time
         return stepped_motion(plan, choice, tolerance) if steps_in_c else SciPyMotion(setup, plan)
+    # the epoch, the scene time at which the clock shows 0, becomes a parameter of the rates
     setup = setup.on_own_clock
     if steps_in_c:
         return SteppedMotion(_stepped_on_own_clock(setup), setup.plan)

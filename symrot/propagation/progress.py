@@ -14,26 +14,24 @@ _reporter: ContextVar[Reporter | None] = ContextVar("reporter", default=None)
 
 
 def report(t: float, start: float, stop: float) -> None:
-    """Report that a motion from ``start`` to ``stop``, s, has reached the time ``t``; do nothing if no reporter is set.
-
-    If the motion is a part of another motion (see :func:`within`), the progress of the whole motion is reported.
-    """
+    """Report that a motion from ``start`` to ``stop``, s, has reached ``t``; do nothing if no reporter is set."""
     reporter = _reporter.get()
     if reporter is not None:
         whole = _whole.get()
         if whole is None:
             reporter(t, start, stop)
         else:
+            # inside the block of `within`: progress of the whole motion, of which this one is a part
             reporter(whole[2]() + t, whole[0], whole[1])
 
 
 @contextmanager
 def within(start: float, stop: float, zero: Callable[[], float] = lambda: 0.0) -> Iterator[None]:
-    """Context manager: progress inside the block is reported as progress of one motion from ``start`` to ``stop``, s.
+    """Context manager: progress inside the block counts as progress of one motion from ``start`` to ``stop``, s.
 
-    It is for a motion that is computed in parts. ``zero`` returns the time in the whole motion at which the clock of
-    the present part shows 0. Inside another such block, the outermost one applies.
+    ``zero()``, s, is added to reported times.
     """
+    # a motion that is computed in several parts; of nested blocks, the outermost applies
     token = _whole.set(_whole.get() or (start, stop, zero))
     try:
         yield
@@ -43,10 +41,7 @@ def within(start: float, stop: float, zero: Callable[[], float] = lambda: 0.0) -
 
 @contextmanager
 def reporting(reporter: Reporter) -> Iterator[None]:
-    """Context manager: report the progress of each motion inside the block to the function ``reporter``.
-
-    ``reporter`` is called with the time reached, the start and the end of the motion, s.
-    """
+    """Context manager: the progress of each motion inside the block is passed to ``reporter(t, start, stop)``, in s."""
     token = _reporter.set(reporter)
     try:
         yield

@@ -148,10 +148,7 @@ def propagator(
 
 
 def _refuse_sensitivities(scene: Scene, torque: Any, state: str) -> None:
-    """Raise InputError if symrot computes no derivatives of such a motion; ``state`` is the option ``state``.
-
-    These are motions in Euler angles and motions under torques that have a jump or a kink, or no formula.
-    """
+    """Raise InputError for motions without derivatives: Euler angles as state, or a torque without smooth formulas."""
     if state != "quaternion":
         raise InputError(f"sensitivities: expected state='quaternion', the attitude to integrate, got {state!r}")
     if torque is not None:

@@ -43,8 +43,7 @@ Floats = NDArray[np.float64]
 class Propagator:
     """Function from sample times to the motion of one scene; :func:`symrot.propagator` returns it.
 
-    The equations are derived and compiled when the propagator is created; a call only computes the motion. A propagator
-    can be copied and pickled: the copy loads its compiled equations from the cache when it is first used.
+    Its equations are derived and compiled once. It can be copied and pickled.
 
     Attributes
     ----------
@@ -79,6 +78,7 @@ class Propagator:
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the scene and the options for pickle; a copy prepares its motion from them when it is first used."""
+        # a copy loads its compiled equations from the cache
         return {name: value for name, value in self.__dict__.items() if name not in _PREPARED}
 
     @cached_property
@@ -87,11 +87,9 @@ class Propagator:
 
     @cached_property
     def _by_structure(self) -> dict[Hashable, Motion]:
-        """The first motion for each structure of initial states, from which later motions copy what does not change.
-
-        The keys are those of :func:`symrot.planning.plan.structure_key`: initial states with equal keys have equations
-        of the same form.
-        """
+        """The first motion for each form of the equations, by :func:`symrot.planning.plan.structure_key`."""
+        # initial states with equal keys have equations of the same form
+        # later motions with equations of this form copy it
         return {structure_key(self.scene, self.scene.initial): self._motion}
 
     def _planned(self, initial: Initial | None = None) -> Plan:
@@ -101,11 +99,7 @@ class Propagator:
         return make_motion(plan, choose_method(plan, self._method), self.tolerance)
 
     def motion_from(self, initial: Initial) -> Motion:
-        """Return the motion from another initial state.
-
-        Initial states have the same structure if their equations have the same form. The first initial state of each
-        structure is planned and prepared like a new scene; for later ones, only numbers change.
-        """
+        """Return the motion from another initial state."""
         if initial is self.scene.initial:
             return self._motion
         if not isinstance(self._motion, RestartableMotion):
@@ -113,6 +107,7 @@ class Propagator:
         key = structure_key(self.scene, initial)
         first = self._by_structure.get(key)
         if isinstance(first, RestartableMotion):
+            # the equations have the same form: only numbers change
             return first.from_start(initial)
         motion = self._by_structure[key] = self._prepare(self._planned(initial))
         return motion
@@ -208,10 +203,7 @@ class Propagator:
         return trajectory
 
     def sensitivities_of(self, scene: Scene, times: Floats) -> "Sensitivities | None":
-        """Return the derivatives of a scene's motion at sample times, s; None if the propagator computes none.
-
-        ``scene`` is the scene of the propagator with any initial state.
-        """
+        """Return the derivatives of the motion of ``scene`` at times, s; None if the propagator computes none."""
         if self.sensitivities is None:
             return None
         from symrot.propagation.sensitivities.variation import variation
@@ -219,10 +211,7 @@ class Propagator:
         return variation(scene, self.sensitivities, times)
 
     def transition(self, scene: Scene, t0: float, t1: float) -> Floats:
-        """Return the state transition matrix of a scene's motion from ``t0`` to ``t1``, s, shape (6, 6).
-
-        See :meth:`symrot.propagation.trajectory.Trajectory.transition`. ``scene`` has the initial state of the motion.
-        """
+        """Return the state transition matrix of the motion of ``scene`` from ``t0`` to ``t1``, s, shape (6, 6)."""
         from symrot.propagation.sensitivities.variation import transition_matrix
 
         return transition_matrix(scene, t0, t1)
@@ -259,16 +248,12 @@ class Propagator:
         return trajectory
 
     def _with_samples(self, error: BaseException, motion: Motion, times: Floats, began: float) -> BaseException:
-        """Return the exception that ended a motion early; its ``trajectory`` holds the samples before that time.
-
-        ``error`` is the exception as a stepper raised it, ``times`` are the requested sample times, and ``began`` is
-        the moment at which the computation began. A PropagationError is replaced by one whose message begins with the
-        name of the scene.
-        """
+        """Return the exception that ended a motion early, with the samples before that time as its ``trajectory``."""
         samples: Samples | None = getattr(error, "samples", None)
         part: Trajectory | None = getattr(error, "trajectory", None)
         ended: BaseException = error
         if isinstance(error, PropagationError):
+            # the message begins with the name of the scene
             ended = PropagationError(f"{self.scene.name}: {error}")
         if samples is not None:
             numbers = np.argsort(samples.numbers)  # in the order of the requested times
@@ -316,10 +301,7 @@ def _vector(values: ArrayLike, size: int, name: str, unit: str) -> list[float]:
 
 
 def _exact(value: float, name: str) -> Fraction:
-    """Return the exact value of a finite double as a Fraction; raise InputError if it is subnormal (too small).
-
-    ``name`` is the argument that the error names.
-    """
+    """Return a finite double as a Fraction; raise InputError, which names the argument ``name``, if it is subnormal."""
     return _lowest(*value.as_integer_ratio()) if abs(value) >= SMALLEST or not value else number.read(value, name)
 
 
@@ -331,12 +313,8 @@ def _lowest(top: int, bottom: int) -> Fraction:
 
 
 def _unit(q: list[float]) -> tuple[Fraction, ...]:
-    """Return a quaternion of doubles divided by its norm, as exact fractions.
-
-    The norm is irrational in general, so that the result is a rational approximation. The function does the same as
-    :func:`symrot.formula.exact_numbers.unit`, with the same accuracy of 2^-320, in half the time, since all
-    denominators are powers of two.
-    """
+    """Return a quaternion of doubles divided by its norm, as fractions with an error below 2^-320."""
+    # the same as exact_numbers.unit in half the time, since all denominators are powers of two
     ratios = [x.as_integer_ratio() for x in q]
     shared = max([bottom for _, bottom in ratios])  # all are powers of two
     tops = [top * (shared // bottom) for top, bottom in ratios]
@@ -345,6 +323,7 @@ def _unit(q: list[float]) -> tuple[Fraction, ...]:
     if norm * norm == square:
         return number.unit(q)
     shift = max(0, _UNIT_BITS - square.bit_length() // 2)
+    # the norm is irrational here, and is approximated
     norm, components = isqrt(square << 2 * shift), []
     length = _UNIT_BITS + norm.bit_length()
     for x in tops:
@@ -358,12 +337,9 @@ def _unit(q: list[float]) -> tuple[Fraction, ...]:
 
 
 def read_start(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | None, attitude: Any = None) -> Initial:
-    """Return the initial state for a call of a propagator, in exact numbers.
-
-    For an argument that is None, the value in the scene is used. ``quaternion`` and ``attitude`` are two forms of the
-    same argument; together they raise InputError.
-    """
+    """Return the initial state for a call of a propagator, in exact numbers; None means the value in the scene."""
     initial = scene.initial
+    # quaternion and attitude are two forms of one argument
     refuse_two(attitude, quaternion)
     if attitude is not None:
         initial = initial._replace(quaternion=read_attitude(plain(attitude, "attitude"), "attitude").quaternion)

@@ -1,16 +1,7 @@
 """Clocks that show 0 at the start, for motions that start far from t = 0.
 
-The clock of a motion is the time that its stepper counts; the epoch is the time of the scene at which the clock shows
-0. With an epoch at the start, times in the steppers are small: neither phases such as ``a*t + b`` nor the ends of short
-steps lose digits. The clock is moved only if all times lie between half the start and twice the start, where their
-differences from the start are exact. A motion that goes farther loses no more digits than a motion of that length from
-t = 0. Long motions from 0 keep the digits of their phases in other ways: Taylor steps hold the time in two doubles,
-DOP853 moves the clock of the rates repeatedly (:mod:`symrot.propagation.steppers.dop853`), and SciPy restarts on a
-moved clock where its steps are short (:mod:`symrot.propagation.steppers.fallback`).
-
-A torque without a formula is evaluated at the times of the scene, so that motions under such a torque use the clock of
-the scene, on which a phase ``a*t`` has an error of up to ``1e-16*|a*t|`` rad. Motions in Euler angles start on the
-clock of the scene too.
+The clock of a motion is the time that its stepper counts; the epoch is the scene time at which it shows 0. With an
+epoch at the start, times are small: phases ``a*t + b`` and ends of short steps keep their digits.
 """
 
 import json
@@ -34,24 +25,24 @@ from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE
 
 __all__ = ["ShiftedParameters", "clock", "compiled", "starts_far", "time_shifted"]
 
+# Long motions from 0 keep the digits of their phases in other ways: Taylor steps hold the time in two doubles, DOP853
+# moves the clock of the rates repeatedly, SciPy restarts on a moved clock where its steps are short.
+# Not covered: a torque without a formula is evaluated at scene times, on which a phase a*t has an error of up to
+# 1e-16*|a*t| rad; motions in Euler angles start on scene time too.
+
 
 def starts_far(start: float, low: float, high: float) -> bool:
-    """Return whether a motion over the times from ``low`` to ``high``, s, should use a clock that shows 0 at its start.
-
-    It should if all times lie between half and twice the start, since differences from the start are exact there. For a
-    start at 1000 s these are the times from 500 to 2000 s; for a start at 0 the result is False.
-    """
+    """Return whether all times from ``low`` to ``high`` lie between half and twice the start, which is not 0."""
+    # A clock with 0 at the start pays only there: a motion that goes farther loses no more digits than a motion of
+    # that length from t = 0.
     nearest, farthest = sorted((0.5 * start, 2.0 * start))
     return start != 0.0 and nearest <= low and high <= farthest  # time - start is exact there (Sterbenz)
 
 
 def time_shifted(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
-    """Return a plan and its kernel that count time from an epoch, a new constant of the plan.
-
-    The epoch is a time of the scene, s: in the result, t is the time of the scene minus the epoch. If the rates do not
-    depend on time, plan and kernel are returned unchanged.
-    """
+    """Return a plan and its kernel whose t is the scene time minus an epoch, a new constant of the plan."""
     if not kernel.rates.uses("t"):
+        # the rates do not depend on time
         return plan, kernel
     plan = replace(plan, structure=replace(plan.structure, clock=EPOCH))
     saved = library.fetch(kernel_key(plan))
@@ -65,11 +56,7 @@ def time_shifted(plan: Plan, kernel: SceneKernel) -> tuple[Plan, SceneKernel]:
 
 
 class ShiftedParameters:
-    """Values of formulas that contain the time of the scene at which the clock of a stepper shows 0.
-
-    A motion has a clock, which shows 0 at its start. In a long motion, the stepper has another clock, which it sets to
-    0 again and again, so that times keep their digits. The time on the motion's clock at such a moment is the epoch,
-    and :meth:`parameters` returns the values of the formulas for it. Subexpressions without it are computed once.
+    """Values of formulas that contain the epoch, the time from which a stepper counts; long motions move it.
 
     Parameters
     ----------
@@ -84,16 +71,13 @@ class ShiftedParameters:
     def __init__(self, parameters: Parameters, constants: Mapping[str, Fraction], start: float = 0.0) -> None:
         known = {"pi": number.PI, **constants}
         self._start = Fraction(start)
+        # subexpressions without the epoch are computed once, here
         self._formulas = [_folded(node, known) for _, node in parameters]
         self.fixed = all(node[0] == "number" for node in self._formulas)
         self._lines = [_line(node) for node in self._formulas]
 
     def parameters(self, epoch: float | Fraction) -> list[float]:
-        """Return the values of all parameters of the rates for an epoch, s, each computed exactly and rounded once.
-
-        The stepper sets its clock to 0 again and again in a long motion; ``epoch`` is the time of the last reset, s, on
-        the clock of the motion. IntegrationStopped is raised if a value exceeds the range of doubles.
-        """
+        """Return the values of all formulas for an epoch, s after ``start``, each computed exactly and rounded once."""
         time = self._start + Fraction(epoch)
         top, bottom, values = time.numerator, time.denominator, {EPOCH: time}
         try:
@@ -104,14 +88,13 @@ class ShiftedParameters:
                 for node, line in zip(self._formulas, self._lines, strict=True)
             ]
         except OverflowError:
+            # a value exceeds the range of doubles
             raise IntegrationStopped(float(epoch), NOT_FINITE_SENTENCE) from None
 
 
 def _line(node: Node) -> tuple[int, int, int] | None:
-    """Return integers a, b, c if a formula equals (a + b*epoch)/c, which is fast to evaluate; None otherwise.
-
-    For the formula ``epoch/2 + 1/3`` they are (2, 3, 6).
-    """
+    """Return integers (a, b, c) of a formula (a + b*epoch)/c: (2, 3, 6) for ``epoch/2 + 1/3``; else None."""
+    # this is fast to evaluate
     values = _coefficients(node)
     if values is None:
         return None
@@ -121,10 +104,7 @@ def _line(node: Node) -> tuple[int, int, int] | None:
 
 
 def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
-    """Return the numbers a and b of a formula that equals a + b*epoch, or None for any other formula.
-
-    For the formula ``2*(epoch + 1)`` they are 2 and 2.
-    """
+    """Return (a, b) of a formula that equals a + b*epoch: (2, 2) for ``2*(epoch + 1)``; None for any other formula."""
     if node[0] == "number":
         return None if node[1] != node[1] else (Fraction(node[1]), Fraction(0))
     if node == ("symbol", EPOCH):
@@ -147,10 +127,7 @@ def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
 
 
 def compiled(plan: Plan, kernel: SceneKernel) -> Path:
-    """Return the path of the library (kernel and DOP853 stepper) for a plan whose time is counted from an epoch.
-
-    Plan and kernel are those that :func:`time_shifted` returns.
-    """
+    """Return the path of the library (kernel and DOP853 stepper) for plan and kernel from :func:`time_shifted`."""
     return motion_library(plan, kernel)
 
 
@@ -160,13 +137,10 @@ def clock(
     start: float = 0.0,
     make: Callable[[Plan, SceneKernel], Any] = compiled,
 ) -> Callable[[float], tuple[Any, list[float]]]:
-    """Return a function that takes an epoch, s, and returns rates that count time from it, with their parameters.
+    """Return a function from an epoch, s, to rates that take the time since the epoch, and to their parameters."""
 
-    ``moving`` returns plan and kernel as :func:`time_shifted` does; it is called on first use. ``constants`` and
-    ``start`` are arguments of :class:`ShiftedParameters`. ``make`` converts plan and kernel to the rates: to the
-    library that DOP853 calls, or to the Python function that SciPy calls.
-    """
-
+    # moving(), a plan and kernel as time_shifted returns them, is called on first use; make() turns them into the
+    # library for DOP853 or the Python function for SciPy
     @cache
     def following() -> tuple[Any, ShiftedParameters]:
         plan, kernel = moving()
@@ -176,9 +150,9 @@ def clock(
 
 
 def _folded(node: Node, known: Mapping[str, Fraction]) -> Node:
-    """Return a formula in which each subexpression that does not contain the epoch is replaced by its value.
+    """Return a formula with each subexpression without the epoch replaced by its value.
 
-    ``known`` holds the exact values of all other names. With ``a`` = 3 the formula ``a*2*epoch`` becomes ``6*epoch``.
+    For a = 3, ``a*2*epoch`` becomes ``6*epoch``.
     """
     if node == ("symbol", EPOCH):
         return node

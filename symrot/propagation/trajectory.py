@@ -65,12 +65,9 @@ class Invariant(NamedTuple):
 
 
 class MotionSource(Protocol):
-    """Interface of the propagator to which a trajectory refers, so that it can compute more about its motion on demand.
+    """Interface of a propagator that a trajectory asks for more about its motion, such as states between samples."""
 
-    Examples are states between samples (the dense solution) and derivatives. A trajectory that was loaded by pickle
-    also computes its motion again in this way.
-    """
-
+    # a trajectory that pickle loaded also computes its motion again in this way
     def motion_from(self, initial: Initial) -> Motion:
         """Return the motion of the scene from an initial state."""
 
@@ -82,10 +79,9 @@ class MotionSource(Protocol):
 
 
 class Trajectory(MotionSamples):
-    """The motion of a scene at the sample times, returned by a propagator. Conventions: :mod:`symrot.conventions`.
+    """The motion of a scene at the sample times, returned by a propagator; it can be copied and pickled.
 
-    A trajectory can be copied and pickled. Its samples travel with it; for anything else, such as :meth:`sol`, the copy
-    prepares the motion again from the scene and the cache.
+    Conventions: :mod:`symrot.conventions`.
 
     Attributes
     ----------
@@ -147,11 +143,7 @@ class Trajectory(MotionSamples):
             self.events = events.events
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the samples and the propagator for pickle, without the motion.
-
-        A copy uses the samples; it prepares the motion again only when it needs more, such as states between them. A
-        trajectory without a propagator cannot be pickled: PicklingError is raised.
-        """
+        """Return the samples and the propagator for pickle; a copy prepares the motion again when needed."""
         if self._propagator is None:
             raise PicklingError("expected a trajectory that a propagator returned, got one made from states alone")
         return {name: value for name, value in self.__dict__.items() if name not in _RECOMPUTED}
@@ -170,10 +162,8 @@ class Trajectory(MotionSamples):
 
     @property
     def success(self) -> bool:
-        """Whether the motion was computed up to its last sample time or to a terminal event.
-
-        It is false only for the trajectory that a PropagationError holds.
-        """
+        """Whether the motion was computed to its end; false only for the trajectory that a PropagationError holds."""
+        # the end is the last sample time or a terminal event
         return self.status >= 0
 
     @property
@@ -197,10 +187,7 @@ class Trajectory(MotionSamples):
         return self._states.T
 
     def _evaluate(self, *names: str) -> Floats:
-        """Return the named output quantities at the sample times, shape (n, len(names)), computed by the kernel.
-
-        A name is that of an output of the kernel, such as ``"omega_1 of t"``.
-        """
+        """Return output quantities, such as ``"omega_1 of t"``, at the sample times, shape (n, len(names))."""
         columns = [name.removesuffix(" of t") for name in names]
         if set(columns) <= set(self.states):
             return self._states[:, [self.states.index(name) for name in columns]]
@@ -229,7 +216,7 @@ class Trajectory(MotionSamples):
     def quaternion(self) -> Floats:
         """Attitude at the samples as unit quaternions, scalar first, body to space, shape (n, 4).
 
-        InputError is raised if the attitude was not computed, see :attr:`has_attitude`.
+        Raise InputError if it was not computed.
         """
         self._need_attitude()
         if isinstance(self._parts, tuple):  # of a closed form: rounded from a unit quaternion
@@ -238,11 +225,7 @@ class Trajectory(MotionSamples):
 
     @cached_property
     def invariants(self) -> list[Invariant]:
-        """The conserved quantities along the trajectory, with the values at the samples and their drift.
-
-        Their conservation was proven when the kernel was derived. If the quaternion is integrated, its norm is the last
-        item. The list may be empty.
-        """
+        """The quantities proven to be conserved, with their values at the samples and their drift."""
         invariants = []
         conserved = [item for item in self._motion.kernel.conserved if item.holds]
         for item in conserved:
@@ -252,6 +235,7 @@ class Trajectory(MotionSamples):
             )
         if "q0" in self.states:
             first = self.states.index("q0")
+            # the last item, if the quaternion is integrated
             norm = np.sqrt(np.einsum("ni,ni->n", self._states[:, first:], self._states[:, first:]))
             invariants.append(self._invariant("quaternion norm", "1", "rotations keep lengths", norm, 1.0))
         return invariants
@@ -341,11 +325,9 @@ class Trajectory(MotionSamples):
         return other
 
     def transition(self, t0: float, t1: float) -> Floats:
-        """Return the state transition matrix from time t0 to time t1, shape (6, 6), such as a Kalman filter needs.
+        """Return the state transition matrix from time t0 to t1, shape (6, 6), such as a Kalman filter needs.
 
-        It maps a small change of the state at t0 to the change at t1. The components are those of the angular velocity,
-        body components, rad/s, then of a small rotation about the body axes, rad: the error state of a multiplicative
-        filter. Variational Taylor series compute it for every method, also for closed forms.
+        The state: omega_b, rad/s, then a small rotation about the body axes, rad.
 
         Parameters
         ----------
@@ -373,6 +355,7 @@ class Trajectory(MotionSamples):
             raise InputError(
                 "transition: expected torques with formulas, got a motion under a torque without a formula"
             )
+        # variational Taylor series, for every method, also for closed forms
         return self._propagator.transition(self.scene, times[0], times[1])
 
     @cached_property
@@ -385,11 +368,11 @@ class Trajectory(MotionSamples):
         return self._motion.path(self.t)
 
     def sol(self, t: ArrayLike) -> Floats:
-        """Return omega and quaternion at any m times of the span, shape (7, m), as ``sol`` of solve_ivp does.
+        """Return omega and quaternion at m times, shape (7, m), as solve_ivp's ``sol`` does.
 
-        If the attitude is not computed, the shape is (3, m). For a single time the shape is (7,) or (3,). On the first
-        call the motion is integrated again and its steps are recorded.
+        Without attitude the shape is (3, m).
         """
+        # the first call integrates the motion again and records its steps
         return self._solution(t)
 
     @cached_property
@@ -404,10 +387,9 @@ class Trajectory(MotionSamples):
         return symrot.plot(self, ax, panel)
 
     def save(self, path: str | Path, quantities: Sequence[str] | None = None) -> list[str]:
-        """Write the samples with labels and events to a file, which :func:`symrot.load` reads; see :func:`symrot.save`.
+        """Write the samples with labels and events to a file; see :func:`symrot.save`.
 
-        ``quantities`` are the names of the quantities to write; default: the output quantities of the scene, the
-        angular velocity and, if it was computed, the attitude.
+        ``quantities`` default to angular velocity, attitude and the scene's output quantities.
         """
         if quantities is None:
             present = ("omega", "quaternion") if self.has_attitude else ("omega",)
@@ -416,10 +398,7 @@ class Trajectory(MotionSamples):
         return symrot.save(self, path, quantities)
 
     def show(self, path: str | Path | None = None) -> Path:
-        """Write the motion as one offline page of HTML that plays it; see :func:`symrot.show`.
-
-        ``path`` is the file to write; the default is the name of the scene, ``.html``, in the current folder.
-        """
+        """Write the motion as one offline page of HTML that plays it, by default NAME.html; see :func:`symrot.show`."""
         return symrot.show(self, path)
 
     def _repr_html_(self) -> str:

@@ -26,11 +26,10 @@ BAND_NOTE = "filled: least to greatest"
 
 
 def columns_of(axes: Any) -> tuple[float, float]:
-    """Return the width and the height of a panel, matplotlib axes, both in units of 1/150 inch.
-
-    This unit, about a pixel of a printed figure, is called a column, because curves are thinned out to what differs
-    between neighbouring columns of pixels.
+    """Return the width and the height of matplotlib axes in columns, units of 1/150 inch, about a pixel of a printed
+    figure.
     """
+    # curves are thinned out to what differs between neighbouring columns
     box, dpi = axes.get_window_extent(), axes.figure.dpi
     return COLUMNS_PER_INCH * box.width / dpi, COLUMNS_PER_INCH * box.height / dpi
 
@@ -124,14 +123,11 @@ def _long_runs(mask: Mask, fraction: float) -> Mask:
 
 
 def _pieces(values: Floats, hidden: Mask) -> Iterator[tuple[Floats, bool]]:
-    """Yield the part of a curve that hides an earlier curve and the part that does not, the longer part first.
-
-    ``hidden`` is True at the values that hide an earlier curve. Each part is a pair: the values of the curve, NaN
-    outside the part, and whether it is the part that hides. An empty part is left out.
-    """
+    """Yield two parts of a curve, the longer first, each with a flag: whether the part hides an earlier curve."""
     grown = hidden.copy()  # both parts share their end points, so that the curve has no gaps
     grown[1:] |= hidden[:-1]
     grown[:-1] |= hidden[1:]
+    # values are NaN outside the part; hidden is True where the curve hides an earlier one
     parts = [(np.where(grown, values, np.nan), True), (np.where(hidden, np.nan, values), False)]
     parts.sort(key=lambda part: -np.count_nonzero(np.isfinite(part[0])))
     return (part for part in parts if np.isfinite(part[0]).any())
@@ -139,10 +135,8 @@ def _pieces(values: Floats, hidden: Mask) -> Iterator[tuple[Floats, bool]]:
 
 def draw_curves(axes: Any, t: Floats, curves: Sequence[Floats], names: Sequence[str], colours: Sequence[str] = COLOURS,
                 widths: Sequence[float] = WIDTHS) -> None:  # fmt: skip
-    """Draw curves over the times ``t``, each of shape (n,) with NaN where interrupted, and label them for a legend.
-
-    A curve that oscillates faster than the pixels is drawn as a band between its extremes. Where a curve would hide an
-    earlier one, it is dashed. The linear or logarithmic scale of the axes must be set before.
+    """Draw curves over the times ``t`` and label them; NaN interrupts a curve, and the scale of the axes must be set
+    before.
     """
     size = columns_of(axes)
     scale = np.log10 if axes.get_yscale() == "log" else np.asarray
@@ -150,6 +144,7 @@ def draw_curves(axes: Any, t: Floats, curves: Sequence[Floats], names: Sequence[
     extremes = [(np.nanmin(curve), np.nanmax(curve)) for curve in heights if np.isfinite(curve).any()]
     height = max((high for _, high in extremes), default=1.0) - min((low for low, _ in extremes), default=0.0)
     height = max(height, ROUNDING * max((max(abs(low), abs(high)) for low, high in extremes), default=0.0))
+    # faster than the pixels: a band between the extremes
     fast = [_is_band(t, curve, size, height) for curve in heights]
     slow = [number for number in range(len(curves)) if not fast[number]]
     hidden = hidden_parts([heights[number] for number in slow], size, 1.1 * height or 1.0)
@@ -162,6 +157,7 @@ def draw_curves(axes: Any, t: Floats, curves: Sequence[Floats], names: Sequence[
         if not np.isfinite(curve).any():
             axes.plot([], [], " ", label=name)
             continue
+        # where the curve would hide an earlier one
         dashes = (0, (DASH / width, (DASH + number) / width))
         label = name
         for part, is_hidden in _pieces(curve, parts[number]):
@@ -174,12 +170,8 @@ def draw_curves(axes: Any, t: Floats, curves: Sequence[Floats], names: Sequence[
 
 
 def _is_band(t: Floats, curve: Floats, size: tuple[float, float], height: float) -> bool:
-    """Return whether a curve oscillates so fast that it is drawn as a filled band between its envelopes, not as a line.
-
-    ``t`` are the times and ``curve`` the values. ``size`` is the width and height of the panel in units of 1/150 inch
-    (:func:`columns_of`), and ``height`` the range of values that the panel shows. Times that do not increase, and fewer
-    than three values, always give a line.
-    """
+    """Return whether a curve oscillates too fast for a line, so that a band between its envelopes is drawn."""
+    # size: width and height of the panel in columns (columns_of); height: the range of values that it shows
     known = np.isfinite(curve)
     if np.count_nonzero(known) < 3 or np.any(np.diff(t) < 0):
         return False

@@ -21,10 +21,7 @@ FREE = frozenset({"neg"})  # a minus sign counts as part of its addition or mult
 
 
 def _operations(structure: Structure) -> Counter[str]:
-    """Return how many operations of each kind one evaluation of the equations of motion takes, such as ``{"mul": 12}``.
-
-    ``structure`` says which quantities of a scene are zero, equal or constant, so that terms can be left out.
-    """
+    """Return the operations of one evaluation of a structure's equations of motion by kind, such as ``{"mul": 12}``."""
     from symrot.codegen.scene_kernels import rates_program
     from symrot.dynamics.equations import equations_of_motion
 
@@ -38,10 +35,8 @@ def _row(item: str, skipped: bool, why: str, derivation: str = "", operations: C
 
 
 def _ladder(plan: Plan) -> "list[PlanRow]":
-    """Return the rows about rules in the table of `symrot explain`: first the general motion, then each rule.
-
-    A rule, such as using a symmetry, simplifies the equations. Each row counts the operations that remain after the
-    rule, and those that it saves.
+    """Return the rows of `symrot explain` about rules: first the general motion, then each rule with the operations it
+    saves.
     """
     from symrot.planning.general_structure import general_structure
 
@@ -190,9 +185,7 @@ def lines(report: "PlanReport") -> list[str]:
 
 
 def explanation(plan: Plan) -> str:
-    """Return the table that the command `symrot explain` prints for a plan, as text.
-
-    It lists which parts of the motion are computed and which are skipped, by which rule, and how many operations that
-    saves.
+    """Return the text that `symrot explain` prints: which parts of the motion are computed or skipped, and by which
+    rule.
     """
     return "\n".join(lines(facts(plan)))

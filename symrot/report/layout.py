@@ -149,14 +149,12 @@ def _widths(rows: Sequence[Sequence[str]], width: int, wrap: int, right: Sequenc
 
 
 def _parts(widths: Sequence[int], width: int, right: Sequence[int]) -> list[list[int]]:
-    """Return how a table that is too wide for one line is split: the indices of the columns in each part.
-
-    The parts are printed below each other, each with the first column. Only columns in ``right`` (numbers) begin a
-    part; ``widths`` are those of the columns, and ``width`` is that of a line.
-    """
+    """Return how a table that is too wide for a line is split: the indices of the columns in each part."""
+    # each part has the first column
     parts = [[0]]
     for i in range(1, len(widths)):
         full = sum(widths[j] + 2 for j in parts[-1]) + widths[i] > width
+        # only columns of numbers begin a part
         if full and i in right and len(parts[-1]) > 1:
             parts.append([0])
         parts[-1].append(i)

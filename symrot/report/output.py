@@ -124,12 +124,7 @@ FORMATS: dict[str, Writer] = {
 
 
 def save(trajectory: "Trajectory", path: str | Path, quantities: Sequence[str] | None = None) -> list[str]:
-    """Write a trajectory to a file and return the names of the quantities in it.
-
-    An NPZ file contains arrays by name and ``metadata``, a JSON text; it can be loaded with ``allow_pickle=False``, and
-    :func:`symrot.load` reads it. A CSV file contains comment lines, a line of column names, and numbers with all digits
-    (``pandas.read_csv(file, comment="#")``). Both also contain the times of the requested events, and an NPZ file
-    contains the quantities at these times.
+    """Write a trajectory to an NPZ or CSV file and return the names of the quantities in it.
 
     Parameters
     ----------
@@ -149,6 +144,14 @@ def save(trajectory: "Trajectory", path: str | Path, quantities: Sequence[str] |
     ------
     InputError
         If the file cannot be written, or if there is no quantity with one of the names.
+
+    Notes
+    -----
+    :func:`symrot.load` reads an NPZ file. It contains arrays by name, needs no pickle, and has a JSON text,
+    ``metadata``. It also has the times of the requested events and the quantities at these times.
+
+    ``pandas.read_csv(file, comment="#")`` reads a CSV file: comment lines, among them the times of the requested
+    events, a line of column names, and numbers with all digits.
 
     Examples
     --------

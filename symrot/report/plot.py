@@ -46,11 +46,8 @@ def require_matplotlib(option: str = "--plot") -> None:
 
 
 def dense(trajectory: Any) -> Any:
-    """Return the motion at as many times as a smooth picture needs; without a dense solution, its own samples.
-
-    The times are evenly spaced. If even the largest number of times is too small to follow every rotation, they are
-    made irregular: each is shifted by a multiple of the golden ratio modulo 1, in units of the spacing. Otherwise all
-    times could fall on the same few angles of the rotation, and the picture would show a slow motion.
+    """Return the motion at as many times as a smooth picture needs, or at its own samples if it has no dense
+    solution.
     """
     from symrot.propagation.trajectory import Trajectory
 
@@ -62,6 +59,8 @@ def dense(trajectory: Any) -> Any:
     count = int(min(sufficient, MOST))
     times = np.linspace(low, high, count)
     if PER_RADIAN * radians > MOST:
+        # Too few times to follow every rotation: they could all fall on the same few angles and show a slow motion. A
+        # shift by multiples of the golden ratio modulo 1 makes them irregular.
         places = np.arange(1, count - 1)
         times[1:-1] += (np.mod(places * GOLDEN, 1.0) - 0.5) * (high - low) / (count - 1)
     return trajectory.at(times)
@@ -110,15 +109,13 @@ def _legend(axes: Any) -> None:
 
 
 def _lines(axes: Any, t: Floats, columns: Floats, names: list[str], unit: str, size: float = 1.0) -> None:
-    """Draw the components of a vector over time: ``columns`` has one column for each of ``names``.
-
-    The numbers are drawn divided by ``size``, the size of a prefix of ``unit``. A nearly constant component that is
-    much larger than the others would make them look flat. It is not drawn; the legend states its value.
-    """
+    """Draw the components of a vector, one column for each of ``names``, over time, divided by ``size``."""
     low, high = columns.min(axis=0), columns.max(axis=0)
     largest = np.maximum(np.abs(low), np.abs(high))
     steady = high - low <= QUIET * largest
     others = np.max(largest[~steady], initial=0.0)
+    # A nearly constant component that is much larger would make the others look flat: the legend states its value
+    # instead.
     written = steady & (largest > 3 * others) & (others > 0)
     drawn = np.flatnonzero(~written)
     draw_curves(axes, t, [columns[:, i] / size for i in drawn], [names[i] for i in drawn], [COLOURS[i] for i in drawn])
@@ -214,9 +211,8 @@ def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
 
 
 def _body_sphere(axes: Any, trajectory: Any) -> None:
-    """Draw on a sphere, in body axes, the path of a free body's angular momentum, or of any other body's rotation axis.
-
-    Thin curves show the paths that the angular momentum would have at other energies.
+    """Draw on a sphere, in body axes, the path of a free body's angular momentum, or of any other body's
+    rotation axis.
     """
     if any(kind != "rotor" for kind in trajectory.scene.torque_kinds):
         draw_directions(axes, trajectory.omega, ("1", "2", "3"))
@@ -227,6 +223,7 @@ def _body_sphere(axes: Any, trajectory: Any) -> None:
     momentum = trajectory.angular_momentum_body
     size = float(np.linalg.norm(momentum[0]))
 
+    # thin curves: the paths at other energies
     def energy(directions: Floats) -> Floats:
         spin = size * directions - rotor
         energies: Floats = np.einsum("...i,...i->...", spin, spin @ np.linalg.inv(inertia)) / 2

@@ -119,14 +119,13 @@ class LostRecord(TypedDict):
 
 
 class DerivativeRecord(TypedDict):
-    """The derivatives of the last sample by one variable, an initial value or a constant, whose unit is ``unit``.
+    """The derivatives of the last sample by one variable, an initial value or a constant."""
 
-    ``omega`` is the derivative of the angular velocity, rad/s, and ``rotation`` that of the attitude: a small change of
-    the variable, times ``rotation``, is the rotation vector, rad, in body axes, of the small rotation that it causes.
-    """
-
+    # of the angular velocity, rad/s per unit
     omega: list[float]
+    # of the attitude: times a small change of the variable, the rotation vector, rad, in body axes
     rotation: list[float]
+    # of the variable
     unit: str
 
 

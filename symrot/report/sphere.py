@@ -90,11 +90,7 @@ def _eye(directions: Floats) -> Floats:
 
 
 def _close_view(directions: Floats) -> tuple[Floats, Window] | None:
-    """Return (view, window) for a path on a small part of the sphere; None for a large or a tiny path.
-
-    The view looks down on the middle of the path (:func:`_eye` explains its rows); the window is the part that is
-    drawn.
-    """
+    """Return (view, window) for a path on a small part of the sphere; None for a large or a tiny path."""
     middle = directions.mean(axis=0)
     length = float(np.linalg.norm(middle))
     if length < 0.5:
@@ -105,6 +101,7 @@ def _close_view(directions: Floats) -> tuple[Floats, Window] | None:
     )
     right = level - toward * (level @ toward)
     right /= np.linalg.norm(right)
+    # looks down on the middle of the path; _eye explains the rows
     view = np.array([right, np.cross(toward, right), toward])
     x, y, z = view @ directions.T
     half = MARGIN * 0.5 * max(float(np.ptp(x)), float(np.ptp(y)))
@@ -153,10 +150,8 @@ def _globe(axes: Any, view: Floats, labels: tuple[str, ...], window: Window, fon
 
 
 def _levels(axes: Any, view: Floats, value: Callable[[Floats], Floats], window: Window) -> bool:
-    """Draw level curves of ``value``, a function of direction, on the near side of the sphere.
-
-    Return whether curves were drawn: False if the function is constant. ``view`` is explained at :func:`_eye`;
-    ``window`` is the part that is drawn.
+    """Draw level curves of ``value``, a function of direction, on the near side of the sphere; return False if it is
+    constant.
     """
     line = min(window.half, 1.0) * np.linspace(-1.0, 1.0, FINEST)
     x, y = np.meshgrid(window.centre[0] + line, window.centre[1] + line)
@@ -175,15 +170,12 @@ def _levels(axes: Any, view: Floats, value: Callable[[Floats], Floats], window: 
 def _path(
     axes: Any, points: Floats, gaps: NDArray[np.bool_], front: NDArray[np.bool_] | None = None, width: float = 1.3
 ) -> None:
-    """Draw a path through points of the drawing, shape (n, 2), coloured from dark at its start to light at its end.
-
-    ``gaps`` is true for points that are too far from the next point to be joined with it; if there are many gaps, only
-    the points are drawn. ``front`` is true for points on the near side of the sphere.
-    """
+    """Draw a path through points of the drawing, shape (n, 2), coloured from dark at its start to light at its end."""
     from matplotlib import colormaps
     from matplotlib.collections import LineCollection
 
     count = len(points)
+    # points on the near side of the sphere
     near = np.ones(count, dtype=bool) if front is None else front
     shades = np.arange(count) * SHADES // max(count, 1)
     changes = (np.diff(shades) != 0) | (np.diff(near.astype(np.int8)) != 0) | gaps[:-1]
@@ -192,6 +184,7 @@ def _path(
     strong = colours[:, :3].copy()
     colours[~near, :3] = 1.0 - BACK_PATH * (1.0 - colours[~near, :3])  # opaque, since pieces of a line overlap
     many = count > MOST_VECTORS
+    # too many points too far from the next one: only the points are drawn
     if np.mean(gaps) < MOST_GAPS:
         stops = np.append(starts[1:], count)
         ends = np.where(gaps[stops - 1], stops, stops + 1)  # a piece reaches the first point of the next one
@@ -210,18 +203,15 @@ def _path(
 
 
 def _gaps(directions: Floats, extent: float = 1.0) -> NDArray[np.bool_]:
-    """Return a mask of the directions that are too far from the next direction of a path for a line between them.
-
-    ``extent`` is the size of the path, rad; the last direction is never marked.
-    """
+    """Return a mask of the directions that are too far from the next direction of a path for a line between them."""
     steps = np.linalg.norm(np.diff(directions, axis=0), axis=1)
+    # relative to the size of the path, rad; the last direction has no next one
     return np.append(steps > LONGEST * extent, False)
 
 
 def _plane(axes: Any, directions: Floats, middle: Floats, extent: float, labels: tuple[str, ...]) -> None:
-    """Draw a tiny path of directions on the plane that touches the sphere at ``middle``, the middle of the path.
-
-    ``extent`` is the size of the path, rad; ``labels`` are the names of the three axes.
+    """Draw a tiny path of directions, of the size ``extent``, rad, on the plane that touches the sphere at
+    its middle.
     """
     first, second = sorted(np.argsort(np.abs(middle))[:2])
     across = np.eye(3)[first] - middle[first] * middle
@@ -248,9 +238,6 @@ def draw_directions(
 ) -> None:
     """Draw the path of the direction of vectors, shape (n, 3), on a sphere.
 
-    A path on a small part of the sphere is enlarged, with the whole sphere beside it; a tiny one is drawn on the plane
-    that touches the sphere.
-
     Parameters
     ----------
     axes : matplotlib Axes
@@ -273,6 +260,7 @@ def draw_directions(
         middle = middle / length
         extent = float(np.max(np.linalg.norm(directions - middle, axis=1)))
         if STILL < extent < SMALL:
+            # a tiny path, on the plane that touches the sphere
             _plane(axes, directions, middle, extent, labels)
             return
     view, window = _close_view(directions) or (_eye(directions), Window())
@@ -288,6 +276,7 @@ def draw_directions(
         for spine in axes.spines.values():
             spine.set(visible=True, color=FAINT)
         x, y = view[:2] @ directions.T
+        # a path on a small part of the sphere is enlarged, with the whole sphere beside it
         whole = axes.inset_axes((*_empty_corner(x, y, window), INSET, INSET), zorder=10)
         whole.set_axis_off()
         _sphere(whole, directions, _eye(directions), labels, Window(half=1.1 * ROOM), is_inset=True)
@@ -295,11 +284,7 @@ def draw_directions(
 
 
 def _empty_corner(x: Floats, y: Floats, window: Window) -> tuple[float, float]:
-    """Return where to place an inset, a small second drawing: in the corner that covers the fewest path points.
-
-    The points are (x, y). The result is the lower left corner of the inset, in fractions of the width and height of the
-    axes.
-    """
+    """Return the lower left corner of an inset, as fractions of the axes, where it covers the fewest points (x, y)."""
     across = 0.5 + (x - window.centre[0]) / (2.0 * window.half)
     up = 0.5 + (y - window.centre[1]) / (2.0 * window.half)
 

@@ -16,10 +16,8 @@ PEERS = ("heyoka", "heyoka, best setting", "SciPy LSODA", "SciPy DOP853", "SciPy
 
 
 def figure(suite: Mapping[str, Any]) -> Any:
-    """Return a matplotlib Figure of other programs' times divided by symrot's times at equal error.
-
-    ``suite`` is the data of a benchmark of several motions. Each motion has a row, with one dot per power of ten of the
-    error.
+    """Return a matplotlib Figure of other programs' times divided by symrot's times at equal error, a row for each
+    motion.
     """
     from matplotlib.figure import Figure
 
@@ -39,6 +37,7 @@ def figure(suite: Mapping[str, Any]) -> Any:
             if item is None:
                 continue
             look = LOOKS.get(peer.partition(",")[0], OTHER)
+            # one dot per power of ten of the error
             ratios, height = list(item["stepped"]["ratios"].values()), row + (number - (len(peers) - 1) / 2) * step
             axes.plot(ratios, [height] * len(ratios), look.marker, color=look.colour, markersize=3.6, alpha=0.5,
                       label=peer if row == 0 else None, markeredgewidth=0)  # fmt: skip

@@ -152,12 +152,8 @@ def _settings(report: "RunReport") -> list[tuple[str, str]]:
 
 
 def _switches(times: list[float], switchings: "list[SwitchingRecord]", start: str, stop: str) -> list[tuple[str, str]]:
-    """Return a row (label, text) for each function with jumps or kinks: the times at which it switched.
-
-    At such a time the motion crosses the jump or kink, begins to slide along it, or leaves it. ``times`` are the
-    switching times of all functions together, ``switchings`` say which function switched and how; ``start`` and
-    ``stop`` are the first and last time of the motion as text.
-    """
+    """Return a row (label, text) for each function with jumps or kinks: the times at which it switched."""
+    # the motion crosses the jump, begins to slide along it, or leaves it
     by_function: dict[str, list[tuple[float, str]]] = {}
     for item in switchings:
         by_function.setdefault(f"{one_line(item['function'])} ", []).append((item["t"], HOW[item["how"]]))

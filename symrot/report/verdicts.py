@@ -30,12 +30,6 @@ def check(
 ) -> list[Verdict]:
     """Check a claim (an equation as text or LaTeX), or all claims of a file, and return the verdicts.
 
-    ``source`` is the claim or the file's path. ``assumptions`` and ``units`` are the texts of the command line;
-    ``repair`` says whether to search for corrections. ``stated`` holds the keyword arguments ``where``, ``body``,
-    ``frame`` and ``sequence`` of :func:`symrot.check`.
-
-    A claim in a file that cannot be parsed gets the verdict ``"refused"``.
-
     Raises
     ------
     InputError
@@ -56,6 +50,7 @@ def check(
     for option, value in (stated or {}).items():
         if value:
             raise InputError(f"--{option}: expected a claim as text, got a file; a file states its own context")
+    # a claim that cannot be parsed gets the verdict "refused"
     return list(verdicts_of_file(source, repair, progress))
 
 
@@ -82,17 +77,14 @@ def _is_file(source: str) -> bool:
 
 
 def lines(verdicts: Sequence[Verdict], source: str) -> list[str]:
-    """Return the lines that `symrot check` prints about verdicts; ``source`` is the claim or the file's path.
-
-    The verdict on a single claim is shown in full. For a file, only verdicts on claims that are not true are shown in
-    full, followed by a count of all verdicts.
-    """
+    """Return the lines that `symrot check` prints about verdicts; ``source`` is the claim or the file's path."""
     if len(verdicts) == 1 and not _is_file(source):
         return _full(verdicts[0], verdicts[0].verdict)
     text: list[str] = []
     for verdict in verdicts:
         place = f" ({one_line(verdict.where)})" if verdict.where else ""
         name = f"{verdict.verdict:<11} {one_line(verdict.id)}{place}"
+        # true claims take one line, all others are shown in full
         text += [name] if verdict else _full(verdict, name)
     counts = Counter(verdict.verdict for verdict in verdicts)
     total = ", ".join(f"{counts[name]} {name}" for name in VERDICTS if counts[name])

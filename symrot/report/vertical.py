@@ -31,10 +31,7 @@ class VerticalAngles:
 
 
 def has_vertical(scene: Any) -> bool:
-    """Return whether a scene has one vertical: the upward direction of gravity, or the radius of a circular orbit.
-
-    It has none if no torque is due to gravity or a gravity gradient, or if more than one is.
-    """
+    """Return whether a scene has one vertical: the upward direction of gravity, or the radius of a circular orbit."""
     return sum(torque.kind in ("gravity", "gravity_gradient") for torque in scene.torques) == 1
 
 
@@ -48,15 +45,10 @@ def local_vertical(t: Floats, mean_motion: float) -> Floats:
 
 
 def vertical_angles(trajectory: Any) -> VerticalAngles:
-    """Return the angles between the body and the vertical in a motion; :func:`has_vertical` must be true of its scene.
-
-    Under gravity there is one angle: between the upward vertical and the line from the fixed point to the centre of
-    mass. Under a gravity gradient the long axis (the axis of least inertia) is compared with the local vertical. The
-    three angles are the component in the plane of the orbit, the component out of that plane, and the whole angle. Of
-    the two directions of the long axis, the one closer to the vertical at the start is used.
-    """
+    """Return the angles between the body and the vertical of a motion whose scene has one (:func:`has_vertical`)."""
     torque = next(item for item in trajectory.scene.torques if item.kind in ("gravity", "gravity_gradient"))
     if torque.kind == "gravity":
+        # from the fixed point to the centre of mass
         line = trajectory.dcm @ _unit([float(value) for value in torque.vector("center_of_mass")])
         up = -_unit([float(value) for value in torque.vector("direction")])
         angle = _angle(line, np.broadcast_to(up, line.shape))
@@ -65,6 +57,7 @@ def vertical_angles(trajectory: Any) -> VerticalAngles:
     least = int(np.argmin([float(moment) for moment in principal.moments]))
     line = trajectory.dcm @ _unit([float(row[least]) for row in principal.axes])
     radius = local_vertical(trajectory.t, float(torque.number("mean_motion")))
+    # the long axis (of least inertia), in its direction closer to the vertical at the start
     line = line * (1.0 if line[0] @ radius[0] >= 0 else -1.0)
     along = np.cross([0.0, 0.0, 1.0], radius)
     ahead, up = np.sum(line * along, axis=1), np.sum(line * radius, axis=1)

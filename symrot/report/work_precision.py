@@ -28,16 +28,14 @@ def _number(value: float) -> str:
 
 
 def _decades(study: Mapping[str, Any]) -> list[str]:
-    """Return the table of a study, with one column for each power of ten of the error, as lines of text.
-
-    A column has the shortest time of all methods that reach this error, and the ratio of each method's time to it.
-    """
+    """Return the table of a study as lines of text, with one column for each power of ten of the error."""
     table = study["decades"]
     names = list(dict.fromkeys(name for row in table for name in row["methods"]))
     rows = [["error <=", *(f"{row['error']:.0e}" for row in table)]]
     rows.append(["fastest, us", *(_short(row["seconds"] * 1e6) for row in table)])
     for name in names:
         cells = [_short(row["methods"][name]["ratio"]) if name in row["methods"] else "-" for row in table]
+        # the ratio of the method's time to the shortest time that reaches the error
         rows.append([name, *("1" if name == row["fastest"] else cell for cell, row in zip(cells, table, strict=True))])
     return columns(rows, width=room(200), wrap=0, right=range(1, len(rows[0])))
 
@@ -151,8 +149,6 @@ def _positive(study: Mapping[str, Any]) -> bool:
 def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
     """Return a comparison of two studies of one scene, such as before and after a change, as data.
 
-    It has, for each method, the ratio of the times at each power of ten of the error, and the least errors.
-
     Raises
     ------
     InputError
@@ -185,6 +181,7 @@ def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, A
         "machines": [study["machine"] for study in (first, second)],
         "ratios": {
             name: {
+                # the ratio of the times at each power of ten of the error
                 "decades": ratios, "mean": geometric_mean(ratios.values()),
                 "least errors": [floor[name] for floor in floors],
             } for name, ratios in methods.items()

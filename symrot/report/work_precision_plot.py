@@ -56,13 +56,10 @@ METHOD_LABELS = {
 
 
 def frontier(runs: Sequence[Mapping[str, Any]]) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
-    """Split the runs of a method into two lists of points (error, time): its curve, and the other runs.
-
-    The curve consists of the runs for which no other run is both faster and more accurate, in the order of the error. A
-    run has a time and an error.
-    """
+    """Split the runs of a method into two lists of points (error, time): its curve, and the other runs."""
     points = sorted((max(float(run["error"]), LEAST_ERROR), float(run["seconds"])) for run in runs)
     points = [point for point in points if point[0] < OUTERMOST]
+    # the curve: no other run is both faster and more accurate
     best: list[tuple[float, float]] = []
     rest: list[tuple[float, float]] = []
     least = float("inf")

@@ -35,12 +35,10 @@ FRAMES = {
 
 
 class Labelled(NamedTuple):
-    """One quantity of a trajectory with its labels: name, components, unit, frame and meaning.
-
-    Tables and files are made of these. ``values`` has the shape (n,) or (n, ...) for n samples.
-    """
+    """One quantity of a trajectory with its labels: name, components, unit, frame and meaning."""
 
     name: str
+    # shape (n,) or (n, ...) for n samples
     values: NDArray[Any]
     components: tuple[str, ...]
     unit: str
@@ -72,21 +70,12 @@ def about(trajectory: Any) -> About:
 
 
 def event_array(number: int, quantity: str) -> str:
-    """Return the name, in an NPZ file, of the array of a quantity at the times of one event.
-
-    Events are numbered from 1: ``event_array(2, "omega")`` is ``"event_2_omega"``.
-    """
+    """Return the name, in an NPZ file, of a quantity at the times of event ``number``, from 1: ``"event_2_omega"``."""
     return f"event_{number}_{quantity}"
 
 
 def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labelled]:
     """Return the time and the quantities ``names`` of a trajectory with labels, as rows for tables and files.
-
-    The default is the scene's output quantities, and the derivatives by initial values and constants if the trajectory
-    has them.
-
-    After Euler angles comes the quantity :data:`LOCK`, which is true for samples at gimbal lock: there only the sum or
-    the difference of two angles is defined.
 
     Raises
     ------
@@ -95,6 +84,7 @@ def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labell
     """
     output, derivatives = trajectory.scene.output, _derivatives(trajectory)
     quantities = [Labelled("t", trajectory.t, ("t",), "s", "", "time")]
+    # the default: the scene's output quantities, and derivatives if the trajectory has them
     chosen = output.quantities if names is None else (names,) if isinstance(names, str) else names
     for name in chosen:
         if name in derivatives:
@@ -108,6 +98,7 @@ def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labell
             components, unit, meaning = _euler(output)
         quantities.append(Labelled(name, trajectory.quantity(name), components, unit, FRAMES.get(name, ""), meaning))
         if name == "euler":
+            # at gimbal lock, only the sum or the difference of two angles is defined
             locked = np.asarray(trajectory.gimbal_lock(output.sequence))
             meaning = "1 where the Euler sequence is at gimbal lock, else 0"
             quantities.append(Labelled(LOCK, locked, (LOCK,), "1", FRAMES[LOCK], meaning))
@@ -115,10 +106,6 @@ def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labell
 
 
 def _derivatives(trajectory: Any) -> dict[str, Labelled]:
-    """Return the labelled derivatives of a trajectory by initial values and constants, as a dict by name.
-
-    A name is ``"omega_by_weight"``, for example. The dict is empty if the trajectory was computed without
-    sensitivities.
-    """
+    """Return the labelled derivatives of a trajectory by name, such as ``"omega_by_weight"``; empty if it has none."""
     sensitivities = getattr(trajectory, "sensitivities", None)
     return {} if sensitivities is None else {item.name: item for item in sensitivities._labelled()}

@@ -20,11 +20,9 @@ Floats = NDArray[np.float64]
 
 
 class Samples(ABC):
-    """The angular velocity and the attitude of a motion at times ``t``, and quantities computed from these two alone.
+    """Angular velocity and attitude of a motion at times ``t``, and quantities computed from these two alone."""
 
-    The methods compute with samples of any shape: (m,) for one motion, (n, m) for n motions.
-    """
-
+    # shape (m,) for one motion, (n, m) for n motions
     t: Floats
 
     @property
@@ -57,16 +55,13 @@ class Samples(ABC):
     def euler(self, sequence: str, degrees: bool = False) -> Floats:
         """Return Euler angles in order of application, shape (..., 3), rad.
 
-        At gimbal lock (see :meth:`gimbal_lock`) only the sum or the difference of two angles is defined;
-        :func:`symrot.kinematics.conversions.quaternion_to_euler` says which values are returned there.
+        At gimbal lock, see :func:`symrot.kinematics.conversions.quaternion_to_euler`.
         """
         return conversions.quaternion_to_euler(self.quaternion, sequence, degrees=degrees)[0]
 
     def gimbal_lock(self, sequence: str) -> NDArray[np.bool_]:
-        """Return, for each sample, whether the Euler angles of ``sequence`` are at gimbal lock, shape (...).
-
-        There only the sum or the difference of the first and the third angle is defined.
-        """
+        """Return, for each sample, whether the Euler angles of ``sequence`` are at gimbal lock, shape (...)."""
+        # there only the sum or the difference of the first and the third angle is defined
         return conversions.quaternion_to_euler(self.quaternion, sequence)[1]
 
     def _to_space(self, vectors_b: Floats) -> Floats:
@@ -151,10 +146,7 @@ class MotionSamples(Samples):
 
     @abstractmethod
     def _evaluate(self, *names: str) -> Floats:
-        """Return the output quantities ``names``, such as ``"energy"``, at the samples, shape (..., len(names)).
-
-        The kernel of the scene computes them from times, angular velocities and attitudes.
-        """
+        """Return the output quantities ``names``, such as ``"energy"``, at the samples, shape (..., len(names))."""
 
     @cached_property
     def angular_momentum_body(self) -> Floats:

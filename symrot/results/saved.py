@@ -1,6 +1,6 @@
 """Trajectories read from the NPZ files that ``trajectory.save`` and ``symrot run --out`` write.
 
-A file contains arrays of numbers and one JSON text, no pickled objects. Reading needs no kernel and no compiler.
+A file contains arrays of numbers and one JSON text. Reading needs no kernel and no compiler.
 """
 
 import json
@@ -31,8 +31,7 @@ UNREADABLE = (OSError, ValueError, EOFError, LookupError, TypeError, AttributeEr
 class SavedTrajectory(Samples):
     """The samples of a trajectory from a file; :func:`symrot.load` returns it. Conventions: :mod:`symrot.conventions`.
 
-    The quantities in the file are attributes with their names, such as ``energy``. Quantities that follow from angular
-    velocity and attitude, such as ``dcm`` and ``euler(sequence)``, are computed.
+    The quantities in the file are attributes, such as ``energy``.
 
     Attributes
     ----------
@@ -187,12 +186,11 @@ def _saved(content: Any) -> SavedTrajectory:
 
 
 def _items(content: Any, metadata: dict[str, Any], array: Any) -> list[Labelled]:
-    """Return the quantities in an NPZ file with their labels.
+    """Return the quantities in an NPZ file with their labels, as the file's ``metadata`` describes them.
 
-    ``content`` is the opened file, and ``metadata`` describes its arrays. ``array(name)`` returns the name of the array
-    that holds the quantity ``name``: the samples, or those at an event. An array of an unexpected shape raises
-    ValueError.
+    ``array(name)`` names the array of a quantity.
     """
+    # the samples of a quantity, or those at an event
     items = []
     for name, entry in metadata["arrays"].items():
         values, components = content[array(name)], tuple(map(str, entry["components"]))

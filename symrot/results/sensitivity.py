@@ -50,19 +50,17 @@ class Sensitivity(NamedTuple):
 class Sensitivities(Mapping[str, Sensitivity]):
     """Derivatives of a motion at n samples, by m variables: a mapping from the requested names to derivatives.
 
-    A name of one component, such as ``omega_2``, is also accepted. For an ensemble the arrays have one more axis, the
-    first, over the motions.
-
     Attributes
     ----------
     variables : tuple of str
-        The m variables: the requested names, those of a vector with the number of the component.
+        The m variables: the requested names, those of a vector with the number of the component, such as ``omega_2``;
+        each of them is accepted as a key, too.
     units : tuple of str
         Units of the variables; empty for a parameter of a formula, whose unit no scene states.
     groups : mapping
         Requested name -> the numbers of its variables.
     omega, quaternion, rotation : array, shape (n, 3, m), (n, 4, m), (n, 3, m)
-        The derivatives, as in :class:`Sensitivity`.
+        The derivatives, as in :class:`Sensitivity`; for an ensemble, with one more axis, the first, over the motions.
     t_events : tuple of arrays, shape (k, m)
         For each event, the derivatives of its k times, s per unit of the variable; NaN where the formula of the event
         touches zero. Files of samples do not contain them.
@@ -136,21 +134,16 @@ class Sensitivities(Mapping[str, Sensitivity]):
 
 
 def quotient_unit(unit: str, other: str) -> str:
-    """Return the unit of a derivative: ``unit``, of the quantity, divided by ``other``, of the variable.
-
-    If ``other`` is empty (unknown), the result ends in words: "(rad/s) per unit of the parameter".
-    """
+    """Return the unit of a derivative, ``unit`` divided by ``other``: ``"(rad/s)/(kg)"``."""
     if other == "1":
         return unit
+    # an empty unit of the variable is unknown
     return f"({unit})/({other})" if other else f"({unit}) per unit of the parameter"
 
 
 def restored(record: Mapping[str, Any], items: Mapping[str, Labelled]) -> Sensitivities | None:
-    """Return the derivatives of a motion that was read from a file, rebuilt from the file's record and its arrays.
-
-    ``record`` is what :meth:`Sensitivities.record` wrote, and ``items`` are the labelled arrays by name. The result is
-    None if one of the derivatives is not in the file.
-    """
+    """Return the derivatives in a file, from its record and its labelled arrays by name; None if one is missing."""
+    # written by Sensitivities.record
     variables = [str(variable) for variable in record["variables"]]
     if not all(f"{quantity}{BY}{variable}" in items for quantity in OUTPUTS for variable in variables):
         return None

@@ -1,6 +1,6 @@
 """Labelled quantities as a data frame of pandas or a data set of xarray, with units, frames and meanings.
 
-Both packages are imported when a table is made; ``symrot[frames]`` installs them.
+``symrot[frames]`` installs both packages.
 """
 
 from collections.abc import Sequence
@@ -44,9 +44,6 @@ def _axes(item: Labelled) -> tuple[tuple[str, Sequence[Any]], ...]:
 def dataframe(items: Sequence[Labelled], origin: About) -> Any:
     """Return a pandas DataFrame with one row for each sample and one column for each component.
 
-    The index is the time ``t``, s; for the samples of n motions, shape (n, m), it is (``trajectory``, ``t``). The
-    attributes ``units``, ``frames`` and ``meanings`` are dicts by column; further attributes name the scene and method.
-
     Raises
     ------
     InputError
@@ -61,11 +58,14 @@ def dataframe(items: Sequence[Labelled], origin: About) -> Any:
         columns |= {name: table[:, k] for k, name in enumerate(item.components)}
     times = np.broadcast_to(t, lead).ravel()
     if len(lead) == 1:
+        # of one motion: the time t, s
         index = pandas.Index(times, name="t")
     else:
+        # of n motions: (trajectory, t)
         index = pandas.MultiIndex.from_arrays([np.repeat(np.arange(lead[0]), lead[1]), times], names=[MOTION, "t"])
     frame = pandas.DataFrame(columns, index=index)
     by_column = [(name, item) for item in items for name in item.components]
+    # dicts by column, and the names of scene and method
     frame.attrs |= origin._asdict() | {
         "units": {name: item.unit for name, item in by_column},
         "frames": {name: item.frame for name, item in by_column},
@@ -86,10 +86,6 @@ def _lead(items: Sequence[Labelled]) -> tuple[int, ...]:
 def dataset(items: Sequence[Labelled], origin: About) -> Any:
     """Return an xarray Dataset with one variable for each quantity.
 
-    Dimensions are ``time``, before it ``trajectory`` for the samples of n motions, and after it the axes of the
-    quantity: ``body_axis`` (1, 2, 3), ``space_axis`` (x, y, z), ``component`` of a quaternion, ``angle`` of an Euler
-    sequence. Each variable has the attributes ``units``, ``long_name`` and ``frame``.
-
     Raises
     ------
     InputError
@@ -105,6 +101,8 @@ def dataset(items: Sequence[Labelled], origin: About) -> Any:
     variables = {}
     for item in items[1:]:
         axes = _axes(item)
+        # the axes of a quantity: body_axis (1, 2, 3), space_axis (x, y, z), component of a quaternion, angle of an
+        # Euler sequence
         coordinates |= dict(axes)
         attributes = {"units": item.unit, "long_name": item.meaning, "frame": item.frame}
         variables[item.name] = ((*lead, *(name for name, _ in axes)), item.values, attributes)

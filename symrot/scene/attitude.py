@@ -27,12 +27,10 @@ Matrix = tuple[Vector, Vector, Vector]
 
 
 class Attitude(NamedTuple):
-    """An attitude in a scene, as a unit quaternion (scalar first, body to space) and as the matrix ``dcm_sb``.
-
-    The matrix is exact if the sines and cosines of the angles in the scene are rational.
-    """
+    """An attitude in a scene, as a unit quaternion (scalar first, body to space) and as the matrix ``dcm_sb``."""
 
     quaternion: Quaternion
+    # exact if the sines and cosines of the angles in the scene are rational
     dcm: Matrix
 
 
@@ -104,14 +102,7 @@ def _of_sequence(name: str, angles: tuple[Angle, ...]) -> Attitude:
 
 
 def _of_dcm(rows: Matrix, value: object, where: str) -> Attitude:
-    """Return the attitude that a matrix ``dcm_sb`` in a scene describes.
-
-    ``rows`` are its exact entries, ``value`` is the text of the scene and ``where`` its place, for errors: the rows
-    must be orthonormal to 1e-9 and right-handed.
-
-    The quaternion is computed without loss of digits (Shepperd's method); the matrix of the result is the exact matrix
-    of this quaternion.
-    """
+    """Return the attitude of a matrix ``dcm_sb`` in a scene; raise InputError if it is no rotation."""
     product = _matrix_product(rows, tuple(zip(*rows, strict=True)))  # type: ignore[arg-type]
     worst = max(abs(product[i][j] - (i == j)) for i in range(3) for j in range(3))
     if worst > ORTHOGONAL:
@@ -119,6 +110,7 @@ def _of_dcm(rows: Matrix, value: object, where: str) -> Attitude:
     (a, b, c), (d, e, f), (g, h, i) = rows
     if a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0:
         fail(where, "a rotation, of determinant +1", value, "this is a reflection, of determinant -1")
+    # Shepperd's method, without loss of digits; the result has the exact matrix of this quaternion.
     candidates = {
         1 + a + e + i: (1 + a + e + i, h - f, c - g, d - b),
         1 + a - e - i: (h - f, 1 + a - e - i, b + d, c + g),
@@ -237,10 +229,9 @@ _FORMS: dict[str, Callable[[Mapping[str, Any], str], Attitude]] = {
 
 
 def _by_shape(value: Any) -> Any:
-    """Convert an attitude that is given as a list to a table: ``[1, 0, 0, 0]`` -> ``{"quaternion": [1, 0, 0, 0]}``.
+    """Convert an attitude from a list to a table: ``[1, 0, 0, 0]`` gives ``{"quaternion": [1, 0, 0, 0]}``.
 
-    The list holds the four numbers of a quaternion, the three rows of a matrix, or a sequence with its angles in rad.
-    A value of another form is returned unchanged.
+    Other values are returned unchanged.
     """
     match value:
         case [str(sequence), list() as angles]:
@@ -253,12 +244,9 @@ def _by_shape(value: Any) -> Any:
 
 
 def read_attitude(value: Any, where: str) -> Attitude:
-    """Return the attitude that ``value`` in a scene describes: quaternion, Euler angles, axis and angle, or matrix.
-
-    The value is a table, such as ``{axis = [0, 0, 1], angle = 0.5}``, or one of the lists ``[q0, q1, q2, q3]``,
-    ``[[..], [..], [..]]`` (the rows of ``dcm_sb``) and ``["ZXZ", [.., .., ..]]`` (angles in rad). Another value raises
-    InputError, which names the place ``where``.
-    """
+    """Return the attitude that ``value`` in a scene describes: quaternion, Euler angles, axis and angle, or matrix."""
+    # a table, such as {axis = [0, 0, 1], angle = 0.5}, or a list: [q0, q1, q2, q3], the rows of dcm_sb, or ["ZXZ", [..,
+    # .., ..]] with angles in rad
     entries = table(_by_shape(value), where, f"an attitude: {FORMS}")
     form = next((reader for key, reader in _FORMS.items() if key in entries), None)
     if form is None:

@@ -1,9 +1,7 @@
 """Bodies of scenes: the inertia, the point of rotation, and a check that such a body can exist.
 
-The inertia is given in exactly one of five ways: by ``shape`` with dimensions and mass or density; by
-``[[body.part]]``, the parts of which the body is composed; by ``mesh``, the name of a file; by its ``principal``
-moments; or by ``inertia``, the tensor.
-The result consists of exact numbers (Fractions) and refers to the axes in which the body was given.
+A scene gives the inertia by ``shape``, ``[[body.part]]``, ``mesh`` (a file), ``principal`` moments, or ``inertia``, the
+tensor. The result consists of exact numbers (Fractions), in the axes in which the body was given.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -121,10 +119,8 @@ def _nearest_source(entries: Mapping[str, Any]) -> str:
 
 
 def _settled(inertia: Matrix) -> Matrix:
-    """Return an inertia tensor in which products of inertia that are only rounding errors are replaced by zero.
-
-    A body given by decimals then counts as given along its principal axes if it was meant so.
-    """
+    """Return an inertia tensor in which products of inertia that are only rounding errors are replaced by zero."""
+    # A body given by decimals then counts as given along its principal axes if it was meant so.
     limit = max(abs(inertia[i][i]) for i in range(3)) * NEGLIGIBLE
     first, second, third = (tuple(Fraction(0) if abs(x) <= limit else x for x in row) for row in inertia)
     return first, second, third  # type: ignore[return-value]
@@ -195,16 +191,13 @@ def _tensor(value: Any, where: str) -> Matrix:
 
 
 def _body_of_moments(inertia: Matrix, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return the body whose inertia tensor, about the point of rotation, a scene gives directly.
-
-    ``values`` holds its mass, name, point of rotation and centre of mass; ``where`` is its place, for errors. The
-    description of the body is "NAME with ``source``", such as "rotor with given principal moments".
-    """
+    """Return the body whose inertia tensor, about the point of rotation, a scene gives directly."""
     about, center = values["about"], values["center_of_mass"]
     if about == "center_of_mass":
         if center is not None and any(center):
             fail(f"{where}.center_of_mass", 'about = "fixed_point", from which center_of_mass is measured', center)
         center = _ZERO
+    # such as "rotor with given principal moments"
     description = f"{values['name'] or 'body'} with {source}"
     return Body(values["mass"], inertia, center, about, description, principal_axes(inertia, where))
 
@@ -278,10 +271,7 @@ def _density(unit: str) -> Reader:
 
 
 def _read_shape_table(value: Mapping[str, Any], where: str, others: Mapping[str, Entry]) -> tuple[Part, dict[str, Any]]:
-    """Return the shape that a table with the key ``shape`` describes, and the values of all keys of the table.
-
-    ``others`` holds the rules for the keys that do not describe the shape, such as ``name``.
-    """
+    """Return the shape that a table with the key ``shape`` describes, and the values of all keys of the table."""
     if "shape" not in value:
         fail(f"{where}.shape", f"one of the shapes {', '.join(SHAPES)}, the key is missing")
     shape = _shape_name(value["shape"], f"{where}.shape")
@@ -290,6 +280,7 @@ def _read_shape_table(value: Mapping[str, Any], where: str, others: Mapping[str,
         "shape": Entry(_shape_name, required=True),
         **{name: Entry(_any_value, required=True) for name in dimensions},
         **_amount(shape),
+        # keys that do not describe the shape, such as name
         **others,
     }, f"a {shape.name}")  # fmt: skip
     amounts = [key for key in ("mass", "density") if values.get(key) is not None]
@@ -327,19 +318,13 @@ def _bounded(value: Any, where: str) -> None:
 
 
 def _placed(parts: Sequence[Part], values: Mapping[str, Any], where: str, source: str, of_parts: str) -> Body:
-    """Return the body composed of ``parts``, with its inertia about its centre of mass or about the fixed point.
-
-    ``values`` says about which of these points the body rotates. ``source`` describes the body; ``where`` and
-    ``of_parts`` are the places of the body and of its shapes in the scene, for error messages.
-    """
+    """Return the body composed of ``parts``, with its inertia about its centre of mass or about the fixed point."""
     return _about_point(mass_properties(parts, of_parts), values, where, source)._replace(parts=tuple(parts))
 
 
 def _about_point(properties: MassProperties, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return a body with the given mass properties, with its inertia about the point of rotation.
-
-    ``values`` says whether this is the centre of mass or the ``fixed_point``; a contradiction raises InputError, which
-    names the place ``where``. ``source`` describes the body.
+    """Return a body with the given mass properties, and its inertia about the point of rotation that
+    ``values`` names.
     """
     about, point = values["about"], values["fixed_point"]
     if about == "center_of_mass" and point is not None:

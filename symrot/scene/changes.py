@@ -1,10 +1,7 @@
 """Changes of a scene, such as ``weight=2``: finds the value that a key names and replaces it in the scene's content.
 
-A key is a path in the scene file, such as ``body.mass`` or ``torque[0].weight``, or a short name: part of the initial
-state (``omega``, ``omega_2``, ``attitude``), of the span (``t``, ``samples``), the ``tolerance``, a constant of the
-inertia (``I_xx``, ``principal``) or of a torque (``weight``, ``torque2_weight``, ``center_of_mass_3``, a parameter of
-its formulas), or a dimension, the mass or the density of a body that is one shape. Constants have the same names in
-plans and ensembles. Standard library only.
+A key is a path in the scene file, such as ``body.mass`` or ``torque[0].weight``, or a short name, such as ``omega_2``,
+``samples``, ``I_xx`` or ``weight``. Constants have the same names in plans and ensembles. Standard library only.
 """
 
 import re
@@ -109,11 +106,7 @@ def changed(
 def present_value(
     content: Content, key: str, omega_b: Sequence[Fraction], body: Body, torques: Sequence[Torque]
 ) -> Any:
-    """Return the present value that a key names.
-
-    The value has the form in which the content gives it. If the content gives a vector or tensor in another form, such
-    as ``omega_space`` instead of omega, the value is the exact number that was read or computed from this form. The
-    arguments are those of :func:`changed`, which replaces the value.
+    """Return the present value that a key names, in the form in which the content gives it.
 
     Raises
     ------
@@ -121,6 +114,7 @@ def present_value(
         If a key names nothing in the scene, or a value that the content does not give.
     """
     scene = _Scene(content, omega_b, body, torques)
+    # Vectors and tensors that the content gives in another form, such as omega_space, are computed from it.
     if key in TENSOR:
         i, j = (INDEX[axis] for axis in key[-2:])
         return _tensor(scene)[i][j]
@@ -146,10 +140,9 @@ def present_value(
 
 
 def number_path(content: Content, key: str, omega_b: Sequence[Fraction], body: Body, torques: Sequence[Torque]) -> Path:
-    """Return the path of the number in the content that a key names: ``linear`` -> ``("torque", 0, "linear")``.
+    """Return the path of the number that a key names: ``"linear"`` gives ``("torque", 0, "linear")``.
 
-    The result is () if the key names no value, several values, a vector, or a number that the content does not give.
-    The arguments are those of :func:`changed`.
+    () if it names no single number.
     """
     try:
         place = _place(_Scene(content, omega_b, body, torques), key)
@@ -161,6 +154,7 @@ def number_path(content: Content, key: str, omega_b: Sequence[Fraction], body: B
             value = value[step]
     except (KeyError, IndexError, TypeError):
         return ()
+    # a vector, or one component of it
     return () if isinstance(value, bool | dict | list | tuple) or place.component is not None else place.path
 
 
@@ -306,10 +300,7 @@ def _text(place: Place) -> str:
 
 
 def _table(content: Content, path: Path, key: str) -> Any:
-    """Return the table or list at a path of the content; missing tables on the way are added.
-
-    ``key`` is the user's name of the value, for the message if the path leads through a number or beyond a list.
-    """
+    """Return the table or list at a path of the content; missing tables on the way are added."""
     place: Any = content
     for depth, step in enumerate(path):
         if isinstance(step, int):
@@ -328,10 +319,7 @@ def _table(content: Content, path: Path, key: str) -> Any:
 
 
 def _vector(scene: _Scene, path: Path) -> Sequence[Any]:
-    """Return the three components of the vector at a path of the content, to change one of them.
-
-    If the content gives the vector in another form, such as ``omega_space``, the components that were read are used.
-    """
+    """Return the three components of the vector at a path of the content, to change one of them."""
     place: Any = scene.content
     if path[-1] == "center_of_mass" and "center_of_mass" in scene.content["body"]:
         path = ("body", "center_of_mass")
@@ -339,6 +327,7 @@ def _vector(scene: _Scene, path: Path) -> Sequence[Any]:
         place = place[step] if isinstance(step, int) else place.get(step) if isinstance(place, dict) else None
     if isinstance(place, list) and len(place) == 3:
         return place
+    # the content gives the vector in another form, such as omega_space
     if path == ("initial", "omega"):
         return scene.omega_b
     vector = _constant_of_torque(scene, path)
@@ -347,26 +336,23 @@ def _vector(scene: _Scene, path: Path) -> Sequence[Any]:
 
 
 def _constant_of_torque(scene: _Scene, path: Path) -> Fraction | tuple[Fraction, ...] | None:
-    """Return the exact value of a torque's constant that the file leaves out, because it follows from others; or None.
-
-    An example is the path ``("torque", 0, "weight")`` of a torque that gives gravity's acceleration and no weight. The
-    number in the path counts the torques of the file. ``scene.torques`` has no torques of kind table, so that its
-    indices are smaller after a table; for the table itself the result is None, as for a torque without such a constant.
+    """Return the exact value of a torque's constant that the file leaves out because it follows from others,
+    or None.
     """
     kinds = [torque.get("kind") for torque in scene.content.get("torque", ())]
     if path[0] != "torque" or len(path) != 3 or not isinstance(path[1], int) or path[1] >= len(kinds):
         return None
     if kinds[path[1]] == TABLE_KIND.kind:
         return None
+    # scene.torques has no torques of kind table, so its indices are smaller after a table
     own = scene.torques[path[1] - kinds[: path[1]].count(TABLE_KIND.kind)]
+    # such as the weight of a torque that gives gravity's acceleration
     return own.values.get(str(path[2]))
 
 
 def _set_inertia(scene: _Scene, key: str, value: Any) -> None:
-    """Set the principal moments, or one entry of the inertia tensor, in the content of the scene.
-
-    ``key`` is ``principal`` or one of ``I_xx`` to ``I_yz``. Mass and centre of mass stay the same; a body given by
-    shapes is then given by its moments. With products of inertia, ``principal`` raises InputError.
+    """Set the principal moments (``"principal"``) or an entry such as ``"I_xy"`` of the inertia tensor in
+    the content.
     """
     if key == "principal":
         if not scene.body.principal.given_axes:
@@ -380,6 +366,7 @@ def _set_inertia(scene: _Scene, key: str, value: Any) -> None:
         i, j = (INDEX[axis] for axis in key[-2:])
         tensor[i][j] = tensor[j][i] = value
         inertia = _entries(tensor)
+    # Mass and centre of mass stay; a body given by shapes is then given by its moments.
     scene.content["body"] = _moments(scene, inertia)
 
 

@@ -25,8 +25,6 @@ _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 def plain(value: Any, where: str, depth: int = 0) -> Any:
     """Convert a Python value to the form of a scene file: an array to a list, a rotation of SciPy to a quaternion.
 
-    ``where`` is the place of the value, for errors; ``depth`` counts the tables and lists around it.
-
     Raises
     ------
     InputError
@@ -64,10 +62,8 @@ def toml_text(content: Content) -> str:
 
 
 def _write_table(content: Content, name: str, lines: list[str]) -> None:
-    """Append the TOML lines of a table to ``lines``: first its values, then its tables and lists of tables.
-
-    ``name`` is the dotted name of the table, as in its header ``[name]``; it is empty for the whole file.
-    """
+    """Append the TOML lines of a table to ``lines``: first its values, then its tables and lists of tables."""
+    # name is the dotted name in the header [name]; empty for the whole file
     later = [key for key, value in content.items() if _is_section(key, value, name)]
     lines += [f"{_key(key)} = {_value(value)}" for key, value in content.items() if key not in later]
     for key in later:
@@ -79,13 +75,10 @@ def _write_table(content: Content, name: str, lines: list[str]) -> None:
 
 
 def _is_section(key: str, value: Any, name: str) -> bool:
-    """Return whether a value has its own TOML header: ``[body]`` for a table, ``[[torque]]`` for a list of tables.
-
-    ``key`` is its key and ``name`` the dotted name of the table that contains it; other values are written as ``key =
-    value``.
-    """
+    """Return whether a value has its own TOML header: ``[body]`` for a table, ``[[torque]]`` for a list of tables."""
     if isinstance(value, list):
         return bool(value) and all(isinstance(item, dict) for item in value)
+    # tables inside named tables are written as key = value
     return isinstance(value, dict) and not name
 
 

@@ -27,12 +27,8 @@ def shipped_names() -> list[str]:
 
 
 def names_with_kernels() -> list[str]:
-    """Return the names of the shipped scenes that have one set of equations of motion.
-
-    The equations can be printed as C (``symrot emit``) and certified. Scenes of two other kinds are left out: a scene
-    with a table of samples has no formula for its torque, and a scene with jumps or kinks has different equations
-    before and after each of them.
-    """
+    """Return the names of the shipped scenes whose equations of motion can be printed as C and certified."""
+    # A table of samples has no formula; with jumps or kinks, the equations change at each of them.
     return [name for name in shipped_names() if all(map(_has_kernel, _torques(name)))]
 
 
@@ -49,9 +45,6 @@ def _has_kernel(torque: dict[str, Any]) -> bool:
 def find_scene(source: str | Path) -> Path:
     """Return the path of a scene file, from the name of a shipped scene or from a path.
 
-    A text without a suffix and without a folder is the name of a shipped scene if there is one of this name, otherwise
-    a file in the current folder.
-
     Raises
     ------
     InputError
@@ -62,6 +55,7 @@ def find_scene(source: str | Path) -> Path:
         raise InputError(f"expected the name of a scene or the path of a scene file, got {str(source)[:60]!r}")
     path = Path(source)
     names = shipped_names()
+    # Without suffix and folder, the name of a shipped scene comes before a file of the current folder.
     is_name = isinstance(source, str) and path.name == source and not path.suffix
     if is_name and source in names:
         return SHIPPED / f"{source}.toml"
@@ -112,10 +106,8 @@ def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
 
 
 def _longest_key(text: str) -> int:
-    """Return an estimate of the number of parts of the longest dotted key (such as ``a.b.c``) in TOML text.
-
-    The time and memory that tomllib needs are quadratic in this number, so a file with a very long key is refused.
-    """
+    """Return an estimate of the number of parts of the longest dotted key, such as ``a.b.c``, in TOML text."""
+    # The time and memory of tomllib are quadratic in this number, so a file with a very long key is refused.
     longest = run = 0
     for part in text.split("."):
         run = run + 1 if _KEY.fullmatch(part.strip(" \t")) else 1

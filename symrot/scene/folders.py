@@ -18,9 +18,6 @@ class Folders(NamedTuple):
     def file(self, name: str, where: str, what: str) -> Path:
         """Return the path of a file that a scene names; raise InputError if it is outside the allowed folders.
 
-        Links are followed before the check. A scene may come from an untrusted source, and must not make symrot open
-        any other file of the user and quote it in a message.
-
         Parameters
         ----------
         name : str
@@ -34,6 +31,8 @@ class Folders(NamedTuple):
         if not name.strip() or "\\" in name:
             fail(where, f"the name of {what}, with / between folders", name)
         try:
+            # Links are followed first: a scene from an untrusted source must not make symrot open any other file of the
+            # user and quote it in a message.
             path = (self.folder / name).resolve()
             inside = any(path.is_relative_to(Path(each).resolve()) for each in (self.folder, *others))
         except (OSError, RuntimeError, ValueError) as reason:  # RuntimeError: links that lead in a circle

@@ -68,16 +68,14 @@ def table(value: object, where: str, expectation: str = "a table") -> Mapping[st
 
 
 def read_table(value: object, where: str, entries: Mapping[str, Entry], what: str = "a table") -> dict[str, Any]:
-    """Return the values of a table by key, each read by its rule in ``entries``; a missing key gets its default.
-
-    A key that is unknown, or missing although its rule requires it, raises InputError; ``what`` names the table there.
-    """
+    """Return the values of a table by key, each read by its rule in ``entries``; a missing key gets its default."""
     entries_by_key = table(value, where, f"{what} with the keys {', '.join(entries)}")
     for key in entries_by_key:
         if key not in entries:
             reason = ", ".join(filter(None, ("unknown key", nearest(key, entries))))
             fail(key_path(where, key), f"one of the keys {', '.join(entries)} of {what}", entries_by_key[key], reason)
     for key, entry in entries.items():
+        # ``what`` names the table in messages
         if entry.required and key not in entries_by_key:
             fail(key_path(where, key), f"a value, the key is missing ({what} needs it)")
     return {

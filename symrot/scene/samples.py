@@ -159,11 +159,7 @@ def read_samples(
 
 
 def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, rows: int) -> None:
-    """Raise InputError unless the times increase, with two samples or more between consecutive switching times.
-
-    A switching time occurs twice: for the torque before the jump and after it. ``place`` names the samples in the
-    message.
-    """
+    """Raise InputError unless the times increase, with two samples or more between consecutive switching times."""
     if len(times) < 2:
         fail(place, f"two samples or more, got {len(times)}")
     length = 1
@@ -171,6 +167,7 @@ def _check(times: tuple[float, ...], switching: tuple[float, ...], place: str, r
         at = f"{place}, line {index + rows}" if rows else f"{place}[{index}]"
         if after < before:
             fail(at, f"increasing times, got {after!r} s after {before!r} s")
+        # a switching time occurs twice: for the torque before the jump and after it
         if after == before and after not in switching:
             fail(at, "increasing times; only a switching time may occur twice, for the samples before and after the "
                      f"jump, got {after!r} s twice")  # fmt: skip

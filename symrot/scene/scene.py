@@ -278,11 +278,10 @@ class _Origin(NamedTuple):
 
 
 def _parts(scene: Scene) -> tuple[Any, ...]:
-    """Return the parts of a scene that :meth:`Scene.to_dict` reads from the scene's file only: body, torques and table.
-
-    They cannot be turned back into the texts of a file. If one of them was replaced after the scene was read, the
-    content of the file no longer describes the scene.
+    """Return the parts of a scene that :meth:`Scene.to_dict` reads from the scene's file only: body, torques
+    and table.
     """
+    # They cannot be turned back into the texts of a file: if one is replaced, the content is out of date.
     return scene.body, scene.torques, scene.table
 
 

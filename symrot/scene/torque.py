@@ -108,10 +108,8 @@ def _rest(value: Any, where: str) -> tuple[Fraction, ...]:
 
 
 def _depth(node: expression.Node) -> int:
-    """Return the depth of a formula tree: the largest number of nodes from the root to a leaf.
-
-    It is computed without recursion, since the tree of a long sum is very deep; formulas that are too deep are refused.
-    """
+    """Return the depth of a formula tree: the largest number of nodes from the root to a leaf."""
+    # without recursion, since the tree of a long sum is very deep
     depth, level = 0, [node]
     while level:
         depth, level = depth + 1, [child for parent in level for child in expression.children(parent)]
@@ -119,15 +117,12 @@ def _depth(node: expression.Node) -> int:
 
 
 def _formula(value: Any, where: str) -> str:
-    """Return one component of a torque, a formula or a number in the scene, as formula text.
-
-    Text that is no formula, is too long or too deep, or divides by zero raises InputError, which names the place
-    ``where``.
-    """
+    """Return one component of a torque, a formula or a number in the scene, as formula text."""
     if not isinstance(value, str):
         return str(read(value, where, 'a formula as text, such as "-k*omega_1", or a number'))
     if len(value) > LONGEST_FORMULA:
         fail(where, f"a formula of at most {LONGEST_FORMULA} characters", value, f"it has {len(value)}")
+    # text that is no formula raises InputError
     node = expression.parse(value, where, switching=True)
     if _depth(node) > DEEPEST_FORMULA:
         fail(where, f"a formula of at most {DEEPEST_FORMULA} levels", value, "put brackets around groups of terms")
@@ -200,11 +195,7 @@ def _entries(kind: TorqueKind) -> dict[str, Entry]:
 
 
 def _fit_gravity(values: dict[str, Any], body: Body, where: str) -> dict[str, Any]:
-    """Return the values of a ``gravity`` torque: the weight, the centre of mass, and the unit vector ``direction``.
-
-    What the table ``values`` does not give is taken from the body: its mass times ``gravity``, and its centre of mass.
-    ``where`` is the place of the torque, for errors.
-    """
+    """Return the values of a ``gravity`` torque: the weight, the centre of mass, and the unit vector ``direction``."""
     weight, acceleration, center = values["weight"], values["gravity"], values["center_of_mass"]
     if weight is not None and acceleration is not None:
         fail(f"{where}.gravity", "weight or gravity, not both", acceleration)
@@ -216,6 +207,7 @@ def _fit_gravity(values: dict[str, Any], body: Body, where: str) -> dict[str, An
         known = [float(item) for item in body.center_of_mass]
         fail(f"{where}.center_of_mass", f"no value, or that of the body, {show(known)} m from the fixed point",
                  [float(item) for item in center])  # fmt: skip
+    # not in the table: the body's; likewise its mass times gravity is the weight
     if center is None:
         center = body.center_of_mass
     if center is None:
@@ -240,12 +232,9 @@ def _fit_damping(values: dict[str, Any], body: Body, where: str) -> dict[str, An
 
 
 def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str, Any]:
-    """Return the values of an ``expression`` torque, after a check that its formulas contain only known names.
-
-    Known are its parameters and the quantities of the motion, such as omega_1. If a formula needs pi, pi is added to
-    the parameters.
-    """
+    """Return the values of an ``expression`` torque; raise InputError if its formulas contain unknown names."""
     parameters = dict(values["parameters"])
+    # its parameters, and the quantities of the motion, such as omega_1
     known = {*EXPRESSION_NAMES, *parameters, "pi"}
     for index, formula in enumerate(values["torque"]):
         node = expression.parse(formula, switching=True)
@@ -265,16 +254,13 @@ def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str,
 
 
 def _check_clips(node: expression.Node, values: Mapping[str, float], where: str, index: int) -> None:
-    """Raise InputError if a formula contains ``clip(u, low, high)`` with low > high.
-
-    Only limits that are numbers or parameters are compared; ``values`` holds the parameters by name. The message names
-    the component ``index`` of the torque at ``where``.
-    """
+    """Raise InputError if a formula contains ``clip(u, low, high)`` with low > high."""
     for child in expression.children(node):
         _check_clips(child, values, where, index)
     if node[0] != "call" or node[1] != "clip":
         return
     low, high = node[2][1:]
+    # only limits that are numbers or parameters are compared
     if not (expression.names(low) | expression.names(high)) <= set(values):
         return
     try:

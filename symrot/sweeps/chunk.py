@@ -1,8 +1,7 @@
 """One chunk of a sweep: computation of the outputs of the trajectories with consecutive indices.
 
-The outputs of a trajectory depend only on the job and on the index of the trajectory, because its varied values do, and
-its equations are chosen by its own constants (:meth:`symrot.ensemble.variation.Variation.patterns`). A trajectory that
-cannot be computed has NaN as outputs, a status and a reason; the others are not affected.
+The outputs of a trajectory depend only on the sweep and on the trajectory's index. A trajectory that cannot be
+computed has NaN as outputs, a status and a reason.
 """
 
 from dataclasses import dataclass, replace
@@ -32,6 +31,8 @@ COMPLETE, STOPPED, IMPOSSIBLE = 0, -1, -2
 MOST_READINGS = 4096  # scenes of distinct values that a process remembers
 
 
+# The equations of a trajectory are chosen by its own constants (Variation.patterns), so that the other trajectories of
+# its chunk do not change its outputs.
 @dataclass(frozen=True, eq=False)
 class Job:
     """The description of a sweep: the scene, the design (which values vary), and outputs with times and accuracy."""
@@ -73,10 +74,7 @@ class _Inputs:
 
 
 def compute(job: Job, start: int, stop: int) -> Chunk:
-    """Return the results of the trajectories ``start`` to ``stop - 1`` of a sweep.
-
-    Trajectories that cannot be computed have NaN as outputs, a status and a message.
-    """
+    """Return the outputs, status and messages of the trajectories ``start`` to ``stop - 1`` of a sweep."""
     draws, n = job.design.draws(start, stop), stop - start
     samples = sample_times(job.outputs, job.times)
     shapes = {output.name: (n, len(job.times)) if output.is_series else (n,) for output in job.outputs}
@@ -92,15 +90,13 @@ def compute(job: Job, start: int, stop: int) -> Chunk:
 
 
 def _inputs(job: Job, draws: Draws, messages: dict[int, str]) -> tuple[_Inputs, Rows]:
-    """Return the arguments of the ensemble, and the rows whose varied values give a valid scene.
-
-    ``draws`` are the varied values, one row for each trajectory. For each other row, ``messages`` gets the reason.
-    """
+    """Return the arguments of the ensemble, and the numbers of the rows of ``draws`` that give a valid scene."""
     n, scene = len(draws.values), job.scene
     inputs = _Inputs(np.tile([float(x) for x in scene.initial.omega_b], (n, 1)), draws.attitudes, {})
     rows = np.arange(n)
     paths = {axis.target.path: k for k, axis in enumerate(job.design.axes) if axis.target.path}
     if paths:
+        # messages gets the reason for each other row
         rows = _read_scenes(job, draws, paths, inputs, messages)
     for k, axis in enumerate(job.design.axes):
         name = axis.target.name
@@ -112,12 +108,9 @@ def _inputs(job: Job, draws: Draws, messages: dict[int, str]) -> tuple[_Inputs, 
 
 
 def _read_scenes(job: Job, draws: Draws, paths: dict[Path, int], inputs: _Inputs, messages: dict[int, str]) -> Rows:
-    """Read the scene with the varied values of each row, and write its constants into ``inputs``.
-
-    ``paths`` maps the place of each varied number in the scene file to its column in ``draws``. Return the rows that
-    gave a valid scene; for each other row, ``messages`` gets the reason.
-    """
+    """Read the scene with the varied values of each row, and return the rows that give a valid scene."""
     assert job.content is not None
+    # paths: the place of each varied number in the scene file, with its column in the draws
     constants = sorted({name for path in paths for name in constants_of(path, job.scene, job.content)})
     n, moved = len(draws.values), any(path[0] == "initial" for path in paths)
     inputs.parameters |= {name: np.ones(n) for name in constants}
@@ -128,10 +121,12 @@ def _read_scenes(job: Job, draws: Draws, paths: dict[Path, int], inputs: _Inputs
     for row, values in enumerate(draws.values[:, list(paths.values())].tolist()):
         outcome = reader(tuple(values))
         if isinstance(outcome, str):
+            # the reason why the scene is not valid
             messages[row] = outcome
             continue
         rows.append(row)
         for name, value in zip(constants, outcome[0], strict=True):
+            # the constants of the scene
             inputs.parameters[name][row] = value
         if moved:
             inputs.omega[row] = outcome[1]
@@ -145,11 +140,7 @@ Reading = tuple[list[float], list[float], list[float]]  # constants, omega, quat
 
 @lru_cache(maxsize=2)
 def _reader(job: Job, paths: tuple[Path, ...], constants: tuple[str, ...]) -> Any:
-    """Return a function that puts values at ``paths`` of the scene file, and reads the scene again.
-
-    The function returns the values of the named ``constants`` of this scene, its initial omega and its quaternion. If
-    the file with these values is not valid, it returns the reason.
-    """
+    """Return a function that puts values at ``paths`` of the scene file, and reads the scene again."""
     names = {axis.target.path: axis.target.name for axis in job.design.axes}
 
     @lru_cache(maxsize=MOST_READINGS)
@@ -160,18 +151,17 @@ def _reader(job: Job, paths: tuple[Path, ...], constants: tuple[str, ...]) -> An
             variation = read_variation(scene, None, None, None)
             numbers = [float(variation.constant(name)) for name in constants]
         except InputError as error:
+            # the reason why the file with these values is not valid
             return str(error)
         start = scene.initial
+        # the values of the named constants, the initial omega and quaternion
         return numbers, [float(x) for x in start.omega_b], [float(x) for x in start.quaternion]
 
     return read
 
 
 def _possible(scene: Scene, inputs: _Inputs, rows: Rows, messages: dict[int, str]) -> Rows:
-    """Return those of ``rows`` whose values the ensemble accepts; the reasons for others go into ``messages``.
-
-    Rejected rows are found by bisection: a rejected group is halved until it has one row.
-    """
+    """Return those of ``rows`` whose values the ensemble accepts; the reasons for others go into ``messages``."""
     if not len(rows):
         return rows
     try:
@@ -180,6 +170,7 @@ def _possible(scene: Scene, inputs: _Inputs, rows: Rows, messages: dict[int, str
         if len(rows) == 1:
             messages[int(rows[0])] = _alone(error)
             return rows[:0]
+        # a rejected group is halved until it has one row
         half = len(rows) // 2
         return np.concatenate([_possible(scene, inputs, part, messages) for part in (rows[:half], rows[half:])])
     return rows
@@ -194,10 +185,7 @@ def _propagate(
     job: Job, inputs: _Inputs, rows: Rows, samples: Floats, outputs: dict[str, Floats], status: NDArray[np.int8],
     messages: dict[int, str],
 ) -> None:  # fmt: skip
-    """Propagate ``rows``, which have the same equations of motion; write the results into ``outputs`` and ``status``.
-
-    ``samples`` are the times, s, at which the outputs need the state. A trajectory that stops early gets a message.
-    """
+    """Propagate ``rows``, which share their equations, and write the results into ``outputs`` and ``status``."""
     try:
         ensemble = propagate_ensemble(
             job.scene, **inputs.of(rows), t=samples, method=job.method, tolerance=job.tolerance,
@@ -215,6 +203,7 @@ def _propagate(
         outputs[name][rows] = value
     status[rows] = np.where(ensemble.status == 0, COMPLETE, STOPPED)
     for place in np.flatnonzero(ensemble.status).tolist():
+        # a trajectory that stopped early
         messages[int(rows[place])] = ensemble.messages[place]
 
 

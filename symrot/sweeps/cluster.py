@@ -39,11 +39,9 @@ def _client(address: str) -> Any:
 
 
 def run_on_cluster(job: Job, ranges: Sequence[Range], address: str) -> Iterator[Chunk]:
-    """Yield the chunks of a job in the order in which they are complete, computed by the workers of a Dask cluster.
+    """Yield the chunks of a job, as each is complete, computed by the workers of a Dask cluster.
 
-    ``ranges`` are the pairs (start, stop) of the chunks, ``address`` is that of the cluster's scheduler. If a worker is
-    lost, Dask computes its chunks on another worker. At most two chunks for each thread of the cluster are submitted at
-    a time.
+    ``ranges``: (start, stop) per chunk; ``address``: the scheduler.
 
     Raises
     ------
@@ -59,8 +57,10 @@ def run_on_cluster(job: Job, ranges: Sequence[Range], address: str) -> Iterator[
         threads = sum(client.nthreads().values()) or 1
 
         def submit() -> Any:
+            # if a worker is lost, Dask computes its chunks on another one
             return client.submit(compute_packed, text, *missing.popleft(), pure=False, retries=RETRIES)
 
+        # at most two chunks for each thread of the cluster at a time
         running = in_order([submit() for _ in range(min(len(missing), IN_FLIGHT * threads))], loop=client.loop)
         for future in running:
             try:

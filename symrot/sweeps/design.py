@@ -1,8 +1,7 @@
 """The design of a sweep: which values vary, by which laws, in how many trajectories; and the values of a trajectory.
 
-Trajectory i belongs to draw ``i // g`` and grid point ``i % g``, where g is the number of points in the product of all
-grids. Each draw of the distributions is thus used at every grid point, and a sweep of more trajectories begins with the
-trajectories of a smaller one (with the sampling ``random`` or ``sobol``).
+Each draw of the distributions is used at every point of the grids: trajectory i belongs to draw ``i // g`` and grid
+point ``i % g``, where g is the number of grid points.
 """
 
 from collections.abc import Mapping, Sequence
@@ -44,6 +43,7 @@ class Draws:
     attitudes: Floats | None  # (n, 4), unit quaternions; None: the attitude of the scene
 
 
+# A sweep of more trajectories begins with the trajectories of a smaller one, with the sampling random or sobol.
 @dataclass(frozen=True)
 class Design:
     """What varies in a sweep, with the number of trajectories, the sampling (how values are drawn) and the seed."""
@@ -69,10 +69,8 @@ class Design:
         return tuple(axis.target.name for axis in self.axes)
 
     def draws(self, start: int, stop: int) -> Draws:
-        """Return the varied values of the trajectories ``start`` to ``stop - 1``.
-
-        They depend only on the design and the index of each trajectory, so that any process can compute any part.
-        """
+        """Return the varied values of the trajectories ``start`` to ``stop - 1``."""
+        # they depend only on design and index, so that any process can compute any trajectories
         index = np.arange(start, stop)
         draw, point = np.divmod(index, self.grid_points)
         drawn = [axis for axis in self.axes if isinstance(axis.law, Distribution)]
@@ -178,9 +176,9 @@ def _count(count: object, points: int, random: bool) -> int:
 
 
 def _whole(value: object, where: str, low: int, high: int) -> int:
-    """Return a whole number from ``low`` to ``high``, which may be written as 1e6, as an int.
+    """Return a whole number from ``low`` to below ``high`` as an int; it may be written as 1e6.
 
-    Raise InputError if ``value`` is not whole or out of range; ``where`` is its name in the message.
+    Raise InputError for anything else.
     """
     expectation = f"{where}: expected a whole number from {low} to {high:g}, got {show(value)}"
     if isinstance(value, bool) or not isinstance(value, int | float | str | np.integer):

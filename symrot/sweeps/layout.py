@@ -76,20 +76,14 @@ class Header:
 
 
 class Store(Protocol):
-    """The interface of stores for the results of a sweep, which are written in chunks of trajectories.
+    """The interface of stores for the results of a sweep, which are written in chunks of trajectories."""
 
-    A chunk is stored as a whole: if the process is killed while it writes, the chunk counts as missing.
-    """
-
+    # a chunk is stored as a whole: if the process is killed while it writes, the chunk counts as missing
     header: Header
 
     @property
     def only_statistics(self) -> str:
-        """A text that describes the statistics if the store has only these; otherwise an empty text.
-
-        A sweep with ``keep="statistics"`` removes the values of the outputs after the statistics have been computed
-        from them.
-        """
+        """A description of the statistics if the store has only these, not the values of the outputs; else empty."""
 
     def pending(self) -> list[tuple[int, int]]:
         """Return the pairs (start, stop) of trajectories, one per chunk, whose results are not stored yet."""
@@ -109,16 +103,12 @@ class Store(Protocol):
     def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        If ``only_statistics``, a text that describes the statistics, is not empty, remove the values of the outputs, so
-        that only statistics stay.
+        Remove the values of the outputs if ``only_statistics``, a description of the statistics, is not empty.
         """
 
 
 def header_of(job: Job, rows: int | None = None) -> Header:
-    """Return the header of the results of a sweep: what they are, and how they are stored.
-
-    ``rows`` is the number of trajectories in a chunk; by default it follows from the size of the results.
-    """
+    """Return the header of the results of a sweep, with ``rows`` trajectories in a chunk."""
     design = job.design
     inputs = [
         Variable(f"input_{axis.target.name}", (), axis.target.unit, "", f"value of {axis.target.name} that varies")
@@ -130,18 +120,17 @@ def header_of(job: Job, rows: int | None = None) -> Header:
         Variable(output.name, (TIME,) if output.is_series else (), output.unit, output.frame, output.meaning)
         for output in job.outputs
     ]
+    # by default the number follows from the size of the results
     samples = max(1, len(job.times)) * (1 + len(job.sensitivities))
     chosen = rows or max(1, min(max(ROWS[0], design.count // CHUNKS), ROWS[1], LARGEST_CHUNK // samples))
     return Header(_identity(job), job.scene.name, design.names, (*inputs, *outputs), design.count, job.times, chosen)
 
 
 def _identity(job: Job) -> dict[str, str]:
-    """Return the settings that determine the results of a sweep, as short texts by name, such as the seed.
-
-    Stored results are continued only by a sweep with the same settings.
-    """
+    """Return the settings that determine the results of a sweep, as short texts by name, such as the seed."""
     import symrot
 
+    # stored results are continued only by a sweep with the same settings
     scene, design = job.scene, job.design
     content = (scene.body._replace(description=""), scene.initial, scene.torques, scene.span.start, scene.table)
     return {
@@ -164,20 +153,16 @@ def _digest(text: str) -> str:
 
 
 def difference(own: Mapping[str, str], other: object) -> str:
-    """Return the names of the settings in which two sweeps differ, such as ``seed, count``; empty if they agree.
-
-    ``own`` are the settings of this sweep, ``other`` is what a file has in their place.
-    """
+    """Return the names of the settings in which two sweeps differ, such as ``seed, count``; empty if they agree."""
+    # what a file has in place of the settings
     if not isinstance(other, Mapping):
         return "it has no description"
     return ", ".join(name for name in own if own[name] != other.get(name))
 
 
 def arrays_of(chunk: Chunk, names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
-    """Return the arrays of a chunk by name, as the header of a store names them, without status and messages.
-
-    ``names`` are the names of the values that vary, in the order of the draws.
-    """
+    """Return the varied values and the outputs of a chunk as arrays by name, such as ``"input_weight"``."""
+    # names: of the varied values, in the order of the draws
     arrays: dict[str, NDArray[Any]] = {f"input_{name}": chunk.draws.values[:, k] for k, name in enumerate(names)}
     if chunk.draws.attitudes is not None:
         arrays[ATTITUDE] = chunk.draws.attitudes

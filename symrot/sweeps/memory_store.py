@@ -39,10 +39,7 @@ class MemoryStore:
 
     @property
     def only_statistics(self) -> str:
-        """Always an empty text: this store has the values of the outputs.
-
-        In other stores it describes the statistics, if only these are stored (``keep="statistics"``).
-        """
+        """Always an empty text: this store has the values of the outputs, not only statistics."""
         return ""
 
     def pending(self) -> list[tuple[int, int]]:
@@ -70,10 +67,10 @@ class MemoryStore:
     def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        If ``only_statistics`` is not empty, remove the values of the outputs. It is a text that describes the
-        statistics, for stores that write it into a file; this store does not need it.
+        Remove the values of the outputs if ``only_statistics`` is not empty.
         """
         self.tables = tables
+        # its text, a description of the statistics for files, is not needed here
         if only_statistics:
             for variable in self.header.variables:
                 self._arrays.pop(variable.name, None)

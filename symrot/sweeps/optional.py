@@ -11,8 +11,7 @@ __all__ = ["optional"]
 def optional(name: str, where: str, extra: str = "sweep") -> Any:
     """Return the module ``name`` of an optional package, such as ``"xarray"``.
 
-    ``where`` is the function that needs it and ``extra`` is the part of symrot that installs it, as in
-    ``symrot[sweep]``; both are for the message.
+    The error names ``where`` it is needed and ``symrot[extra]``, which installs it.
 
     Raises
     ------

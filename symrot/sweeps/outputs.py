@@ -1,8 +1,7 @@
 """Outputs of a sweep: quantities of each trajectory at all sample times or at one time, or their extremes and means.
 
-An output is written as text: ``energy`` is the energy at all sample times, ``omega_1@end`` one component at the last
-time, ``axis_z@2.5`` at t = 2.5 s, ``omega_3@max`` the largest value among the samples. ``omega_2_by_weight@end`` is a
-derivative by an initial value or a constant of the scene.
+Examples: ``energy`` at all sample times, ``omega_1@end`` at the last time, ``axis_z@2.5`` at 2.5 s, ``omega_3@max``,
+the largest sample, and ``omega_2_by_weight@end``, a derivative by an initial value or a constant.
 """
 
 from collections.abc import Callable, Sequence
@@ -72,10 +71,7 @@ def _components(output: Output) -> dict[str, tuple[str, int]]:
 
 
 def scene_for(scene: Scene, texts: Sequence[str]) -> Scene:
-    """Return the scene, extended by the Euler sequence in the names of a sweep's outputs, such as ``euler_ZYX_1@end``.
-
-    Without such a name the scene is returned unchanged.
-    """
+    """Return the scene with the Euler sequence in the outputs ``texts``, if any: ZYX for ``euler_ZYX_1@end``."""
     from dataclasses import replace
 
     sequences = []
@@ -160,11 +156,8 @@ def _reduced(reduction: str, time: float) -> str:
 
 
 def _derivatives(name: str, scene: Scene, reduction: str, time: float, suffix: str) -> list[SweepOutput]:
-    """Return the outputs for a derivative such as ``omega_2_by_weight`` or, for three components, ``omega_by_weight``.
-
-    The user may write ``omega_2_by_weight@max`` for the largest value in time. ``name`` is the part before the @;
-    ``reduction``, ``time`` and ``suffix`` are those that :func:`_reduction` returns for the word after it.
-    """
+    """Return the outputs for a derivative such as ``omega_2_by_weight``, or for three: ``omega_by_weight``."""
+    # name is the text before the @; reduction, time and suffix come from the word after it, such as max
     part, _, variable = name.partition(BY)
     parts = {component: (quantity, k) for quantity, (names, *_) in OUTPUTS.items() for k, component in enumerate(names)}
     chosen = [part] if part in parts else [key for key, (quantity, _) in parts.items() if quantity == part]
@@ -186,10 +179,8 @@ def _derivatives(name: str, scene: Scene, reduction: str, time: float, suffix: s
 
 
 def variables_of(name: str, scene: Scene) -> list[Variable]:
-    """Return the variables that a name after ``_by_`` means: one, or the three of a vector.
-
-    A name is that of a variable, such as ``weight``, ``omega_3``, ``attitude_2``, or of a vector, such as ``attitude``.
-    """
+    """Return the variables that a name after ``_by_`` means: one for ``weight``, three for ``attitude``."""
+    # omega_3 and attitude_2 mean one component of a vector
     stem, _, number = name.rpartition("_")
     key = stem if stem == ATTITUDE and number in ("1", "2", "3") else name
     try:
@@ -206,14 +197,14 @@ def variable_keys(outputs: Sequence[SweepOutput]) -> list[str]:
 
 
 def _reduction(word: str, times: Floats) -> tuple[str, float, str]:
-    """Return (reduction, time in s, ending) for the word after @ in an output's name, such as ``omega_1@max``.
+    """Return (reduction, time in s, ending) for the word after @ in the name of an output.
 
-    ``max`` gives ("max", 0.0, "@max"). A time gives the reduction "at": 2.5 gives ("at", 2.5, "@2.5"), and ``start``
-    and ``end`` give the first and the last of ``times``.
+    ``max`` gives ("max", 0.0, "@max"), and 2.5 gives ("at", 2.5, "@2.5").
     """
     if word in REDUCTIONS:
         return word, 0.0, f"@{word}"
     if word in AT_TIMES:
+        # the first or the last time, s
         return "at", float(times[0] if word == "start" else times[-1]), f"@{word}"
     known = (*AT_TIMES, *REDUCTIONS)
     hint = nearest(word, known)
@@ -226,20 +217,15 @@ def _reduction(word: str, times: Floats) -> tuple[str, float, str]:
 
 
 def sample_times(outputs: Sequence[SweepOutput], times: Floats) -> Floats:
-    """Return the times, s, at which the motions must be sampled so that all outputs can be computed.
-
-    These are all sample times of the sweep, ``times``, or fewer if every output is at a single time.
-    """
+    """Return the times, s, at which the motions must be sampled so that all outputs can be computed."""
+    # fewer than all sample times if every output is at a single time
     whole = any(output.reduction != "at" for output in outputs)
     own = [output.time for output in outputs if output.reduction == "at"]
     return np.unique([*(times.tolist() if whole else []), *own])
 
 
 def evaluate(outputs: Sequence[SweepOutput], ensemble: Any, times: Floats, samples: Floats) -> dict[str, Floats]:
-    """Return the outputs of the n motions of an ensemble by name.
-
-    The shape is (n, m) for an output at all sample times, and (n,) for an output at one time or a reduction such as
-    max.
+    """Return the outputs of the n motions of an ensemble by name, shape (n, m) at m times, else (n,).
 
     Parameters
     ----------

@@ -1,7 +1,6 @@
 """Results of a sweep as a folder of Parquet files, which pandas opens: one file for each chunk of trajectories.
 
-If an output has values at all sample times, there is one row for each trajectory and time; otherwise one row for each
-trajectory. A file gets its final name when it is complete, so every file with such a name has all its rows.
+There is one row for each trajectory, and for each time if an output has values at all sample times.
 """
 
 import json
@@ -34,6 +33,7 @@ __all__ = ["ParquetStore"]
 DESCRIPTION, STATISTICS = "_sweep.json", "_statistics.parquet"  # readers of Parquet ignore names that begin with _
 
 
+# A file gets its final name when it is complete, so that every file with such a name has all its rows.
 class ParquetStore:
     """The store of a sweep in the folder at ``path``. Results of the same sweep there are continued.
 
@@ -142,18 +142,15 @@ class ParquetStore:
         return np.asarray(rows["value"].to_numpy().reshape(shape))
 
     def has(self, name: str) -> bool:
-        """Return whether the array ``name`` can be read from one column: input, output, status or message.
-
-        An attitude cannot, because each of its four components has a column of its own.
-        """
+        """Return whether the array ``name`` can be read from one column: input, output, status or message."""
+        # not an attitude: each of its four components has a column of its own
         columns = (variable.name for variable in self.header.variables if variable.dimensions in ((), (TIME,)))
         return name in (STATUS, MESSAGE, *columns)
 
     def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        If ``only_statistics`` is not empty, the values of the outputs would have to be removed, which this store cannot
-        do: InputError is raised.
+        Raise InputError if only statistics should stay: values cannot be removed from these files.
         """
         if tables:
             rows = self._arrow.Table.from_pylist([row for table in tables for row in _rows(table, self.header.times)])
@@ -175,10 +172,8 @@ def _parts(name: str) -> list[str]:
 
 
 def _rows(table: Table, times: NDArray[np.float64]) -> list[dict[str, Any]]:
-    """Return the array of statistics ``table`` as rows (name, t, index, value) of a file.
-
-    ``t`` is one of ``times``, or None if the array has no times; ``index`` counts percentiles or bins.
-    """
+    """Return the array of statistics ``table`` as rows (name, t, index, value) of a file."""
+    # t: one of times, or None if the array has no times; index counts percentiles or bins
     rows = []
     for place, value in np.ndenumerate(table.values):
         axes = dict(zip(table.dimensions, place, strict=True))

@@ -1,14 +1,7 @@
 """Random points of the unit cube, from which the values of a sweep are drawn.
 
-Each point is computed from the seed and its index alone. Therefore any process can compute any range of points, and the
-points have the same bits however the ranges are chosen.
-
-- ``random``: one stream of Philox numbers for each varied value. Philox computes the k-th number of its stream directly
-  from k.
-- ``latin``: a Latin hypercube: the range of each varied value is divided into n intervals of equal length for n points,
-  and each interval contains one point. The order of the intervals is a permutation of 0 to n - 1 by a Feistel network,
-  which needs no memory for the permutation.
-- ``sobol``: scrambled Sobol points of ``scipy.stats.qmc.Sobol``, which skips to the index of the first point.
+Each point is computed from the seed and its index alone. Therefore any process can compute any range of points, and
+the points have the same bits however the ranges are chosen.
 """
 
 import warnings
@@ -32,10 +25,8 @@ BLOCK = 4  # words of 64 bits that Philox computes from one value of its counter
 
 
 def _key(seed: int, stream: str, words: int = 2) -> Words:
-    """Return the key, an array of ``words`` 64-bit words, for the random numbers of the stream named ``stream``.
-
-    Each varied value has a stream of its own. Different seeds or names give different keys.
-    """
+    """Return the key, an array of ``words`` 64-bit words, for the random numbers of the stream named ``stream``."""
+    # each varied value has a stream of its own; other seeds or names give other keys
     sequence = np.random.SeedSequence(seed, spawn_key=tuple(stream.encode()))
     return sequence.generate_state(words, np.uint64).astype(np.uint64)
 
@@ -52,10 +43,13 @@ def _uniform(words: Words) -> Floats:
     return ((words >> np.uint64(12)).astype(np.float64) + 0.5) * 2.0**-52
 
 
+# random: one stream of Philox numbers for each varied value. Philox computes the k-th number directly from k.
 def _random(seed: int, streams: Sequence[str], count: int, start: int, stop: int) -> Floats:
     return np.stack([_uniform(_words(seed, stream, start, stop)) for stream in streams], axis=1)
 
 
+# latin: a Latin hypercube. For n points, the range of each varied value is divided into n equal intervals with one
+# point each. The order of the intervals is a permutation by a Feistel network, which needs no memory.
 def _latin(seed: int, streams: Sequence[str], count: int, start: int, stop: int) -> Floats:
     index = np.arange(start, stop, dtype=np.uint64)
     points = np.empty((stop - start, len(streams)))
@@ -66,16 +60,13 @@ def _latin(seed: int, streams: Sequence[str], count: int, start: int, stop: int)
 
 
 def permuted(index: Words, count: int, keys: Words) -> Words:
-    """Return the images of ``index`` under a random permutation of 0 to ``count - 1``; ``keys`` determine it.
-
-    A Feistel network permutes the numbers below a power of 4, here the smallest that is not below ``count``. While the
-    result for an index is ``count`` or more, the network is applied to the result again (cycle walking); this gives a
-    permutation of the numbers below ``count``.
-    """
+    """Return the images of ``index`` under a random permutation of 0 to ``count - 1``; ``keys`` determine it."""
+    # a Feistel network permutes the numbers below the smallest power of 4 that is not below count
     half = max(1, (int(count - 1).bit_length() + 1) // 2)
     shift, mask = np.uint64(half), np.uint64(2**half - 1)
     places = index.copy()
     active = np.arange(len(index))
+    # cycle walking: applied again to results of count or more, it permutes the numbers below count
     while len(active):
         left, right = places[active] >> shift, places[active] & mask
         for key in keys:
@@ -93,13 +84,11 @@ def _mixed(words: Words) -> Words:
 
 
 class _Sobol:
-    """The Sobol points of one sweep, which fill the unit cube evenly.
-
-    SciPy produces them one after the other. If each range of points starts where the last one ended, no point is
-    computed in vain; for another start, the points before it are produced again and dropped.
-    """
+    """The Sobol points of one sweep, which fill the unit cube evenly."""
 
     def __init__(self, dimensions: int, seed: int) -> None:
+        # SciPy produces the points one after the other: a range that starts where the last one ended costs nothing
+        # extra
         self._dimensions, self._seed, self._lock = dimensions, seed, Lock()
         self._restart()
 
@@ -110,10 +99,8 @@ class _Sobol:
         self._next = 0
 
     def points(self, start: int, stop: int) -> Floats:
-        """Return points ``start`` to ``stop - 1`` of the Sobol sequence, one per row, with coordinates from 0 to 1.
-
-        Threads share the generator of the sequence, so that a lock lets one at a time advance it.
-        """
+        """Return points ``start`` to ``stop - 1`` of the Sobol sequence, one per row, with coordinates from 0 to 1."""
+        # threads share the generator of the sequence
         with self._lock:
             return self._points(start, stop)
 
@@ -132,6 +119,7 @@ class _Sobol:
 _sobol_points = lru_cache(maxsize=4)(_Sobol)
 
 
+# sobol: scrambled Sobol points of scipy.stats.qmc.Sobol, which skips to the index of the first point.
 def _sobol(seed: int, streams: Sequence[str], count: int, start: int, stop: int) -> Floats:
     if count > 2**SOBOL_BITS:
         raise InputError(f"count: expected at most {2**SOBOL_BITS} draws with the sampling 'sobol', got {count}")

@@ -1,7 +1,7 @@
 """Computation of the chunks of a sweep by several processes on this machine.
 
-If a process is killed, only the chunks that it was computing are lost; a new process computes them again. The processes
-end when the process that started them ends, even if it is killed.
+If a process is killed, a new one computes its chunks again. The processes end when the process that started them ends,
+even if it is killed.
 """
 
 import multiprocessing
@@ -47,17 +47,15 @@ def _unpacked(text: bytes) -> Job:
 
 
 def compute_packed(text: bytes, start: int, stop: int) -> Chunk:
-    """Return the chunk of the trajectories ``start`` to ``stop - 1``; ``text`` is the job from :func:`packed`.
-
-    This is what a process of :func:`run_here` calls. Each process unpacks a job only once.
-    """
+    """Return the chunk of the trajectories ``start`` to ``stop - 1``; ``text`` is the job from :func:`packed`."""
+    # called in a process of run_here, which unpacks a job only once
     return compute(_unpacked(text), start, stop)
 
 
 def run_here(job: Job, ranges: Sequence[Range], workers: int) -> Iterator[Chunk]:
-    """Yield the chunks of a job in the order in which they are complete, computed by ``workers`` processes.
+    """Yield the chunks of a job, as each is complete, computed by ``workers`` processes.
 
-    ``ranges`` are the pairs (start, stop) of the chunks. With one worker, this process computes them itself, in order.
+    ``ranges`` has the pair (start, stop) of each chunk.
 
     Raises
     ------
@@ -66,6 +64,7 @@ def run_here(job: Job, ranges: Sequence[Range], workers: int) -> Iterator[Chunk]
     """
     workers = min(workers, len(ranges))
     if workers <= 1:
+        # one worker: this process, in order
         yield from (compute(job, *each) for each in ranges)
         return
     compute(job, ranges[0][0], ranges[0][0] + 1)  # compiles the kernel once, before the processes need it
@@ -90,8 +89,8 @@ def run_here(job: Job, ranges: Sequence[Range], workers: int) -> Iterator[Chunk]
             missing.extendleft(sorted(running.values(), reverse=True))
             if losses == MOST_LOSSES:
                 raise PropagationError(
-                    f"{MOST_LOSSES} times in a row a process of the sweep was killed before it completed a chunk; "
-                    "choose smaller chunks or fewer workers, and run the sweep again to go on"
+                    f"{MOST_LOSSES} times in a row a process of the sweep was killed while it computed a chunk; run "
+                    "the sweep again, with smaller chunks or fewer workers, to go on"
                 ) from None
         finally:
             _stop(pool)
@@ -99,10 +98,8 @@ def run_here(job: Job, ranges: Sequence[Range], workers: int) -> Iterator[Chunk]
 
 @contextmanager
 def _without_main() -> Iterator[None]:
-    """Hide the main program of the caller from new processes, which compute trajectories and do not need it.
-
-    They would import it, which fails for a program without ``if __name__ == "__main__"``.
-    """
+    """Hide the main program from new processes, which compute trajectories and do not need it."""
+    # they would import it, which fails for a program without if __name__ == "__main__"
     main = sys.modules["__main__"]
     sys.modules["__main__"] = ModuleType("__main__")
     try:

@@ -14,8 +14,7 @@ ROTATION_STREAMS = ("attitude 1", "attitude 2", "attitude 3")
 def uniform_rotations(u: Floats) -> Floats:
     """Return unit quaternions, scalar first, shape (n, 4), for points of the unit cube, shape (n, 3).
 
-    Uniform points give rotations that are uniform by Haar measure: the squares of (q0, q1) and (q2, q3) sum up to
-    ``u_1`` and ``1 - u_1``, and both pairs have uniform directions.
+    Uniform points give uniform rotations (Haar measure).
 
     Notes
     -----
@@ -26,6 +25,7 @@ def uniform_rotations(u: Floats) -> Floats:
     >>> uniform_rotations(np.array([[0.5, 0.25, 0.0]])).round(3).tolist()
     [[0.0, 0.707, 0.707, 0.0]]
     """
+    # the squares of (q0, q1) and (q2, q3) sum up to u_1 and 1 - u_1; both pairs have uniform directions
     first, second = np.sqrt(u[:, 0]), np.sqrt(1 - u[:, 0])
     angles = 2 * np.pi * u[:, 1:]
     pairs = first * np.cos(angles[:, 0]), first * np.sin(angles[:, 0]), second * np.cos(angles[:, 1])

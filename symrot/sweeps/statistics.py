@@ -1,9 +1,7 @@
 """Statistics of the outputs of a sweep, over all trajectories: mean, envelope, percentiles, histogram.
 
-They are computed from the values in the store, in blocks of a fixed number of trajectories. So they need little memory,
-and their bits do not depend on the chunks of the sweep. Percentiles are exact: doubles are mapped to integers in the
-same order, the values are counted in intervals of these integers, and the intervals that contain a percentile are
-narrowed until their values fit in memory.
+They are computed from the store in blocks of a fixed number of trajectories. So they need little memory, and their
+bits do not depend on the chunks of the sweep.
 """
 
 import math
@@ -76,10 +74,8 @@ def _read(text: object) -> Statistic:
 def statistics_of(
     store: Store, statistics: Sequence[Statistic], variables: Sequence[Variable], progress: Callable[[str], None]
 ) -> list[Table]:
-    """Compute statistics of ``variables`` (outputs), over all trajectories that have a value; return them as arrays.
-
-    ``store`` must have all chunks of the sweep. ``progress`` is called with a text for each output.
-    """
+    """Return statistics of ``variables`` (outputs) as arrays, over all trajectories that have a value."""
+    # the store has all chunks; progress gets a text for each output
     tables = []
     for variable in variables:
         progress(f"computing statistics of {variable.name} ..")
@@ -128,11 +124,9 @@ def _of_variable(store: Store, statistics: Sequence[Statistic], variable: Variab
 
 @dataclass(frozen=True)
 class _Survey:
-    """The number of values, the extremes and the mean of each column of an output, over all trajectories.
+    """The number of values, the extremes and the mean of each column of an output, over all trajectories."""
 
-    An output has one column per sample time, or a single column if it has one value per trajectory.
-    """
-
+    # one column per sample time, or a single one for an output with one value per trajectory
     number: NDArray[np.int64]
     low: Floats
     high: Floats
@@ -159,10 +153,7 @@ def _total(sums: Sequence[Floats], size: int) -> Floats:
 
 
 def _deviation(blocks: Blocks, survey: _Survey) -> Floats:
-    """Return the standard deviation of each column, with divisor n, as numpy.std; missing values (NaN) do not count.
-
-    ``blocks`` returns the values in blocks of rows.
-    """
+    """Return the standard deviation of each column, with divisor n as numpy.std; NaN counts as missing."""
     sums = []
     for block in blocks():
         squares = (block - survey.mean) ** 2
@@ -172,13 +163,11 @@ def _deviation(blocks: Blocks, survey: _Survey) -> Floats:
 
 
 def _histogram(blocks: Blocks, survey: _Survey, bins: int) -> tuple[NDArray[np.int64], Floats]:
-    """Return the counts, shape (bins, columns), and the edges, shape (bins + 1, columns), as numpy.histogram.
-
-    The edges of each column divide the range of its values into ``bins`` equal intervals.
-    """
+    """Return counts, shape (bins, columns), and edges, shape (bins + 1, columns), as numpy.histogram does."""
     size = len(survey.mean)
     counts, edges = np.zeros((bins, size), dtype=np.int64), np.full((bins + 1, size), np.nan)
     for k in np.flatnonzero(survey.number):
+        # equal intervals of the range of the column
         edges[:, k] = np.histogram_bin_edges([survey.low[k], survey.high[k]], bins)
     for block in blocks():
         for k in np.flatnonzero(survey.number):
@@ -190,6 +179,8 @@ def _histogram(blocks: Blocks, survey: _Survey, bins: int) -> tuple[NDArray[np.i
 # --- percentiles ------------------------------------------------------------------------------------------------------
 
 
+# Percentiles are exact: doubles are mapped to integers (keys) in the same order, the values are counted in intervals
+# of keys, and intervals that contain a percentile are narrowed until their values fit in memory.
 def _percentiles(blocks: Blocks, survey: _Survey, shares: Floats) -> Floats:
     """Return percentiles, shape (len(shares), columns), by linear interpolation as numpy.percentile.
 
@@ -232,24 +223,18 @@ def order_statistics(blocks: Blocks, low: Floats, high: Floats, ranks: NDArray[n
 
 @dataclass
 class _Search:
-    """An interval of keys (integers in the order of the values) of one column, with the ranks that are searched in it.
-
-    ``ranks`` maps the rank of a value among the values in the interval to its rank among all values of the column.
-    """
+    """A search for values with given ranks, in an interval of keys (integers in the order of the values)."""
 
     column: int
     first: int
     last: int
+    # rank among the values in the interval -> rank among all values of the column
     ranks: dict[int, int]
     number: int = -1  # number of values in the interval; -1: unknown
 
 
 def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, int], float]) -> list[_Search]:
-    """Read all values of a column once, to advance the ``searches`` for values of given ranks.
-
-    A search with few values in its interval is finished, and its results are written into ``values``, under (column,
-    rank). For each other search, return searches in narrower intervals.
-    """
+    """Read all values once, to finish ``searches`` for given ranks or to return them with narrower intervals."""
     open_searches = []
     for search in searches:
         if search.first == search.last:
@@ -279,6 +264,7 @@ def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, i
     narrower = []
     for k, search in enumerate(open_searches):
         if small[k]:
+            # few values: the results go into values, under (column, rank)
             ordered = _values(np.sort(np.concatenate(members[k])))
             values |= {(search.column, rank): float(ordered[r]) for r, rank in search.ranks.items()}
         else:
@@ -287,13 +273,11 @@ def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, i
 
 
 def _split(search: _Search, counts: NDArray[np.int64], shift: int) -> list[_Search]:
-    """Split a search for order statistics, such as a median, into searches in parts of its range that contain a result.
+    """Split a search into searches in those parts of its interval that contain one of its ranks.
 
-    A search asks for the values with certain ranks among all values of a column; rank 0 is the smallest value. Values
-    are represented by integers in the same order. The range of integers is divided into parts of length ``2^shift``,
-    and ``counts`` are the numbers of values in these parts: with counts 5 and 7, rank 6 lies in the second part, with
-    rank 1 there. Parts without a rank asked for are dropped.
+    Parts have ``2^shift`` keys. For ``counts`` 5 and 7, rank 6 becomes rank 1 of the second part.
     """
+    # rank 0 is the smallest value
     ends = np.cumsum(counts)
     parts: dict[int, _Search] = {}
     for rank, whole in search.ranks.items():

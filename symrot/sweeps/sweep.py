@@ -144,8 +144,7 @@ def sweep(
 ) -> Sweep:
     """Propagate many motions of a scene with varied values, and store chosen outputs of each motion.
 
-    The results have the same bits for any number of workers and any size of chunks. If a sweep into a file was
-    interrupted, the same call continues it.
+    The results have the same bits for any number of workers; the same call continues an interrupted sweep.
 
     Parameters
     ----------
@@ -266,8 +265,8 @@ def _require(condition: bool, where: str, expectation: str, value: object) -> No
 def _require_same(present: str, statistics: str, path: Path | None) -> None:
     if present != statistics:
         raise InputError(
-            f"{path}: expected the same values of `statistics` and `keep` as when this file was written: it has "
-            "statistics only, and the values of the trajectories were removed; write other results to another file"
+            f"{path}: expected the same values of `statistics` and `keep` as before, since the values of the "
+            "trajectories were removed from this file; write other results to another file"
         )
 
 
@@ -287,15 +286,13 @@ def _whole(value: object, where: str, most: int) -> None:
 
 
 def _target(path: str | Path, keep: str) -> Path:
-    """Return the path of the file to write; raise InputError for an unknown ending or a missing folder.
-
-    A Parquet file cannot be written if ``keep`` asks for statistics only.
-    """
+    """Return the path of the file to write; raise InputError for an unknown ending or a missing folder."""
     target = Path(path)
     if target.suffix.lower() not in STORES:
         raise InputError(f"-o: expected a name that ends in {', '.join(STORES)}, got {str(path)!r}")
     if not target.parent.is_dir():
         raise InputError(f"-o: expected a name in an existing folder, got {str(path)!r}")
+    # values cannot be removed from a Parquet file
     if target.suffix.lower() != ".zarr" and keep == "statistics":
         raise InputError(
             f"-o: expected a name that ends in .zarr for keep = statistics, which stores no values of single motions, "
@@ -331,13 +328,11 @@ def _job(
 
 
 def _require_derivatives(scene: Scene, content: Content | None, design: Design, keys: Sequence[str]) -> None:
-    """Raise InputError if the motions of a sweep have no derivatives by the variables ``keys``.
-
-    There are none under torques with a jump or a kink. Nor are there any by a variable that sets a quantity which the
-    sweep varies in another way, such as the mass of a body whose radius is varied: both set its moments of inertia.
-    """
+    """Raise InputError if the motions of a sweep have no derivatives by the variables ``keys``."""
     from symrot.ensemble.sensitivities import read_columns
 
+    # None under torques with a jump or a kink, and none by a variable that sets a quantity which the sweep varies in
+    # another way: mass and radius of a body both set its moments of inertia.
     varying = ["quaternion"] if design.attitudes == "uniform" else []
     for axis in design.axes:
         path = axis.target.path
@@ -357,10 +352,7 @@ def _require_derivatives(scene: Scene, content: Content | None, design: Design, 
 
 
 def _content(scene: Scene) -> Content | None:
-    """Return the content of the file or dict from which a scene was read; None if the scene was changed later.
-
-    Numbers in the file can vary in a sweep only if this content is known.
-    """
+    """Return the content of the file or dict from which a scene was read; None if the scene was changed later."""
     try:
         return scene.to_dict()
     except InputError:  # only values of its constants can vary

@@ -1,9 +1,7 @@
 """Targets: the quantities of a scene that a sweep can vary.
 
 A target is a component of the initial angular velocity, ``omega_1``; a constant of the equations of motion, ``weight``
-or ``I_xx``; or a number in the scene file, ``body.mass`` or ``body.part[0].radius``. Constants are passed to the
-ensemble as they are. For a number in the file, the scene is read again with each value, so that everything that
-depends on it follows: the mass of a shape changes its inertia, its centre of mass and its weight.
+or ``I_xx``; or a number in the scene file, ``body.mass`` or ``body.part[0].radius``.
 """
 
 from collections.abc import Mapping
@@ -26,6 +24,8 @@ FROM_BODY = {"gravity": ("weight", "center_of_mass")}  # fields of a torque that
 Content = Mapping[str, Any]
 
 
+# Constants are passed to the ensemble as they are. For a number in the file, the scene is read again with each value,
+# so that everything follows: the mass of a shape changes its inertia, centre of mass and weight.
 @dataclass(frozen=True)
 class Target:
     """A quantity that a sweep varies: its name, its unit, and its path if it is a number in the scene file."""
@@ -144,11 +144,8 @@ def _numbers_in(content: Content) -> list[str]:
 
 
 def constants_of(path: Path, scene: Scene, content: Content) -> list[str]:
-    """Return the names of those constants of the equations of motion that the number at ``path`` may change.
-
-    An example is ``A``, a principal moment of inertia. The result depends only on the table of the scene file that
-    contains the number, so that it is the same for all values.
-    """
+    """Return the names of the constants of the equations that the number at ``path`` may change, such as ``A``."""
+    # the result depends only on the table with the number, so that it is the same for all values
     places = constant_places(scene)
     if path[0] == "initial":
         return []

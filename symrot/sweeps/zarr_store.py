@@ -1,7 +1,6 @@
 """Results of a sweep as a Zarr group, which xarray opens: one array for each input and output, with its units.
 
-Each array has the same chunks as the sweep. Zarr writes each chunk to a temporary file and renames it, and the status
-of a chunk is written last. So a chunk with a status is complete, even if a process was killed.
+Each array has the same chunks as the sweep. A chunk with a status is complete, even if a process was killed.
 """
 
 import json
@@ -58,9 +57,9 @@ class ZarrStore:
         self._open: dict[str, Any] = {}
 
     def _continued(self, zarr: Any, header: Header) -> Header:
-        """Return the header for continuing the sweep in an existing folder: chunks have the size of those stored there.
+        """Return the header for continuing the sweep in an existing folder, with the chunk size stored there.
 
-        Raise InputError if the folder has the results of another sweep, or something else.
+        Raise InputError for any other folder.
         """
         from dataclasses import replace
 
@@ -77,10 +76,7 @@ class ZarrStore:
         return replace(header, rows=rows)
 
     def _create(self, zarr: Any, header: Header) -> None:
-        """Create the arrays that ``header`` describes, without values, in a new folder; ``zarr`` is the package.
-
-        The folder gets its final name when it is complete.
-        """
+        """Create the arrays that ``header`` describes, without values, in a new folder; ``zarr`` is the package."""
         part = self.path.with_name(f".{self.path.name}.{os.getpid()}.part")
         shutil.rmtree(part, ignore_errors=True)
         try:
@@ -100,6 +96,7 @@ class ZarrStore:
             if any(COMPONENT[0] in variable.dimensions for variable in header.variables):
                 _add(group, Table(COMPONENT[0], (COMPONENT[0],), np.array(COMPONENT[1], dtype=object), {}))
             group.attrs.update({"scene": header.scene, ROWS: header.rows, IDENTITY: json.dumps(dict(header.identity))})
+            # the folder gets its final name when it is complete
             part.replace(self.path)
         finally:
             shutil.rmtree(part, ignore_errors=True)
@@ -121,6 +118,7 @@ class ZarrStore:
             self._array(name)[rows] = values
         if chunk.messages:
             self._array(MESSAGE)[rows] = messages_of(chunk)
+        # last: Zarr writes a chunk to a temporary file and renames it, so that a chunk with a status is complete
         self._array(STATUS)[rows] = chunk.status
 
     def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
@@ -144,18 +142,13 @@ class ZarrStore:
 
     @property
     def only_statistics(self) -> str:
-        """The statistics whose values the store has instead of the values of the outputs, as a text; usually empty.
-
-        The text is not empty if the values of the outputs were removed after the statistics had been computed from
-        them.
-        """
+        """A description of the statistics if the store has only these, not the values of the outputs; else empty."""
         return str(self._group.attrs.get(REMOVED, ""))
 
     def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        If ``only_statistics``, a text that describes the statistics, is not empty, store it and remove the values of
-        the outputs, so that only statistics stay.
+        Remove the values of the outputs if ``only_statistics``, a description of the statistics, is not empty.
         """
         for table in tables:
             _add(self._group, table)

@@ -1,8 +1,7 @@
 """Claims of four documents on rigid-body rotation, as data in one TOML file per document, and the errors found in them.
 
-For each claim the data give its place, its printed text, and the formula as symrot reads it. They contain no verdicts;
-:mod:`symrot.checker.textbook` computes these. The file ``errata.toml`` groups the claims that show the same error, and
-says how the formula is typeset. A correction in it is a proposal, which is printed only if it is proven.
+A claim has its place, its printed text, and the formula as symrot reads it, but no verdict. ``errata.toml`` groups the
+claims that show one error. A correction in it is printed only if it is proven.
 """
 
 import tomllib
@@ -35,34 +34,29 @@ LINE_KINDS = {
 
 
 class Document(NamedTuple):
-    """A document whose claims are checked: its name, title, kind, and its claims (in a TOML file and as parsed data).
-
-    Its text has been extracted from print. The kinds of characters that the extraction lost, such as primes, are
-    listed.
-    """
+    """A document whose claims are checked: its name, title, kind, and its claims."""
 
     name: str
     title: str
     kind: str
+    # kinds of characters that the extraction of the text from print lost, such as primes
     lost: tuple[str, ...]
     path: Path
     claims: dict[str, dict[str, Any]]
 
 
 class PrintedFormula(NamedTuple):
-    """How a claim's printed formula and its correction are typeset.
-
-    ``template`` is LaTeX with holes ``@left@``, ``@right@`` or ``@name@`` for the parts of the claim, ``corrected``
-    is the same for the correction, and ``letters`` gives the LaTeX of names. If the search for repairs does not find
-    the correction, ``derived`` is the part that is to be derived from the rest of the claim, or ``proposal`` contains
-    the corrected parts.
-    """
+    """How a claim's printed formula and its correction are typeset."""
 
     claim: str
+    # LaTeX with holes @left@, @right@ or @name@ for the parts of the claim
     template: str
     corrected: str
+    # the LaTeX of names
     letters: dict[str, str]
+    # the corrected parts, if the search for repairs does not find the correction
     proposal: dict[str, str]
+    # or the part that is to be derived from the rest of the claim
     derived: str = ""
 
 
@@ -86,13 +80,12 @@ class Condition(NamedTuple):
 
 
 class Line(NamedTuple):
-    """A line of a document with a relation sign (such as =) that states no new formula, for example a repetition.
-
-    ``kind`` is a key of :data:`LINE_KINDS`. ``claim`` is the claim that states the formula, or an empty text.
-    """
+    """A line of a document with a relation sign (such as =) that states no new formula, for example a repetition."""
 
     printed: str
+    # a key of LINE_KINDS
     kind: str
+    # the claim that states the formula, or an empty text
     claim: str
 
 

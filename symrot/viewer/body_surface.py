@@ -1,8 +1,7 @@
 """The surface of a scene's body as patches: grids of points computed from the maps that define its shapes.
 
-A shape is the image of a box of coordinates (:mod:`symrot.inertia.shapes`). Its surface is the image of the box's
-faces, so no shape needs a drawing of its own. A body of which only the inertia is known is drawn as the uniform box
-with the same moments.
+A shape is the image of a box of coordinates, and its surface the image of the box's faces. A body with unknown shape is
+drawn as the uniform box with the same moments of inertia.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -77,10 +76,7 @@ def patches(body: Body) -> list[Patch]:
 
 
 def how_drawn(body: Body) -> str:
-    """Return the sentence for a page that draws the body as a box: the box has the body's moments of inertia.
-
-    The text is empty if the shape of the body is known.
-    """
+    """Return the sentence for a page that draws the body as a box; empty if the shape of the body is known."""
     if body.parts or body.facets:
         return ""
     if body.about == "fixed_point" and _about_its_center(body) is None:
@@ -135,32 +131,27 @@ def _moved(rotation: Sequence[Sequence[Fraction]], point: Sequence[float], offse
 
 
 def _faces(shape: Shape) -> Iterator[tuple[dict[str, str], tuple[Coordinate, ...]]]:
-    """Yield for each face of a shape a pair: {name: value} of the coordinate that is constant on it, and the others.
-
-    A shape is the image of a box of coordinates, such as radius, angle and height of a cylinder. Each of its ends gives
-    a face: ({"radius": "R"}, (angle, height)) is the curved side. The second part of the pair has those two Coordinates
-    that vary on the face. An angle from 0 to 2 pi gives no faces, since its two ends are the same points inside the
-    body. A shape with fewer than three coordinates is a surface and gives one pair, ({}, all coordinates).
+    """Yield for each face of a shape the coordinate that is constant on it, with its value, and the other
+    coordinates.
     """
     coordinates = shape.coordinates
     if len(coordinates) < 3:
+        # a shape with fewer than three coordinates is a surface itself
         yield {}, coordinates
         return
     for coordinate in coordinates:
         if (coordinate.lower, coordinate.upper) == ("0", "2*pi"):
+            # both ends of an angle from 0 to 2 pi are the same points inside the body
             continue
         others = tuple(c for c in coordinates if c is not coordinate)
         for end in (coordinate.lower, coordinate.upper):
+            # ({"radius": "R"}, (angle, height)) is the curved side of a cylinder
             yield {coordinate.name: end}, others
 
 
 def _is_line(position: Sequence[Node], values: Mapping[str, float], grids: Mapping[str, list[float]]) -> bool:
-    """Return whether a face is only a line or a point, as the inner face of a solid cylinder is, at radius 0.
-
-    ``position`` are the formulas of x, y, z in the shape's coordinates and dimensions. ``values`` has the dimensions
-    and the value of the coordinate that is constant on the face, by name; ``grids`` has the values of the other
-    coordinates.
-    """
+    """Return whether a face is only a line or a point, as the inner face of a solid cylinder is, at radius 0."""
+    # position: formulas of x, y, z; values: dimensions and constant coordinate; grids: the other coordinates
     inside = {name: grid[0] + INSIDE * (grid[-1] - grid[0]) for name, grid in grids.items()}
 
     def point(**moved: float) -> list[float]:
@@ -185,9 +176,8 @@ def _value(text: str, values: Mapping[str, float]) -> float:
 
 
 def _about_its_center(body: Body) -> tuple[Principal, float, Point] | None:
-    """Return the principal moments about the centre of mass, the mass and the centre of a body.
-
-    The result is None if the scene does not give the mass and the centre, so that the moments cannot be moved there.
+    """Return the principal moments about the centre of mass, the mass and the centre; None if the scene does not give
+    them.
     """
     if body.mass is None or body.center_of_mass is None:
         return None
@@ -202,14 +192,12 @@ def _about_its_center(body: Body) -> tuple[Principal, float, Point] | None:
 
 
 def _equivalent_box(body: Body) -> list[Patch]:
-    """Return the faces of the uniform box that has the same moments of inertia as a body.
-
-    If the mass is unknown, only the proportions of the box are right, and its longest edge is 1.
-    """
+    """Return the faces of the uniform box that has the same moments of inertia as a body."""
     central = _about_its_center(body)
     principal, mass, center = central or (body.principal, None, (0.0, 0.0, 0.0))
     moments = [float(moment) for moment in principal.moments]
     squares = [max(sum(moments) - 2 * moment, 0.0) for moment in moments]  # (B + C - A), proportional to a^2
+    # without a mass only the proportions are right, and the longest edge is 1
     scale = sqrt(6 / mass) if mass else 1 / sqrt(max(squares))  # a^2 = 6 (B + C - A)/m
     longest = scale * sqrt(max(squares))
     sides = [max(scale * sqrt(square), FLATTEST * longest) for square in squares]

@@ -142,11 +142,7 @@ def _attitudes(trajectory: Trajectory, times: Floats) -> Floats:
 
 
 def _draw(axes: Any, polygons: list[Floats], shades: list[float], path: Floats, part: float) -> None:
-    """Draw one frame: the body, the axes of space, and the path of the body's axis.
-
-    ``polygons`` are the faces of the body and ``shades`` their brightness. ``part`` is the fraction of the motion up to
-    this frame; the path up to it is drawn in a strong colour.
-    """
+    """Draw one frame: the body, the axes of space, and the path of the body's axis, strong up to this frame."""
     from matplotlib.colors import to_rgb
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
@@ -159,6 +155,7 @@ def _draw(axes: Any, polygons: list[Floats], shades: list[float], path: Floats, 
         end[k] = REACH
         axes.plot(*np.array([np.zeros(3), end]).T, color=AXES, linewidth=1, zorder=1)
         axes.text(*(1.06 * end), name, color=AXES, fontsize=12, fontstyle="italic")
+    # shades: the brightness of each polygon
     colours = [tuple(shade * c for c in to_rgb(BODY)) for shade in shades]
     edges = EDGE if len(polygons) <= MOST_FLAT else colours  # a body of a few flat faces shows its edges
     axes.add_collection3d(Poly3DCollection(polygons, facecolors=colours, edgecolors=edges, linewidths=0.6, zorder=2))
@@ -167,10 +164,7 @@ def _draw(axes: Any, polygons: list[Floats], shades: list[float], path: Floats, 
 
 
 def _polygons(patch: Patch) -> list[Floats]:
-    """Return the polygons of a patch of the body's surface: arrays of corners, shape (4, 3), or (3, 3) in a mesh.
-
-    A curve, separate points and the surface of a hole have none.
-    """
+    """Return the polygons of a patch of the body's surface as arrays of corners; curves, points and holes have none."""
     if patch.is_mesh:
         return list(np.array(patch.points).reshape(-1, 3, 3))
     if patch.rows < 2 or patch.is_hole:
@@ -184,21 +178,16 @@ def _polygons(patch: Patch) -> list[Floats]:
 
 
 def _curves(patch: Patch) -> list[list[Point]]:
-    """Return the lines of a patch that is not a surface: a curve as one list of points.
-
-    Separate points are lists of one point each.
-    """
+    """Return the lines of a patch that is no surface: a curve as one list of points, or single points."""
     return [patch.points] if patch.columns else [[point] for point in patch.points]
 
 
 def _shade(patch: Patch, place: int) -> float:
-    """Return the brightness, 0 to 1, of polygon number ``place`` of a patch of the body's surface.
-
-    Neighbouring quarters of a round surface differ in brightness, so that its rotation can be seen.
-    """
+    """Return the brightness, 0 to 1, of polygon number ``place`` of a patch of the body's surface."""
     if patch.is_mesh:
         x, y, _ = np.array(patch.points[3 * place : 3 * place + 3]).mean(axis=0)
         return 0.72 if x * y < 0 else 0.95
+    # Neighbouring quarters of a round surface differ, so that its rotation can be seen.
     across = max(patch.columns, patch.rows) - 1
     column = place % (patch.columns - 1) if patch.columns > 2 else place // max(patch.columns - 1, 1)
     return 0.72 if int(4 * column / max(across, 1)) % 2 else 0.95

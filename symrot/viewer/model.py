@@ -133,10 +133,7 @@ def with_attitude(scene: Scene) -> Scene:
 
 
 def _why_played(scene: Scene, trajectory: Trajectory | None) -> str:
-    """Return why a page plays a motion that symrot computed beforehand; empty if the page computes the motion.
-
-    ``trajectory`` is this motion if a torque has no formula (a function in Python or C), otherwise None.
-    """
+    """Return why a page plays a motion that symrot computed beforehand; empty if the page computes the motion."""
     if trajectory is not None:
         return "a torque without a formula acts, so symrot computed this motion beforehand"
     if scene.table is not None:
@@ -149,12 +146,9 @@ def _why_played(scene: Scene, trajectory: Trajectory | None) -> str:
 
 
 def _free_structure(scene: Scene) -> Any:
-    """Return the structure of a scene (which constants are zero or equal) for a page on which all may change.
-
-    Nothing is assumed zero or equal, with one exception: if the axes of the body are principal axes, the structure has
-    no products of inertia.
-    """
+    """Return the structure of a scene for a page on which all constants may change: none is assumed zero or equal."""
     structure = general_structure(scene)
+    # Principal body axes stay principal: no products of inertia.
     if scene.body.principal.given_axes:
         return replace(structure, inertia=PrincipalInertia("ABC"))
     return structure
@@ -206,9 +200,8 @@ def _facts(scene: Scene, is_driven: bool) -> dict[str, Any]:
 
 
 def _orbit(scene: Scene) -> dict[str, Any] | None:
-    """Return the mean motion (rad/s) of a satellite and its long axis, in body axes, for the angles to the vertical.
-
-    The long axis is that of the least moment. The result is None unless one torque is a gravity gradient.
+    """Return a satellite's mean motion, rad/s, and the body axis of its least moment; None without a gravity
+    gradient.
     """
     torques = [torque for torque in scene.torques if torque.kind == "gravity_gradient"]
     if len(torques) != 1:
@@ -245,15 +238,14 @@ def _packed(values: Floats) -> str:
 
 
 def _played(motion: Trajectory, reason: str) -> dict[str, Any]:
-    """Return a motion that the page plays, as evenly spaced samples of omega and quaternion, close enough to be drawn.
-
-    If the motion has too many rotations for a page, only its first part is returned; the text under the key ``played``
-    says so. ``reason`` is the reason why the page does not compute the motion, for the same text.
+    """Return a motion that the page plays, as evenly spaced samples of omega and quaternion, close enough to
+    be drawn.
     """
     if not motion.has_attitude:
         raise InputError('show: expected a trajectory with attitude; add "quaternion" to output.quantities')
     start, stop = float(motion.t.min()), float(motion.t.max())
     rotation = float(np.max(np.linalg.norm(motion.omega, axis=1))) * (stop - start)
+    # too many rotations for a page: only the beginning is played, and the text says so
     if rotation > FINEST * MOST_SAMPLES:
         whole = stop
         stop = start + (stop - start) * FINEST * MOST_SAMPLES / rotation
@@ -292,10 +284,7 @@ def _tableau() -> dict[str, Any]:
 
 
 def _angle_kernels(sequence: str) -> dict[str, Program]:
-    """Return two functions for the page, from quaternion to Euler angles and back, by the names that the page calls.
-
-    ``sequence`` is the sequence of the scene's Euler angles, such as ``ZXZ``.
-    """
+    """Return the page's two functions by name: from quaternion to Euler angles of ``sequence``, and back."""
     from symrot.codegen.library_kernels import kernel_program
 
     angles = f"euler_{'' if sequence.isupper() else 'extrinsic_'}{sequence.lower()}"
@@ -306,12 +295,8 @@ def _angle_kernels(sequence: str) -> dict[str, Program]:
 
 
 def _kernel_text(kernel: SceneKernel, constants: Sequence[str], sequence: str) -> str:
-    """Return the JavaScript of all functions with which a page computes the motion of a scene.
-
-    ``rates`` computes the time derivatives of the state, ``quantities`` the output quantities. ``rate_parameters`` and
-    ``quantity_parameters`` compute the parameters of these two functions from ``constants``. Two more functions convert
-    a quaternion to the Euler angles of ``sequence`` and back.
-    """
+    """Return the JavaScript of all functions with which a page computes the motion of a scene."""
+    # time derivatives of the state, output quantities, and the parameters of both from the constants
     programs = {
         "rates": kernel.rates,
         "quantities": kernel.quantities,
@@ -329,9 +314,8 @@ def _kernel_text(kernel: SceneKernel, constants: Sequence[str], sequence: str) -
 
 
 def _script(programs: Mapping[str, Program], facts: Mapping[str, Any] = MappingProxyType({})) -> str:
-    """Return JavaScript that defines the object ``kernel``, with one function for each of the ``programs``, by its key.
-
-    ``facts`` are further entries of the object, by name, such as the number of parameters.
+    """Return JavaScript that defines the object ``kernel``, with a function for each program and the entries
+    ``facts``.
     """
     lines = js_functions(*programs.values())
     for program in programs.values():
@@ -346,10 +330,7 @@ def _size(program: Program, name: str) -> int:
 
 
 def _binding(name: str, parameters: Parameters, constants: Iterable[str]) -> Program:
-    """Return a program that computes a kernel's parameters, such as (C - B)/A, from the array ``c`` of constants.
-
-    ``name`` is the name of the JavaScript function; ``constants`` are the names of the array's entries, in order.
-    """
+    """Return a program ``name`` that computes parameters, such as (C - B)/A, from the array ``c`` of constants."""
     components = (*((f"c_{constant}", "", "") for constant in constants), ("c_pi", "", ""))
     names = {constant: f"c_{constant}" for constant in (*constants, "pi")}
     results = tuple((f"p_{place}", "", "") for place, _ in enumerate(parameters))
@@ -361,11 +342,7 @@ def _binding(name: str, parameters: Parameters, constants: Iterable[str]) -> Pro
 
 
 def _sliders(scene: Scene, plan: Plan) -> list[Slider]:
-    """Return the sliders of a page: for initial rates, moments of inertia, and constants of the torques.
-
-    Components of a unit vector and entries of a full inertia tensor have no sliders, because they cannot change one by
-    one.
-    """
+    """Return the sliders of a page: for initial rates, moments of inertia, and constants of the torques."""
     rates = [float(value) for value in scene.initial.omega_b]
     fastest = max(map(abs, rates)) or 1.0
     sliders = []
@@ -389,14 +366,11 @@ def _sliders(scene: Scene, plan: Plan) -> list[Slider]:
 
 
 def _fields(plan: Plan) -> Iterator[tuple[str, Field]]:
-    """Yield (name, field) for each constant of a torque that can be changed without changing another constant.
-
-    A field describes one entry of a torque in a scene file: its name, unit and meaning. The page has a slider for each
-    constant. Components of a unit vector are left out.
-    """
+    """Yield (name, field) for each constant of a torque that can be changed without changing another constant."""
     for torque in plan.structure.torques:
         fields = {field.name: field for field in TORQUE_KINDS[torque.kind].fields}
         for name, pattern in getattr(torque, "fields", ()):
+            # components of a unit vector cannot change one by one
             if name not in UNIT_FIELDS:
                 for component in component_names(name, pattern):
                     yield f"{torque.prefix}{component}", fields[name]

@@ -91,10 +91,7 @@ def _state_at(scene: Scene, time: Fraction) -> Initial:
 
 
 def _scene_and_motion(motion: SceneSource | Trajectory) -> tuple[Scene, Trajectory | None]:
-    """Return the scene of a page, and the trajectory that the page has to play, or None if it computes the motion.
-
-    A page has to play a trajectory if a torque without a formula (a Python function) acts.
-    """
+    """Return the scene of a page, and the trajectory that the page plays, or None if it computes the motion."""
     if isinstance(motion, Trajectory):
         start, stop = (Fraction(float(time)) for time in (motion.t.min(), motion.t.max()))
         if start == stop:
@@ -103,5 +100,6 @@ def _scene_and_motion(motion: SceneSource | Trajectory) -> tuple[Scene, Trajecto
         if start != scene.span.start and not motion.has_external_torque:
             scene = replace(scene, initial=_state_at(scene, start))
         scene = replace(scene, span=scene.span._replace(start=start, stop=stop))
+        # a page cannot compute a torque without a formula (a Python function)
         return scene, motion if motion.has_external_torque else None
     return load_scene(motion), None

@@ -1,8 +1,7 @@
 """The table of rounding-error bounds that comes with symrot; ``python -m symrot.workshop.bound_table`` writes it.
 
-A bound is computed again only if its kernel changed, or if the source files that compute bounds (the method) changed.
-With ``--check`` nothing is written, and the exit code is 1 if the table is incomplete, if another version of the method
-made it, or if a bound is smaller than the error computed at one point of its box.
+A bound is computed again only if its kernel changed, or the source files that compute bounds (the method). With
+``--check`` nothing is written, and the exit code is 1 if the table is out of date.
 """
 
 import sys
@@ -27,18 +26,13 @@ SPARE = 1e-9  # relative tolerance: versions of NumPy may add numbers in differe
 
 
 def _texts() -> dict[str, str]:
-    """Return a map from the name of each library kernel to its C functions as text.
-
-    The comment at the head of the text is left out, because it states the bounds that are to be computed from the text.
-    """
+    """Return the C functions of each library kernel as text, by the name of the kernel."""
+    # without the comment at the head of a C file: it states the bounds that are to be computed from the text
     return {name: c_functions(kernel_program(name), (DOUBLE, FLOAT), near=True) for name in kernel_names()}
 
 
 def library_tasks() -> dict[str, BoundTask]:
-    """Return the tasks of bounding rounding errors, for all outputs of all library kernels.
-
-    They are a map from the key under which the table stores the bound, a hash of the task, to the task.
-    """
+    """Return the tasks of bounding the rounding errors of all library kernels, by their keys in the table."""
     by_key: dict[str, BoundTask] = {}
     for name, text in _texts().items():
         for operations in operations_of(name, text):
@@ -63,20 +57,13 @@ def table_faults() -> list[str]:
 
 
 def understated(required: Mapping[str, BoundTask]) -> list[str]:
-    """Return the keys of bounds in the table that are too small, among those for the tasks in ``required``.
-
-    A task (BoundTask) describes the search for the largest rounding error of one output on one box; ``required`` maps
-    keys to tasks, and the table maps the same keys to bounds. A bound is too small if it is below the error that is
-    computed now at the worst point stored with it.
-    """
+    """Return the keys of bounds in the table that are below the error at the worst point stored with them."""
+    # ``required`` maps keys to tasks: the search for the largest rounding error of one output on one box
     return [key for key, task in required.items() if not _is_consistent(task, STORE.get(key))]
 
 
 def _is_consistent(task: BoundTask, search: SearchResult | None) -> bool:
-    """Return whether a stored bound is finite and not smaller than the error at the worst point stored with it.
-
-    ``search`` is the stored result for ``task``; None, no result, gives False.
-    """
+    """Return whether a stored bound is finite and not smaller than the error at the worst point stored with it."""
     if search is None or len(search.worst) != len(task.low):
         return False
     point = np.array(search.worst)

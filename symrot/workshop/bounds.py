@@ -32,10 +32,9 @@ PRECISIONS = {"double": "", "float": "f"}
 def rounding_problem(
     kernel: KernelText, ranges: Sequence[str], precision: str
 ) -> tuple[Operations, RoundingProblem, dict[str, Any]]:
-    """Return what a search for bounds of a kernel's rounding errors needs, as a tuple of three.
+    """Return the operations of a kernel, the problem of bounding their rounding errors, and the box of inputs.
 
-    They are the operations of the kernel, its own :class:`RoundingProblem` (symbols and restrictions of inputs), and
-    the box: the range of each input, after the user's ``ranges`` replaced the kernel's own.
+    The user's ``ranges`` replace the kernel's own in the box.
 
     Parameters
     ----------
@@ -72,11 +71,8 @@ def rounding_problem(
 def _check_unit(
     group: Sequence[str], kernel_problem: RoundingProblem, box: Mapping[str, tuple[Fraction, Fraction]]
 ) -> None:
-    """Raise InputError if the box contains no unit quaternion, because then every bound would hold vacuously.
-
-    ``group`` lists the four components of the quaternion, such as ``"q[1]"``; ``box`` has the range of
-    each input.
-    """
+    """Raise InputError if the box contains no unit quaternion, because then every bound would hold vacuously."""
+    # ``group`` lists the four components of the quaternion, such as "q[1]"
     ends = [sorted(box[place], key=abs) for place in group]
     least = sum(near * near for (near, far) in ends if near * far > 0)
     spare = Fraction(UNIT_NORM)
@@ -86,25 +82,20 @@ def _check_unit(
 
 
 def _operations(kernel: KernelText, precision: str) -> Operations:
-    """Return the operations of a kernel's C function in ``precision``, double or float.
-
-    Their name is that of the function without the prefix ``symrot_``. InputError is raised for a scene's kernel in
-    float.
-    """
+    """Return the operations of a kernel's C function in ``precision``, which is double for a scene."""
     if precision != "double" and isinstance(kernel, SceneText):
         raise InputError(f"--precision: expected double for a scene, whose kernel is in double only, got {precision}")
+    # the prefix symrot_ is left out of the operations' name
     name = f"{kernel.name}{PRECISIONS[precision]}"
     return replace(read_kernel(kernel.c()[0], f"symrot_{name}", f"{kernel.name}.c"), name=name)
 
 
 def require_known(kernel: str) -> None:
-    """Raise InputError unless ``kernel`` is the name of a library kernel or shipped scene, or the path of a file.
-
-    The message suggests a similar name, if there is one.
-    """
+    """Raise InputError unless ``kernel`` is the name of a library kernel or shipped scene, or the path of a file."""
     path = Path(kernel)
     if is_kernel(kernel) or kernel in shipped_names() or (path.exists() and path.suffix not in EMITTED):
         return
+    # a similar name, if there is one
     hint = nearest(path.name, [*kernel_names(), *shipped_names()])
     message = f"expected the name of a kernel (see `symrot emit --list`) or a scene, got {kernel[:60]!r}"
     raise InputError(f"{message} ({hint})" if hint else message)
@@ -120,10 +111,7 @@ def _known_text(kernel: str) -> KernelText:
 
 
 def section(kernel: KernelText, ranges: Sequence[str]) -> dict[str, Any]:
-    """Return the section ``rounding`` of a kernel's certificate, the bounds of its errors for doubles as data.
-
-    A library kernel also gets those for floats. The parameters are as for :func:`rounding_problem`.
-    """
+    """Return the section ``rounding`` of a kernel's certificate; a library kernel's has bounds for floats too."""
     operations, kernel_problem, box = rounding_problem(kernel, ranges, "double")
     single = rounding_problem(kernel, ranges, "float")[0] if isinstance(kernel, LibraryText) else None
     with _in_scene_names(kernel):
@@ -132,10 +120,7 @@ def section(kernel: KernelText, ranges: Sequence[str]) -> dict[str, Any]:
 
 @contextmanager
 def _in_scene_names(kernel: KernelText) -> Iterator[None]:
-    """Run a ``with`` block; in an InputError from it, write the scene's names of inputs.
-
-    The message then says, for example, ``omega_3`` and not ``y[2]``, the place in the C argument.
-    """
+    """Run a ``with`` block, whose InputErrors then name inputs as the scene does: ``omega_3`` instead of ``y[2]``."""
     try:
         yield
     except InputError as reason:
@@ -257,11 +242,8 @@ def _free(kernel_problem: RoundingProblem, box: Mapping[str, tuple[Fraction, Fra
 
 
 def target_lines(resized: Mapping[str, Any]) -> list[str]:
-    """Return the lines that `symrot bound --target` prints: ranges of the inputs on which no error exceeds the target.
-
-    ``resized`` is the data of :func:`target_facts`. The ranges are those of the user, all made wider or narrower by one
-    factor, as far as the target allows.
-    """
+    """Return the lines that `symrot bound --target` prints: ranges of inputs on which no error exceeds the target."""
+    # ``size``: one factor makes all of the user's ranges wider or narrower, as far as the target allows
     return [
         f"{resized['kernel']}: no error is larger than {resized['target']:g}",
         f"for {_box_text(resized['box'], resized['names'])}", *_region_lines(resized),

@@ -1,7 +1,6 @@
 """Comparison of a kernel's files on disk with the emitted ones, to explain a failed hash.
 
-A hash shows only that a file changed. The comparison names the first changed line, and the first output that is no
-longer computed by its formula.
+It names the first changed line, and the first output that is no longer computed by its formula.
 """
 
 from pathlib import Path
@@ -23,23 +22,17 @@ LONGEST = 200  # largest number of characters of a line or reason in a message
 
 
 def kernel_of(name: str) -> str | None:
-    """Return the library kernel or the shipped scene to which the C function ``symrot_NAME`` belongs, or None.
-
-    ``name`` is NAME. ``"quaternion_dcm"`` is a library kernel and gives itself; ``"t_handle_rates"`` gives the scene
-    ``"t_handle"``.
-    """
+    """Return the library kernel or shipped scene that has the C function ``symrot_NAME``, or None."""
     if is_kernel(name):
         return name
+    # "t_handle_rates" gives the scene "t_handle"
     return next((scene for scene in shipped_names() if scene_kernel_name(scene) == name), None)
 
 
 def difference(certificate: Path) -> str:
-    """Return ": " and a description of the first difference between the files of a kernel and the emitted ones.
-
-    The files are those next to ``certificate``, the path of NAME.cert.json. The text is empty if the files are equal,
-    or if symrot has no kernel of this name. It explains why a hash in the certificate does not match.
-    """
+    """Return ": " and the first difference between a kernel's files and the emitted ones, or ``""`` without any."""
     name = certificate.name.removesuffix(".cert.json")
+    # ``certificate`` is the path of NAME.cert.json, next to the files
     kernel = kernel_of(name)
     if kernel is None:
         return ""
@@ -68,11 +61,7 @@ def _first_line(text: str, emitted: str) -> str:
 
 
 def _meaning(text: str, emitted: KernelUnderTest) -> str:
-    """Return a remark in brackets on what an edited C text computes; ``emitted`` is the kernel as symrot prints it.
-
-    It says why symrot cannot prove that the text computes the kernel's formulas, or that it does so by other
-    operations. It is empty if the text performs the same operations.
-    """
+    """Return a remark on what an edited C text computes, or ``""`` if it performs the same operations."""
     file = f"{emitted.name}.c"
     symbols = {place: symbol for place, (symbol, _) in emitted.places.items()}
     formulas = {place: formula for place, (_, formula) in emitted.formulas.items()}

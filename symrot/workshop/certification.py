@@ -1,7 +1,4 @@
-"""The public functions that certify and audit kernels and bound their rounding errors.
-
-The functions are certify, audit, bound and largest_box; each returns a frozen dataclass that ``print`` shows as text.
-"""
+"""The public functions that certify and audit kernels and bound their rounding errors."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -35,6 +32,7 @@ def _silent(line: str) -> None:
     """Ignore a line about progress; this is the default for functions that report progress."""
 
 
+# each function returns a frozen dataclass that ``print`` shows as text
 @dataclass(frozen=True)
 class Certificate:
     """Proofs about one emitted kernel; ``print`` shows them as `symrot certify` does.
@@ -74,10 +72,8 @@ class Certificate:
 
     @property
     def refuted(self) -> bool:
-        """Whether a compiler made object code that differs from the C text, although its flags must preserve every bit.
-
-        It is False if object code was not compared in this call.
-        """
+        """Whether a compiler changed results although its flags must preserve every bit."""
+        # False if object code was not compared in this call
         return self.objects_compared and certificates.refuted([dict(self.data)])
 
     def __str__(self) -> str:
@@ -456,11 +452,7 @@ def _check_precision(precision: str) -> None:
 
 
 def _ranges(box: Ranges) -> Sequence[str]:
-    """Return the ranges of inputs as texts NAME=LOW:HIGH, the form of the command line.
-
-    ``box`` is a map from NAME to (LOW, HIGH), or a sequence of such texts, returned unchanged. Each float is written as
-    an exact fraction. InputError is raised for another value.
-    """
+    """Return the ranges of inputs as texts NAME=LOW:HIGH; ``box`` has them as a map or as such texts."""
     if isinstance(box, str):
         raise InputError(f"box: expected a mapping or a list of texts NAME=LOW:HIGH, got one text, {box[:60]!r}")
     if not isinstance(box, Mapping):
@@ -470,6 +462,7 @@ def _ranges(box: Ranges) -> Sequence[str]:
         if isinstance(ends, str) or not hasattr(ends, "__len__") or len(ends) != 2:
             raise InputError(f"box: expected two ends of the range of {name}, (low, high), got {ends!r}")
         low, high = (exact_numbers.read(end, f"box: {name}") for end in ends)
+        # each float is written as an exact fraction
         texts.append(f"{name}={low}:{high}")
     return texts
 

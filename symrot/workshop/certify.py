@@ -47,10 +47,7 @@ MANY = 12  # smallest number of certificates that several processes audit at onc
 
 
 def _proven_statement(data: Data) -> Data | None:
-    """Return the statements that symrot proves about the kernel that the certificate ``data`` names; None if unknown.
-
-    They are derived and proven once, then stored in the cache under the hash of symrot's source files.
-    """
+    """Return the statements that symrot proves about the kernel of the certificate ``data``; None if it is unknown."""
     name = data["kernel"]
     scene = str(data["regenerate"]).removeprefix("symrot emit ").removesuffix(" --target c")
     if not is_kernel(name):
@@ -59,6 +56,7 @@ def _proven_statement(data: Data) -> Data | None:
         name = scene
     bounds = data.get("rounding") if name != data["kernel"] else None  # a scene has no box of its own
     key = f"statement about {name} with {json.dumps(bounds)} by {_programs()}"
+    # proven once, then stored under the hash of symrot's source files
     stored = build_cache.fetch(key)
     if stored is None:
         stored = json.dumps(proven_statement(kernel_text(name).under_test(bounds)))
@@ -69,11 +67,8 @@ def _proven_statement(data: Data) -> Data | None:
 
 @cache
 def _programs() -> str:
-    """Return the SHA-256 of all source files of symrot and of the version of SymPy, for keys of the cache.
-
-    The cache stores proven statements. After any change of the programs that prove them, the hash differs, and stored
-    statements are no longer used.
-    """
+    """Return the SHA-256 of all source files of symrot and of the version of SymPy, for keys of the cache."""
+    # after any change of the programs that prove statements, stored statements are no longer used
     root = Path(symrot.__file__).parent
     digest = sha256(version("sympy").encode())
     for path in sorted(source for source in root.rglob("*") if source.suffix in (".py", ".toml", ".v", ".c")):
@@ -135,9 +130,7 @@ def audit_files(
     paths: Sequence[Path], object_file: Path | None = None, rerun: bool = False, coq: bool = False,
     progress: Callable[[str], object] = lambda text: None,
 ) -> dict[str, list[str]]:  # fmt: skip
-    """Audit certificates; return a map from each path to its statements, the lines of :func:`audit_file`.
-
-    Several processes share the work if there are many paths. The other parameters are those of :func:`audit_file`.
+    """Audit certificates; return a map from each path to the statements that hold, as :func:`audit_file` does.
 
     Raises
     ------
@@ -146,6 +139,7 @@ def audit_files(
     """
     if len(paths) < MANY:
         return {str(path): audit_file(path, object_file, rerun, coq, progress) for path in paths}
+    # several processes share the work
     reports = {}
     options = map(repeat, (object_file, rerun, coq))
     with workers() as pool:
@@ -167,9 +161,7 @@ def _recomputed_bounds(data: Data, text: str, progress: Callable[[str], object])
 
 
 def flag_lines(flags: str) -> list[str]:
-    """Return a list of one line: which promises of a certificate hold for code compiled with ``flags``, and why.
-
-    The promises are the bits of the C text and its error bounds; without them, CertificateError is raised.
+    """Return one line, in a list: which promises of a certificate hold for code compiled with ``flags``, and why.
 
     Raises
     ------
@@ -181,6 +173,7 @@ def flag_lines(flags: str) -> list[str]:
     from symrot.certificates.flags import classify_flags
 
     effect = classify_flags(flags)
+    # neither the bits of the C text nor its error bounds
     if not effect.accepted:
         raise CertificateError(f"{flags}: {effect.sentence()}")
     return [f"{flags}: {effect.sentence()}"]
@@ -257,9 +250,6 @@ def certify_all(
 ) -> tuple[dict[str, Data], list[Path]]:  # fmt: skip
     """Return the certificates of all kernels of the library and of shipped scenes, and the paths of the written files.
 
-    Several processes share the work. Certificates from the same version of symrot come from the cache, unless files
-     are written or object code is compared.
-
     Parameters
     ----------
     directory : Path, optional
@@ -272,6 +262,7 @@ def certify_all(
     names = (*kernel_names(), *names_with_kernels())
     certificates: dict[str, Data] = {}
     written: list[Path] = []
+    # certificates from the same version of symrot come from the cache, unless files are written or code is compared
     with workers() as pool:
         work = pool.map(_certified, names, repeat(directory), repeat(objects), chunksize=4)
         for name, (data, paths) in zip(names, work, strict=True):
@@ -294,10 +285,7 @@ def _certified(name: str, directory: Path | None, objects: bool) -> tuple[Data, 
 
 
 def all_lines(certificates: Mapping[str, Data]) -> list[str]:
-    """Return lines of text: for each kernel the kinds of proof in its certificate, then the count of each kind.
-
-    ``certificates`` maps the name of a kernel to the data of its certificate.
-    """
+    """Return lines of text: for each kernel the kinds of proof in its certificate, then the count of each kind."""
     by_kernel = {name: proofs(data) for name, data in certificates.items()}
     width = max(map(len, by_kernel))
     text_lines = [
@@ -311,12 +299,8 @@ def all_lines(certificates: Mapping[str, Data]) -> list[str]:
 
 
 def refuted(certificates: Iterable[Data]) -> bool:
-    """Return whether a certificate records object code of which none is proven to compute the same bits as the C text.
-
-    Only object code whose compiler flags preserve every bit can be proven so; code compiled with ``-ffast-math``
-    cannot. The result is True for a certificate with a function that differs, and for one that records only code with
-    flags such as ``-ffast-math``. It is False if no certificate records object code.
-    """
+    """Return whether a certificate records object code that is not proven to compute the bits of the C text."""
+    # only code whose flags preserve every bit counts; without any such code the proof is missing
     return any(data.get("objects") and not object_code.holds(data["objects"]) for data in certificates)
 
 
@@ -328,10 +312,8 @@ def proofs(data: Data) -> tuple[str, ...]:
 
 
 def _emitted(path: str) -> str:
-    """Return the name of the kernel or shipped scene to which the C file or certificate at ``path`` belongs.
-
-    Raise InputError or CertificateError unless the file is exactly as symrot emits it.
-    """
+    """Return the kernel or shipped scene to which the C file or certificate at ``path`` belongs, if it is unedited."""
+    # otherwise raise InputError or CertificateError
     file = Path(path)
     name = file.name.removesuffix(".c").removesuffix(".cert.json")
     kernel = kernel_of(name)
@@ -357,11 +339,7 @@ def _emitted(path: str) -> str:
 
 
 def lines(data: Data, compared: bool = True) -> list[str]:
-    """Return the lines that `symrot certify` prints about a certificate.
-
-    ``compared`` says whether object code was compared in this call. If not, the verdicts on object code are from an
-    earlier call, and the text only mentions them.
-    """
+    """Return the lines that `symrot certify` prints about a certificate."""
     rows = [("domain", data["domain"]), *(("laws", f"{law['law']}: proven") for law in data["laws"])]
     if data["coq"]:
         rows.append(("Coq", f"theorem {data['coq']['theorem']} of {data['coq']['file']} (`symrot prove` checks it)"))
@@ -375,6 +353,7 @@ def lines(data: Data, compared: bool = True) -> list[str]:
         worst = max(part["outputs"], key=lambda item: float.fromhex(item["absolute"]))
         most = f"{float.fromhex(worst['absolute']):.3g}"
         rows.append(("rounding", f"{part['precision']}: error at most {most} on the box ({worst['output']})"))
+    # otherwise the verdicts on object code are from an earlier call
     if compared:
         rows += [("object code", line) for line in object_code.lines(data.get("objects"))]
     elif data.get("objects"):

@@ -16,9 +16,9 @@ MISSING = "coqc is not on the path (Debian package coq)"
 
 
 def prove(directory: Path, demanded: bool, progress: Callable[[str], object]) -> tuple[list[Path], CoqResult | None]:
-    """Write all Coq files into a folder and check them with Coq; return the files that changed and Coq's result.
+    """Write all Coq files into a folder and check them with Coq; return the changed files and the result.
 
-    If Coq is not installed, the files are written, and None is returned in place of Coq's result.
+    The result is None if Coq is not installed.
 
     Raises
     ------
@@ -35,11 +35,8 @@ def prove(directory: Path, demanded: bool, progress: Callable[[str], object]) ->
 
 
 def facts(directory: Path, written: list[Path], result: CoqResult | None) -> dict[str, Any]:
-    """Return the theorems and Coq's result as data for JSON.
-
-    ``directory`` is the folder that was passed to :func:`prove`; ``written`` and ``result`` are what it returned: the
-    written files, and Coq's result or None if Coq is not installed.
-    """
+    """Return the theorems and Coq's result, as :func:`prove` returned it, as data for JSON."""
+    # ``result`` is None if Coq is not installed
     report: dict[str, Any] = {
         "directory": str(directory),
         "files": [f"{name}.v" for name in (RULES, *coq_file_names(), ASSUMPTIONS)],

@@ -64,11 +64,7 @@ def _quiet(text: str) -> None:
 
 
 def illustrated(page: Page) -> PrintedPage:
-    """Return a derivation's page with its figures and its lesson: question, numbers, a common mistake for students.
-
-    A figure is at the top of the page or below the heading of its section. If no figure is meant for the top and the
-    page has at most FEW_FIGURES (three) figures, the first of them is moved to the top. The steps that only symrot's
-    numeric code needs are not on the page (see :func:`printed_page`).
+    """Return a derivation's page with its figures and its lesson for students: question, numbers, a common mistake.
 
     Raises
     ------
@@ -82,6 +78,8 @@ def illustrated(page: Page) -> PrintedPage:
     >>> [item.name for item in page.opening if isinstance(item, Figure)][0]
     'poinsot'
     """
+    # A figure is at the top of the page or below the heading of its section. A page with few figures and none at the
+    # top shows its first figure there. Steps that only symrot's numeric code needs are left out.
     whole, top = _with_figures(page)
     return _printed(taught(whole, top))
 
@@ -168,10 +166,7 @@ def _chapters(chosen: Sequence[str]) -> dict[str, list[str]]:
 
 
 def pages(say: Say = _quiet) -> dict[str, str]:
-    """Return a map from file name to text: the pages of all derivations in Markdown, and their figures in SVG.
-
-    The table of contents (``README.md``) comes first. ``say`` is called with a line of text before each derivation.
-    """
+    """Return the pages of all derivations in Markdown, and their figures in SVG, as a map from file name to text."""
     derived = _derived(_page_names(), say)
     lines = [
         f"# {TITLE}",
@@ -182,6 +177,7 @@ def pages(say: Say = _quiet) -> dict[str, str]:
         lines += ["", f"## {part}", ""]
         lines += [f"- [{derived[name].title}]({name}.md), {derived[name].extent}" for name in members]
     lines += ["", "Printed by `symrot derive --all`; do not edit.", ""]
+    # the table of contents comes first
     texts = {"README.md": "\n".join(lines)} | {f"{name}.md": page.markdown() for name, page in derived.items()}
     return texts | {figure.file: figure.svg() for page in derived.values() for figure in _figures(page)}
 
@@ -201,9 +197,6 @@ def _figures(page: Page) -> list[Figure]:
 
 def write_pages(directory: Path | str, form: str, chosen: Sequence[str] = (), say: Say = _quiet) -> list[Path]:
     """Write derivations into a directory, as documents of LaTeX or as a book in HTML, and return the paths.
-
-    The book in HTML begins with ``index.html``. With LaTeX, each page is a document, and ``book.tex`` has all of them;
-    figures are written as PDF into the folder ``figures`` if the program :data:`CONVERTER` is installed.
 
     Parameters
     ----------
@@ -230,10 +223,12 @@ def write_pages(directory: Path | str, form: str, chosen: Sequence[str] = (), sa
     if chosen:
         chapters = {"": [page for members in chapters.values() for page in members]}
     written = []
+    # index.html is the start of the book; with LaTeX each page is a document, and book.tex has all of them
     for name, content in FORMS[form](*((HANDOUT, ABOUT_HANDOUT) if chosen else (TITLE, ABOUT)), chapters).items():
         path = directory / name
         path.write_bytes(content)
         written.append(path)
+    # figures in LaTeX are PDF files in the folder figures
     if form == "latex" and shutil.which(CONVERTER):
         figures = [figure for members in chapters.values() for page in members for figure in _figures(page)]
         written += _converted(directory, figures)
@@ -241,14 +236,13 @@ def write_pages(directory: Path | str, form: str, chosen: Sequence[str] = (), sa
 
 
 def write_handout(directory: Path | str, form: str, chosen: Sequence[str], say: Say = _quiet) -> list[Path]:
-    """Write the pages of a few derivations into a directory, for students, and return the paths.
+    """Write a few derivations into a directory, for students, and return the paths.
 
-    Links to pages that are neither in the handout nor in the directory become plain text. Parameters and exceptions
-    are those of :func:`write_pages`; ``form`` may also be ``"markdown"``, which writes a file and the figures for each
-    page.
+    Parameters and exceptions are those of :func:`write_pages`; ``form`` may also be ``"markdown"``.
     """
     if form != "markdown":
         paths = write_pages(directory, form, chosen, say)
+        # links to pages that are neither in the handout nor in the directory become plain text
         present = _present(Path(directory), chosen, ".html")
         for path in paths if form == "html" else ():
             if path.suffix == ".html":
@@ -275,19 +269,14 @@ LINK_IN_HTML = re.compile(r'<a href="(?P<page>\w+)\.html">(?P<label>.*?)</a>')
 
 
 def _present(directory: Path, chosen: Sequence[str], suffix: str) -> set[str]:
-    """Return the names of the chosen derivations and of those whose pages are in a directory already.
-
-    ``suffix`` is that of the pages, such as ``.html``.
-    """
+    """Return the names of the chosen derivations and of those whose pages are in a directory already."""
     return {name for name in _page_names() if name in chosen or (directory / f"{name}{suffix}").is_file()}
 
 
 def _only_links_to(present: set[str], link: re.Pattern[str], text: str) -> str:
-    """Return ``text``, the text of a page, in which links to derivations that are not in ``present`` are plain text.
-
-    ``link`` matches a link; its groups ``page`` and ``label`` are the derivation and the words of the link.
-    """
+    """Return the text of a page, in which links to derivations that are not in ``present`` are plain text."""
     missing = set(_page_names()) - present
+    # ``link`` has the groups "page" (derivation) and "label" (words of the link)
     return link.sub(lambda match: match["label"] if match["page"] in missing else match[0], text)
 
 
@@ -324,11 +313,7 @@ def _converted(directory: Path, figures: list[Figure]) -> list[Path]:
 
 
 def derive_all(directory: Path | str, say: Say = _quiet) -> list[Path]:
-    """Write every page and figure into a directory; return the paths of the files that changed or were deleted.
-
-    Pages and figures that are no longer in the catalogue are deleted; other files are not touched. ``say`` is called
-    with a line of text before each derivation.
-    """
+    """Write every page and figure into a directory; return the paths of the files that changed or were deleted."""
     directory = Path(directory)
     (directory / "figures").mkdir(parents=True, exist_ok=True)
     changed = []
@@ -340,6 +325,7 @@ def derive_all(directory: Path | str, say: Say = _quiet) -> list[Path]:
                 refuse_special(path)  # a pipe would wait for a reader
             path.write_bytes(text.encode())
             changed.append(path)
+    # pages and figures that are no longer in the catalogue; other files are not touched
     for path in _left_over(directory, printed):
         path.unlink()
         changed.append(path)
@@ -347,10 +333,7 @@ def derive_all(directory: Path | str, say: Say = _quiet) -> list[Path]:
 
 
 def check(directory: Path | str, say: Say = _quiet) -> list[tuple[Path, str]]:
-    """Return a list with a unified diff for each page or figure in a directory that differs from what is printed now.
-
-    The list is empty if all files are up to date. ``say`` is called with a line of text before each derivation.
-    """
+    """Return (path, unified diff) for each page or figure in a directory that differs from what is printed now."""
     directory = Path(directory)
     printed = pages(say)
     stale = []

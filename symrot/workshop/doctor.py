@@ -117,13 +117,11 @@ class DoctorReport(TypedDict):
 
 
 def facts() -> DoctorReport:
-    """Return the state of this installation as data for JSON: versions, extras, compiler, cache.
-
-    ``problems`` lists, one sentence each, causes of failure or slowness; it is empty if all is well.
-    """
+    """Return the state of this installation as data for JSON: versions, extras, compiler, cache, problems."""
     cache = build_cache.cache()
     count, size = _cached(cache.directory)
     versions = {name: _version(name) for name in NEEDED}
+    # causes of failure or slowness, one sentence each
     problems = [f"{name} is not installed" for name, version in versions.items() if version is None]
     compiler: CompilerRecord | None = None
     try:

@@ -25,14 +25,9 @@ class _Texts(NamedTuple):
 
 
 class Emitted(_Texts):
-    """An emitted kernel: its name, its text, and in C its header (empty for other targets).
+    """An emitted kernel: its name, its text, and in C its header.
 
-    In Python and JavaScript the function has the name of the kernel. In C its name is the value of the property
-    ``function``, the kernel's name with the prefix ``symrot_``.
-
-    The property ``certificate`` is the text of the kernel's certificate, which is proven when it is first read. The
-    certificate of a library kernel contains bounds of its rounding errors on the standard ranges of its inputs; the
-    certificate of a scene's kernel contains the bounds that were passed to :func:`emit`.
+    Its certificate is proven when the property ``certificate`` is first read.
 
     Attributes
     ----------
@@ -40,6 +35,12 @@ class Emitted(_Texts):
         Name of the kernel.
     source, header : str
         The text of the kernel and, in C, of its header.
+
+    Notes
+    -----
+    In C the function is named ``symrot_`` and the kernel's name (property ``function``), elsewhere as the kernel.
+    The certificate of a library kernel states error bounds on the standard ranges of its inputs; that of a scene's
+    kernel states the bounds that were passed to :func:`emit`.
 
     Examples
     --------
@@ -53,10 +54,8 @@ class Emitted(_Texts):
 
     @classmethod
     def of(cls, text: "KernelText", target: str, bounds: Mapping[str, Any] | None) -> "Emitted":
-        """Return an :class:`Emitted` with the texts of a kernel in the language ``target``, such as ``"c"``.
-
-        ``bounds`` are the bounds of rounding errors that were passed to :func:`emit`, or None.
-        """
+        """Return the texts of a kernel in the language ``target``, such as ``"c"``."""
+        # ``bounds``: those that were passed to ``emit``, or None
         source, header = text.c(bounds) if target == "c" else (text.source(target), "")
         emitted = cls(text.name, source, header)
         emitted.text, emitted.bounds = text, bounds

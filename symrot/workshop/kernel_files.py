@@ -69,26 +69,19 @@ def chosen_text(kernel: str, jacobian: str | None, step: str | None, order: int 
 
 
 def kernel_files(kernel: KernelText, target: str, bounds: Mapping[str, Any] | None = None) -> dict[str, str]:
-    """Return the files of a kernel in one language (``target``, such as ``"c"``), as a map from file name to text.
-
-    In C the header comes first. ``bounds`` are the rounding bounds for the comment at the head of a scene's C file (see
-    :func:`symrot.emit`).
-    """
+    """Return the files of a kernel in one language, such as ``"c"``, as a map from file name to text."""
+    # in C the header comes first; ``bounds`` are for the comment at the head of a scene's C file
     return kernel.files(target, bounds)
 
 
 def certificate_files(
     kernel: KernelText, directory: Path, bounds: Mapping[str, Any] | None = None
 ) -> dict[str, str]:  # fmt: skip
-    """Return the certificate file of a kernel, as a map from file name to text; empty for a step without a certificate.
-
-    Verdicts on object code are copied from the certificate in ``directory`` if they still hold. The certificate of a
-    library kernel states the bounds of rounding errors that come with symrot. That of a scene's kernel states
-    ``bounds``, or no bounds if this is None.
-    """
+    """Return the certificate file of a kernel, as a map from file name to text; empty if it has no certificate."""
     if not kernel.has_certificate:
         return {}
     name, certificate = f"{kernel.name}.cert.json", kernel.certificate(bounds)
+    # verdicts on object code are copied from the certificate in the folder if they still hold
     data, present = json.loads(certificate), _slots(directory / name)
     if is_step(data):
         same = "bounds" in present and all(
@@ -100,11 +93,8 @@ def certificate_files(
 
 
 def stored_bounds(kernel: KernelText, directory: Path | None) -> Mapping[str, Any] | None:
-    """Return the rounding bounds of a scene's kernel, read from its certificate in a folder and checked.
-
-    The result is None for a library kernel, which has bounds of its own. It is also None if there is no certificate,
-    or if the bounds in it are missing, belong to other operations, or fail the check.
-    """
+    """Return the rounding bounds of a scene's kernel, read from its certificate in a folder and checked, or None."""
+    # a library kernel has bounds of its own
     if directory is None or not isinstance(kernel, SceneText):
         return None
     section = _slots(directory / f"{kernel.name}.cert.json").get("rounding")
@@ -114,31 +104,28 @@ def stored_bounds(kernel: KernelText, directory: Path | None) -> Mapping[str, An
     try:
         check_section(section, operations, None)
         check_bounds(section, operations, None)
+    # the bounds belong to other operations, or do not hold
     except CertificateError:
         return None
     return section
 
 
 def _slots(path: Path) -> dict[str, Any]:
-    """Return the content of the certificate at ``path``, whose bounds and verdicts on object code are used again.
-
-    The result is an empty dict if there is no certificate.
-    """
+    """Return the content of the certificate at ``path``, or an empty dict if there is no certificate."""
     try:
         certificate = json.loads(read_input(path, LARGEST))
     except (OSError, ValueError, RecursionError):
         return {}
+    # its bounds and its verdicts on object code are used again
     return certificate if isinstance(certificate, dict) else {}
 
 
 def _files_of(name: str, subfolder: str, targets: Sequence[str], directory: Path) -> dict[str, str]:
-    """Return all files of the kernel ``name`` in the languages ``targets``, as a map from path to text.
-
-    The certificate is among them. Paths are relative to ``directory``; ``subfolder`` is empty or ``scenes/``. If the
-    folder has an earlier certificate of the kernel, its bounds of rounding errors are used again.
-    """
+    """Return all files of the kernel ``name`` in the languages ``targets``, as a map from path to text."""
     kernel, files = kernel_text(name), dict[str, str]()
+    # paths are relative to ``directory``; ``subfolder`` is empty or "scenes/"
     for target in targets:
+        # bounds in an earlier certificate of the kernel are used again
         bounds = stored_bounds(kernel, directory / target / subfolder) if target == "c" else None
         texts = kernel_files(kernel, target, bounds)
         if target == "c":
@@ -148,17 +135,14 @@ def _files_of(name: str, subfolder: str, targets: Sequence[str], directory: Path
 
 
 def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str], object]) -> dict[str, str]:
-    """Return all files of the library and of the shipped scenes' kernels, as a map from path to text.
-
-    Several processes share the work. Paths are relative to ``directory``; ``progress`` is called with a line of text
-    for each kernel.
-    """
+    """Return all files of the library and of the shipped scenes' kernels, as a map from path to text."""
     work = [
         (name, subfolder)
         for subfolder, names in (("", kernel_names()), (f"{SCENES}/", names_with_kernels()))
         for name in names
     ]
     files: dict[str, str] = {}
+    # several processes share the work
     with workers() as pool:
         names, subfolders = zip(*work, strict=True)
         for name, texts in zip(
@@ -173,10 +157,7 @@ def _all_files(targets: Sequence[str], directory: Path, progress: Callable[[str]
 
 
 def _printed_before(directory: Path, targets: Sequence[str]) -> list[str]:
-    """Return the paths of all kernel files in ``directory``, even of kernels that symrot no longer has.
-
-    Paths are relative to the directory; ``targets`` are the languages.
-    """
+    """Return the paths of all kernel files in ``directory``, even of kernels that symrot no longer has."""
     return [
         path.relative_to(directory).as_posix()
         for target in targets
@@ -211,14 +192,11 @@ def write_files(directory: Path, files: Mapping[str, str]) -> list[Path]:
 
 
 def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[Path]:
-    """Write the files of all library kernels and of the kernels of all shipped scenes; return the changed paths.
-
-    ``targets`` are the languages, such as ``"c"``, each with a subfolder of ``directory``. Files of kernels that no
-    longer exist are deleted.
-    """
+    """Write the files of all library kernels and of all shipped scenes' kernels; return the changed paths."""
     files = _all_files(targets, directory, progress)
     changed = write_files(directory, files)
     for name in _printed_before(directory, targets):
+        # a kernel that no longer exists
         if name not in files:
             (directory / name).unlink()
             changed.append(directory / name)
@@ -226,9 +204,7 @@ def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str],
 
 
 def stale(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[str]:
-    """Return the lines of a unified diff between the kernels in a folder and newly emitted ones; empty if equal.
-
-    ``targets`` are the languages to compare, such as ``"c"``.
+    """Return a unified diff, as lines, between the kernels in a folder and newly emitted ones; empty if equal.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """The texts of one kernel of the library or of one scene: C, NumPy, JavaScript, JAX and its certificate.
 
-Each text is printed at its first use and at most once; only the comment at the head of a scene's C file depends on the
-rounding bounds that it states.
+Each text is printed at its first use and at most once. Only a scene's C comment depends on ``bounds``, bounds of
+rounding errors, which the methods of kernels take.
 """
 
 import re
@@ -50,10 +50,7 @@ Bounds = Mapping[str, Any]
 
 
 class KernelText(ABC):
-    """The texts of one kernel: its source in each language, and its certificate.
-
-    ``bounds``, an argument of the methods, are bounds of rounding errors; :func:`symrot.emit` explains it.
-    """
+    """The texts of one kernel: its source in each language, and its certificate."""
 
     name: str
     folders: ClassVar[Mapping[str, str]]  # target -> its folder, relative to the folder of the certificate
@@ -87,12 +84,9 @@ class KernelText(ABC):
         return bounds
 
     def certificate(self, bounds: Bounds | None = None) -> str:
-        """Prove all statements about the kernel, and return the text of its certificate.
-
-        ``bounds`` are the bounds of rounding errors that it states (:meth:`rounding`); without bounds, this section is
-        left out. CertificateError is raised if a proof fails.
-        """
+        """Return the text of the kernel's certificate, in which all statements are proven."""
         text, section = certificate_text(self.under_test(bounds)), self.rounding(bounds)
+        # without bounds of rounding errors, the section is left out
         return with_sections(text, {"rounding": section}) if isinstance(section, dict) else text
 
     def c_files(self, bounds: Bounds | None = None) -> dict[str, str]:
@@ -132,11 +126,8 @@ class LibraryText(KernelText):
         self.name, self._definition = name, definition(name)
 
     def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
-        """Return the pair (C source, header), each with an opening comment that states bounds of rounding errors.
-
-        These are the bounds that come with symrot for this kernel; ``bounds``, which the kernel of a scene needs, is
-        ignored.
-        """
+        """Return the pair (C source, header), each with an opening comment that states bounds of rounding errors."""
+        # the bounds that come with symrot; only a scene's kernel needs ``bounds``
         return self._c
 
     @cached_property
@@ -173,26 +164,19 @@ class LibraryText(KernelText):
         return jax_source(kernel_program(self.name), kernel_description(self._definition, "jax"))
 
     def rounding(self, bounds: Bounds | None) -> Bounds | None:
-        """Return the bounds of rounding errors that come with symrot for this kernel, or None if there are none.
-
-        ``bounds`` is ignored: the kernel of a scene, which has no bounds of its own, returns it instead.
-        """
+        """Return the bounds of rounding errors that come with symrot for this kernel, or None if there are none."""
+        # ``bounds`` are for a scene's kernel, which has no bounds of its own
         return self._section if isinstance(self._section, dict) else None
 
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
-        """Return the kernel with its C files, formulas and laws, for proofs that the C files compute the formulas.
-
-        The comments in the C files state the bounds of rounding errors that come with symrot; ``bounds``, which the
-        kernel of a scene needs, is ignored.
-        """
+        """Return the kernel with its C files, formulas and laws, for proofs that the C files compute the formulas."""
         description = kernel_description(self._definition, "c")
+        # the C files' comments state the bounds that come with symrot, not ``bounds``
         return library_kernel_under_test(self._definition, description, self._certified_files(bounds))
 
 
 class SceneText(KernelText):
     """The texts (C, NumPy, JavaScript, ..) of a kernel that computes the equations of motion of a scene.
-
-    The equations are derived when the object is made, once for all its texts.
 
     Parameters
     ----------
@@ -202,6 +186,7 @@ class SceneText(KernelText):
         States and constants by which the derivatives of the rates are computed too.
     """
 
+    # the equations are derived when the object is made, once for all its texts
     folders: ClassVar[Mapping[str, str]] = {
         "numpy": "../../numpy/scenes", "js": "../../js/scenes", "jax": "../../jax/scenes",
     }  # fmt: skip
@@ -235,11 +220,8 @@ class SceneText(KernelText):
 
     @cached_property
     def program(self) -> Program:
-        """The operations that compute the rates ``dy/dt``.
-
-        The description of each of its parameters, which are printed in the comments of the texts, has the formula by
-        which the parameter follows from the scene's constants, and its value.
-        """
+        """The operations that compute the rates ``dy/dt``."""
+        # parameters are described by their formulas in the scene's constants, and by their values
         return with_values(self._lowered.program, self._lowered.parameters, self.plan.constants)
 
     @cached_property
@@ -270,11 +252,9 @@ class SceneText(KernelText):
         return jax_source(self.program, self._description("jax"))
 
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
-        """Return the kernel with its texts and equations of motion, for proofs that the texts compute the equations.
-
-        ``bounds`` are bounds of rounding errors that the comments in the C files state; None for no bounds.
-        """
+        """Return the kernel with its texts and equations, for proofs that the texts compute the equations."""
         lowered, files, (formulas, _) = self._lowered, self._certified_files(bounds), self._formulas
+        # comments in the C files state ``bounds``
         return scene_kernel_under_test(
             self._equations, lowered.program, lowered.parameters, self._description("c"), files,
             dict(formulas.outputs), formulas.named,
@@ -282,26 +262,22 @@ class SceneText(KernelText):
 
     @cached_property
     def inputs(self) -> SceneInputs:
-        """The inputs of the kernel, on which the bounds of its rounding errors depend.
-
-        They are its arguments, the value and the formula of each parameter p[0], p[1], .., the values of the physical
-        constants in these formulas, and the first and last time of the scene.
-        """
+        """The inputs of the kernel: its arguments, parameters and constants, and the scene's first and last time."""
         parameters, constants = self._lowered.parameters, self.plan.constants
         formulas = {f"p[{place}]": parameter for place, parameter in enumerate(parameters)}
         arguments, values = self._lowered.program.signature.arguments, tuple(bind(parameters, constants))
+        # the bounds of the kernel's rounding errors depend on them
         return SceneInputs(arguments, values, self.scene.span[:2], formulas, constants)
 
 
 def kernel_text(kernel: KernelText | SceneSource, jacobian: Sequence[str] = ()) -> KernelText:
-    """Return the object that prints a kernel: all its texts, in every language.
+    """Return the object that prints all texts of a kernel, of the library or of a scene.
 
-    ``kernel`` is the name of a library kernel (whose object is made once per process), a scene, the name of a shipped
-    scene, the path of a scene file, or a KernelText, which is returned unchanged. ``jacobian`` names the inputs, states
-    or constants by which the derivatives of the outputs are computed too.
+    ``jacobian`` names the inputs by which the outputs are differentiated too.
     """
     if isinstance(kernel, KernelText):
         return kernel
+    # name of a library kernel (made once per process) or of a shipped scene, or path of a scene file
     if isinstance(kernel, str):
         if is_kernel(kernel):
             return _library_text(jacobian_name(kernel, jacobian))
@@ -320,11 +296,7 @@ def _library_text(name: str) -> LibraryText:
 
 
 def scene_text(scene: SceneSource, jacobian: Sequence[str] = ()) -> SceneText:
-    """Return the texts of a scene's kernel, the rates ``dy/dt`` of its motion.
-
-    ``scene`` is a scene, the name of a shipped one, or the path of a file; ``jacobian`` names the states and constants
-    by which the derivatives of the rates are computed too.
-    """
+    """Return the texts of a scene's kernel: the rates ``dy/dt`` of its motion, and derivatives by ``jacobian``."""
     return SceneText(load_scene(scene), jacobian)
 
 

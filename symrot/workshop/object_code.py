@@ -54,32 +54,24 @@ def objects_of(texts: Mapping[str, str], source: str, programs: str) -> Data:
 
 
 def holds(section: Data | None) -> bool:
-    """Return whether the object code in a certificate's section is proven to perform the C text, bit by bit.
-
-    ``section`` is the section ``objects`` of a certificate, or None. Only object code whose compiler flags preserve
-    every bit of the results is considered. All of its functions must be proven. The result is False if the section has
-    no such code or is None.
-    """
+    """Return whether the object code in a certificate is proven to perform the C text, bit by bit."""
+    # only code whose flags preserve every bit counts; without such code the result is False
+    # ``section`` is the section "objects" of the certificate, or None
     strict = [item for item in _objects(section) if item["flags_hold"] == BITS]
     return bool(strict) and all(function["verdict"] == IDENTICAL for item in strict for function in item["functions"])
 
 
 def lines(section: Data | None) -> list[str]:
-    """Return the verdicts on the object code of a kernel, one line for each compiler and its flags.
-
-    ``section`` is the section ``objects`` of the kernel's certificate, or None for no lines.
-    """
+    """Return the verdicts on the object code of a kernel, one line for each compiler and its flags."""
+    # ``section`` is the section "objects" of the certificate
     verdicts = [f"{item['compiler']} {item['flags']}: {_verdict(item)}" for item in _objects(section)]
     absent = (section or {}).get("missing", ())
     return [*verdicts, *(f"{compiler} is not on the path: not compared" for compiler in absent)]
 
 
 def table(sections: Mapping[str, Data | None]) -> list[str]:
-    """Return lines of text: how many kernels are accepted for each compiler and flags, and each rejected kernel.
-
-    ``sections`` maps the name of a kernel to the section ``objects`` of its certificate. A kernel is accepted if its
-    object code performs the operations of its C text.
-    """
+    """Return lines of text: how many kernels are accepted for each compiler and flags, and each rejected kernel."""
+    # a kernel is accepted if its object code performs the operations of its C text
     by_flags: dict[str, dict[str, Data]] = {}
     for name, section in sections.items():
         for item in _objects(section):
@@ -92,15 +84,14 @@ def table(sections: Mapping[str, Data | None]) -> list[str]:
 
 
 def object_lines(text: str, path: Path, where: str) -> list[str]:
-    """Compare each function in the object file ``path`` with the C text ``text``; return one line for each.
-
-    ``where`` is the name of the C file, for messages.
+    """Return one line for each function in the object file ``path``, after comparison with the C text.
 
     Raises
     ------
     CertificateError
         If a function differs; the message names the first such function and the difference.
     """
+    # ``where`` is the name of the C file
     verdicts = compare_object(text, path, where=where)
     refused = [verdict for verdict in verdicts if not verdict.accepted]
     if refused:
@@ -117,17 +108,14 @@ def _objects(section: Data | None) -> Iterator[Data]:
 
 
 def _verdict(item: Data) -> str:
-    """Return the verdict on one object file: that it performs the operations of the C text, or why it is rejected.
-
-    ``item`` is its entry in the section ``objects`` of a certificate; the reason is that for its first rejected
-    function.
-    """
+    """Return the verdict on one object file: that it performs the operations of the C text, or why it is rejected."""
     verdicts = {function["verdict"] for function in item["functions"]}
     if item["accepted"]:
         return f"performs the operations of the C text, {HOLDS[IDENTICAL if verdicts == {IDENTICAL} else CONTRACTED]}"
     refused = [function for function in item["functions"] if function["verdict"] not in HOLDS]
     if not refused:
         return "not accepted under these flags"
+    # the reason for the first rejected function
     first = refused[0]
     where = f", output {first['output']}" if first["output"] else ""
     return (

@@ -41,11 +41,9 @@ DIGITS = 40
 
 
 def _dop853(order: int) -> RungeKutta:
-    """Return the step of order 8 of Dormand and Prince, a Runge-Kutta method, without its estimates of the error.
-
-    ``order`` is not used: the method has one order only.
-    """
+    """Return the step of order 8 of Dormand and Prince, a Runge-Kutta method, without its error estimates."""
     stages = range(1, 13)
+    # ``order`` is not used: the method has one order only
     return RungeKutta(
         "dop853", 8, tuple(Fraction(NODES[i]) for i in stages),
         tuple({j - 1: Fraction(a) for j, a in STAGE_WEIGHTS.get(i, {}).items()} for i in stages),
@@ -89,15 +87,13 @@ def step_method(name: str, order: int | None = None, jacobian: Sequence[str] = (
 
 
 def step_text(scene: SceneSource, step: str, order: int | None = None, jacobian: Sequence[str] = ()) -> KernelText:
-    """Return the texts of one time step of a scene; InputError is raised for a library kernel, which has no motion.
-
-    ``step`` is the method, such as ``"rk4"``, and ``order`` that of a Taylor series; ``jacobian`` names the inputs by
-    which the step is differentiated too.
-    """
+    """Return the texts of one time step of a scene by the method ``step``, such as ``"rk4"``."""
+    # a library kernel has no motion
     if isinstance(scene, str) and is_kernel(scene):
         raise InputError(f"step: expected a scene, because only a motion has steps, got the kernel {scene!r}")
     if step == "exact":
         return _exact(load_scene(scene), order, jacobian)
+    # ``order`` is that of a Taylor series; ``jacobian`` names the inputs by which the step is differentiated too
     text = StepText(load_scene(scene), step_method(step, order, jacobian))
     for name in jacobian:
         derivative_inputs(text.rates.program, name)

@@ -1,7 +1,6 @@
 """Rigid bodies, inertia dyadics and frames of ``sympy.physics.mechanics``, to and from symrot.
 
-Both sides use the same conventions: the entries of an inertia tensor contain the minus sign of the products, and
-``N.dcm(B)`` maps components in B to components in N, as ``dcm_sb`` does.
+Conventions agree: inertia tensors contain the minus sign of the products, and ``N.dcm(B)`` is ``dcm_sb``.
 """
 
 from fractions import Fraction
@@ -79,15 +78,13 @@ def _table(body: RigidBody) -> dict[str, Any]:
 
 
 def _number(value: Any, place: str) -> Any:
-    """Return a number of SymPy as a scene accepts it: a fraction, the exact value of a float, or text such as sqrt(2).
-
-    ``place`` names it in the InputError that is raised for symbols.
-    """
+    """Return a number of SymPy as a scene accepts it: a fraction, a float, or text such as sqrt(2)."""
     value = Rational(value) if isinstance(value, int | Fraction) else value
     if isinstance(value, float):
         return value
     if not isinstance(value, Expr) or not value.is_number or not value.is_real:
         names = ", ".join(sorted(map(str, getattr(value, "free_symbols", ())))) or str(value)
+        # ``place`` names the number that contains symbols
         raise InputError(
             f"from_sympy: {place}: expected a real number, got {names}; replace symbols by numbers, "
             "for example by xreplace, before the body is passed to symrot"

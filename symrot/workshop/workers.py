@@ -19,11 +19,8 @@ def _ignored(arguments: object) -> None:
 
 @contextmanager
 def workers() -> Iterator[ProcessPoolExecutor]:
-    """Yield a pool of processes; an exception in the ``with`` block, such as Ctrl-C, kills the processes at once.
-
-    The processes write files under temporary names and rename them (:func:`symrot.files.writing.write`,
-    :mod:`symrot.build.cache`), so that no incomplete file remains. They ignore Ctrl-C; the main process ends them.
-    """
+    """Yield a pool of processes; an exception in the ``with`` block, such as Ctrl-C, kills the processes at once."""
+    # the processes rename finished files, so that no incomplete file remains; they ignore Ctrl-C
     with ProcessPoolExecutor(COUNT, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)) as pool:
         try:
             yield pool

@@ -191,9 +191,8 @@ def counted(text: str, name: str) -> Counter[str]:
 
 
 def casadi_function(name: str, program: Callable[[str], Program] = textbook_program) -> tuple[Any, Counter[str]]:
-    """Return CasADi's function of a kernel's inputs (one vector), and its number of operations by kind.
-
-    It returns the values and the kernel's derivatives.
+    """Return CasADi's function from a kernel's inputs (one vector) to its values and derivatives, and the operations by
+    kind.
 
     Parameters
     ----------

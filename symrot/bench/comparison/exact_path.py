@@ -1,7 +1,7 @@
 """Reference motions, computed to 40 digits by Taylor series in mpmath; for free bodies, over any number of periods.
 
 Every period P of a free body adds the same rotation: ``q(t + n P) = R^n q(t)`` with ``R = q(P) q(0)^-1``. So the series
-of one period suffice for a million. No code is shared with the tested closed form.
+of one period suffice for a million. The tested closed form shares no code.
 """
 
 from collections.abc import Callable, Sequence

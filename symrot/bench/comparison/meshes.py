@@ -2,8 +2,8 @@
 
     python -m symrot.bench.comparison.meshes [--triangles 1000000] [--rounds 3]
 
-A run is a call of :func:`symrot.mesh` on an ellipsoid that trimesh wrote (``pip install 'symrot[mesh]'``). The error is
-that against the same polyhedron in integers.
+A run calls :func:`symrot.mesh` on an ellipsoid that trimesh wrote (``pip install 'symrot[mesh]'``). The error is the
+difference from exact integrals of a coarser ellipsoid.
 """
 
 import argparse

@@ -27,19 +27,15 @@ def derivatives(speed: Expr = S.One, parameter: Expr = MU) -> dict[Symbol, Expr]
 
 
 def squares(parameter: Expr = MU, fixed: bool = False) -> list[Expr]:
-    """Return s^2 + c^2 - 1 and d^2 + mu s^2 - 1 for s = sn, c = cn, d = dn; proofs use that both are zero.
-
-    mu is ``parameter``. With ``fixed``, the functions have the fixed argument w.
-    """
+    """Return s^2 + c^2 - 1 and d^2 + mu s^2 - 1, which are zero for sn, cn and dn."""
+    # with fixed, at the fixed argument w; mu is the parameter
     s, c, d = W_VALUES if fixed else (SN, CN, DN)
     return [c**2 - 1 + s**2, d**2 - 1 + parameter * s**2]
 
 
 def shifted(sign: int = 1, at: tuple[Expr, Expr, Expr] = W_VALUES, parameter: Expr = MU) -> tuple[Expr, Expr, Expr]:
-    """Return sn, cn and dn of u + w (``sign`` 1) or u - w (-1) by the addition theorems.
-
-    ``at`` are the values at w; those at u are the symbols SN, CN and DN.
-    """
+    """Return sn, cn and dn of u + w (``sign`` 1) or u - w (-1) by the addition theorems."""
+    # the values at w; those at u are the symbols SN, CN and DN
     s, c, d = at
     s = sign * s
     below = 1 - parameter * SN**2 * s**2

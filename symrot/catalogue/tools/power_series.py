@@ -13,11 +13,9 @@ def indexed(name: str, index: Symbol, shift: int = 0) -> Symbol:
 
 
 def coefficient(terms: Mapping[str, Mapping[int, Expr]], variable: Symbol, index: Symbol) -> Expr:
-    """Return the coefficient of ``variable^index`` in a sum of terms, each a polynomial times a series' derivative.
+    """Return the coefficient of ``variable^index`` in a sum of polynomials times derivatives of power series.
 
-    It is an expression in the unknown coefficients of the series, ``a[index]``, ``a[index + 1]`` and so on for a series
-    called ``a``. For ``terms = {"a": {0: 1, 2: x}}``, the sum is ``a(x) + x a''(x)``, and the coefficient of x^k is
-    ``a[k] + (k + 1) k a[k + 1]``.
+    For ``terms = {"a": {0: 1, 2: x}}``, the sum is ``a(x) + x a''(x)``, and the result ``a[k] + (k + 1) k a[k + 1]``.
 
     Parameters
     ----------

@@ -237,10 +237,10 @@ def weak(d: Derivation) -> None:
 
 
 def _by_legendre(c: Expr) -> dict[Symbol, Expr]:
-    """Return coefficients a_{k+1}, a_k and a_{k-1} of the power series of ``sqrt(1 + 2 c h + h^2)`` in h.
-
-    They are formulas in the symbols of the Legendre polynomials P_k and P_{k-1}, whose argument is -c.
+    """Return coefficients a_{k+1}, a_k, a_{k-1} of the series of ``sqrt(1 + 2 c h + h^2)`` in h by Legendre
+    polynomials.
     """
+    # P_k and P_{k-1} at -c
     above, below = Symbol("P_{k}"), Symbol("P_{k-1}")
     p = {0: above, -1: below, 1: (-(2 * K + 1) * c * above - K * below) / (K + 1)}
     for i in (-2, -3):  # the recurrence for the next higher index, solved for the lowest coefficient

@@ -1,7 +1,4 @@
-"""Checks of theorem files with Coq: no proof is skipped, and only axioms of the real numbers are used.
-
-Coq works in a temporary folder, into which it also writes files of its own.
-"""
+"""Checks of theorem files with Coq: no proof may be skipped, and only axioms of the real numbers may be used."""
 
 import os
 import re
@@ -33,14 +30,11 @@ _PLACE = re.compile(r'File "[^"]*?([^/"]+)", line (\d+), characters [^:]*:\s*(.*
 
 @dataclass(frozen=True)
 class TheoremResult:
-    """What Coq did with one theorem of a file.
-
-    ``outcome`` is ``"ok"``, ``"refused"`` (Coq stopped at this theorem) or ``"not reached"`` (Coq stopped at an earlier
-    theorem of the same file).
-    """
+    """The outcome of checking one theorem of a file with Coq."""
 
     file: str
     name: str
+    # "ok", "refused" (Coq stopped at this theorem) or "not reached" (Coq stopped at an earlier theorem of the file)
     outcome: str
 
 
@@ -84,17 +78,12 @@ def coq_version(compiler: str) -> str:
 
 
 def unproven(text: str) -> tuple[str, ...]:
-    """Return the words of a Coq file, outside comments, that assume a statement or skip a proof, such as ``Admitted``.
-
-    An empty tuple means that every theorem of the file has a proof.
-    """
+    """Return the words of a Coq file, outside comments, that skip a proof or assume a statement, like ``Admitted``."""
     return tuple(match[0] for match in _UNPROVEN.finditer(_COMMENT.sub(" ", text)))
 
 
 def check_kernel(kernel: str, seconds: float = SECONDS) -> CoqResult:
-    """Check the theorem about a kernel of the library, and the files that it needs, with Coq; return the result.
-
-    ``seconds`` is the time limit for one file.
+    """Return the result of checking with Coq the theorem about a kernel, within ``seconds`` for each file.
 
     Raises
     ------
@@ -108,6 +97,7 @@ def check_kernel(kernel: str, seconds: float = SECONDS) -> CoqResult:
             "prove` lists these kernels"
         )
     name = str(section["file"]).removesuffix(".v")
+    # with the files that the theorem's file requires
     return check_texts(coq_texts((name,)), seconds=seconds)
 
 
@@ -178,11 +168,11 @@ def _required(text: str) -> set[str]:
 
 
 def _levels(sources: Mapping[str, str]) -> list[list[str]]:
-    """Return the names of Coq files in groups, in the order in which the groups must be checked.
+    """Return Coq files in groups, such that each file requires only files of earlier groups.
 
-    Each file needs only files of earlier groups, so that the files of a group can be checked in parallel. ``sources``
-    maps each name to its text.
+    ``sources`` maps each name to its text.
     """
+    # the files of one group can be checked in parallel
     levels: list[list[str]] = []
     left, done = dict(sources), set[str]()
     while left:
@@ -198,10 +188,8 @@ def _levels(sources: Mapping[str, str]) -> list[list[str]]:
 
 
 def _compile(compiler: str, place: Path, name: str, seconds: float) -> tuple[str | None, str]:
-    """Check the file ``NAME.v`` in the folder ``place`` with Coq, for at most ``seconds``.
-
-    Return two texts: Coq's error message, or None if it accepted the file, and what Coq printed.
-    """
+    """Return Coq's error message about ``NAME.v``, or None if it accepts the file, and what Coq prints."""
+    # Coq writes files of its own into the folder ``place``
     command = [compiler, "-q", "-R", ".", "symrot", f"{name}.v"]
     try:
         done = run_tool(command, seconds, place)
@@ -221,16 +209,14 @@ def _axioms(printed: str) -> tuple[str, ...]:
 
 
 def _results(name: str, text: str, complaint: str | None) -> list[TheoremResult]:
-    """Return the outcome of each theorem of a file, for :class:`CoqResult`.
-
-    ``name`` and ``text`` are the file's; ``complaint`` is Coq's error message, whose line number shows the refused
-    theorem, or None if Coq accepted the file. A file of rules or axioms has no theorems: its list is empty.
-    """
+    """Return the outcome of each theorem of a file; ``complaint`` is Coq's error message, or None."""
+    # files of rules or axioms have no theorems
     if name in (RULES, ASSUMPTIONS):
         return []
     theorems = [(text.count("\n", 0, match.start()) + 1, match[1]) for match in _THEOREM.finditer(text)]
     if complaint is None:
         return [TheoremResult(f"{name}.v", theorem, "ok") for _, theorem in theorems]
+    # the line number in Coq's message shows which theorem was refused
     line = re.match(r"line (\d+):", complaint)
     refused = max((start for start, _ in theorems if start <= int(line[1])), default=0) if line else 0
     outcomes = [("ok" if start < refused else "refused" if start == refused else "not reached", theorem)

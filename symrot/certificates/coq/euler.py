@@ -1,9 +1,7 @@
 """Coq theorems about Euler angles in 24 sequences: the angle rates agree with the rotation matrix's derivative.
 
-The rotation matrix (dcm) is the product of three rotations, each with its own angular velocity. The product's angular
-velocity is the sum of these three vectors, after the rotations between have carried them into one common frame
-(``three_turns_body`` and ``three_turns_space`` in ``rotation.v``). It remains to prove that the printed rate Jacobian
-gives that sum: one identity of products of sines and cosines for each of the three components.
+The matrix is the product of three rotations. Its angular velocity is the sum of theirs, carried into one frame (proven
+in ``rotation.v``). It remains to prove that the printed rate Jacobian gives that sum.
 """
 
 from sympy import cos, sin
@@ -43,10 +41,7 @@ def euler_files() -> dict[str, str]:
 
 
 def euler_file(sequence: str) -> CoqFile:
-    """Return the Coq file about one sequence of Euler angles: the formulas of its kernels, and theorems about them.
-
-    ``sequence`` is intrinsic in capital letters, such as ``"ZXZ"``, or extrinsic in small letters.
-    """
+    """Return the Coq file about the kernels of one Euler sequence, such as ``"ZXZ"`` or ``"zxz"``."""
     name = prefix(sequence)
     kind = "intrinsic" if parse_sequence(sequence)[1] else "extrinsic"
     return CoqFile(
@@ -65,10 +60,7 @@ def euler_file(sequence: str) -> CoqFile:
 
 
 def _rotations(sequence: str) -> list[tuple[str, str]]:
-    """Return the three rotations whose product, from left to right, is the rotation matrix of an Euler sequence.
-
-    Each is a pair of axis letter and angle: ``("z", "phi")``.
-    """
+    """Return the rotations of an Euler sequence, from left to right, such as ``("z", "phi")``, about axis z."""
     return [(AXES[factor.axis].lower(), str(factor.angle)) for factor in factors(sequence)]
 
 

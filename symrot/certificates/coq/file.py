@@ -11,15 +11,14 @@ __all__ = ["CoqFile", "Theorem", "derivatives", "statement"]
 
 @dataclass(frozen=True)
 class Theorem:
-    """A theorem of Coq: the statement in words (``about``) and in Coq, and the tactics that prove it.
-
-    ``kernel`` says whether the theorem is about the kernel of the library that has the same name.
-    """
+    """A Coq theorem, with the tactics that prove it."""
 
     name: str
+    # the statement in words
     about: str
     statement: str
     proof: str
+    # whether the theorem is about the library kernel of the same name
     kernel: bool = True
 
     @property
@@ -77,18 +76,13 @@ def _short(line: str) -> str:
 
 
 def derivatives(functions: Sequence[str], rates: Sequence[str]) -> str:
-    """Return the Coq hypotheses that the derivative of each function at time t is its rate, as one text.
-
-    ``functions`` and ``rates`` are Coq texts; for ``x`` and ``v`` the text is ``derivable_pt_lim x t v ->``.
-    """
+    """Return Coq hypotheses that functions have these rates at the time t, such as ``derivable_pt_lim x t v ->``."""
     pairs = zip(functions, rates, strict=True)
     return folded("  " + " ".join(f"derivable_pt_lim {each} t {rate} ->" for each, rate in pairs), 2)
 
 
 def statement(quantified: str, *hypotheses: str, conclusion: str) -> str:
-    """Return a theorem's statement as lines of Coq: ``forall`` variables, hypotheses, and the conclusion.
-
-    ``quantified`` are the variables after ``forall``; each hypothesis ends with ``->``, and an empty one is left out.
-    """
+    """Return a theorem's statement as Coq text: ``forall`` the variables ``quantified``, hypotheses, and conclusion."""
+    # each hypothesis ends with "->"; an empty hypothesis is left out
     lines = [folded(f"  forall {quantified},", 4), *hypotheses, *(f"  {line}" for line in conclusion.split("\n"))]
     return "\n".join(line for line in lines if line)

@@ -76,10 +76,7 @@ def rules_text() -> str:
 
 
 def assumptions_text(names: tuple[str, ...]) -> str:
-    """Return the text of a Coq file that prints the axioms on which the theorems of the files ``names`` rest.
-
-    When Coq reads it, it prints all these axioms together.
-    """
+    """Return a Coq file that makes Coq print all axioms on which the theorems of the files ``names`` rest."""
     lines = [f"  let _ := {name}.{theorem.name} in" for name in names for theorem in coq_file(name).theorems]
     return "\n".join([
         "(* The axioms on which the theorems rest, all together. Printed by `symrot prove --coq`; do not edit. *)",
@@ -89,24 +86,20 @@ def assumptions_text(names: tuple[str, ...]) -> str:
 
 
 def with_required(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return ``names``, names of Coq files, and the names of all files that these require.
-
-    Each name comes after the names of the files that it needs; ``rotation.v``, which every file needs, is left out.
-    """
+    """Return ``names`` and the names of the Coq files that they require, each after the files that it requires."""
     files_needed = set(names)
     for name in names:
+        # rotation.v is left out: every file requires it
         files_needed |= set(coq_file(name).requires) - {RULES}
     return tuple(name for name in coq_file_names() if name in files_needed)
 
 
 def coq_texts(names: tuple[str, ...] | None = None) -> dict[str, str]:
-    """Return a map from file name to text for Coq: the files ``names`` (default: all) and all files that they need.
-
-    The map includes ``_CoqProject``, a list of all files for the build tool ``coq_makefile``.
-    """
+    """Return the Coq files ``names`` (default: all) and the files that they require, as a map from name to text."""
     names_needed = with_required(coq_file_names() if names is None else names)
     printed = {name: coq_file(name).text for name in names_needed}
     texts = {RULES: rules_text(), **printed, ASSUMPTIONS: assumptions_text(names_needed)}
+    # _CoqProject lists all files for the build tool coq_makefile
     project = "".join(f"{line}\n" for line in ("-R . symrot", *(f"{name}.v" for name in texts)))
     return {"_CoqProject": project, **{f"{name}.v": text for name, text in texts.items()}}
 
@@ -122,10 +115,7 @@ def _theorem_about(kernel: str) -> tuple[str, Theorem] | None:
 
 
 def coq_section(kernel: str) -> dict[str, Any] | None:
-    """Return the section ``coq`` of a kernel's certificate, which states the theorem about the kernel, or None.
-
-    The section states the theorem; it does not say that Coq has checked the theorem, and Coq is not needed to make it
-    (:func:`symrot.certificates.coq.check.check_kernel` runs Coq).
+    """Return the ``coq`` section of a kernel's certificate, which states the theorem about the kernel, or None.
 
     Parameters
     ----------
@@ -138,6 +128,7 @@ def coq_section(kernel: str) -> dict[str, Any] | None:
         ``file``, ``theorem`` (its name), ``statement`` (its text), ``statement_sha256``, ``file_sha256``, ``requires``
         (required file -> sha256) and ``axioms``, the only axioms on which the theorem may rest.
     """
+    # Coq is not needed here; coq/check.py runs it
     home = _theorem_about(kernel)
     if home is None:
         return None

@@ -75,11 +75,7 @@ def _wrapped(text: str) -> str:
 
 
 def _path(name: str, parameters: Sequence[str]) -> tuple[str, str]:
-    """Return two Coq texts: a rotation matrix as a function of time, and its value at the time t.
-
-    ``name`` is the Coq function that computes the matrix from ``parameters``, functions of time: ``fun u => dcm (q0 u)
-    (q1 u)`` and ``dcm (q0 t) (q1 t)``.
-    """
+    """Return a matrix function of time as Coq text, ``fun u => dcm (q0 u)``, and its value at t, ``dcm (q0 t)``."""
     return (f"fun u => {name} " + " ".join(f"({each} u)" for each in parameters),
             f"{name} " + " ".join(f"({each} t)" for each in parameters))  # fmt: skip
 

@@ -36,19 +36,12 @@ def rodrigues_file(name: str) -> CoqFile:
 
 
 def _norm(parameters: tuple[str, ...], at: str = "") -> str:
-    """Return the Coq text of the denominator in the formulas: 1 plus the sum of the squared ``parameters``.
-
-    ``at`` is appended to each parameter, such as `` t`` for its value at time t: ``p1 t ^ 2 + p2 t ^ 2 + p3 t ^ 2 +
-    1``.
-    """
+    """Return the Coq text of 1 plus the squared ``parameters``, such as ``p1 t ^ 2 + 1`` if ``at`` is a space and t."""
     return " + ".join(f"{each}{at} ^ 2" for each in parameters) + " + 1"
 
 
 def _positive(parameters: tuple[str, ...], at: str = "") -> str:
-    """Return the Coq tactic which proves that 1 plus the sum of the squared ``parameters`` is positive.
-
-    ``at`` is appended to each parameter, as in :func:`_norm`.
-    """
+    """Return the Coq tactic which proves that 1 plus the squared ``parameters`` (see ``_norm``) is positive."""
     return "(" + "; ".join(f"pose proof (pow2_ge_0 ({each}{at}))" for each in parameters) + "; lra)"
 
 

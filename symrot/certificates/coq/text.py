@@ -1,7 +1,4 @@
-"""Coq text of SymPy expressions and kernels: rational functions, sines, cosines and square roots of real variables.
-
-Terms and factors are printed in SymPy's canonical order, so that a formula gives the same bytes on every machine.
-"""
+"""Coq text of SymPy expressions and kernels: rational functions, sines, cosines and square roots of real variables."""
 
 from collections.abc import Iterable, Sequence
 from textwrap import fill
@@ -32,11 +29,9 @@ def coq_expression(expression: Expr) -> str:
     return _print(expression)[0]
 
 
+# Terms and factors come in SymPy's canonical order, so that a formula gives the same bytes on every machine.
 def _print(expression: Expr) -> tuple[str, int]:
-    """Return the Coq text of an expression, and the precedence (an int) of its outermost operation.
-
-    The caller puts the text in brackets if the operation around it has a higher precedence.
-    """
+    """Return the Coq text of an expression, and the precedence of its outermost operation."""
     if isinstance(expression, Symbol):
         return str(expression), _ATOM
     if isinstance(expression, Rational):
@@ -111,10 +106,7 @@ def comment(text: str) -> str:
 
 
 def _record(formulas: Sequence[Expr]) -> str:
-    """Return the Coq text of several formulas as the components of one vector, quaternion or matrix (row by row).
-
-    A single formula is returned as its own text.
-    """
+    """Return formulas as Coq text of one vector, quaternion or matrix (row by row); a single formula stays a number."""
     if len(formulas) == 1:
         return folded(f"  {coq_expression(formulas[0])}", 4)
     texts = [_within(formula, _ATOM) for formula in formulas]
@@ -130,10 +122,8 @@ def _defined(name: str, variable_names: Iterable[str], size: int, body: str) -> 
 
 
 def matrix_text(name: str, variable_names: Iterable[str], formulas: Sequence[Expr]) -> str:
-    """Return the Coq definition of a function ``name`` of real variables, one formula for each component of its value.
-
-    The value is a vector, quaternion or matrix (row by row), according to the number of formulas.
-    """
+    """Return the Coq definition of a function ``name`` of real variables, whose value has one component per formula."""
+    # a vector, quaternion or matrix (row by row), according to the number of formulas
     return _defined(name, variable_names, len(formulas), _record(formulas))
 
 

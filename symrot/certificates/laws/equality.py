@@ -1,11 +1,7 @@
 """Proof that the operations of a C text compute a kernel's formulas exactly, as functions of real numbers.
 
-C text and formulas are both turned into fractions of polynomials over the inputs, pi and atoms; an atom is a symbol for
-the value of a function such as ``sin(psi)``. An atom of the C text equals an atom of the formula if their arguments are
-equal fractions. A function with a removable singularity (:mod:`symrot.kernels.removable`) is recognised by its two
-branches: one is proven to be the function's formula, the other its limit or its series, whose truncation error is
-bounded. A constant of the C text that is not a short binary fraction stands for the simplest fraction or multiple of pi
-that rounds to it. If the formula has another number there, the proof fails.
+The C text and the formulas become fractions of polynomials over the inputs, pi and atoms, symbols for function values
+such as ``sin(psi)``. A function that is 0/0 at zero, such as sin(x)/x, is recognised by its two branches.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -31,13 +27,10 @@ MOST_ATOMS = 80
 
 @dataclass(frozen=True)
 class Truncation:
-    """A series with finitely many terms by which the C text computes a function, such as (x - sin x)/x^3, near x = 0.
-
-    It is used where x^2 is less than ``split``, and has ``terms`` terms; ``relative`` bounds the relative error caused
-    by the terms that are left out.
-    """
+    """A truncated series by which the C text computes a function, such as (x - sin x)/x^3, near x = 0."""
 
     function: str
+    # the series is used where x^2 is less than this number
     split: Fraction
     terms: int
     relative: Fraction  # bound of the truncation error, relative to the value
@@ -45,34 +38,27 @@ class Truncation:
 
 @dataclass(frozen=True)
 class Equality:
-    """The proof that the C text computes the formula of each output.
+    """The proof that the C text computes the formula of each output."""
 
-    ``atoms`` are tuples (symbol, function, arguments): each symbol stands for the value of a function such as
-    ``sin(x)``. ``formulas`` are tuples (output such as ``"q[1]"``, numerator, denominator), as text over inputs, pi and
-    atoms. ``rounded`` are the constants of the C text that stand for an exact number, such as 1/3.
-    """
-
+    # (symbol, function, arguments), where the symbol stands for the function value
     atoms: tuple[tuple[str, str, tuple[str, ...]], ...]
+    # (output such as "q[1]", numerator, denominator), as text over inputs, pi and atoms
     formulas: tuple[tuple[str, str, str], ...]
+    # constants of the C text that stand for an exact number, such as 1/3
     rounded: tuple[IntendedConstant, ...]
     truncations: tuple[Truncation, ...]
 
 
 class _AtomField(FractionField):
-    """The field of fractions of polynomials over inputs, pi and atoms, the symbols for function values.
-
-    The first use of a function with new arguments adds an atom.
-    """
+    """The field of fractions of polynomials over inputs, pi and atoms, which are symbols for function values."""
 
     def __init__(self, inputs: Sequence[str], name: str) -> None:
         super().__init__(PolyRing([*inputs, "pi", *(f"atom_{k}" for k in range(MOST_ATOMS))], QQ, lex), name)
         self.atoms: dict[tuple[str, tuple[Quotient, ...]], str] = {}
 
     def atom(self, function: str, arguments: tuple[Quotient, ...]) -> Quotient:
-        """Return the atom, a symbol, for the value of a function such as ``"sin"`` at fractions of polynomials.
-
-        Equal arguments give the same atom, so that equal function values are equal in the proof.
-        """
+        """Return the symbol (atom) for a function value such as sin(x); ``arguments`` are fractions of polynomials."""
+        # equal arguments give the same atom, so that equal function values are equal in the proof
         key = (function, arguments)
         if key not in self.atoms:
             if len(self.atoms) == MOST_ATOMS:
@@ -84,10 +70,7 @@ class _AtomField(FractionField):
 
 
 class _Formulas(FormulaReader):
-    """A converter of SymPy formulas to fractions of polynomials; a function value such as ``sin(x)`` becomes an atom.
-
-    An atom is a symbol that stands for that value.
-    """
+    """A converter of SymPy formulas to fractions of polynomials, with a symbol for each function value ``sin(x)``."""
 
     def __init__(self, fractions: _AtomField, named: Sequence[tuple[Symbol, Expr]] = ()) -> None:
         self.fractions: _AtomField = fractions
@@ -106,6 +89,7 @@ class _Formulas(FormulaReader):
         return self.fractions.atom(name, tuple(map(self.read, expr.args)))
 
 
+# one branch is the function's formula, the other its limit or its series
 @dataclass(frozen=True)
 class FunctionWithLimit:
     """A function, such as ``sin(x)/x``, that the C text computes by its limit at zero and its formula elsewhere."""
@@ -125,13 +109,14 @@ FUNCTIONS_WITH_LIMIT = (
 )
 
 
+# Atoms of the C text and of the formulas are equal if their arguments are equal fractions. A constant that is not a
+# short binary fraction stands for the simplest fraction or multiple of pi that rounds to it; if the formula has another
+# number there, the proof fails.
 class _EqualityProver:
-    """The evaluation of a C text's operations in exact fractions of polynomials, for comparison with the formulas.
+    """The evaluation of a C text's operations in exact fractions of polynomials, for comparison with the formulas."""
 
-    ``symbol_of`` maps an input component, such as ``"q[1]"``, to its symbol; ``intended`` maps the symbol of an
-    input to the formula for which it stands.
-    """
-
+    # ``symbol_of``: input component such as "q[1]" -> its symbol; ``intended``: symbol -> the formula for which it
+    # stands
     def __init__(
         self,
         operations: Operations,
@@ -156,10 +141,9 @@ class _EqualityProver:
         return {place: self.values[index] for place, index in self.operations.outputs}
 
     def _below(self, index: int, leaf: int) -> set[int]:
-        """Return the indices of the operations by which node ``index`` of the graph is computed from node ``leaf``.
+        """Return the operations by which node ``index`` is computed, as a polynomial, from node ``leaf``.
 
-        Raise CertificateError unless they are sums and products with constants, so that node ``index`` is a polynomial
-        in the leaf, as in the series of a function near zero.
+        CertificateError is raised if it is no polynomial in the leaf.
         """
         if index == leaf:
             return set()
@@ -197,21 +181,16 @@ class _EqualityProver:
         return fractions.atom(kind, tuple(arguments))
 
     def _constant(self, value: Fraction) -> Quotient:
-        """Return the exact number for which a constant of the C text stands, such as 1/3 for 0.333..., as a fraction.
-
-        A constant that is only a rounding of its exact number is recorded in ``rounded``.
-        """
+        """Return the exact number for which a constant of the C text stands, such as 1/3 for 0.333..."""
         intended = intended_value(value, self.operations.precision)
         if intended.fraction != value or intended.times_pi:
+            # the certificate lists the constants that are only a rounding of their exact number
             self.rounded[value] = intended
         number = self.fractions.number(intended.fraction)
         return self.fractions.multiply(number, self.fractions.generator("pi")) if intended.times_pi else number
 
     def _choice(self, node: tuple[Any, ...]) -> Quotient:
-        """Return the exact value of a C conditional ``a < b ? x : y`` (``node``), which the formulas must have too.
-
-        CertificateError is raised for a conditional that the formulas do not have.
-        """
+        """Return the exact value of a C conditional ``a < b ? x : y``, which the formulas must contain too."""
         _, relation, *places = node
         if relation == "<":
             return self._series(*places)
@@ -235,21 +214,15 @@ class _EqualityProver:
     def _is_limit_or_formula(
         self, function: FunctionWithLimit, arguments: tuple[Quotient, ...], then: Quotient, other: Quotient
     ) -> bool:
-        """Return whether a conditional computes ``function``: its limit at zero in one branch, else its formula.
-
-        Its ``arguments`` are fractions of polynomials, and so are ``then`` and ``other``, the values of the two
-        branches.
-        """
+        """Return whether ``then`` is the limit of ``function`` at zero, and ``other`` its formula."""
         reader = _Formulas(self.fractions)
         reader.values.update(zip(function.arguments, arguments, strict=True))
         return then == reader.read(function.limit) and other == reader.read(function.formula)
 
     def _series(self, square: int, split: int, near: int, far: int) -> Quotient:
-        """Return the value, such as sinc(x), of a conditional that takes a series near x = 0 and a formula elsewhere.
+        """Return the function, such as sinc(x), that a conditional ``x*x < c ? series : formula`` computes.
 
-        The C text computes it as ``x*x < c ? series : formula``. ``square``, ``split``, ``near`` and ``far`` are the
-        indices of the operations for x*x, c, the series and the formula. CertificateError is raised if no function in
-        the kernel's formulas has this series and formula.
+        The arguments are the nodes of x*x, c, the series and the formula.
         """
         for (name, arguments), atom in list(self.fractions.atoms.items()):
             if name not in REMOVABLE or self.fractions.multiply(arguments[0], arguments[0]) != self.values[square]:
@@ -268,10 +241,7 @@ class _EqualityProver:
         )
 
     def _coefficients(self, index: int, leaf: int) -> list[Fraction]:
-        """Return the coefficients of node ``index`` as a polynomial in node ``leaf``, the constant term first.
-
-        Both are indices in the graph of operations: for ``2 + 3*leaf`` the result is ``[2, 3]``.
-        """
+        """Return the coefficients of node ``index`` as a polynomial in node ``leaf``: [2, 3] for 2 + 3*leaf."""
         if index == leaf:
             return [Fraction(0), Fraction(1)]
         node = self.operations.nodes[index]
@@ -287,11 +257,8 @@ class _EqualityProver:
         return product
 
     def _truncated(self, name: str, split: Fraction, written: list[Fraction]) -> Truncation:
-        """Check the coefficients of a truncated series in the C text; return the series with a bound of its error.
-
-        ``name`` is the function, ``split`` the value of x^2 below which the C text uses the series, and ``written`` the
-        coefficients in the text. CertificateError is raised for a coefficient that is not the exact one, rounded.
-        """
+        """Check the coefficients ``written`` of a series in the C text; return the series with an error bound."""
+        # the C text uses the series where x^2 < ``split``; each coefficient must be the exact one, rounded
         exact = REMOVABLE[name].taylor(len(written) + 1)
         for value, true in zip(written, exact, strict=False):
             if not IntendedConstant(value, true, False).rounds(self.operations.precision):

@@ -1,7 +1,7 @@
 """Exact arithmetic with fractions of polynomials over the rationals, and SymPy formulas as such fractions.
 
-Two kinds of proof share this arithmetic: proofs of laws, and proofs that a C text computes its formulas.
-:mod:`symrot.certificates.exact_check` checks both kinds independently, without any polynomials.
+Proofs of laws use it, and proofs that a C text computes its formulas. :mod:`symrot.certificates.exact_check` checks
+both independently, without polynomials.
 """
 
 from abc import ABC, abstractmethod
@@ -19,10 +19,7 @@ Quotient = tuple[PolyElement, PolyElement]  # numerator, denominator, in lowest 
 
 
 class FractionField:
-    """Fractions of polynomials with rational coefficients, each a pair (numerator, denominator) in lowest terms.
-
-    Equal fractions are equal pairs. ``name`` is the name of the kernel, for error messages.
-    """
+    """Fractions of polynomials, as pairs (numerator, denominator) in lowest terms; equal fractions are equal pairs."""
 
     def __init__(self, ring: PolyRing, name: str) -> None:
         self.ring, self.name = ring, name
@@ -87,12 +84,10 @@ def quotient_text(value: Quotient) -> str:
 
 
 class FormulaReader(ABC):
-    """A converter of SymPy formulas to fractions of polynomials; subclasses have rules for symbols and functions.
-
-    ``values`` stores the fractions of the formulas that were converted before.
-    """
+    """A converter of SymPy formulas to fractions of polynomials; subclasses define symbols and functions."""
 
     fractions: FractionField
+    # the fractions of formulas that were converted before
     values: dict[Expr, Quotient]
 
     @abstractmethod

@@ -1,10 +1,7 @@
-"""One attempt to prove a law: every entry is written as a sum of cofactors times relations.
+"""One attempt to prove a law: each expression that the law states to be zero is a sum of cofactors times relations.
 
-An entry is an expression that the law states to be zero; a relation is a polynomial that is known to be zero. Both are
-polynomials in the inputs and in generators: a generator is a variable for the value of a function such as ``cos(x)``.
-
-A base angle is an angle, such as x/2, whose sine and cosine are generators; every other angle must be a sum of integer
-multiples of base angles and of pi/2.
+A relation is a polynomial known to be zero. A generator is a variable for a function value such as ``cos(x)``. A base
+angle is an angle, such as x/2, whose sine and cosine are generators.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -40,12 +37,10 @@ Choice = tuple[str, str, str]  # left side, ">=" or "<", right side
 ProofStep = tuple[Any, ...]  # kind, arguments
 
 
+# Every angle must be a sum of integer multiples of base angles and of pi/2.
 @dataclass(frozen=True)
 class EntryProof:
-    """The proof that an entry, an expression that a law states to be zero, is zero: a factor and cofactors, as text.
-
-    Entry times ``factor`` is the sum of the ``cofactors``, each times its relation; relations are known to be zero.
-    """
+    """The proof that an expression is zero: expression times ``factor`` = sum of ``cofactors`` times relations."""
 
     factor: str
     cofactors: Cofactors
@@ -53,42 +48,29 @@ class EntryProof:
 
 @dataclass(frozen=True)
 class CaseProof:
-    """The proof of a law in one case: for one selection of the branches of all conditionals in the formulas.
-
-    ``steps`` are the facts that the proof uses, in order. Each is a tuple that begins with its kind; x and y are
-    expressions as text::
-
-        ("name", symbol, x)                       the generator ``symbol`` stands for the function value x
-        ("circle", x) ("root", x) ("sign", x)     sin(x)^2 + cos(x)^2 = 1; sqrt(x)^2 = x; copysign(1, x)^2 = 1
-        ("sum", x, y) ("odd", x) ("quarter", x)   sine and cosine of x + y; of -x; of x + pi/2
-        ("arc", y, x) ("wrap", x)                 sine and cosine of atan2(y, x); of x wrapped to [-pi, pi]
-        ("square", x, y, factor, cofactors)       sqrt(x) is y: (x - y^2)*factor is the sum of the cofactors times the
-                                                  relations; y is never negative
-
-    ``relations`` are polynomials that are zero. ``entries`` has one :class:`EntryProof` for each expression that the
-    law states to be zero: it writes the expression as a sum of multiples of the relations.
-    """
+    """The proof of a law in one case: for one selection of the branches of all conditionals in the formulas."""
 
     case: tuple[Choice, ...]
+    # the facts that the proof uses, in order; x and y are expressions as text:
+    #     ("name", symbol, x)                       the generator ``symbol`` stands for the function value x
+    #     ("circle", x) ("root", x) ("sign", x)     sin(x)^2 + cos(x)^2 = 1; sqrt(x)^2 = x; copysign(1, x)^2 = 1
+    #     ("sum", x, y) ("odd", x) ("quarter", x)   sine and cosine of x + y; of -x; of x + pi/2
+    #     ("arc", y, x) ("wrap", x)                 sine and cosine of atan2(y, x); of x wrapped to [-pi, pi]
+    #     ("square", x, y, factor, cofactors)       sqrt(x) is y: (x - y^2)*factor = sum of cofactors times relations;
+    #                                               y is never negative
     steps: tuple[ProofStep, ...]
+    # polynomials that are zero
     relations: tuple[str, ...]
+    # one proof for each expression that the law states to be zero
     entries: tuple[EntryProof, ...]
 
 
 class UndecidedChoice(Exception):
-    """Raised for a conditional in a formula whose branch the current case does not choose.
-
-    Its arguments are the two values that the conditional compares, as text; the case is then split in two.
-    """
+    """Raised for a conditional whose branch the current case does not choose, with the two compared values as text."""
 
 
 class BaseAngleTooLarge(Exception):
-    """Raised for an angle such as x/2 if the proof expresses it by sin(x) and cos(x): x/2 is no integer multiple of x.
-
-    The proof writes every angle that is proportional to x as a multiple of one base angle, here x, and has the sine and
-    cosine of the base angle as variables. The arguments are the monomial (here x) and the coefficient (here 1/2) of a
-    smaller base angle, x/2, of which both angles are integer multiples. The prover then starts again with it.
-    """
+    """Raised for an angle, such as x/2, that is no integer multiple of its base angle, such as x."""
 
 
 class OutOfGenerators(Exception):
@@ -97,15 +79,12 @@ class OutOfGenerators(Exception):
 
 @dataclass
 class LawProver(FormulaReader):
-    """One attempt to prove a law, for one selection of the branches of all conditionals in its formulas.
-
-    The polynomial ``ring`` has a variable for each input and a limited number of generators, variables for function
-    values.
-    """
+    """One attempt to prove a law, for one selection of the branches of all conditionals in its formulas."""
 
     name: str
     law: Law
     formulas: Mapping[str, Expr]
+    # has a variable for each input, and a limited number of generators
     ring: PolyRing
     bases: Mapping[str, Fraction]  # monomial of an angle, as text -> coefficient of its base angle
     steps: dict[ProofStep, None] = field(default_factory=dict)
@@ -131,11 +110,8 @@ class LawProver(FormulaReader):
         self.pool = sum(name.endswith("_") and name[0] == "g" and name[1:-1].isdigit() for name in generators)
 
     def run(self, decided: Sequence[Choice]) -> CaseProof:
-        """Return the proof of the case ``decided``, which lists the chosen branches: (left, relation, right) as text.
-
-        UndecidedChoice is raised for a conditional that the list does not have; CertificateError if the law does not
-        follow from the relations.
-        """
+        """Return the proof of one case; ``decided`` lists its conditions as (left, relation, right) in text form."""
+        # UndecidedChoice is raised for a conditional that is not in the list
         self.decided = {(left, right): relation for left, relation, right in decided}
         hypotheses = [self.read(relation) for relation in self.law.relations]
         if any(below != 1 for _, below in hypotheses):
@@ -197,10 +173,7 @@ class LawProver(FormulaReader):
         return self.decided[left, right] == ">="
 
     def generator(self, meaning: str) -> PolyElement:
-        """Return an unused generator, the variable for a function value; ``meaning`` is the function value as text.
-
-        OutOfGenerators is raised if the ring has no unused generator.
-        """
+        """Return an unused variable of the ring for a function value; raise OutOfGenerators if there is none."""
         if self.generator_count == self.pool:
             raise OutOfGenerators
         self.generator_count += 1
@@ -209,12 +182,9 @@ class LawProver(FormulaReader):
         return self.fractions.generators[name]
 
     def root(self, square: Quotient) -> Quotient:
-        """Return the square root of the fraction ``square``.
-
-        The fraction is reduced first by the relations, expressions that are known to be zero, so that ``1 - sin(x)^2``
-        is seen to be a perfect square.
-        """
+        """Return the square root of the fraction ``square``."""
         if square not in self.roots:
+            # the remainder after division by the relations: with it, 1 - sin(x)^2 is seen to be a perfect square
             above, below = self.fractions.lowest(self.remainder(square[0]), self.remainder(square[1]))
             if not self.is_nonnegative(below):
                 raise CertificateError(
@@ -233,10 +203,7 @@ class LawProver(FormulaReader):
         return self.roots[square]
 
     def radical(self, inside: PolyElement) -> PolyElement:
-        """Return the square root of the polynomial ``inside``: a polynomial if it is a square, else a generator.
-
-        The square of that generator, a variable for the root, is ``inside``.
-        """
+        """Return the square root of a polynomial: a polynomial if it is a square, else a new variable for the root."""
         if inside not in self.radicals:
             root = self.perfect(inside)
             if root is None:
@@ -261,24 +228,19 @@ class LawProver(FormulaReader):
         return value
 
     def is_nonnegative(self, value: PolyElement) -> bool:
-        """Return whether a polynomial is certainly not negative.
-
-        That is so if each of its terms is a product of a positive number, even powers, and generators that are not
-        negative.
-        """
+        """Return whether a polynomial is certainly not negative, because none of its terms can be negative."""
+        # a term: a positive number times even powers and generators that are not negative
         return all(
             coefficient > 0 and all(not n % 2 or place in self.nonnegative for place, n in enumerate(monomial))
             for monomial, coefficient in value.items()
         )
 
     def sign(self, value: Quotient) -> PolyElement:
-        """Return the symbol (a generator of the polynomial ring) that stands for the sign of a value, 1 or -1.
-
-        Its square is replaced by 1; the sign times the value is the absolute value.
-        """
+        """Return the variable of the ring that stands for the sign of a value, 1 or -1."""
         if value not in self.signs:
             generator = self.signs[value] = self.generator(f"copysign(1, {quotient_text(value)})")
             self.step("sign", quotient_text(value))
+            # sign times value is the absolute value
             self.rules.append(generator**2 - 1)
         return self.signs[value]
 
@@ -297,12 +259,10 @@ class LawProver(FormulaReader):
     # --- angles -------------------------------------------------------------------------------------------------------
 
     def angle(self, expr: Expr) -> Quotient:
-        """Return an angle as a fraction of polynomials, up to multiples of 2 pi.
-
-        For an angle that the formula wraps to [-pi, pi], that is the angle before wrapping.
-        """
+        """Return an angle as a fraction of polynomials, up to multiples of 2 pi."""
         while str(expr) in self.formulas and expr.is_Symbol:
             expr = self.formulas[str(expr)]
+        # an angle that the formula wraps to [-pi, pi]: the angle before wrapping
         if isinstance(expr, select_ge) and isinstance(expr.args[2], select_ge):
             inner = expr.args[1]
             lifted = select_ge(inner, -pi, inner, inner + 2 * pi)
@@ -314,11 +274,7 @@ class LawProver(FormulaReader):
         return self.read(expr)
 
     def cosine_and_sine(self, angle: Quotient) -> tuple[Quotient, Quotient]:
-        """Return the pair (cosine, sine) of an angle, each a fraction of polynomials in generators.
-
-        The angle must be a sum of integer multiples of base angles and of pi/2; a base angle has generators for its own
-        cosine and sine.
-        """
+        """Return the pair (cosine, sine) of an angle, each a fraction of polynomials in generators."""
         above, below = angle
         if below != 1:
             raise CertificateError(
@@ -329,6 +285,7 @@ class LawProver(FormulaReader):
             self.ring.zero,
             (self.fractions.number(1), self.fractions.number(0)),
         )
+        # the angle must be a sum of integer multiples of base angles and of pi/2
         for monomial, coefficient in above.terms():
             unit, multiple = (
                 self.ring({monomial: QQ(1)}),
@@ -366,10 +323,8 @@ class LawProver(FormulaReader):
         return cosine, add(multiply(a[1], b[0]), multiply(a[0], b[1]))
 
     def _multiple(self, unit: PolyElement, coefficient: Fraction) -> tuple[Quotient, Quotient]:
-        """Return the pair (cosine, sine) of the angle ``coefficient*unit`` from the pair of its base angle.
-
-        ``unit`` is a monomial such as x; the base angle is a fraction of it, such as x/2.
-        """
+        """Return the pair (cosine, sine) of ``coefficient*unit``, an integer multiple of a base angle such as x/2."""
+        # ``unit`` is a monomial such as x
         base = self._base(unit, coefficient)
         first = unit * QQ(base.numerator, base.denominator)
         result = pair = self._pair(unit, first)
@@ -382,12 +337,7 @@ class LawProver(FormulaReader):
         return result if times > 0 else (result[0], (-result[1][0], result[1][1]))
 
     def _base(self, unit: PolyElement, coefficient: Fraction) -> Fraction:
-        """Return the number c of the base angle ``c*unit``, the angle that has generators for its cosine and sine.
-
-        ``unit`` is a monomial such as x. All angles in x that the law contains are integer multiples of the base angle:
-        1/2 comes back if it contains x/2 and x. BaseAngleTooLarge is raised if ``coefficient*unit`` is no integer
-        multiple.
-        """
+        """Return the coefficient of the base angle for ``unit``: 1/2 if the law contains the angles x/2 and x."""
         if unit in self.angle_functions and unit in self.arcs.values():
             if coefficient.denominator != 1:
                 raise CertificateError(
@@ -401,15 +351,13 @@ class LawProver(FormulaReader):
                 gcd(known.numerator * coefficient.denominator, coefficient.numerator * known.denominator),
                 known.denominator * coefficient.denominator,
             )
+            # ``coefficient*unit`` is no integer multiple of the base angle, but of ``finer*unit``
             raise BaseAngleTooLarge(str(unit), finer)
         return known
 
     def _pair(self, unit: PolyElement, angle: PolyElement) -> tuple[Quotient, Quotient]:
-        """Return the pair (cosine, sine) of a base angle, each a generator: a variable of the polynomials.
-
-        ``angle`` is the base angle, such as x/2, and ``unit`` its monomial without the number, such as x. The first
-        call for a unit adds the relation sin^2 + cos^2 - 1.
-        """
+        """Return the pair (cosine, sine) of the base ``angle``, such as x/2, each a variable of the ring."""
+        # ``unit`` is the monomial of the angle without the number, such as x
         if unit not in self.angle_functions:
             cosine, sine = self.generator(f"cos({angle})"), self.generator(f"sin({angle})")
             self.step("circle", str(angle))
@@ -420,28 +368,23 @@ class LawProver(FormulaReader):
     # --- cofactors ----------------------------------------------------------------------------------------------------
 
     def remainder(self, value: PolyElement) -> PolyElement:
-        """Return the remainder of the polynomial ``value`` after division by the relations.
-
-        A relation is a polynomial that is zero, such as s^2 + c^2 - 1. If the law has exactly one hypothesis, its
-        polynomial is a divisor too; several hypotheses are left to :meth:`cofactors`. A remainder of zero proves that
-        ``value`` is zero.
-        """
+        """Return the remainder of a polynomial after division by the relations; if it is 0, so is the polynomial."""
+        # several hypotheses are left to :meth:`cofactors`
         basis = [*self.rules, *(self.hypotheses if len(self.hypotheses) == 1 else ())]
         return value.rem(basis) if basis else value
 
     def cofactors(self, value: PolyElement) -> Cofactors | None:
-        """Return polynomials, the cofactors, such that the sum of cofactor times relation or hypothesis is ``value``.
+        """Return pairs (k, cofactor of relation k) such that the sum of cofactors times relations is ``value``.
 
-        The result has a pair (index, cofactor as text) for each cofactor that is not zero; hypotheses have the first
-        indices. It is None if no cofactors are found: ``value`` is then not proven to be zero. Without hypotheses,
-        division by the relations always finds them if they exist, since the leading generators of the relations differ.
-        If division by relations and several hypotheses leaves a remainder, linear algebra tries constants, and then
-        linear polynomials, as cofactors of the hypotheses.
+        The result is None if no such cofactors are found.
         """
         if not value:
             return ()
         count, basis = len(self.rules), [*self.rules, *self.hypotheses]
+        # without hypotheses the division finds cofactors if there are any: the leading generators of the relations
+        # differ
         quotients, remainder = value.div(basis) if basis else ([], value)
+        # constants, then linear polynomials, as cofactors of several hypotheses
         attempts: list[Callable[[], Any]] = [lambda degree=degree: self._combined(value, degree) for degree in (0, 1)]  # type: ignore[misc]
         while remainder and attempts and len(self.hypotheses) > 1:
             quotients, remainder = attempts.pop(0)()
@@ -451,21 +394,15 @@ class LawProver(FormulaReader):
         return tuple((place, str(cofactor)) for place, cofactor in enumerate(by_relation) if cofactor)
 
     def _combined(self, value: PolyElement, degree: int) -> tuple[list[PolyElement], PolyElement]:
-        """Return (cofactors, rest): a polynomial is the sum of cofactors times relations and hypotheses, plus the rest.
-
-        The cofactors of the hypotheses have at most the degree ``degree``. The rest is zero if such cofactors exist,
-        otherwise it is the remainder of the division by the relations alone.
-        """
+        """Return (cofactors, rest) such that ``value`` is the sum of cofactors times relations, plus the rest."""
         by_rules, remainder = value.div(self.rules) if self.rules else ([], value)
+        # cofactors of the hypotheses have at most the degree ``degree``; without such cofactors the rest is not zero
         by_hypotheses = _combination(remainder, self.hypotheses, degree)
         return (list(by_rules), remainder) if by_hypotheses is None else ([*by_rules, *by_hypotheses], self.ring.zero)
 
 
 def _combination(polynomial: PolyElement, relations: Sequence[PolyElement], degree: int) -> list[PolyElement] | None:
-    """Return cofactors, one for each relation, whose products with the relations have the sum ``polynomial``.
-
-    The cofactors have at most the degree ``degree``, 0 or 1. The result is None if there are no such cofactors.
-    """
+    """Return cofactors of at most ``degree`` whose products with ``relations`` sum to ``polynomial``, or None."""
     ring = polynomial.ring
     occurring = {
         place for p in (polynomial, *relations) for monomial in p for place, power in enumerate(monomial) if power

@@ -1,7 +1,7 @@
 """The ``objects`` section of a certificate: whether compiled object code performs the roundings of the C text.
 
-The section names compilers and their versions, so it describes one machine. It is therefore written only on request,
-and left out when certificates are compared byte for byte.
+The section names compilers of one machine, so it is written only on request and ignored when certificates are
+compared.
 """
 
 from collections.abc import Iterable, Sequence
@@ -117,20 +117,17 @@ def objects_section(
 
 
 MEANS = (
-    "identical: for all inputs the same bits as the C text, signed zeros and infinities included, NaN for NaN; "
-    "identical up to contraction: the same with a*b + c rounded once in places. In rounding to nearest, with the libm "
-    "that the certificate assumes, arrays apart, for one-sample functions; loops over samples are not compared"
+    "identical: for all inputs the same bits as the C text, NaN for NaN; identical up to contraction: "
+    "the same, except that some a*b + c are rounded once. Assumed: rounding to nearest, the certificate's libm, arrays "
+    "that do not overlap. Loops over samples are not compared."
 )
 
 
 def _object(
     source: Path, text: str, functions: Sequence[str], compiler: str, version: str, flags: tuple[str, ...]
 ) -> dict[str, Any]:
-    """Compile a C file with one compiler and one set of flags; return the entry of this object file for a certificate.
-
-    ``text`` is the content of ``source``, ``functions`` are the functions to compare with it, and ``version`` is what
-    the compiler says about itself.
-    """
+    """Compile a C file with one compiler and its flags, and return the certificate's entry about this object file."""
+    # only ``functions`` are compared with the C text
     with TemporaryDirectory(prefix="symrot-") as directory:
         target = Path(directory) / f"{source.stem}.o"
         compile_object(compiler, flags, source, target)

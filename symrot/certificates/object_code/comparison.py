@@ -1,14 +1,7 @@
 """Proofs that the object code of a kernel's one-sample functions performs the same roundings as the C text.
 
-The machine code of a function is executed on symbolic terms (:mod:`symrot.certificates.object_code.machine`), the C
-text is read back (:mod:`symrot.certificates.readback.readback`), and both results are compared as terms under bit-exact
-laws (:mod:`symrot.certificates.object_code.terms`). If a result depends on floating-point comparisons of numbers, the
-results are compared in every case: for every combination of outcomes of these comparisons.
-
-The verdict ``identical`` means: for all inputs the outputs have the same bits, signed zeros and infinities included,
-and are NaN together (payloads of NaN are not compared). It assumes rounding to nearest, the same functions of libm,
-input and output arrays that do not overlap, and that the processor and ``objdump`` are correct. Loops over samples
-(``*_batch``) are not compared.
+The machine code is executed on symbolic terms. Its outputs must equal the terms of the C text for every combination of
+outcomes of floating-point comparisons: this is one "case". Loops over samples (``*_batch``) are not compared.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -35,6 +28,10 @@ __all__ = [
     "compare_object",
 ]
 
+# IDENTICAL: for all inputs the outputs have the same bits, signed zeros and infinities included, and are NaN together
+# (payloads of NaN are not compared). Assumed: rounding to nearest, the same libm, input and output arrays that do not
+# overlap, a correct processor and objdump. CONTRACTED: the code computes products and sums of the C text by fused
+# multiply-adds, which round once instead of twice; apart from that, only the sign of a sum that is zero may differ.
 IDENTICAL, CONTRACTED = "identical", "identical up to contraction"
 DIFFERS, NOT_UNDERSTOOD = "differs", "not understood"
 WIDTH = {"binary64": 64, "binary32": 32}
@@ -44,33 +41,24 @@ MAX_CASES = 20_000
 
 @dataclass(frozen=True)
 class ObjectVerdict:
-    """The result of comparing the machine code of one function with its C text.
-
-    ``verdict`` is one of four texts; only the first two accept the function:
-
-    - "identical": all bits of the outputs agree.
-    - "identical up to contraction": the code computes products and sums of the C text by fused multiply-adds, which
-      round once instead of twice. Apart from that, only the sign of a sum that is zero may differ.
-    - "differs": ``output`` is the first output that differs, and ``reason`` says how.
-    - "not understood": ``reason`` names the instruction and its address.
-
-    ``cases`` is the number of compared cases, ``instructions`` the largest number of instructions executed in a case.
-    """
+    """The result of comparing the machine code of one function with its C text."""
 
     function: str
+    # one of the four texts IDENTICAL, CONTRACTED, DIFFERS, NOT_UNDERSTOOD
     verdict: str
+    # the first output that differs
     output: str = ""
+    # how it differs, or the instruction that is not understood
     reason: str = ""
+    # number of combinations of comparison outcomes
     cases: int = 0
+    # largest number of instructions executed in one case
     instructions: int = 0
 
     @property
     def accepted(self) -> bool:
-        """Whether the object code of the function may replace its C text in a proof: the verdict is one of two.
-
-        IDENTICAL: it computes the same results, bit for bit. CONTRACTED: it differs only in that ``a*b + c`` may be
-        rounded once instead of twice; the proven error bounds allow this.
-        """
+        """Whether proofs about the C text hold for the object code: it is identical, perhaps up to contraction."""
+        # the proven error bounds allow that a*b + c is rounded once instead of twice
         return self.verdict in (IDENTICAL, CONTRACTED)
 
     def sentence(self) -> str:
@@ -124,10 +112,7 @@ def one_sample_functions(functions: Mapping[str, CFunction]) -> tuple[str, ...]:
 
 
 def compare_function(text: Operations, function: CFunction, listing: Listing) -> ObjectVerdict:
-    """Compare the operations of a C function, ``text``, with the machine code of the same function in ``listing``.
-
-    Return the verdict. ``function`` has the names and types of the arguments.
-    """
+    """Compare the operations of a C function, ``text``, with its machine code in ``listing``; return the verdict."""
     start = listing.function(function.name)
     masked = any(
         instruction.mnemonic == "and" and instruction.text.split(None, 1)[1].startswith("rsp,")
@@ -145,13 +130,10 @@ def compare_function(text: Operations, function: CFunction, listing: Listing) ->
 def _compare(
     text: Operations, function: CFunction, listing: Listing, start: tuple[str, int], top: int
 ) -> ObjectVerdict:
-    """Compare a C function with its machine code, for one alignment of the stack pointer at the call.
-
-    ``start`` is the section and address of the machine code. ``top`` is the stack offset of the return address, whose
-    remainder modulo 64 fixes the alignment. The other arguments are those of :func:`compare_function`.
-    """
+    """Compare a C function with its machine code at address ``start``, for one alignment of the stack at the call."""
     width, terms = WIDTH[text.precision], Terms()
     expected = _terms_from_operations(text, terms, width)
+    # ``top``, the stack offset of the return address, fixes the alignment by its remainder modulo 64
     pointers = [p for p in function.parameters if p.size > 0]
     arrays = {p.name: ArrayArgument(p.name, p.size * width // 8, not p.is_const) for p in pointers}
     numbers = tuple(p.name for p in function.parameters if p.size == 0)
@@ -199,10 +181,7 @@ def _terms_from_operations(text: Operations, terms: Terms, width: int) -> list[i
 
 
 def _outputs(path: ExecutionPath, text: Operations, terms: Terms, width: int) -> list[int]:
-    """Return the terms (symbolic values) that the output arrays contain at the end of a path through the code.
-
-    The order is that of the outputs in ``text``. NotUnderstood is raised if the path does not write an output.
-    """
+    """Return the terms that the output arrays contain at the end of a path, in the order of the outputs in ``text``."""
     outputs = []
     for place, _ in text.outputs:
         name, index = place.removesuffix("]").split("[")
@@ -214,22 +193,22 @@ def _outputs(path: ExecutionPath, text: Operations, terms: Terms, width: int) ->
 
 
 def _unfused(terms: Terms, got: list[int], known: Known) -> tuple[list[int], Known, str]:
-    """Split each fused multiply-add in the outputs ``got`` of machine code into a product and a sum.
+    """Split each fused multiply-add in the outputs ``got`` into a rounded product and a rounded sum.
 
-    Return (outputs, known outcomes of comparisons, text). The text is empty if the split is harmless. Otherwise it
-    shows what makes the comparison with the C text invalid: a product that is fused in one place and rounded in
-    another, or a number whose known comparisons contradict each other after the split.
+    Return outputs, outcomes of comparisons, and a product whose split is invalid (or ``""``).
     """
     pairs = [operand for pair in known for operand in pair]
     if not any(terms.kind(index) in ("fma", "fnma") for index in terms.order(got + pairs)):
         return got, known, ""
     merged: dict[Pair, Outcomes] = {}
+    # invalid: a product that is fused at one operation and rounded at another
     split = _split_product(terms, got + pairs)
     for pair, outcomes in known.items():
         a, b = terms.rebuilt(pair, {}, fused=False)
         swapped_outcomes, *rounded = terms.compared(outcomes, a, b)
         place = (rounded[0], rounded[1])
         merged[place] = merged.get(place, ANY) & swapped_outcomes
+        # invalid: a number whose known comparisons contradict each other after the split
         split = split or ("" if merged[place] else term_text(terms, a, 2))
     return terms.rebuilt(got, {}, fused=False), merged, split
 
@@ -237,16 +216,16 @@ def _unfused(terms: Terms, got: list[int], known: Known) -> tuple[list[int], Kno
 def _cases(
     terms: Terms, text: Operations, expected: list[int], got: list[int], known: Known, fused: bool
 ) -> Iterable[tuple[str, str]]:
-    """Compare the outputs of C text and machine code in every case: for every combination of comparison outcomes.
+    """Yield, for each combination of comparison outcomes, the first output that differs and the reason.
 
-    ``expected`` and ``got`` are the outputs of the two as terms, ``known`` the outcomes of comparisons on this path;
-    ``fused`` says that the machine code has fused multiply-adds. Yield for each case the first output that differs and
-    the reason, or two empty texts if all outputs agree.
+    Both texts are empty if all outputs agree.
     """
     waiting = [dict(known)]
     while waiting:
         case = waiting.pop()
+        # ``expected``: the outputs of the C text, ``got``: those of the machine code
         first, second = terms.rebuilt(expected, case), terms.rebuilt(got, case)
+        # ``fused``: the machine code has fused multiply-adds
         if first == second or (fused and _apart_from_zeros(terms, first, second)):
             yield "", ""
             continue
@@ -261,19 +240,14 @@ def _cases(
 
 
 def _apart_from_zeros(terms: Terms, first: list[int], second: list[int]) -> bool:
-    """Return whether two lists of outputs differ at most in the signs of zeros.
-
-    That happens if gcc turns -(a*b + c) into a fused (-a)*b - c.
-    """
+    """Return whether two lists of outputs differ at most in the signs of zeros."""
+    # gcc turns -(a*b + c) into a fused (-a)*b - c, which differs only in these signs
     return terms.without_signs_of_zero(first) == terms.without_signs_of_zero(second)
 
 
 def _split_product(terms: Terms, roots: list[int]) -> str:
-    """Return the text of a product that the code rounds in one place and fuses in another; empty if there is none.
-
-    ``roots`` are the terms in which it is searched. The rounding error of such a product may cancel in the C text; then
-    it does not cancel in the object code.
-    """
+    """Return the text of a product that the code rounds at one operation and fuses at another, or ``""``."""
+    # the rounding errors of such a product may cancel in the C text, but do not cancel in the object code
     below = terms.order(roots)
     fused = {terms.mul(*terms.nodes[index][2:4]) for index in below if terms.kind(index) in ("fma", "fnma")}
     both = [index for index in below if index in fused and terms.kind(index) == "mul" and not _is_exact(terms, index)]
@@ -288,10 +262,7 @@ def _is_exact(terms: Terms, product: int) -> bool:
 
 
 def _difference(terms: Terms, expected: int, got: int) -> str:
-    """Return a sentence that shows the first operation in which the terms of C text and object code differ.
-
-    ``expected`` and ``got`` are the terms of the same output, which are unequal.
-    """
+    """Return a sentence that shows the first difference between two unequal terms, from C text and object code."""
     while True:
         first, second = terms.operands(expected), terms.operands(got)
         left, right = terms.nodes[expected], terms.nodes[got]

@@ -1,8 +1,7 @@
 """The content of an object file, read through the program ``objdump``: instructions, constants and relocations.
 
-A relocation is an address that the linker fills in later. Only the output of ``objdump`` is read, and a line that
-cannot be parsed is an error; the file itself is never opened. The meaning of instructions is defined in
-:mod:`symrot.certificates.object_code.machine`.
+A relocation is an address that the linker fills in later. The file itself is never opened; the meaning of instructions
+is defined in :mod:`symrot.certificates.object_code.machine`.
 """
 
 import re
@@ -194,15 +193,13 @@ def _search_path() -> str:
 
 
 def _symbols(text: str, where: str) -> dict[str, tuple[str, int]]:
-    """Return the symbol table that objdump printed: a map from each name to its section and offset.
-
-    The section of a symbol that another file defines is empty. ``where`` is the file's name, for messages.
-    """
+    """Return the symbol table in objdump's ``text``: a map from each name to its section and offset."""
     symbols: dict[str, tuple[str, int]] = {}
     for line in text.splitlines():
         match = _SYMBOL.fullmatch(line)
         if match is None or "f" in match["flags"]:  # a line without a symbol, or the name of a source file
             continue
+        # a symbol of another file has an empty section
         section = {"*UND*": "", "*COM*": "*COM*"}.get(match["section"], match["section"])
         place = (section, int(match["value"], 16))
         if symbols.setdefault(match["name"], place) != place:
@@ -211,16 +208,14 @@ def _symbols(text: str, where: str) -> dict[str, tuple[str, int]]:
 
 
 def _constants(path: Path, where: str) -> dict[str, bytes]:
-    """Return a map from section name to content, for the read-only sections of an object file with only constants.
-
-    A section with addresses that the linker fills in is left out, because its content is not known.
-    """
+    """Return the contents of an object file's read-only data sections by section name."""
     constants: dict[str, bytes] = {}
     for line in _objdump(path, "-h", "-w").splitlines():
         match = _SECTION.fullmatch(line)
         if match is None:
             continue
         flags = set(re.findall(r"[A-Z_]+", match["flags"]))
+        # a section with addresses that the linker fills in has unknown content
         if not {"READONLY", "DATA", "CONTENTS"} <= flags or "RELOC" in flags:
             continue
         name, size = match["name"], int(match["size"], 16)
@@ -241,10 +236,7 @@ def _constants(path: Path, where: str) -> dict[str, bytes]:
 
 
 def _code(text: str, where: str) -> dict[tuple[str, int], Instruction]:
-    """Return the instructions in ``text``, which objdump printed, by section and address.
-
-    ``where`` is the file's name, for messages; a line that cannot be parsed raises CertificateError.
-    """
+    """Return the instructions in the listing ``text`` of objdump, by section and address."""
     rows: list[tuple[str, int, bytes, str]] = []
     relocations: dict[tuple[str, int], tuple[str, str, int]] = {}
     section = ""
@@ -276,11 +268,8 @@ def _instruction(
     section: str, address: int, content: bytes, text: str,
     relocations: Mapping[tuple[str, int], tuple[str, str, int]], where: str,
 ) -> Instruction:  # fmt: skip
-    """Return the instruction that one line of objdump's listing states, with its relocation if it has one.
-
-    ``content`` are its bytes, ``text`` its words. ``relocations`` holds the addresses that the linker fills in, by
-    section and address; an instruction may have one.
-    """
+    """Return the instruction that a line of objdump's listing states; ``content`` are its bytes."""
+    # addresses within the instruction that the linker fills in
     inside = [
         (at, relocations[section, at]) for at in range(address, address + len(content)) if (section, at) in relocations
     ]
@@ -330,10 +319,7 @@ def _operand(text: str) -> Operand | None:
 
 
 def _address(inside: str, size: int, segment: str) -> Memory | None:
-    """Return a memory operand from the text between its brackets, such as ``rax+8*rcx-0x10``; None if unparsable.
-
-    ``size`` is the number of bytes that it names, and ``segment`` the segment register before the brackets, or empty.
-    """
+    """Return the memory operand that a text such as ``"rax+8*rcx-0x10"`` denotes, or None if it cannot be parsed."""
     base = index = ""
     scale, offset, position = 1, 0, 0
     while position < len(inside):

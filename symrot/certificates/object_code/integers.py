@@ -47,22 +47,19 @@ CONDITIONS = set(OF_NUMBERS) | set(OF_INTEGERS)
 
 
 def memory_place(state: MachineState, instruction: Instruction, operand: Memory) -> tuple[str, int]:
-    """Return the address of a memory operand: its base (such as an array or the stack) and an offset in bytes.
-
-    The operand may be relative to the address of the instruction.
-    """
+    """Return the address of a memory operand as (base, offset in bytes); the base is, for example, an array."""
     if operand.base != "rip":
         return state.address(operand)
     if operand.segment or operand.index:
         raise NotUnderstood(f"expected an address without a segment, got an address in the segment {operand.segment}")
+    # relative to the address of the instruction
     return relocated_place(state, instruction, RELATIVE)
 
 
 def relocated_place(state: MachineState, instruction: Instruction, kinds: tuple[str, ...]) -> tuple[str, int]:
-    """Return (base, offset) of an address in an instruction that the linker fills in (a relocation).
+    """Return (base, offset) of the address that the linker fills into an instruction.
 
-    The base is a section, or empty for a symbol of another file. NotUnderstood is raised if the instruction has no
-    relocation of one of ``kinds``.
+    NotUnderstood is raised unless the relocation has one of ``kinds``.
     """
     relocation = instruction.relocation
     if relocation is None or relocation.kind not in kinds:
@@ -71,14 +68,13 @@ def relocated_place(state: MachineState, instruction: Instruction, kinds: tuple[
     if place is None:
         raise NotUnderstood(f"expected an address of the object file's symbol table, got {relocation.symbol}")
     section, offset = place
+    # the base is empty for a symbol of another file
     return (f"section {section}", offset + relocation.addend) if section else ("", relocation.addend)
 
 
 def symbol_of(state: MachineState, instruction: Instruction) -> int:
-    """Return the term for the address of another file's symbol, such as a function of the C library.
-
-    The instruction reads it from the global offset table, which the linker fills.
-    """
+    """Return the term for the address of another file's symbol, such as a function of the C library."""
+    # the instruction reads the address from the global offset table, which the linker fills
     base, offset = relocated_place(state, instruction, INDIRECT)
     if base or offset or instruction.relocation is None:
         raise NotUnderstood("expected an address within the object file, got an address that only the linker knows")
@@ -86,10 +82,7 @@ def symbol_of(state: MachineState, instruction: Instruction) -> int:
 
 
 def read(state: MachineState, instruction: Instruction, operand: object, size: int) -> Words:
-    """Return the value of a source operand of ``size`` bytes as 32-bit words, the lowest first.
-
-    The operand is a general-purpose register, memory or a constant; NotUnderstood is raised for another one.
-    """
+    """Return the value of a source operand of ``size`` bytes as 32-bit words, the lowest first."""
     if isinstance(operand, Register):
         if GENERAL.get(operand.name, ("", 0))[1] != size:
             raise NotUnderstood(f"expected {size} bytes, got the register {operand.name} of another size")
@@ -200,13 +193,11 @@ def _known_byte(state: MachineState, name: str) -> int:
 
 
 def _computed(state: MachineState, name: str, first: Words, second: Words) -> tuple[Words, tuple[str, tuple[int, ...]]]:
-    """Return the result of an instruction on two integers or addresses, and the processor's flags after it.
-
-    ``name`` is the instruction, such as ``add``. The flags are unknown unless both operands are known.
-    """
+    """Return the result and the flags of the instruction ``name``, such as ``add``, on two integers or addresses."""
     terms, bits = state.context.terms, 32 * len(first)
     x, y = state.integer(first), state.integer(second)
     a, b = state.whole(first), state.whole(second)
+    # the flags are known only if both operands are
     unknown: tuple[str, tuple[int, ...]] = ("unknown", ())
     if name in ("sub", "xor", "cmp") and first == second:
         x = y = 0
@@ -235,10 +226,7 @@ _INTEGER: dict[str, Callable[[int, int], int]] = {
 
 
 def _flags(name: str, x: int, y: int, value: int, bits: int) -> tuple[int, int, int, int]:
-    """Return the processor's flags (zero, sign, carry, overflow) after an instruction on the integers x and y.
-
-    ``name`` is the instruction, such as ``add``, and ``value`` its result, of ``bits`` bits.
-    """
+    """Return the flags (zero, sign, carry, overflow) after the instruction ``name`` on x and y gave ``value``."""
     top = bits - 1
     carry = overflow = 0
     if name in ("sub", "cmp"):
@@ -323,12 +311,9 @@ def _leave(state: MachineState, instruction: Instruction) -> None:
 
 
 def condition_holds(state: MachineState, condition: str) -> bool:
-    """Return whether a conditional jump is taken with the processor's current flags.
-
-    ``condition`` is the jump's name without the ``j``, such as ``ne`` (not equal). UndecidedBranch is raised if the
-    flags come from a comparison of two numbers that depend on the inputs.
-    """
+    """Return whether a conditional jump such as ``jne``, whose ``condition`` is ``"ne"``, is taken."""
     kind, values = state.flags
+    # raises UndecidedBranch if the compared numbers depend on the inputs
     if kind == "numbers" and condition in OF_NUMBERS:
         return state.decide(OF_NUMBERS[condition], values[0], values[1])
     if kind == "integers" and condition in OF_INTEGERS:

@@ -1,8 +1,8 @@
 """Symbolic execution of one function in an object file, along every path that its comparisons allow.
 
-Integers and addresses must have known values, so that each loop runs a known number of times. If the outcome of a
-floating-point comparison is not known, both branches are followed. An instruction that is in no table, or a state of
-stack, registers or arrays that the calling convention (System V, x86-64) forbids, raises :class:`NotUnderstood`.
+Integers and addresses must be known. Where the outcome of a floating-point comparison is unknown, both branches are
+followed. Unknown instructions and violations of the calling convention (System V, x86-64) raise
+:class:`NotUnderstood`.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -47,30 +47,27 @@ NO_OPERATION = {"nop", "endbr64"}
 
 @dataclass(frozen=True)
 class ExecutionPath:
-    """One path through a function: the memory at the return, and the outcomes of comparisons that lead there.
-
-    ``known`` maps a pair of compared terms to their possible outcomes, ``visited`` holds the executed addresses.
-    """
+    """One path through a function: the memory at the return, and the outcomes of comparisons that lead there."""
 
     memory: Mapping[tuple[str, int], int]
+    # compared terms -> possible outcomes
     known: Mapping[tuple[int, int], Outcomes]
     instructions: int
+    # addresses of the executed instructions
     visited: frozenset[tuple[str, int]]
 
 
 def state_at_call(
     context: CallContext, names: tuple[str, ...], numbers: tuple[str, ...], start: tuple[str, int]
 ) -> MachineState:
-    """Return the processor's state when a function is called, before its first instruction at ``start``.
-
-    ``names`` are its array arguments, and ``numbers`` its arguments that are floating-point numbers, both in order.
-    """
+    """Return the processor's state when a function with the arrays ``names`` and the numbers ``numbers`` is called."""
     terms = context.terms
     state = MachineState(context, start, {}, {})
     for name in (*CALLER_SAVED, *CALLEE_SAVED, "rsp"):
         state.general[name] = state.halves(terms.token(f"{name} at the call"))
     for number in range(32):
         state.vector[f"ymm{number}"] = [terms.unknown() for _ in range(8)]
+    # System V: six pointers in registers, further pointers on the stack above the return address
     for place, name in enumerate(names):
         pointer = state.halves(terms.address(name, 0))
         if place < len(POINTERS):
@@ -226,12 +223,9 @@ FLOW: dict[str, Callable[[MachineState, Instruction, tuple[str, int]], tuple[str
 
 
 def _call_library(state: MachineState, name: str, on_stack: int) -> None:
-    """Execute a call of the C library function ``name``; every register that the call may change becomes unknown.
-
-    ``on_stack`` is 8 if the return address is on the stack already, because the code jumps to the function, and 0 for a
-    call instruction.
-    """
+    """Execute a call of the C library function ``name``; registers that the call may change become unknown."""
     terms = state.context.terms
+    # ``on_stack``: 8 if the code jumps to the function, with the return address on the stack; 0 for a call instruction
     _, offset = stack_place(state)
     if (offset + on_stack) % 16:
         raise NotUnderstood("expected a stack pointer aligned to 16 bytes at a call, got another")

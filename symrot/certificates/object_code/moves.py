@@ -1,8 +1,8 @@
-"""The execution of SSE2 and AVX instructions on symbolic values: moves here, the others by functions in two tables.
+"""The execution of SSE2 and AVX instructions on symbolic values.
 
-The tables are ``SHUFFLES`` in shuffles.py, for instructions that rearrange words, and ``NUMERIC`` in numbers.py, for
-arithmetic. In this module, ``bare`` is the name of an instruction without the prefix ``v`` of its VEX form, and
-``is_vex`` says whether it had that prefix: ``vaddpd`` is ``addpd``, True.
+Moves are executed here, other instructions by functions in the tables ``SHUFFLES`` (shuffles.py) and ``NUMERIC``
+(numbers.py). ``bare`` is an instruction's name without the prefix ``v`` of its VEX form, and ``is_vex`` tells whether
+it had that prefix: ``vaddpd`` is ``addpd``, True.
 """
 
 from collections.abc import Callable
@@ -20,10 +20,7 @@ UNALIGNED = {"movups", "movupd", "movdqu", "movdqu32", "movdqu64", "lddqu"}
 
 
 def _source(state: MachineState, instruction: Instruction, operand: object, size: int, bare: str) -> Words:
-    """Return the 32-bit words of a source operand: a vector register, or ``size`` bytes of memory.
-
-    ``bare`` is the name of the instruction without the prefix ``v``.
-    """
+    """Return the 32-bit words of a source operand: a vector register, or ``size`` bytes of memory."""
     if isinstance(operand, Register) and operand.name in VECTORS:
         return list(state.register(operand.name))
     if not isinstance(operand, Memory) or operand.size not in (size, 0):
@@ -37,11 +34,7 @@ def _source(state: MachineState, instruction: Instruction, operand: object, size
 
 
 def run_vector_instruction(state: MachineState, instruction: Instruction) -> None:
-    """Execute an instruction on vector registers.
-
-    NotUnderstood is raised if it is in none of the tables ``MOVES``, ``SHUFFLES`` and ``NUMERIC``, or has operands of
-    other kinds.
-    """
+    """Execute an instruction on vector registers; raise NotUnderstood if its effect is unknown."""
     is_vex = instruction.mnemonic.startswith("v")
     bare = instruction.mnemonic[1:] if is_vex else instruction.mnemonic
     move = MOVES.get(bare)
@@ -74,17 +67,14 @@ def run_vector_instruction(state: MachineState, instruction: Instruction) -> Non
 
 
 def _bytes_of(bare: str, operand: object, whole: int) -> int:
-    """Return how many bytes an instruction reads from a source operand.
-
-    That is the size of the register, ``whole``, unless ``operand`` is in memory: from there ``movsd``, for example,
-    reads 8 bytes. ``bare`` is the name of the instruction without the prefix ``v``.
-    """
+    """Return how many bytes an instruction reads from a source operand, at most ``whole``, the size of its register."""
     if not isinstance(operand, Memory):
         return whole
     if bare in SOURCE_BYTES:
         return SOURCE_BYTES[bare]
     if bare.startswith(("broadcast", "pbroadcast", "insertf128", "inserti128", "movddup")):
         return operand.size
+    # movsd, for example, reads 8 bytes from memory
     if bare.endswith(("sd", "ss")) and not bare.startswith("p"):
         return 8 if bare.endswith("sd") else 4
     return whole
@@ -105,10 +95,7 @@ def _move_whole(state: MachineState, instruction: Instruction, bare: str, is_vex
 
 
 def _move_scalar(size: int) -> Callable[[MachineState, Instruction, str, bool], None]:
-    """Return the function that executes movss (``size`` 4) or movsd (8): it copies one number.
-
-    A load from memory clears the upper words of the register, a move between registers keeps them.
-    """
+    """Return the function that executes movss (``size`` 4) or movsd (``size`` 8), which copies one number."""
 
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
         target, *sources = instruction.operands
@@ -117,6 +104,7 @@ def _move_scalar(size: int) -> Callable[[MachineState, Instruction, str, bool], 
             write(state, instruction, target, words)
             return
         assert isinstance(target, Register)
+        # a load clears the upper words of the register, a move between registers keeps them
         if isinstance(sources[-1], Memory):
             rest = state.zeros(4 - len(words))
         else:
@@ -145,12 +133,10 @@ def _move_bits(size: int) -> Callable[[MachineState, Instruction, str, bool], No
 
 
 def _move_half(start: int) -> Callable[[MachineState, Instruction, str, bool], None]:
-    """Return the function that executes movlpd or movhpd: copy 64 bits between memory and half of a register.
-
-    ``start`` is the first 32-bit word of that half: 0 for the low half, 2 for the high one.
-    """
+    """Return the function that executes movlpd (``start`` 0) or movhpd (2), which move half a 128-bit register."""
 
     def move(state: MachineState, instruction: Instruction, bare: str, is_vex: bool) -> None:
+        # ``start`` is the first 32-bit word of the half
         target, *sources = instruction.operands
         if isinstance(target, Memory):
             write(state, instruction, target, _source(state, instruction, sources[0], 0, bare)[start : start + 2])

@@ -1,10 +1,8 @@
 """The effect of SSE2 and AVX instructions on numbers: arithmetic, comparisons, masks, fused operations.
 
-Each entry of the table ``NUMERIC`` is a function that takes the 32-bit words of the sources and returns the words of
-the result. Packed instructions act on all numbers of a register; scalar instructions act on the first number and keep
-the upper words of the first source. VEX forms (``v...``) name the first source; the older forms use their destination
-as the first source. A suffix such as ``pd`` means packed (``p``) or scalar (``s``), doubles (``d``) or floats (``s``).
-Instructions that only rearrange words are in :mod:`symrot.certificates.object_code.shuffles`.
+The table ``NUMERIC`` maps instructions to functions from the sources' words to the result's words. The suffix ``pd``
+means packed doubles, ``ss`` a scalar float: packed instructions act on all numbers of a register, scalar instructions
+on the first.
 """
 
 from collections.abc import Callable
@@ -37,12 +35,9 @@ def _lanes(state: MachineState, words: Words, width: int) -> list[int]:
     return [state.whole(words[place : place + 2]) for place in range(0, len(words), 2)]
 
 
+# Scalar instructions keep the upper words of the first source.
 def _each(suffix: str, operation: Callable[..., int], arguments: int = 2) -> Numeric:
-    """Return the function that executes an arithmetic instruction: ``operation`` on each number of the sources.
-
-    ``suffix`` such as ``pd`` says packed or scalar, and the type (see the head of the module); the operation uses the
-    last ``arguments`` sources.
-    """
+    """Return the function that applies ``operation`` to each number of the last ``arguments`` sources."""
     width, is_packed = WIDTHS[suffix[1]], suffix[0] == "p"
 
     def numeric(state: MachineState, sources: list[Words], _: int) -> Words:
@@ -82,14 +77,12 @@ def _horizontal(suffix: str, operation: Callable[..., int]) -> Numeric:
 
 
 def _bitwise(operation: Callable[..., int]) -> Numeric:
-    """Return the function that executes a bitwise instruction such as ``andpd``; ``operation`` acts on two terms.
-
-    A source that is a 64-bit number is not split into words, so that the sign of a number can be recognised.
-    """
+    """Return the function that executes a bitwise instruction such as ``andpd`` by ``operation`` on two terms."""
 
     def numeric(state: MachineState, sources: list[Words], _: int) -> Words:
         terms, results = state.context.terms, list[int]()
         for place in range(0, len(sources[0]), 2):
+            # a 64-bit number is not split into words, so that the sign of a number can be recognised
             halves = [words[place : place + 2] for words in sources]
             if any(terms.kind(terms.join(*words)) != "join" for words in halves) and any(
                 terms.kind(word) == "part" for words in halves for word in words
@@ -103,16 +96,13 @@ def _bitwise(operation: Callable[..., int]) -> Numeric:
 
 
 def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
-    """Return the function that executes a comparison; all bits of its result are 1 where it holds, else 0.
-
-    ``outcomes`` are the outcomes (less, equal, ..) with which it holds; if None, a constant in the instruction selects
-    the comparison. ``suffix`` says packed or scalar, and the type.
-    """
+    """Return the function that executes a comparison: result bits are 1 where an outcome is among ``outcomes``."""
     by_number = list(PREDICATES.values())
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
         if outcomes is None and not 0 <= constant < 32:
             raise NotUnderstood(f"expected a comparison predicate from 0 to 31 in the instruction, got {constant}")
+        # without ``outcomes`` a constant in the instruction selects the comparison
         chosen = by_number[constant % 16] if outcomes is None else outcomes
         return _each(suffix, lambda terms, a, b: terms.mask(WIDTHS[suffix[1]], chosen, a, b))(state, sources, 0)
 
@@ -120,15 +110,12 @@ def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
 
 
 def _fused(suffix: str, order: str, negated: bool, subtracted: tuple[bool, ...]) -> Numeric:
-    """Return the function that executes a fused multiply-add: a*b + c, rounded once.
-
-    ``order``, such as "132", gives the numbers of the operands a, b and c; ``negated`` says that the product is
-    negated. ``subtracted`` says whether c is subtracted: one Boolean for all numbers of the register, or one for the
-    even positions and one for the odd positions. ``suffix`` says packed or scalar, and the type.
-    """
+    """Return the function that executes a fused multiply-add a*b + c, whose operands are numbered by ``order``."""
+    # "132": a is operand 1, b operand 3 and c operand 2
     places = tuple(int(digit) - 1 for digit in order)
 
     def fused(lane_subtracted: bool) -> Callable[..., int]:
+        # ``negated``: -(a*b); ``subtracted``: - c, one Boolean for all numbers or one each for even and odd positions
         def one(terms: Terms, *lane: int) -> int:
             a, b, c = (lane[place] for place in places)
             return terms.fma(terms.neg(a) if negated else a, b, terms.neg(c) if lane_subtracted else c)
@@ -149,13 +136,10 @@ def _greater(terms: Terms, a: int, b: int) -> int:
 
 
 def _blended(suffix: str) -> Numeric:
-    """Return the function that executes a blend, a selection between two sources for each number of a vector.
-
-    The second source is selected where the sign bit of the third source is set, otherwise the first. ``suffix`` says
-    packed or scalar, and the type: ``pd`` for packed doubles.
-    """
+    """Return the function that executes a blend: the second source where the third is negative, else the first."""
 
     def one(terms: Terms, a: int, b: int, mask: int) -> int:
+        # the sign bit of the mask decides
         value = terms.constant(mask)
         if value is not None:
             return b if value >> terms.width(mask) - 1 else a
@@ -175,15 +159,13 @@ def _same(state: MachineState, sources: list[Words], _: int) -> Words:
 
 
 def _shifted(width: int, shift: Callable[[int, int, int], int]) -> Numeric:
-    """Return the function that executes a shift; the shifted number must be constant, as it is in kernels.
-
-    ``shift`` takes (number, count, ``width``) and returns the shifted number.
-    """
+    """Return the function that shifts constants, where ``shift`` takes (number, count, ``width``)."""
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
         terms, results = state.context.terms, list[int]()
         for lane in _lanes(state, sources[-1], width):
             value = terms.constant(lane)
+            # kernels shift only constants
             if value is None:
                 raise NotUnderstood("expected a constant as the number that is shifted, got a variable")
             results += state.halves(

@@ -1,8 +1,7 @@
 """The effect of SSE2 and AVX instructions that only rearrange 32-bit words: unpack, shuffle, blend, insert, broadcast.
 
-Each entry of the table ``SHUFFLES`` is a function that takes the words of the sources and the instruction's constant,
-and returns the words of the result. Most instructions treat each 128 bits (four words) of a register alike; words 0 to
-3 are then in the first source, and words 4 to 7 in the last.
+Each function of the table ``SHUFFLES`` takes the sources' words and the instruction's constant. Most instructions
+treat each 128 bits of a register alike: words 0 to 3 are then in the first source, and words 4 to 7 in the last.
 """
 
 from collections.abc import Callable, Sequence
@@ -15,10 +14,7 @@ Shuffle = Callable[[MachineState, list[Words], int], Words]
 
 
 def _pick(places: Sequence[int]) -> Shuffle:
-    """Return the function that executes a shuffle which picks the words numbered ``places`` in every 128 bits.
-
-    Words 0 to 3 are in the first source, and words 4 to 7 in the last.
-    """
+    """Return the function that picks the words numbered ``places`` from each 128 bits of the two sources."""
 
     def shuffle(_: MachineState, sources: list[Words], __: int) -> Words:
         picked: Words = []
@@ -31,13 +27,11 @@ def _pick(places: Sequence[int]) -> Shuffle:
 
 
 def _by_constant(places: Callable[[int, int], Sequence[int]]) -> Shuffle:
-    """Return the function that executes a shuffle whose word numbers depend on the constant in the instruction.
-
-    ``places`` takes (constant, number of the 128-bit part) and returns the word numbers; see :func:`_pick`.
-    """
+    """Return the function that picks the words numbered ``places(constant, k)`` for part k of 128 bits."""
 
     def shuffle(state: MachineState, sources: list[Words], constant: int) -> Words:
         picked: Words = []
+        # the constant is part of the instruction
         for lane, start in enumerate(range(0, len(sources[0]), 4)):
             part = [words[start : start + 4] for words in sources]
             picked += _pick(places(constant, lane))(state, part, 0)

@@ -1,7 +1,6 @@
-"""The state of an x86-64 processor whose values are symbolic terms: registers, memory, flags, known comparisons.
+"""The state of an x86-64 processor whose values are symbolic: registers, memory, flags, known comparisons.
 
-Values are lists of words; a word is a term of 32 bits. The outcome of a comparison is less, equal, greater or, with a
-NaN, unordered.
+Values are lists of 32-bit words. The outcome of a comparison is less, equal, greater or, with a NaN, unordered.
 """
 
 from collections.abc import Mapping
@@ -44,13 +43,10 @@ class NotUnderstood(Exception):
 
 
 class UndecidedBranch(Exception):
-    """Raised for a branch on a comparison of unknown outcome: execution must continue along both branches.
-
-    ``pair`` are the two compared terms (symbolic numbers); ``branches`` are two sets of outcomes (less, equal, greater,
-    unordered), one for each branch.
-    """
+    """Raised for a branch on a comparison of unknown outcome: execution must continue along both branches."""
 
     def __init__(self, pair: Pair, first: Outcomes, second: Outcomes) -> None:
+        # ``pair``: the compared terms; ``branches``: for each branch, the comparison outcomes that lead to it
         self.pair, self.branches = pair, (first, second)
 
 
@@ -65,11 +61,7 @@ class ArrayArgument:
 
 @dataclass(frozen=True)
 class CallContext:
-    """The facts about a call that do not change while the function runs.
-
-    ``width`` is the number of bits of its numbers, 64 or 32; ``arrays`` are its array arguments by name; ``listing`` is
-    the content of the object file.
-    """
+    """The facts about a call that do not change while the function runs."""
 
     terms: Terms
     listing: Listing
@@ -80,17 +72,15 @@ class CallContext:
 
 @dataclass
 class MachineState:
-    """The symbolic state of the processor before one instruction: registers, memory, flags.
-
-    ``at`` is the section and address of that instruction. ``known`` maps pairs of compared terms to the outcomes that
-    are possible after earlier branches on the path.
-    """
+    """The symbolic state of the processor before one instruction."""
 
     context: CallContext
+    # section and address of the instruction
     at: tuple[str, int]
     general: dict[str, Words]
     vector: dict[str, Words]
     memory: dict[tuple[str, int], int] = field(default_factory=dict)
+    # compared terms -> outcomes that are possible after earlier branches
     known: dict[Pair, Outcomes] = field(default_factory=dict)
     flags: tuple[str, tuple[int, ...]] = ("unknown", ())
 
@@ -176,10 +166,7 @@ class MachineState:
     # --- memory -------------------------------------------------------------------------------------------------------
 
     def address(self, operand: Memory) -> tuple[str, int]:
-        """Return the address of a memory operand: a base, such as an array or the stack, and an offset in bytes.
-
-        NotUnderstood is raised if the address is not known.
-        """
+        """Return the address of a memory operand as a base, such as an array or the stack, and an offset in bytes."""
         if operand.segment:
             raise NotUnderstood(
                 f"expected an address without a segment, got an address in the segment {operand.segment}"

@@ -1,19 +1,7 @@
 """Symbolic values of machine code, simplified on creation by laws that keep every bit.
 
-A term stands for 32 or 64 bits, and is passed as its index (an int) in the store :class:`Terms`. Equal indices mean
-equal bits on every input, in rounding to nearest; zeros of different sign count as different, NaNs of different payload
-as equal. The laws hold exactly, also under overflow and underflow and for signed zeros::
-
-    a - b = a + (-b)      a + b = b + a      a*b = b*a      (-a)*b = -(a*b)      (-a)/b = a/(-b) = -(a/b)
-    a + a = 2*a           2^j*(2^k*a) = 2^(j+k)*a, j, k >= 0                     a/2^k = a*2^-k
-    1*a = a               a + (-0) = a       a*copysign(1, b) = a with its sign changed by that of b
-    a < b = b > a = -b < -a
-
-Operations on single bits are computed exactly: a sign bit, a number without its sign, and a mask (all bits of a number
-set or none, the result of a comparison).
-
-``-(a + b) = (-a) + (-b)`` is not among the laws, since it fails in the sign of a sum that is zero; nor is any law that
-moves a rounding.
+A term stands for 32 or 64 bits, and is passed as its index in the store :class:`Terms`. Equal indices mean equal bits
+on every input, in rounding to nearest, except that all NaNs count as equal.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -76,6 +64,13 @@ def swapped(outcomes: Iterable[str]) -> Outcomes:
     return frozenset(_SWAPPED[item] for item in outcomes)
 
 
+# The laws hold also under overflow and underflow, and for signed zeros:
+#     a - b = a + (-b)      a + b = b + a      a*b = b*a      (-a)*b = -(a*b)      (-a)/b = a/(-b) = -(a/b)
+#     a + a = 2*a           2^j*(2^k*a) = 2^(j+k)*a, j, k >= 0                     a/2^k = a*2^-k
+#     1*a = a               a + (-0) = a       a*copysign(1, b) = a with its sign changed by that of b
+#     a < b = b > a = -b < -a
+# Operations on single bits are exact: sign bits, numbers without sign, and masks (all bits 1 or all 0).
+# Not a law: -(a + b) = (-a) + (-b), which fails in the sign of a sum that is zero; nor any law that moves a rounding.
 class Terms:
     """A store of symbolic terms, in which equal terms have one index; all methods take and return indices."""
 
@@ -108,10 +103,7 @@ class Terms:
         return self._add("bits", width, value & ((1 << width) - 1))
 
     def number(self, width: int, value: Fraction) -> int:
-        """Return the constant term for the number ``value`` as a floating-point number of ``width`` bits.
-
-        ValueError is raised if no such floating-point number is exactly ``value``.
-        """
+        """Return the constant term for ``value``; raise ValueError if ``width`` bits cannot represent it exactly."""
         bits = _bits_from_number(float(value), width)
         if bits is None or Fraction(number_from_bits(bits, width)) != value:
             raise ValueError(f"expected a number that {width} bits represent exactly, got {value}")
@@ -257,22 +249,16 @@ class Terms:
     # --- rounded operations -------------------------------------------------------------------------------------------
 
     def _folded(self, a: int, b: int, operation: Callable[[float, float], float]) -> int | None:
-        """Return the result of an operation on two constant terms as a constant term.
-
-        The result is None if a term is not constant or a number is not finite. Computing a float operation in double
-        and then rounding to float is correct: double has more than twice the digits.
-        """
+        """Return an operation on two constant terms as a constant term, or None if a term is not a finite constant."""
         x, y = self._value(a), self._value(b)
         if x is None or y is None or not (isfinite(x) and isfinite(y)):
             return None
+        # Python computes in double and rounds to float, which is correct: double has more than twice the digits
         bits = _bits_from_number(operation(x, y), self.width(a))
         return None if bits is None else self.bits(self.width(a), bits)
 
     def _signed(self, a: int) -> tuple[int, bool]:
-        """Return the term ``a`` without its minus sign, and whether it had one:
-
-        (b, True) if ``a`` is -b, else (a, False).
-        """
+        """Return the term ``a`` without its minus sign, and whether it had one: (b, True) if ``a`` is -b."""
         if self.kind(a) == "neg":
             return int(self.nodes[a][2]), True
         value = self.constant(a)
@@ -372,10 +358,7 @@ class Terms:
         return outcomes, a, b
 
     def mask(self, width: int, outcomes: Outcomes, a: int, b: int) -> int:
-        """Return the term whose bits are all 1 if comparing ``a`` with ``b`` has one of ``outcomes``, otherwise all 0.
-
-        It has ``width`` bits; machine code selects values with such masks.
-        """
+        """Return the term whose bits are all 1 if comparing ``a`` with ``b`` has one of ``outcomes``, else all 0."""
         outcomes, a, b = self.compared(outcomes, a, b)
         x, y = self._value(a), self._value(b)
         if x is not None and y is not None:
@@ -415,12 +398,7 @@ class Terms:
         return ordered
 
     def rebuilt(self, roots: Iterable[int], known: Known, fused: bool = True) -> list[int]:
-        """Return the terms ``roots``, simplified by the outcomes of comparisons that one case assumes.
-
-        ``known`` maps a compared pair of terms to the outcomes (less, equal, greater, unordered) that are still
-        possible in this case. A comparison with the same result for all of them becomes a constant. With
-        ``fused=False``, each fused multiply-add is split into a rounded product and a rounded sum.
-        """
+        """Return the terms ``roots``, simplified by the comparison outcomes that ``known`` leaves possible."""
         roots = list(roots)
         new: dict[int, int] = {}
         for index in self.order(roots):
@@ -429,6 +407,7 @@ class Terms:
                 new[index] = index
                 continue
             operands = [new[operand] for operand in node[first:]]
+            # a rounded product and a rounded sum replace the fused multiply-add
             if node[0] in ("fma", "fnma") and not fused:
                 product = self.mul(*operands[:2])
                 new[index] = self.add(product if node[0] == "fma" else self.neg(product), operands[2])
@@ -458,11 +437,7 @@ class Terms:
         return int(_CONSTRUCTORS[kind](self, *operands))
 
     def without_signs_of_zero(self, roots: Iterable[int]) -> list[int]:
-        """Return terms simplified by -(a + b) = (-a) + (-b), which fails only in the sign of a sum that is zero.
-
-        The law is not applied to divisors, arguments of functions and terms whose sign is extracted, because the sign
-        of a zero would change their values.
-        """
+        """Return terms simplified by -(a + b) = (-a) + (-b), which fails only in the sign of a sum that is zero."""
         roots = list(roots)
         new: dict[int, int] = {}
         for index in self.order(roots):
@@ -471,6 +446,7 @@ class Terms:
                 (a, first), (b, second) = sorted(map(self._signed, operands))
                 total = self.add(a, self.neg(b) if first != second else b)
                 new[index] = self.neg(total) if first else total
+            # not in divisors, arguments of functions and signs: there the sign of a zero would change the value
             elif kind == "div":
                 new[index] = self.div(operands[0], self.operands(index)[1])
             elif kind in ("mul", "neg", "abs", "sqrt"):
@@ -480,11 +456,8 @@ class Terms:
         return [new[root] for root in roots]
 
     def undecided(self, roots: Iterable[int]) -> int | None:
-        """Return a comparison whose outcome is not known, among ``roots`` and the terms on which they depend.
-
-        No other such comparison is among its operands, so that a case distinction may begin with it. None is returned
-        if all comparisons are decided.
-        """
+        """Return a comparison of unknown outcome on which the terms ``roots`` depend, or None."""
+        # none of its operands contains another such comparison, so that a case distinction may begin with it
         return next((index for index in self.order(roots) if self.kind(index) == "mask"), None)
 
 

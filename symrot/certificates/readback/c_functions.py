@@ -1,4 +1,4 @@
-"""The functions in a C text, each as a list of tokens; any C that symrot does not emit raises an error.
+"""The functions in a C text, each as a list of tokens; C that symrot does not emit raises an error.
 
 This module shares no code with the emitter, so that a mistake there cannot hide here.
 """
@@ -86,10 +86,7 @@ def _tokens(text: str, where: str) -> list[Token]:
 
 
 class Cursor:
-    """The tokens of a C file or of one function body, with the position (``index``) of the next token to read.
-
-    ``where`` is the file's name, for messages.
-    """
+    """The tokens of a C file or of one function body, with the ``index`` of the next token to read."""
 
     def __init__(self, tokens: list[Token] | tuple[Token, ...], where: str) -> None:
         self.tokens, self.where, self.index = tokens, where, 0
@@ -146,13 +143,12 @@ class Cursor:
 def functions_of(text: str, where: str = "kernel") -> Mapping[str, CFunction]:
     """Return the functions that a C file defines, by name; prototypes are skipped.
 
-    The result is cached, because each text holds several functions: double and float, one sample and batch.
-
     Raises
     ------
     CertificateError
         If the text contains C that symrot does not emit; the message names the line.
     """
+    # the result is cached, because each text holds several functions: double and float, one sample and batch
     cursor = Cursor(_tokens(text, where), where)
     functions: dict[str, CFunction] = {}
     while cursor.index < len(cursor.tokens):

@@ -1,8 +1,7 @@
 """The check that the header of an emitted kernel contains only fixed lines and the prototypes of its C file.
 
-A header can change what a C file means; a macro called ``sin`` is enough. So every line outside comments must be one of
-the constants ``_TOP`` to ``_END`` of this module, in this order, or belong to the prototype of a function that the C
-file defines. Only the standard library is used.
+A header can change what a C file means; a macro called ``sin`` is enough. So every line outside comments must be one
+of the constants ``_TOP`` to ``_END``, in this order, or part of a prototype.
 """
 
 import re

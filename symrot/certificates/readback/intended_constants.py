@@ -26,10 +26,7 @@ class IntendedConstant:
     times_pi: bool
 
     def rounds(self, precision: str) -> bool:
-        """Return whether this object's exact number, rounded to ``precision``, is the C text's constant ``written``.
-
-        The exact number is ``fraction``, or ``fraction*pi`` if ``times_pi`` is true.
-        """
+        """Return whether the exact number, rounded to ``precision``, is the C text's constant ``written``."""
         return rounds_to(self.fraction * PI if self.times_pi else self.fraction, precision) == self.written
 
 
@@ -50,15 +47,13 @@ def rounds_to(value: Fraction, precision: str) -> Fraction:
 def intended_value(value: Fraction, precision: str) -> IntendedConstant:
     """Return the exact number for which a constant of the C text stands, such as 1/3 for 0.3333333333333333.
 
-    A constant with few binary digits stands for itself; a longer constant stands for a simple fraction or multiple of
-    pi.
-
     Raises
     ------
     CertificateError
         If the constant is long and no simple fraction or multiple of pi rounds to it.
     """
     mantissa = frexp(float(value))[0]
+    # a constant with few binary digits stands for itself, a longer one for a simple fraction or multiple of pi
     if (mantissa * 2**SHORT).is_integer() and Fraction(float(value)) == value:
         return IntendedConstant(value, value, False)
     digits = {"binary64": 53, "binary32": 24}[precision]

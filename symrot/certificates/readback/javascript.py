@@ -1,9 +1,7 @@
-"""Read emitted JavaScript: rewrite it as the C that means the same, and read that C; refuse all other JavaScript.
+"""The reader of emitted JavaScript: it rewrites the text as C with the same meaning, which readback.py reads.
 
-Kernels in JavaScript use few words: functions, ``const``, array elements, arithmetic, ``a < b ? x : y`` and functions
-of ``Math``. With these words replaced, the text is C, and :mod:`symrot.certificates.readback.readback` reads its
-operations. JavaScript has no types; the sizes of arrays come from the C function of the same kernel. This module shares
-no code with the emitter.
+Kernels in JavaScript use few words, so that replacing them gives C; other JavaScript is refused. Array sizes come from
+the C function of the same kernel. This module shares no code with the emitter.
 """
 
 import re
@@ -28,20 +26,14 @@ _ONLY_IN_C = ("double", "float", "fabs", "symrot_", "void", "static", "inline", 
 
 
 def compare_javascript(text: str, name: str, c_text: str, where: str = "kernel") -> None:
-    """Raise CertificateError unless a JavaScript kernel performs the operations of the C function for doubles.
-
-    The operations are compared one by one: same constants, same functions, same order of rounding. ``text`` is a module
-    as symrot emits it, ``name`` its function, ``c_text`` the C text of the same kernel, and ``where`` the file's name,
-    for errors.
-    """
+    """Raise CertificateError unless a JavaScript kernel performs the same operations as the C function for doubles."""
+    # same constants, same functions, same order of rounding
     compare_operations(_as_c, text, name, c_text, where)
 
 
 def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
-    """Return the C text that means the same as the JavaScript module ``text``.
-
-    ``name`` is its kernel; ``model`` is the C function of the same kernel, which gives the sizes of arrays.
-    """
+    """Return a JavaScript module as C text with the same meaning; ``model`` is the kernel's C function."""
+    # ``model`` gives the sizes of arrays
     body = _COMMENT.sub(" ", text).replace(_COPYSIGN, "")
     parts = _HEAD.split(body)
     if parts[0].strip() or len(parts) < 4:
@@ -58,21 +50,16 @@ def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
 
 
 def _kernel_head(names: list[str], model: CFunction, where: str) -> str:
-    """Return the head of a C function with the arguments ``names`` of the JavaScript function.
-
-    Raise CertificateError unless these are the arguments of ``model``, the C function of the same kernel.
-    """
+    """Return the C head of a kernel, if ``names`` are the arguments of its C function ``model``."""
     expected = [parameter.name for parameter in model.parameters]
+    # otherwise raise CertificateError
     if names != expected:
         raise CertificateError(f"{where}: expected the arguments {', '.join(expected)}, got {', '.join(names)}")
     return kernel_head(model)
 
 
 def _translated(content: str, where: str) -> str:
-    """Return the body of a JavaScript function as C of the same meaning, such as ``sin(x)`` for ``Math.sin(x)``.
-
-    Raise CertificateError for words, such as types of C, that emitted JavaScript does not contain.
-    """
+    """Return the body of a JavaScript function as C, such as ``sin(x)`` for ``Math.sin(x)``."""
     place, words = 0, []
     while place < len(content):
         match = _TOKEN.match(content, place)
@@ -85,6 +72,7 @@ def _translated(content: str, where: str) -> str:
             word = _MATH[word]
         elif "." in word and not word[0].isdigit():
             raise CertificateError(f"{where}: expected a function of Math that kernels use, got {word}")
+        # emitted JavaScript does not contain, for example, types of C
         elif word in _ONLY_IN_C or word.startswith("symrot_"):
             raise CertificateError(f"{where}: expected JavaScript as symrot emits it, got the word {word}")
         elif word == "const":

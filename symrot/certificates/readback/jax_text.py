@@ -1,10 +1,7 @@
-"""Read emitted JAX text: rewrite it as the C that means the same, and read that C; refuse all other Python.
+"""The reader of emitted JAX text: it rewrites the text as C with the same meaning, which readback.py reads.
 
-Kernels in JAX use few words: one function, the functions such as sinc that it calls, assignments, array elements,
-arithmetic, ``jnp.where`` and functions of ``jax.numpy``. With these words replaced, the text is C, and
-:mod:`symrot.certificates.readback.readback` reads its operations. Sizes of arrays come from the C function of the same
-kernel. The rules that JAX needs for derivatives are accepted word for word. This module shares no code with the
-emitter.
+Kernels in JAX use few words, so that replacing them gives C; other Python is refused. Array sizes come from the C
+function of the same kernel. This module shares no code with the emitter.
 """
 
 import re
@@ -38,26 +35,21 @@ _RULES = {
 
 
 def compare_jax(text: str, name: str, c_text: str, where: str = "kernel") -> None:
-    """Raise CertificateError unless a kernel in JAX performs the operations of the C function for doubles.
-
-    The operations are compared one by one: same constants, same functions, same order of rounding. ``text`` is a module
-    as symrot emits it, ``name`` its function, ``c_text`` the C text of the same kernel, and ``where`` the file's name,
-    for errors.
-    """
+    """Raise CertificateError unless a JAX kernel performs the same operations as the C function for doubles."""
+    # same constants, same functions, same order of rounding
     compare_operations(_as_c, text, name, c_text, where)
 
 
 def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
-    """Return the C text that means the same as the JAX module ``text``.
-
-    ``name`` is its kernel; ``model`` is the C function of the same kernel, which gives the sizes of arrays.
-    """
+    """Return a JAX module as C text with the same meaning; ``model`` is the kernel's C function."""
+    # ``model`` gives the sizes of arrays
     head = _HEAD.match(text)
     if head is None:
         raise CertificateError(f"{where}: expected a docstring and the import of jax.numpy, as symrot emits them")
     functions, rules, needed = [], set[str](), set[str]()
     for block in text[head.end() :].strip("\n").split("\n\n"):
         block = block.strip("\n") + "\n"
+        # the rules that JAX needs for derivatives are accepted word for word
         rule = next((each for each, words in _RULES.items() if words == block), None)
         if rule is not None:
             rules.add(rule)
@@ -85,10 +77,8 @@ def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
 
 
 def _function(name: str, lines: list[str], inputs: list[str], where: str) -> str:
-    """Return the C text of a function such as sinc from the ``lines`` of its body in JAX.
-
-    The lines are assignments, then a choice between two formulas; ``inputs`` are the names of its arguments.
-    """
+    """Return the C text of a function such as sinc from the ``lines`` of its body in JAX."""
+    # assignments, then a choice between two formulas
     body = [_assignment(line, where) for line in lines[:-1]]
     result = _RETURN.fullmatch(lines[-1] if lines else "")
     choice = _CHOICE.fullmatch(result[1]) if result else None
@@ -103,10 +93,8 @@ def _function(name: str, lines: list[str], inputs: list[str], where: str) -> str
 
 
 def _kernel(lines: list[str], inputs: list[str], model: CFunction, where: str) -> str:
-    """Return the C text of the kernel from the ``lines`` of its body in JAX.
-
-    Its arguments ``inputs`` and its results must be those of ``model``, the C function of the same kernel.
-    """
+    """Return the C text of the kernel from the ``lines`` of its body in JAX; ``model`` is its C function."""
+    # arguments and results must be those of ``model``
     outputs = [p for p in model.parameters if p.size and not p.is_const]
     expected = [p.name for p in model.parameters if p not in outputs]
     if inputs != expected:
@@ -133,10 +121,7 @@ def _kernel(lines: list[str], inputs: list[str], model: CFunction, where: str) -
 
 
 def _assignment(line: str, where: str) -> str:
-    """Return a line of JAX, an assignment to a new variable, as C: ``a = x*y`` -> ``const double a = x*y;``.
-
-    ``where`` is the file's name, for messages.
-    """
+    """Return a line of JAX, an assignment to a new variable, as C: ``a = x*y`` gives ``const double a = x*y;``."""
     match = _ASSIGNMENT.fullmatch(line)
     if match is None or match[1] in _ONLY_IN_C | _NOT_IN_C:
         raise CertificateError(f"{where}: expected an assignment as symrot emits it, got {line[:40]!r}")
@@ -158,10 +143,7 @@ def _split(text: str) -> list[str]:
 
 
 def _translated(content: str, where: str) -> str:
-    """Return a formula of JAX as the C formula of the same meaning, such as ``sin(x)`` for ``jnp.sin(x)``.
-
-    Raise CertificateError for words, such as names of C functions, that emitted JAX does not contain.
-    """
+    """Return a formula of JAX as C, such as ``sin(x)`` for ``jnp.sin(x)``."""
     place, words = 0, []
     while place < len(content):
         match = _TOKEN.match(content, place)
@@ -172,6 +154,7 @@ def _translated(content: str, where: str) -> str:
             word = _ARRAY_FUNCTIONS[word]
         elif "." in word and not word[0].isdigit():
             raise CertificateError(f"{where}: expected a function of jax.numpy that kernels use, got {word}")
+        # emitted JAX does not contain, for example, names of C functions
         elif word in _ONLY_IN_C or word in _NOT_IN_C or word.startswith("symrot_"):
             raise CertificateError(f"{where}: expected JAX as symrot emits it, got the word {word}")
         words.append(word)

@@ -1,17 +1,8 @@
 """The operations of a kernel as a graph in which each node is one rounded floating-point operation.
 
-The reader of C text (:mod:`symrot.certificates.readback.readback`) makes such graphs; certificates compare them and
-bound their rounding errors. This module uses only the standard library and no code of the emitter: a checker that
-shared code with the emitter would repeat the emitter's mistakes. A place is the text of an input or output component,
-such as ``"q[1]"`` or ``"t"``.
-
-A node is a tuple; operands are indices of earlier nodes::
-
-    ("in", place)   ("const", Fraction)   ("neg", i)  ("abs", i)  ("sqrt", i)
-    ("add", i, j)  ("sub", i, j)  ("mul", i, j)  ("div", i, j)  ("copysign", i, j)
-    ("call", name, (i, ...))          ("select", relation, i, j, x, y): x if node i relation node j, else y
-
-Equal operations on equal operands share one node, since they have the same rounded value.
+Certificates compare such graphs and bound their rounding errors. Equal operations on equal operands share one node.
+The name of a component is a text such as ``"q[1]"`` or ``"t"``. No code is shared with the emitter, whose mistakes
+would be repeated.
 """
 
 import hashlib
@@ -23,6 +14,10 @@ from typing import Any
 
 __all__ = ["RELATIONS", "GraphBuilder", "Node", "Operations", "operands"]
 
+# a tuple; i, j, x, y are indices of earlier nodes:
+#     ("in", component)   ("const", Fraction)   ("neg", i)  ("abs", i)  ("sqrt", i)
+#     ("add", i, j)  ("sub", i, j)  ("mul", i, j)  ("div", i, j)  ("copysign", i, j)
+#     ("call", name, (i, ...))          ("select", relation, i, j, x, y): x if node i relation node j, else y
 Node = tuple[Any, ...]
 
 RELATIONS: dict[str, Callable[[Any, Any], bool]] = {
@@ -47,17 +42,16 @@ def operands(node: Node) -> tuple[int, ...]:
 
 @dataclass(frozen=True)
 class Operations:
-    """The operations of a C function: a graph in which each node is one rounded operation.
-
-    ``precision`` is ``"binary64"`` or ``"binary32"``; ``inputs`` are places such as ``"q[1]"`` or ``"t"`` in the order
-    of the arguments; ``outputs`` are pairs (place, index of its node) in the order of the arguments. ``nodes`` contains
-    only operations that some output needs, each after its operands.
-    """
+    """The operations of a C function, as a graph with one node for each rounded operation."""
 
     name: str
+    # "binary64" or "binary32"
     precision: str
+    # components such as "q[1]" or "t", in the order of the arguments
     inputs: tuple[str, ...]
+    # only operations that some output needs, each after its operands
     nodes: tuple[Node, ...]
+    # (component, index of its node), in the order of the arguments
     outputs: tuple[tuple[str, int], ...]
 
     def evaluate(
@@ -172,10 +166,8 @@ class GraphBuilder:
     def finish(
         self, name: str, precision: str, inputs: Sequence[str], outputs: Sequence[tuple[str, int]]
     ) -> Operations:
-        """Return the operations on which the outputs depend, numbered in the order of their first use.
-
-        ``outputs`` are pairs (place such as ``"q[1]"``, index of its node); nodes that no output needs are dropped.
-        """
+        """Return the operations on which ``outputs`` depend, numbered in the order of their first use."""
+        # outputs are pairs (component such as "q[1]", index of its node)
         order: dict[int, int] = {}
         needed: list[Node] = []
         for _, root in outputs:

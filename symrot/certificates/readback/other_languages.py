@@ -1,7 +1,6 @@
 """The check that a kernel's text in another language performs the same operations as its C text.
 
-The text is rewritten as C, read, and its operations are compared with those of the kernel's C file. JavaScript and JAX
-have different functions that rewrite a text as C; the rest is here.
+A text in JavaScript or JAX is rewritten as C and read; its operations are compared with those of the C file.
 """
 
 from collections.abc import Callable
@@ -13,15 +12,11 @@ from symrot.errors import CertificateError
 __all__ = ["AsC", "compare_operations", "kernel_head"]
 
 AsC = Callable[[str, str, CFunction, str], str]
-"""Takes the text of a module, the name of its kernel, the C function of the same kernel, which gives the sizes of
-arrays, and the file's name, for errors. Returns the C text that means the same.
-"""
+"""(text of a module, name of its kernel, C function of that kernel, name of the file) -> C text of the same meaning."""
 
 
 def compare_operations(as_c: AsC, text: str, name: str, c_text: str, where: str) -> None:
-    """Raise CertificateError unless a kernel performs the operations of the C function for doubles.
-
-    The operations are compared one by one: same constants, same functions, same order of rounding.
+    """Raise CertificateError unless a kernel performs the same operations as the C function for doubles.
 
     Parameters
     ----------
@@ -40,6 +35,7 @@ def compare_operations(as_c: AsC, text: str, name: str, c_text: str, where: str)
     model = functions_of(c_text, where).get(function)
     if model is None:
         raise CertificateError(f"{where}: expected C text with the function {function}")
+    # same constants, same functions, same order of rounding
     if read_kernel(as_c(text, name, model, where), function, where) != read_kernel(c_text, function, where):
         raise CertificateError(f"{where}: expected the operations of the C function {function}, got others")
 

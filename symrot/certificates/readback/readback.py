@@ -1,9 +1,6 @@
-"""The reader of emitted C: it returns the operations that the text performs, and refuses C that symrot does not emit.
+"""The reader of emitted C: it returns the operations that the text performs, and refuses other C.
 
-The accepted subset of C: functions of ``double`` or ``float``; ``const`` temporaries that are assigned once; ``+ - *
-/``, unary minus, ``a < b ? x : y``; calls of the C library and of ``static inline`` functions of the same file; each
-element of an output array assigned once; in a batch (a function for many samples), one loop over samples, or loops over
-blocks of samples. This module shares no code with the emitter.
+A function works on one sample, or on a batch of many samples. This module shares no code with the emitter.
 """
 
 from collections.abc import Mapping
@@ -31,13 +28,12 @@ SPAN = "SYMROT_SPAN"  # number of samples in a block, which several loops of a b
 DEEPEST = 200  # limit on the nesting of an expression
 
 
+# The accepted subset of C: functions of double or float; const temporaries, assigned once; + - * /, unary minus, a < b
+# ? x : y; calls of the C library and of static inline functions of the same file; each element of an output array
+# assigned once; in a batch, one loop over samples, or loops over blocks of samples.
 @dataclass
 class _Scope:
-    """The names known inside one C function: numbers, arrays, and the output elements that have been assigned.
-
-    A function for a batch computes many samples in a loop: ``loop`` is the name of the loop's variable, and ``count``
-    that of the number of samples. Both are empty in a function for one sample.
-    """
+    """The names known inside one C function: numbers, arrays, and the output elements that have been assigned."""
 
     values: dict[str, int] = field(default_factory=dict)
     arrays: dict[str, Parameter] = field(default_factory=dict)
@@ -48,11 +44,7 @@ class _Scope:
 
 
 class _BodyReader:
-    """A reader of the body of a C function, which turns statements into a graph of rounded operations.
-
-    Its methods take ``cursor``, the place of the next token, and ``scope``, the known names, and return nodes: indices
-    of operations in the graph.
-    """
+    """A reader of the body of a C function, which turns statements into a graph of rounded operations."""
 
     def __init__(self, functions: Mapping[str, CFunction], where: str, real: str, batch: bool = False) -> None:
         self.functions, self.where, self.real, self.batch = functions, where, real, batch
@@ -68,10 +60,7 @@ class _BodyReader:
         return self.inputs.setdefault(place, self.builder.add("in", place))
 
     def statements(self, cursor: Cursor, scope: _Scope) -> int | None:
-        """Read statements to the end of a body; return the node of the value after ``return``, or None without it.
-
-        ``cursor`` is at the first token; the statements add to ``scope`` the names that they define.
-        """
+        """Read the statements of a body; return the node of the value after ``return``, or None without ``return``."""
         while cursor.peek():
             if cursor.peek() == "(":
                 cursor.expect("(", "void", ")")
@@ -90,6 +79,7 @@ class _BodyReader:
                 if name in scope.values or name in scope.arrays or name in (scope.loop, scope.count):
                     raise cursor.fail("a name that is not yet used", repr(name))
                 cursor.expect("=")
+                # a new name for the statements that follow
                 scope.values[name] = self.expression(cursor, scope)
                 cursor.expect(";")
             else:
@@ -116,10 +106,7 @@ class _BodyReader:
         scope.written[name, index] = value
 
     def _index(self, cursor: Cursor, scope: _Scope, array: Parameter) -> int:
-        """Return the component i that an array index names, and move past it.
-
-        The index is ``[i]`` in a function for one sample; for many it is ``[i*n + k]``, where k is the sample of n.
-        """
+        """Return the component i of an array index ``[i]``, or ``[i*n + k]`` for sample k of n, and move past it."""
         cursor.expect("[")
         if array.size > 0:
             index = cursor.integer()
@@ -245,10 +232,7 @@ class _BodyReader:
         return self.builder.add("call", bare, tuple(arguments))
 
     def _inlined(self, cursor: Cursor, function: CFunction, arguments: list[int]) -> int:
-        """Return the node for a call of a function of the same file with the nodes ``arguments``.
-
-        The body of the function is read as if it stood in place of the call.
-        """
+        """Return the node for a call of a function of the same file, whose body is read as if it replaced the call."""
         parameters = function.parameters
         if function.returns != self.real or any(p.size or p.type != self.real for p in parameters):
             raise cursor.fail(f"a function of type {self.real}", repr(function.name))
@@ -398,12 +382,9 @@ def _samples(cursor: Cursor, scope: _Scope, start: str, end: str) -> tuple[Token
 
 
 def _parts(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
-    """Read several loops over the same block of samples, and record their outputs in ``scope``.
-
-    A kernel with many outputs is computed in such loops; CertificateError is raised if two of them assign the same
-    output.
-    """
+    """Read several loops over the same block of samples, and record their outputs in ``scope``."""
     _heads(cursor, scope, SPAN)
+    # a kernel with many outputs is computed in several loops
     while cursor.peek() != "}":
         part = _Scope(arrays=scope.arrays, scalars=scope.scalars, count=scope.count)
         reader.statements(Cursor(_samples(cursor, part, "start", "end"), cursor.where), part)
@@ -421,17 +402,14 @@ def _heads(cursor: Cursor, scope: _Scope, size: str) -> None:
 
 
 def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
-    """Read a loop over blocks that computes with ``symrot_math.h``, and again with the C library for large angles.
-
-    Both computations must perform the same operations, and the test for large angles must cover every argument of
-    ``symrot_sin`` and ``symrot_cos``.
-    """
+    """Read a loop over blocks of samples, computed with ``symrot_math.h`` and, for large angles, with libm."""
     _heads(cursor, scope, "SYMROT_BLOCK")
     cursor.expect("uint32_t" if reader.real == "float" else "uint64_t", "beyond", "=", "0", ";")
     far = "symrot_farf" if reader.real == "float" else "symrot_far"
     body = _samples(cursor, scope, "start", "end")
     split = next((i for i, token in enumerate(body) if token.text == "beyond"), len(body))
     plain = _Scope(arrays=scope.arrays, scalars=scope.scalars, loop=scope.loop, count=scope.count)
+    # the test for large angles must cover every argument of symrot_sin and symrot_cos
     reader.vectorised_angles = set()
     reader.statements(Cursor(body[:split], cursor.where), scope)
     tested, mark = set(), "="
@@ -452,6 +430,7 @@ def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
     cursor.expect(*["const", "size_t", "again", "=", "beyond", "==", "0", "?", "start", ":", "end", ";"])
     reader.statements(Cursor(_samples(cursor, plain, "start", "again"), cursor.where), plain)
     cursor.expect("}")
+    # both computations must perform the same operations
     if plain.written != scope.written:
         raise cursor.fail("a second loop over samples that assigns the same outputs as the first", "other outputs")
 
@@ -459,10 +438,7 @@ def _blocks(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
 def _finished(
     reader: _BodyReader, scope: _Scope, function: CFunction, places: list[tuple[str, int]], where: str
 ) -> Operations:
-    """Return the operations of a C function whose body was read.
-
-    ``places`` are the output elements (array, index) that it must assign; CertificateError is raised for a missing one.
-    """
+    """Return the operations of a C function whose body was read; ``places`` are the outputs that it must assign."""
     missing = [f"{name}[{index}]" for name, index in places if (name, index) not in scope.written]
     if missing or not places:
         raise CertificateError(f"{where}: expected {function.name} to assign {', '.join(missing) or 'an output'}")

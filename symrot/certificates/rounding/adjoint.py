@@ -1,18 +1,8 @@
 """Bounds of the rounding error of one output on many boxes at once: the sum of local errors times derivatives.
 
-A box is one range per input. Let the operations 1 to k be computed with rounding and the others exactly. As k grows
-from 0 to the number of operations, the output moves from its exact to its computed value, one rounding error at a time.
-By the mean value theorem,
-
-    computed - exact = sum over operations of (derivative of the output by the result) * (rounding error of the result),
-
-where the derivatives are evaluated between exact and computed values, and each operation acts on computed operands.
-Interval arithmetic encloses all these values (forward pass), one pass backwards through the graph of operations
-encloses the derivatives, and half a unit in the last place bounds each rounding error. No second-order term is
-neglected.
-
-Conditionals compare computed numbers. So the condition of a branch narrows the intervals of computed numbers, from
-which rounding errors are bounded, but not the intervals in which derivatives are evaluated.
+A box is one range per input. Going forward, interval arithmetic encloses the exact and the computed value of each
+operation. Going backward, it encloses the output's derivatives. Half a unit in the last place bounds each rounding
+error.
 """
 
 from collections.abc import Callable, Sequence
@@ -40,20 +30,26 @@ __all__ = ["LIBM_ULP", "Evaluation", "evaluate"]
 LIBM_ULP = 1.0  # error of sin, cos and atan2, in units in the last place of the exact value
 
 
+# Let the operations 1 to k be rounded and the others exact. As k grows from 0 to the number of operations, the output
+# moves from its exact to its computed value. By the mean value theorem,
+#     computed - exact = sum over operations of (derivative of the output by the result) * (its rounding error),
+# with derivatives between exact and computed values, where each operation acts on computed operands. Conditionals
+# compare computed numbers, so the condition of a branch narrows the intervals of computed numbers, which give the
+# rounding errors, but not the intervals in which derivatives are evaluated.
+# No second-order term is neglected.
 @dataclass(frozen=True)
 class Evaluation:
-    """The bounds of the rounding error on many boxes; every field has one entry for each box.
+    """The bounds of the rounding error on many boxes; every field has one entry for each box."""
 
-    ``bound`` is the error bound: infinite if no bound was found, -1 if the box contains no point of the region (the
-    allowed inputs). ``obstacle`` is the node that prevents a finite bound, or -1. ``undecided`` is a condition that
-    holds on a part of the box only, or -1. ``value`` is the largest absolute value of the output. ``turns`` says
-    whether an atan2 may jump by 2 pi.
-    """
-
+    # infinite if there is no bound; -1 if the box contains no point of the region (the allowed inputs)
     bound: Array
+    # the node that prevents a finite bound, or -1
     obstacle: NDArray[np.int64]
+    # a condition that holds on a part of the box only, or -1
     undecided: NDArray[np.int64]
+    # largest absolute value of the output
     value: Array
+    # whether an atan2 may jump by 2 pi
     turns: NDArray[np.bool_]
 
 
@@ -77,32 +73,23 @@ class _ErrorPass:
         self.unit = 2.0 ** -DIGITS[self.precision]
 
     def rounded(self, exact: Array, factor: float = 1.0) -> tuple[Array, Array]:
-        """Return (intervals of computed values, error bounds) of an operation that rounds its exact result.
-
-        ``exact`` are intervals of the exact results. The error bound is ``factor`` times half a unit in the last place
-        of the largest exact result; the intervals of computed values are wider than ``exact`` by it.
-        """
+        """Return the intervals of computed values, and error bounds, of an operation with the ``exact`` results."""
+        # ``factor`` times half a unit in the last place of the largest exact result
         error = intervals.half_ulp(intervals.magnitude(exact), self.precision) * factor
         if factor != 1.0:
             return intervals.widened(exact, error), error
         return intervals.rounded_to(exact, self.precision), error
 
     def refined(self, node: Node, values: Sequence[Array], plain: Array) -> Array:
-        """Return an interval that contains a node's exact result, at most as wide as the interval ``plain``.
-
-        ``plain`` comes from the intervals of the operands, ``values``. It is narrowed by the node's mean value form if
-        the search uses these forms (``self.centred`` is not None); otherwise it is returned as it is.
-        """
+        """Return an interval that contains a node's exact result, at most as wide as ``plain``."""
+        # ``plain`` follows from the operands' intervals; the mean value form may be narrower
         if self.centred is None:
             return plain
         return self.centred.refined(node, operand_places(node), values, plain)
 
     def relative(self, exact: Array, units: float, least: float) -> tuple[Array, Array]:
-        """Return (intervals of computed values, error bounds) of a function with a known relative error.
-
-        ``exact`` are intervals of its exact values. The error bound is ``units`` unit roundoffs (2^-53 or 2^-24) times
-        the largest exact value, plus ``least``.
-        """
+        """Return the intervals of computed values, and error bounds, of a function with a known relative error."""
+        # ``units`` unit roundoffs (2^-53 or 2^-24) of the largest exact value, plus ``least``
         error = intervals.magnitude(exact) * (units * self.unit * (1 + 2.0**-20)) + least
         return intervals.widened(exact, error), error
 
@@ -127,17 +114,15 @@ def _constant(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple
 
 @cache
 def _constant_error(written: Fraction, precision: str, use_intended: bool) -> float:
-    """Return a bound of the distance between a constant of the C text and the exact number for which it stands.
-
-    With ``use_intended`` that number is the simple fraction or multiple of pi that the reader of the C text recovers.
-    Otherwise the constant may be a Taylor coefficient, and the bound covers any number that rounds to the constant.
-    """
+    """Return a bound of the distance between a constant of the C text and the exact number for which it stands."""
     if is_short(written):
         return 0.0
     try:
+        # the simple fraction or multiple of pi that the reader of the C text recovers
         intended = intended_value(written, precision) if use_intended else None
     except CertificateError:
         intended = None
+    # perhaps a Taylor coefficient: bound the distance to any number that rounds to the constant
     if intended is None:
         return float(intervals.half_ulp(np.array([nextafter(abs(float(written)), inf)]), precision)[0])
     error = abs(written - intended.fraction * (PI if intended.times_pi else 1))
@@ -224,14 +209,13 @@ def _angle(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[Ar
 
 
 def _error_of_root(state: _ErrorPass, operands: Sequence[Array], total: Array) -> Array:
-    """Return a bound of an error of sqrt(a^2 + b^2 + ..): the part caused by rounding the squares and their sum.
-
-    ``operands`` are intervals of a, b, .., ``total`` those of the sum. Near zero, the bound is infinite.
-    """
+    """Return a bound of the error of sqrt(a^2 + b^2 + ..) that comes from rounding the squares and their sum."""
+    # ``operands`` are intervals of a, b, .., ``total`` those of the sum
     squares = [intervals.half_ulp(intervals.magnitude(intervals.square(part)), state.precision) for part in operands]
     size = intervals.magnitude(total) * (1 + len(operands) * 2.0**-22)  # bound of a partial sum, its rounding included
     error = sum(squares, (len(operands) - 1) * intervals.half_ulp(size, state.precision))
     least = np.sqrt(np.maximum(total[0] - error, 0.0))
+    # infinite near zero
     return np.where(least > 0, error / (2 * least), inf) * (1 + 2.0**-40)
 
 
@@ -272,15 +256,12 @@ GAP_CELLS = 8192
 
 @cache
 def _gap_errors(own: OutputGraph, libm_ulp: float) -> tuple[Array, ...]:
-    """Return error bounds of a gap function, such as (x - sin x)/x^3, on ranges of x within [0, GAP_END].
-
-    The range [0, GAP_END] is divided into GAP_CELLS cells of equal width. Item k of the result is an array of bounds,
-    each on a run of 2^k neighbouring cells; entry i is on the run that begins with cell i. So two entries cover any
-    range.
-    """
+    """Return error bounds of a function such as (x - sin x)/x^3 on runs of 1, 2, 4, .. cells of its range."""
     ends = np.linspace(0.0, GAP_END, GAP_CELLS + 1)
     boxes = np.stack([ends[:-1], ends[1:]])[:, None]
     sides = [evaluate(own, boxes, np.full((1, GAP_CELLS), side, np.int8), libm_ulp=libm_ulp).bound for side in (0, 1)]
+    # two entries cover any range within [0, GAP_END]
+    # entry i of an array is the bound on the run that begins with cell i
     levels = [np.maximum(*sides)]
     while levels[-1].size > 1:
         step = 2 ** (len(levels) - 1)
@@ -321,11 +302,8 @@ def _choice(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple[A
 
 
 def _truncation_error(precision: str) -> float:
-    """Return a bound of the relative error of a Taylor series that the C text computes near zero, as for sinc(x).
-
-    It is a quarter of the unit roundoff of ``precision``, for every such series. The proof that the C text computes its
-    formulas checks this: it accepts a series only if the terms after its last one sum to less than this bound.
-    """
+    """Return a bound of the relative error of any Taylor series that the C text computes near zero."""
+    # a quarter of the unit roundoff: the proof of the C text accepts only series whose omitted terms sum to less
     return 2.0 ** -(DIGITS[precision] + 2) * (1 + 2.0**-20)
 
 
@@ -482,18 +460,16 @@ def evaluate(
 
 
 def _forward_pass(state: _ErrorPass, computed: _ErrorPass, node: Node) -> Array | None:
-    """Append a node's intervals to ``state.values`` and ``computed.values``; return a bound of its rounding error.
-
-    The interval in ``state.values`` contains the exact and the computed value of the node. That in ``computed.values``
-    contains the computed value alone. It may be narrower, because a box assumes which branches the computed values
-    take, and exact values close to a border may lie on its other side. In a graph without branches both are equal: the
-    caller passes one object as ``state`` and ``computed``, and one interval is appended.
-    """
+    """Append a node's intervals to ``state.values`` and ``computed.values``; return a bound of its rounding error."""
+    # Contains the exact and the computed value. In a graph without branches, ``computed`` is the same object as
+    # ``state``.
     value, error = FORWARD[node[0]](state, node, [state.values[i] for i in operand_places(node)])
     state.values.append(value)
     if state.centred is not None:
         state.centred.close(node, operand_places(node), error)
     if computed is not state:
+        # Contains only the computed value, and may be narrower: a box assumes the branches that computed values take,
+        # and exact values close to a border may lie on its other side.
         computed_value, error = FORWARD[node[0]](computed, node, [computed.values[i] for i in operand_places(node)])
         both = np.stack([np.maximum(value[0], computed_value[0]), np.minimum(value[1], computed_value[1])])
         computed.values.append(np.where(both[0] <= both[1], both, value))
@@ -501,12 +477,7 @@ def _forward_pass(state: _ErrorPass, computed: _ErrorPass, node: Node) -> Array 
 
 
 def _backward_pass(state: _ErrorPass) -> tuple[Array, NDArray[np.int64], NDArray[np.bool_]]:
-    """Return, for each box, the sum of errors times derivatives, the obstacle, and whether an angle may jump by 2 pi.
-
-    The obstacle is the node that makes the sum infinite, or -1. An angle that may jump by 2 pi must enter the output
-    with derivative 1 or -1; the error of the output is then meant modulo 2 pi. A node that no possible branch uses may
-    have any value; every other node must be finite.
-    """
+    """Return, for each box, the sum of errors times derivatives, its obstacle, and whether an angle may jump."""
     nodes = state.graph.nodes
     count = state.boxes.shape[2]
     adjoints: list[Array | None] = [None] * len(nodes)
@@ -525,6 +496,8 @@ def _backward_pass(state: _ErrorPass) -> tuple[Array, NDArray[np.int64], NDArray
             bound = bound + np.where(here & (error != 0), intervals.magnitude(adjoint) * error, 0.0)
         kind = nodes[index][0]
         if index in state.cuts:
+            # the derivative must be 1 or -1, so that the error of the output is meant modulo 2 pi
+            # the output's error is then meant modulo 2 pi, so its derivative must be 1 or -1
             jumps = here & state.cuts[index]
             turns |= jumps
             of_value = np.where(jumps & ~((adjoint[0] == adjoint[1]) & (np.abs(adjoint[0]) == 1)), index, of_value)
@@ -535,6 +508,7 @@ def _backward_pass(state: _ErrorPass) -> tuple[Array, NDArray[np.int64], NDArray
         for branch, (place, part) in enumerate(
             zip(operand_places(nodes[index]), BACKWARD[kind](state, index, adjoint), strict=True)
         ):
+            # a node that no possible branch uses may have any value
             active = here if decision is None else here & (decision != branch)
             used[place] |= active
             of_slope = np.where(clear & active & ~np.isfinite(part).all(axis=0), index, of_slope)
@@ -542,6 +516,7 @@ def _backward_pass(state: _ErrorPass) -> tuple[Array, NDArray[np.int64], NDArray
             part = np.where(active, part, 0.0)
             adjoints[place] = part if known is None else combine(known, part)
     whole = bound * (1 + 2.0**-52 * (2 * len(nodes) + 4)) + 1e-320 * len(nodes) * (bound > 0)
+    # the node that makes the sum infinite, or -1
     obstacle = np.where(of_value >= 0, of_value, np.where(np.isfinite(whole), -1, of_slope))
     obstacle = np.where((obstacle < 0) & ~np.isfinite(whole), len(nodes) - 1, obstacle)
     return np.where(of_value >= 0, inf, whole), obstacle, turns

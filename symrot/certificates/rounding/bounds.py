@@ -1,13 +1,7 @@
 """Bounds of the rounding error of a kernel's outputs on a box of inputs: the ``rounding`` section of a certificate.
 
-:func:`rounding_section` returns the section as data that is the same, byte for byte, on every machine.
-:func:`check_section` checks a section quickly, by evaluations at single points; with ``rerun``, it computes all bounds
-again.
-
-A bound limits the absolute error of an output against the exact formula at the same floating-point inputs. A choice is
-a conditional in the formula. If a choice compares rounded numbers, the exact formula follows the branch that the kernel
-took; such choices are listed. An angle that is wrapped is compared modulo 2 pi. Every intermediate number is finite on
-the box, so that nothing overflows.
+A bound limits the absolute error of an output against the exact formula at the same floating-point inputs. No number
+overflows on the box. A section can be checked quickly at single points, or computed again.
 """
 
 import hashlib
@@ -53,42 +47,45 @@ LARGEST, LARGEST_EXPONENT = Fraction(float_info.max), 1023  # the largest double
 STORE = Store()
 
 
+# Where a conditional compares rounded numbers, the exact formula follows the branch that the kernel took; these choices
+# are listed. An angle that is wrapped is compared modulo 2 pi.
 @dataclass(frozen=True)
 class OutputBound:
-    """Bounds of the rounding error of one output: ``bound`` on the whole box, ``pointwise`` at the worst point, ``at``.
-
-    ``scale`` is a power of two that is at least the largest value of the output at the evaluated points (or 2^1023).
-    ``evaluations`` is the number of boxes evaluated; ``converged`` says that ``bound`` is at most 2 % above
-    ``pointwise``. ``turns`` says that the error is measured modulo 2 pi. ``choices`` are the comparisons of rounded
-    numbers in the C text: the error is measured from the exact formula with the branches that the C text takes there.
-    ``contraction_safe`` says that the bound also holds with fused multiply-adds.
-    """
+    """Bounds of the rounding error of one output."""
 
     output: str
+    # on the whole box
     bound: float
+    # at the worst point, ``at``
     pointwise: float
     at: tuple[tuple[str, float], ...]
+    # a power of two, at least the largest value of the output at the evaluated points (or 2^1023)
     scale: float
+    # number of boxes evaluated
     evaluations: int
+    # ``bound`` is at most 2 % above ``pointwise``
     converged: bool
+    # the error is measured modulo 2 pi
     turns: bool
+    # comparisons of rounded numbers in the C text; the exact formula takes the same branches
     choices: tuple[str, ...]
+    # the bound also holds with fused multiply-adds
     contraction_safe: bool
 
 
 @dataclass(frozen=True)
 class BoundTask:
-    """The data of one search: bound the rounding error of one output on one box of inputs.
+    """The data of one search: bound the rounding error of one output on one box of inputs."""
 
-    Equal tasks of different kernels run once. ``low`` and ``high`` are the ends of the box, ``budget`` the largest
-    number of evaluations, ``libm_ulp`` the largest error of sin, cos and atan2, in units in the last place.
-    """
-
+    # equal tasks of different kernels run once
     graph: OutputGraph
+    # ends of the box
     low: tuple[float, ...]
     high: tuple[float, ...]
     region: Region
+    # largest number of evaluations
     budget: int
+    # largest error of sin, cos and atan2, in units in the last place
     libm_ulp: float
 
     @property
@@ -166,10 +163,7 @@ def _check_box(operations: Operations, box: Box) -> None:
 
 
 def bound_task(task: BoundTask, fresh: bool = False) -> SearchResult:
-    """Return the error bound for a task: the stored one, or the result of a search, which is then stored.
-
-    If ``fresh`` is true, the search is always done.
-    """
+    """Return the stored error bound for a task, or the result of a search if none is stored or ``fresh`` is true."""
     result = None if fresh else STORE.get(task.key)
     if result is None:
         with np.errstate(all="ignore"):  # a range may be a single point
@@ -212,18 +206,16 @@ def bound_outputs(
 
 
 def _output_bound(operations: Operations, place: str, task: BoundTask, result: SearchResult) -> OutputBound:
-    """Return the bound of the output ``place`` from the result of a search; raise InputError if the bound is infinite.
-
-    The message names a point near the singularity, at which the error has no bound.
-    """
+    """Return the bound of the output ``place`` from a search; raise InputError if the bound is infinite."""
     at = tuple(zip(task.graph.places, result.worst, strict=True))
     if result.bound == inf:
+        # name a point near the singularity
         inputs = task.graph.inputs_of[result.obstacle]
         where = ", ".join(f"{name} = {x:.6g}" for k, (name, x) in enumerate(at) if k in inputs)
         what = task.graph.text(result.obstacle)
         raise InputError(
-            f"{operations.name}: expected ranges of the inputs on which the error of {place} is bounded, got ranges "
-            f"with no bound: near {where}, {what} may be singular or overflow; narrow the ranges there"
+            f"{operations.name}: expected ranges on which the error of {place} is bounded, got no bound: near "
+            f"{where}, {what} may be singular or overflow; narrow the ranges there"
         )
     mantissa, exponent = frexp(result.largest_value)
     power = min(exponent - (mantissa == 0.5), LARGEST_EXPONENT)
@@ -356,10 +348,6 @@ def check_section(
 ) -> None:
     """Check a ``rounding`` section by evaluating the error at single points; with ``rerun``, compute all bounds again.
 
-    The section must be about these operations and all their outputs; its numbers must be finite, in order and printed
-    as symrot prints them; no bound may be below the error bound at the stored point. :func:`check_bounds` proves that
-    the bounds hold on the whole box.
-
     Raises
     ------
     CertificateError
@@ -375,6 +363,7 @@ def check_section(
         libm_ulp, budget = float.fromhex(section["libm_ulp"]), int(section["budget"])
         for part in section["precisions"]:
             _check_precision(part, kernels[part["precision"]], box, region, libm_ulp)
+        # ``check_bounds`` proves that the bounds hold on the whole box; here no bound may be below the error at a point
         precisions = [part["precision"] for part in section["precisions"]]
     except (CertificateError, KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
         if isinstance(error, CertificateError | InputError):
@@ -400,10 +389,9 @@ def check_section(
 def check_bounds(
     section: Mapping[str, Any], operations_double: Operations, operations_float: Operations | None, fresh: bool = False
 ) -> None:
-    """Check every bound of a section that :func:`check_section` accepted, by computing the bounds again.
+    """Check every bound of a section that :func:`check_section` accepted, by computing it again.
 
-    With ``fresh``, every bound is searched again; without it, bounds in the store are used. The budget in the section
-    must not exceed :data:`BUDGET`.
+    With ``fresh``, bounds in the store are not used.
 
     Raises
     ------
@@ -445,12 +433,9 @@ def check_bounds(
 def _check_precision(
     part: Mapping[str, Any], operations: Operations, box: Box, region: Region, libm_ulp: float
 ) -> None:
-    """Check the part of a ``rounding`` section about doubles or floats, by evaluating the error at single points.
-
-    ``part`` is that part, ``operations`` are the operations of the C function of this type. CertificateError is raised
-    if the part is about other operations, or a bound is below the error at its stored point.
-    """
+    """Check the part of a ``rounding`` section about doubles or floats, by evaluating the error at single points."""
     name = operations.name
+    # ``operations`` are those of the C function of this type
     if part["operations_sha256"] != operations.digest():
         raise CertificateError(
             f"{name}: expected bounds for the operations in the C text, got bounds for other operations"
@@ -480,6 +465,7 @@ def _check_precision(
                 f"{name}: expected a point inside the box as the worst point of {item['output']}, got a point outside"
             )
         least = error_at_point(task, at)
+        # a bound below the error at its stored point is refuted
         if not least <= float.fromhex(item["pointwise"]) * (1 + 1e-9) or float.fromhex(item["pointwise"]) > bound:
             raise CertificateError(
                 f"{name}: expected an error bound of {item['output']} of at least {least / unit:.6g} units of "
@@ -488,15 +474,12 @@ def _check_precision(
 
 
 def error_at_point(task: BoundTask, at: Array) -> float:
-    """Return the bound of a task's rounding error at the single point ``at``, the values of the inputs.
-
-    The result is a lower limit for any bound on a box that contains the point, so that it refutes smaller bounds. It is
-    0 if no finite bound exists at the point, which refutes nothing, and -1 if the point is not in the task's region
-    (:class:`~symrot.certificates.rounding.region.Region`).
-    """
+    """Return a task's error bound at the point ``at``, a lower limit for bounds on boxes that contain the point."""
     point = np.stack([at, at])[:, :, None]
     evaluation = evaluate(
         task.graph, point, np.full((len(task.graph.conditions), 1), -1, np.int8), task.region, task.libm_ulp
     )
+    # -1 if the point is outside the task's region of allowed inputs
     value = float(evaluation.bound[0])
+    # 0 refutes no bound
     return value if isfinite(value) else 0.0

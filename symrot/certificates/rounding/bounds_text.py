@@ -1,6 +1,6 @@
 """Rounding bounds of a library kernel on its own box: a section of its certificate, and text for its header comment.
 
-Both are computed from the operations that are read from the C text, so that the comment and the certificate agree.
+Both come from the operations that are read from the C text, so that they agree.
 """
 
 from collections.abc import Mapping
@@ -34,10 +34,7 @@ def _sections(name: str, double: Operations, single: Operations) -> Section | st
 
 
 def library_section(name: str, source: str) -> Section | str:
-    """Return the section ``rounding`` of a library kernel's certificate, or a text that says why there is no bound.
-
-    The section holds bounds of the rounding errors of all outputs, for inputs in the box that comes with symrot for
-    this kernel: a range for each input.
+    """Return the section ``rounding`` of a library kernel's certificate, or a text that says why it has no bounds.
 
     Parameters
     ----------
@@ -57,12 +54,9 @@ def library_section(name: str, source: str) -> Section | str:
 
 
 def library_region(name: str, source: str) -> Section:
-    """Return the assumptions of a library kernel's error bounds, for the section ``rounding`` of its certificate.
-
-    They are the restrictions of the inputs, the assumed error of the functions of libm, and the budget: how many boxes
-    of inputs the search for the largest error of each output may evaluate. ``source`` is the kernel's C text.
-    """
+    """Return the assumptions of a library kernel's error bounds, for the section ``rounding`` of its certificate."""
     region = library_problem(definition(name), operations_of(name, source)[0]).region
+    # restrictions of the inputs, error of libm, and number of boxes that the search for one output may evaluate
     return {
         "unit_groups": [list(group) for group in region.unit], "clearance": float(region.clearance).hex(),
         "libm_ulp": float(LIBM_ULP).hex(), "budget": BUDGET,
@@ -70,12 +64,11 @@ def library_region(name: str, source: str) -> Section:
 
 
 def bounds_sentence(name: str, section: Section | str) -> str:
-    """Return the largest error bound of each output array of a kernel, as text without a full stop.
+    """Return a kernel's largest errors as a phrase such as ``on the box at most 1.2e-15 [6.1e-7] rad/s in dq``.
 
-    An example is ``on the box at most 1.2e-15 [6.1e-7] rad/s in dq (float functions in brackets)``: 1.2e-15 bounds the
-    errors of the function for doubles, 6.1e-7 those of the function for floats (single precision). ``section`` is the
-    result of :func:`library_section`: the bounds, or a text that says why there are none.
+    The brackets hold the errors of the function for floats.
     """
+    # ``section`` comes from ``library_section``
     if isinstance(section, str):
         return f"no bound; {section.partition(': ')[2]}"
     kernel = definition(name)
@@ -88,10 +81,7 @@ def bounds_sentence(name: str, section: Section | str) -> str:
 
 
 def _result_phrase(section: Section, name: str, units: list[str]) -> str:
-    """Return a phrase about the largest errors of the output array ``name``: ``1.2e-15 [6.1e-7] rad/s in dq``.
-
-    The number in brackets is for floats. ``units`` are the units of its components; a single one is printed.
-    """
+    """Return the largest errors of an output array for doubles [and floats]: ``1.2e-15 [6.1e-7] rad/s in dq``."""
     double, single = (
         rounded_up(max(
             Fraction(float.fromhex(each["absolute"]))
@@ -99,6 +89,7 @@ def _result_phrase(section: Section, name: str, units: list[str]) -> str:
         ))
         for part in section["precisions"]
     )  # fmt: skip
+    # printed if all components have the same unit
     unit = f" {units[0]}" if len(units) == 1 and units[0] not in ("", "1") else ""
     return f"{double} [{single}]{unit} in {name}"
 
@@ -125,10 +116,7 @@ def region_of(section: Mapping[str, Any]) -> Region:
 
 
 def region_phrases(region: Region) -> list[str]:
-    """Return a phrase for each restriction of the inputs; an empty list if the inputs are not restricted.
-
-    An example is ``q0, q1, q2, q3: squares add up to 1, but for 2^-20``, where 2^-20 is the tolerance of the sum.
-    """
+    """Return a phrase for each restriction of the inputs, such as ``q0, q1: squares add up to 1, but for 2^-20``."""
     spare = f"2^{frexp(UNIT_NORM)[1] - 1}"  # exact: a rounded number would claim more than is proven
     phrases = [f"{', '.join(group)}: squares add up to 1, but for {spare}" for group in region.unit]
     if region.clearance:

@@ -1,10 +1,7 @@
-"""Branch and bound for the largest rounding error on a box: split the worst sub-boxes until the bound is tight.
+"""Branch and bound for the largest rounding error on a box: split the worst parts until the bound is tight.
 
-The box is split into parts (sub-boxes); those with the largest bounds are split first, in batches. A part on which a
-condition may hold or not is split into the two branches. Any other part is halved in one input: the input whose range,
-when shrunk about its middle, lowers the bound most. The halves are halved at once in a second input if that lowers the
-bound enough. A part is finished when its bound is at most ``GAP`` times the largest error found at a single point. The
-budget counts evaluations of boxes, not time, so that the result is the same on every machine.
+A part is a sub-box. It is split into the two branches of a condition, or halved in the input that lowers the bound
+most. It is finished when its bound is close to the largest error at a point.
 """
 
 from dataclasses import dataclass, replace
@@ -29,40 +26,39 @@ SHRUNK = 8.0  # a range is shrunk to an eighth of its width to estimate the effe
 NARROWEST = 2.0**-24  # relative to the box: a part this narrow without a bound is at a singular point
 
 
+# The budget counts evaluations of boxes, not time, so that the result is the same on every machine.
 @dataclass(frozen=True)
 class SearchResult:
-    """The result of a search: no error on the box exceeds ``bound``; the bound at the point ``worst`` is ``pointwise``.
+    """The result of a search for the largest error on a box."""
 
-    ``largest_value`` is the largest absolute value of the output at the evaluated points, ``evaluations`` the number of
-    evaluated boxes. ``converged`` says that ``bound`` is at most 2 % above ``pointwise``, ``turns`` that errors are
-    measured modulo 2 pi. If no bound was found, ``bound`` is infinite and ``obstacle`` is the operation (node) that
-    prevents a bound near the point ``worst``.
-    """
-
+    # no error on the box exceeds it; infinite if there is no bound
     bound: float
+    # the bound at the point ``worst``
     pointwise: float
     worst: tuple[float, ...]
+    # largest absolute value of the output at the evaluated points
     largest_value: float
+    # number of evaluated boxes
     evaluations: int
+    # ``bound`` is at most 2 % above ``pointwise``
     converged: bool
+    # errors are measured modulo 2 pi
     turns: bool = False
+    # the operation (node) that prevents a bound near the point ``worst``
     obstacle: int = -1
 
 
 @dataclass
 class _Parts:
-    """The parts (sub-boxes) of a search, with what is known about each part.
-
-    ``decided`` holds the branch of each condition on a part: 1 if the relation holds, 0 if not, -1 if both are
-    possible. The other fields are those of :class:`~symrot.certificates.rounding.adjoint.Evaluation`: the error bound,
-    the node that prevents a finite bound (``obstacle``), and a condition that holds on a piece of the part only
-    (``undecided``).
-    """
+    """The parts (sub-boxes) of a search, with their branches and error bounds."""
 
     boxes: Array  # (2, inputs, n)
+    # branch of each condition: 1 if the relation holds, 0 if not, -1 if both are possible; shape (conditions, n)
     decided: NDArray[np.int8]  # (conditions, n)
     bound: Array
+    # the node that prevents a finite bound
     obstacle: NDArray[np.int64]
+    # a condition that holds only on a piece of the part
     undecided: NDArray[np.int64]
 
     def take(self, chosen: NDArray[np.intp] | NDArray[np.bool_]) -> "_Parts":
@@ -100,13 +96,10 @@ class _BoundSearch:
         self.largest_value, self.turns = 0.0, False
 
     def evaluate(self, boxes: Array, decided: NDArray[np.int8]) -> Evaluation:
-        """Return the error bounds of boxes, computed CHUNK boxes at a time to limit memory.
-
-        ``decided`` holds the branch of each condition on each box: 1 if the relation holds, 0 if not, -1 if both are
-        possible.
-        """
+        """Return the error bounds of boxes, given the branch of each condition on each box."""
         count = boxes.shape[2]
         self.evaluations += count
+        # CHUNK boxes at a time, to limit memory
         chunks = [
             evaluate(
                 self.graph,
@@ -121,11 +114,8 @@ class _BoundSearch:
         return Evaluation(*(np.concatenate([getattr(part, name) for part in chunks]) for name in _FIELDS))
 
     def parts(self, boxes: Array, decided: NDArray[np.int8]) -> _Parts:
-        """Return parts of the search: the boxes that contain allowed inputs, each with its error bound.
-
-        Allowed are the inputs in the region, such as unit quaternions. Each box is shrunk to the allowed inputs in it.
-        ``decided`` holds the branches of conditions, as for :meth:`evaluate`.
-        """
+        """Return the boxes that contain allowed inputs, such as unit quaternions, each with its error bound."""
+        # each box is shrunk to the allowed inputs in it
         boxes = narrowed(boxes, self.region, self.graph.places)
         evaluation = self.evaluate(boxes, decided)
         inside = evaluation.bound >= 0
@@ -150,13 +140,10 @@ class _BoundSearch:
             self.pointwise, self.worst = float(reached[best]), tuple(float(x) for x in points[:, best])
 
     def halves(self, parts: _Parts) -> tuple[Array, NDArray[np.int8]]:
-        """Split each part (a sub-box) into two or four boxes; return the boxes and the branches chosen for them.
-
-        A part with an undecided condition gives two boxes, one for each branch. Any other part is halved in one input,
-        or in two inputs, which gives four boxes, if :meth:`directions` names a second input.
-        """
+        """Split each part into two or four boxes; return the boxes and the branches chosen for them."""
         choosing = parts.undecided >= 0
         boxes, decided = [], []
+        # a part with an undecided condition gives two boxes, one for each branch
         if choosing.any():
             chosen = parts.take(choosing)
             for branch in (0, 1):
@@ -171,23 +158,20 @@ class _BoundSearch:
             halved = _halved(rest.boxes, first)
             boxes.append(halved[:, :, np.tile(~twice, 2)])
             decided.append(np.tile(rest.decided[:, ~twice], 2))
+            # halved in a second input too: four boxes
             if twice.any():
                 boxes.append(_halved(halved[:, :, np.tile(twice, 2)], np.tile(second[twice], 2)))
                 decided.append(np.tile(rest.decided[:, twice], 4))
         return np.concatenate(boxes, axis=2), np.concatenate(decided, axis=1)
 
     def cut(self, parts: _Parts, branch: int) -> Array:
-        """Return the boxes of ``parts``, restricted to points where the undecided condition has the branch ``branch``.
-
-        Parts are sub-boxes of the searched box, each with one undecided condition. ``branch`` is 1 if the condition
-        shall hold, 0 if not. A box becomes smaller only if its condition compares an input with a constant: for ``x <
-        2`` and branch 1, the range of x ends at 2. For any other condition, such as ``x*y < z``, the box is returned
-        unchanged.
-        """
+        """Return the boxes of ``parts``, restricted to points where the undecided condition has this branch."""
         boxes = parts.boxes.copy()
         for number, (relation, i, j) in enumerate(self.graph.conditions):
             left, right = self.graph.nodes[i], self.graph.nodes[j]
             here = parts.undecided == number
+            # a box becomes smaller only if its condition compares an input with a constant: x < 2 ends the range of x
+            # at 2
             if left[0] == "in" and right[0] == "const" and relation in _LEFT_IS_LESSER:
                 side = 1 if _LEFT_IS_LESSER[relation] == (branch == 1) else 0
                 clip = np.minimum if side else np.maximum
@@ -207,12 +191,7 @@ class _BoundSearch:
     def best(
         self, parts: _Parts, relative: Array, otherwise: NDArray[np.int64]
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return, for each part, the two inputs whose ranges, when shrunk, lower the bound most.
-
-        For a part whose bound no shrinking lowers, the first input is that of ``otherwise``. The second input is -1 if
-        its gain (reduction of the bound) is at most ``SECOND`` times the first gain. ``relative`` holds the width of
-        each range, as a share of its width in the whole box.
-        """
+        """Return, for each part, the input whose range, when shrunk, lowers the bound most, and the next one or -1."""
         inputs, count = parts.boxes.shape[1:]
         middle = parts.boxes.mean(axis=0) + (parts.boxes - parts.boxes.mean(axis=0)) / SHRUNK
         shrunk = np.repeat(parts.boxes, inputs, axis=2).reshape(2, inputs, count, inputs)
@@ -227,8 +206,10 @@ class _BoundSearch:
         best = np.argmax(np.where(equal, relative.T, -1.0), axis=1)
         gain = parts.bound[:, None] - bounds
         gain[np.arange(count), best] = -1.0
+        # -1 if the gain of the second input is at most SECOND times the first gain
         second = np.argmax(gain, axis=1)
         worth = (gain[np.arange(count), second] > SECOND * (parts.bound - least)) & (least < parts.bound)
+        # ``otherwise``: the first input of a part whose bound no shrinking lowers
         return np.asarray(np.where(least < parts.bound, best, otherwise)), np.where(worth, second, -1)
 
 
@@ -280,12 +261,7 @@ def search(
 
 
 def _run_search(run: _BoundSearch, budget: int, target: float | None) -> SearchResult:
-    """Run one search and return its result.
-
-    ``run`` says whether it uses mean value forms or plain intervals only. The search ends when the bound is at most 2 %
-    above the error at the worst point, or after ``budget`` evaluated boxes. With a number ``target``, it also ends as
-    soon as the bound is known to be at most ``target``, or known to be larger.
-    """
+    """Return the result of a search of at most ``budget`` evaluations, with mean value forms or plain intervals."""
     graph, box = run.graph, run.box
     conditions = len(graph.conditions)
     parts = run.parts(box[:, :, None].copy(), np.full((conditions, 1), -1, np.int8))
@@ -295,11 +271,13 @@ def _run_search(run: _BoundSearch, budget: int, target: float | None) -> SearchR
         batch = parts.take(order[:BATCH])
         if np.isfinite(batch.bound).any():
             run.look_at_points(batch.take(np.isfinite(batch.bound)))
+        # at most 2 % above the error at the worst point
         enough = max(run.pointwise * GAP, settled)
         if target is not None and run.pointwise <= target:
             enough = max(enough, target)
         if parts.bound.max() <= enough or run.evaluations >= budget:
             break
+        # with a target, the search ends when it is known whether the bound exceeds it
         if target is not None and run.pointwise > target:
             break
         narrow = _narrow(run, batch)
@@ -322,24 +300,18 @@ def _narrow(run: _BoundSearch, parts: _Parts) -> NDArray[np.bool_]:
 
 
 def _spread(run: _BoundSearch, parts: _Parts) -> Array:
-    """Return, for each part (sub-box), its largest relative width among those inputs on which its obstacle depends.
-
-    The obstacle of a part is the operation that prevents a finite bound of the error there, such as a division by an
-    interval that contains zero. The relative width is the part's width in an input divided by that of the whole box.
-    """
+    """Return, for each part, its largest relative width in the inputs of the operation that prevents a bound."""
+    # an obstacle is an operation that prevents a finite bound, such as a division by an interval that contains zero
     width = np.where(run.width > 0, run.width, 1.0)
     relative = (parts.boxes[1] - parts.boxes[0]) / width[:, None]
     return np.asarray((relative * run.depends[np.maximum(parts.obstacle, 0)].T).max(axis=0, initial=0.0))
 
 
 def _narrowest(run: _BoundSearch, parts: _Parts) -> tuple[tuple[float, ...], int]:
-    """Return (a point, a node) that tell where no bound exists: the middle of the narrowest part without a bound.
-
-    Narrowest means the least :func:`_spread`. The node is the divisor or radicand, or else the function value, that
-    prevents a bound on this part; the message of an error names both.
-    """
+    """Return the middle of the narrowest part without an error bound, and the node that prevents the bound there."""
     first = int(np.argmin(np.where(np.isinf(parts.bound) & (parts.obstacle >= 0), _spread(run, parts), inf)))
     obstacle = int(parts.obstacle[first])
+    # the node is the divisor or radicand, or else the function value
     return tuple(float(x) for x in parts.boxes[:, :, first].mean(axis=0)), run.graph.singular_operand(obstacle)
 
 

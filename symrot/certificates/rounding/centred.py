@@ -1,9 +1,7 @@
 """Intervals that contain a polynomial on a box, from its value at the middle and its derivatives (mean value form).
 
-Plain interval arithmetic for ``x*y - x*z`` ignores that both factors x are the same number. The mean value form ``f(c)
-+ sum of f_k'(box)*(x_k - c_k)``, with c the middle of the box, accounts for this to first order in the width. Each
-interval is then widened by the bounds of the rounding errors made so far, so that it contains the computed value of the
-polynomial as well as the exact one.
+The form is ``f(c) + sum of f_k'(box)*(x_k - c_k)`` with c the middle. Plain interval arithmetic for ``x*y - x*z``
+ignores that both x are the same number; the form accounts for this.
 """
 
 from collections.abc import Sequence
@@ -16,14 +14,14 @@ from symrot.certificates.rounding.intervals import Array, add, magnitude, multip
 __all__ = ["CentredForms"]
 
 
+# Each interval is widened by the bounds of the rounding errors made so far, so that it contains the exact and the
+# computed value of the polynomial.
 class _CentredForm:
-    """The mean value form of one node on each box: a polynomial, known by its value at the middle and its gradient.
+    """The mean value form of one node on each box: a polynomial, known by its value at the middle and its gradient."""
 
-    ``middle`` are intervals of the values at the middle, ``gradient``, of shape (2, inputs, n), intervals of the
-    derivatives on the box. At every point of a box, the exact value of the node, its computed value and all numbers
-    between them differ from the polynomial by at most ``deviation``.
-    """
-
+    # ``deviation``: at every point of a box, the exact value of the node, its computed value and all numbers between
+    # them differ from the polynomial by at most this.
+    # ``middle``: intervals of the values at the middle; ``gradient``: intervals of the derivatives, (2, inputs, n).
     __slots__ = ("deviation", "gradient", "middle")
 
     def __init__(self, middle: Array, gradient: Array, deviation: Array) -> None:

@@ -1,8 +1,7 @@
 """Conditionals on boxes of inputs: which branches are possible, and the ranges of the compared numbers in each branch.
 
 A conditional compares computed numbers, so only ranges of computed numbers may be narrowed. If a >= b in a branch, the
-range of a starts no lower than the range of b. If b is computed as the larger of RN(p + q) and RN(p - q) (RN rounds to
-nearest), then b is at least p, because q or -q is not negative and rounding keeps order.
+range of a starts no lower than the range of b.
 """
 
 from collections.abc import Callable, Sequence
@@ -31,17 +30,16 @@ _NOT_LESS = {  # relation -> the branch in which left >= right, the branch in wh
 }  # fmt: skip
 
 
+# If b is computed as the larger of RN(p + q) and RN(p - q), where RN rounds to nearest, then b is at least p, because q
+# or -q is not negative and rounding keeps order.
 def decide_branches(
     relation: str, a: Array, b: Array, decision: NDArray[np.int8]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Write the branch of a condition into ``decision`` for all boxes on which only one branch is possible.
+    """Write the branch of ``a relation b`` into ``decision`` for each box where only one branch is possible.
 
-    ``a`` and ``b`` are intervals, one per box, of the two numbers that the condition ``a relation b`` compares.
-    ``decision`` holds 1 for a box on which the condition is assumed to hold, 0 if it is assumed not to hold, -1 if
-    nothing is assumed; only -1 is replaced. Return two Boolean arrays. The first is true for a box that contradicts its
-    assumption: the decision was 1 or 0 before this call, and the intervals exclude it. The second is true for a box on
-    which both branches are possible and nothing was assumed.
+    Return where this contradicts an earlier decision, and where both branches are possible.
     """
+    # ``decision``: 1 if the condition is assumed to hold on a box, 0 if not to hold, -1 if nothing is assumed
     holds, fails = _POSSIBLE[relation](a, b)
     outside = ((decision == 1) & ~holds) | ((decision == 0) & ~fails)
     open_ = decision < 0
@@ -51,14 +49,10 @@ def decide_branches(
 
 
 def narrow_to_branch(graph: OutputGraph, number: int, decision: NDArray[np.int8], computed: list[Array]) -> None:
-    """Shrink ranges in ``computed``, in place, to the values that are possible in the decided branch of a condition.
-
-    ``number`` is the index of the condition in ``graph.conditions``, and ``computed`` holds an interval per node and
-    box. ``decision`` holds, for each box, 1 if the condition holds there, 0 if not, -1 if it is undecided. If ``x < y``
-    holds, for example, the range of x is cut at the largest y, and that of y at the smallest x.
-    """
+    """Shrink ranges in ``computed`` (an interval per node and box) to the decided branch of condition ``number``."""
     relation, i, j = graph.conditions[number]
     larger, smaller = _NOT_LESS[relation]
+    # if x < y holds, the range of x is cut at the largest y, and that of y at the smallest x
     _narrow_ordered(graph.nodes, i, j, decision == larger, computed)
     _narrow_ordered(graph.nodes, j, i, decision == smaller, computed)
 

@@ -1,7 +1,7 @@
 """Ranges of a scene kernel's parameters, computed from ranges of the physical constants by interval arithmetic.
 
-The arguments of a kernel are parameters such as ``(B - C)/A``, not the moments of inertia A, B, C. If the moments of
-inertia may vary, each parameter gets a range that contains all its values. Only the standard library is used.
+Parameters such as ``(B - C)/A`` are the arguments of a kernel. If the moments of inertia A, B, C may vary, each
+parameter gets a range that contains all its values.
 """
 
 from collections.abc import Callable, Iterator, Mapping

@@ -1,8 +1,7 @@
 """Intervals that contain sine, cosine, arc tangent and related functions, computed from ``+ - * / sqrt`` alone.
 
-The C library's sine differs between machines, but bounds must be the same everywhere. So arguments are reduced by
-multiples of pi/2 (stored as a sum of two floats), and Taylor series are summed. The absolute error stays below 1e-15;
-every result is widened by more than that.
+The C library's sine differs between machines, but bounds must be the same everywhere. Arguments are reduced by
+multiples of pi/2, and Taylor series are summed. Results are widened by more than their absolute error, below 1e-15.
 """
 
 from collections.abc import Callable
@@ -93,16 +92,15 @@ def _size(x: Array) -> Array:
 
 @dataclass(frozen=True)
 class _EvenFunction:
-    """An even function of x such as sin(x)/x, evaluated on intervals without division by a small x.
+    """An even function of x such as sin(x)/x, evaluated on intervals without division by a small x."""
 
-    For |x| < 2 it is a series in x^2, for |x| >= 2 a formula: ``formula`` for numbers and ``on_intervals`` for
-    intervals. The function decreases for 0 <= x <= ``end``, and its absolute value is at most ``crude`` everywhere.
-    """
-
+    # in x^2, for |x| < 2; for |x| >= 2 a formula, for numbers and for intervals
     series: tuple[float, ...]
     formula: Callable[[Array, Array, Array], Array]  # of x, sin(x)/x and cos(x)
     on_intervals: Callable[[Array, Array, Array], Array]
+    # the function decreases for 0 <= x <= end
     end: float
+    # a bound of its absolute value everywhere
     crude: float
 
     def __call__(self, x: Array) -> Array:
@@ -154,19 +152,15 @@ _tangent_gap_factor = _EvenFunction(
 
 
 def tangent_gap_slope(x: Array) -> Array:
-    """Return intervals that contain the derivative of ``tangent_gap``, the function (sin x - x cos x)/x^3.
-
-    The derivative is -x times ``j2(x)/x^2``, which decreases from 1/15 at x = 0 until x = 5.7.
-    """
+    """Return intervals that contain the derivative of (sin x - x cos x)/x^3, which is ``tangent_gap``."""
+    # -x times j2(x)/x^2, which decreases from 1/15 at x = 0 until x = 5.7
     return negative(multiply_loosely(x, _tangent_gap_factor(x)))
 
 
 def sine_gap_slope(x: Array) -> Array:
-    """Return intervals that contain the derivative of ``sine_gap``, the function (x - sin x)/x^3.
-
-    The derivative is -x I(x), where I(x) is the integral of ``(1-s)^2 s sin(x s)/(2 x)`` over s from 0 to 1. I(x)
-    decreases from 1/60 at x = 0 until x = 4.4.
-    """
+    """Return intervals that contain the derivative of (x - sin x)/x^3, which is ``sine_gap``."""
+    # -x I(x), where I(x), the integral of (1-s)^2 s sin(x s)/(2 x) over s from 0 to 1, decreases from 1/60 until x =
+    # 4.4
     return negative(multiply_loosely(x, _sine_gap_factor(x)))
 
 
@@ -202,14 +196,12 @@ def arc_slope(a: Array, b: Array) -> Array:
 
 
 def _steepest(a: Array, b: Array) -> Array:
-    """Return an upper bound of a/(a^2 + b^2) on intervals of a and b.
-
-    If a may be positive, the quotient is largest at the least |b|, otherwise at the largest |b|. As a function of a,
-    the quotient increases until a = |b| and decreases from there on.
-    """
+    """Return an upper bound of a/(a^2 + b^2) on intervals of a and b."""
     size = _size(b)
     near, far = size
+    # a may be positive: largest at the least |b|; it increases in a until a = |b| and then decreases
     positive = np.clip(near, np.maximum(a[0], 0.0), np.maximum(a[1], 0.0))
+    # a <= 0: largest at the largest |b|
     ends = [_slope_at(at, far) for at in a]
     return np.where(a[1] > 0, _slope_at(positive, near), np.maximum(*ends))
 
@@ -220,11 +212,9 @@ def _slope_at(a: Array, b: Array) -> Array:
 
 
 def arc_ratio_terms(s: Array, c: Array, radius: Array) -> tuple[Array, Array, Array]:
-    """Return intervals of atan2(s, c)/s and of its derivatives by s and by c, for s, c >= 0, not both 0.
-
-    With ``s = r sin(a)``, ``c = r cos(a)`` and the radius r, these three are ``1/(r sinc a)``, ``-4 a g(2a)/(r sinc
-    a)^2`` and ``-1/r^2``, which are finite at ``a = 0``. Here g is :func:`sine_gap`, ``g(x) = (x - sin x)/x^3``.
-    """
+    """Return intervals of atan2(s, c)/s and of its derivatives by s and by c, for s, c >= 0, not both 0."""
+    # With s = r sin(a) and c = r cos(a), these are 1/(r sinc a), -4 a g(2a)/(r sinc a)^2 and -1/r^2, which are finite
+    # at a = 0; here g(x) = (x - sin x)/x^3 is ``sine_gap``.
     angle = np.clip(arc_tangent(s, c), 0.0, pi / 2 + SLACK)
     one = np.ones_like(s)
     value = divide(one, multiply_loosely(radius, sinc(angle)))

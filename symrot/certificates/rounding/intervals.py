@@ -1,14 +1,7 @@
 """Interval arithmetic for rounding bounds: float64 arrays of shape (2, n), the lower and upper ends of n intervals.
 
-Results are rounded outward, but an end is moved only if the operation was inexact. So the upper end of 1*1 stays 1.
-This matters because a number just above 1 has twice the rounding error of a number just below 1, and likewise at every
-power of two. TwoSum decides whether a sum is exact; Veltkamp's split decides whether a product is exact. An end c is
-moved outward by Rump's method, to ``c + (phi |c| + eta)`` with phi a little above 2^-53 and eta the smallest positive
-double; this is never less than the next double. Overflow and division by zero give ends that are not finite. Only ``+ -
-* / sqrt`` are used, so that results are the same on every machine.
-
-Source: Ogita, Rump, Oishi, SIAM J. Sci. Comput. 26 (2005) 1955 (TwoSum, Split); Rump, Zimmermann, Boldo, Melquiond, BIT
-49 (2009) 419 (successor in rounding to nearest).
+Results are rounded outward only if the operation was inexact: the upper end of 1*1 stays 1, since numbers just above 1
+have twice the rounding error. With ``+ - * / sqrt`` alone, results are the same on every machine.
 """
 
 from typing import TypeAlias
@@ -30,6 +23,10 @@ DIGITS = {"binary64": 53, "binary32": 24}
 _LEAST = {"binary64": ETA, "binary32": 2.0**-150}  # bound of the error of a subnormal result
 
 
+# TwoSum decides whether a sum is exact, Veltkamp's split whether a product is exact (Ogita, Rump, Oishi, SIAM J. Sci.
+# Comput. 26 (2005) 1955). Rump's method moves an end c outward to c + (phi |c| + eta), with phi a little above 2^-53
+# and eta the smallest positive double; this is never less than the next double (Rump, Zimmermann, Boldo, Melquiond, BIT
+# 49 (2009) 419). Overflow and division by zero give ends that are not finite.
 def point(value: float, count: int) -> Array:
     """Return ``count`` intervals that each contain only the number ``value``."""
     return np.full((2, count), value)
@@ -92,10 +89,8 @@ def multiply(a: Array, b: Array) -> Array:
 
 
 def multiply_loosely(a: Array, b: Array) -> Array:
-    """Return intervals that contain all products of numbers in ``a`` and ``b``, always rounded outward.
-
-    It is faster than :func:`multiply`, and meant for derivatives, where the last bit does not matter.
-    """
+    """Return intervals that contain all products of numbers in ``a`` and ``b``, always rounded outward."""
+    # faster than ``multiply``, for derivatives, where the last bit does not matter
     products = (a[:, None] * b[None]).reshape(4, -1)
     return widened(np.stack([products.min(axis=0), products.max(axis=0)]), 0.0)
 
@@ -137,12 +132,8 @@ def binade(size: Array) -> Array:
 
 
 def half_ulp(size: Array, precision: str) -> Array:
-    """Return a bound of the error of rounding to ``precision`` any number whose absolute value is at most ``size``.
-
-    It is half the distance of adjacent floating-point numbers just below ``size``. At a power of two this distance is
-    half of that just above, which need not count, because no number above ``size`` occurs. For 1.0 and "double" the
-    bound is 2^-54, for 1.5 it is 2^-53.
-    """
+    """Return a bound of the rounding error of any number up to ``size``: 2^-54 for size 1.0, 2^-53 for 1.5."""
+    # at a power of two, the wider spacing above it does not count: no number above ``size`` occurs
     below = ((size.view(np.int64) - 1) & _EXPONENT).view(np.float64)
     unit = np.maximum(below * 2.0 ** -DIGITS[precision], _LEAST[precision])
     return np.where(size > 0, unit, 0.0)

@@ -1,10 +1,7 @@
 """Rounding error bounds of the library's kernels: the ranges of inputs on which they hold, and their computation.
 
-A box is a range for each input; a region restricts the inputs further, for example to unit quaternions.
-:func:`library_problem` returns the box and region of a kernel. :func:`prepare` bounds the errors of many kernels in
-several processes, and puts the bounds into the store of :mod:`symrot.certificates.rounding.store`, where
-:func:`symrot.certificates.rounding.bounds.rounding_section` reads them. A further function finds the largest box on
-which an error stays below a number.
+A box is a range for each input; a region restricts the inputs further, for example to unit quaternions. Bounds of many
+kernels are computed in several processes and put into the store (store.py).
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -33,20 +30,16 @@ LARGEST = 2.0**10  # largest size that is tried, relative to the box of the kern
 
 @dataclass(frozen=True)
 class RoundingProblem:
-    """The data for bounding a kernel's rounding errors: the box of its inputs, their restrictions, and their symbols.
+    """The data for bounding a kernel's rounding errors: the box of its inputs, restrictions, and symbols."""
 
-    A box has a range for each input; a restriction is, for example, that a quaternion has unit norm.
-    """
-
+    # a range for each input
     box: Mapping[str, tuple[Fraction, Fraction]]
+    # for example, that a quaternion has unit norm
     region: Region
     symbols: Mapping[str, str]  # place -> component, such as "angles[1]" -> "theta"
 
     def place(self, name: str) -> str:
-        """Return the input component that ``name`` means, such as ``"q[1]"``.
-
-        ``name`` is that text itself or the input's symbol, such as ``"q1"``. InputError is raised for any other name.
-        """
+        """Return the input component, such as ``"q[1]"``, for a ``name`` that is this text or its symbol ``"q1"``."""
         for place, symbol in self.symbols.items():
             if name in (place, symbol):
                 return place
@@ -54,18 +47,14 @@ class RoundingProblem:
 
 
 def library_problem(kernel: Definition, operations: Operations) -> RoundingProblem:
-    """Return the box of a library kernel's inputs and the restrictions of the inputs in it, such as unit norm.
-
-    Usually there is no restriction: a matrix is any nine numbers in [-1, 1], a quaternion any four. Only for kernels
-    that compute angles from a quaternion must the quaternion have unit norm, and stay at least 1/10 away from the
-    points where an angle is undefined.
-    """
+    """Return the box of a library kernel's inputs and the restrictions of the inputs in it, such as unit norm."""
     symbols = {
         (each.name if each.is_scalar else f"{each.name}[{i}]"): component[0]
         for each in kernel.inputs
         for i, component in enumerate(each.components)
     }
     box = {place: kernel.box[symbol] for place, symbol in symbols.items()}
+    # a matrix is any nine numbers in [-1, 1], a quaternion any four
     if not any(node[0] == "call" and node[1] == "atan2" for node in operations.nodes):
         return RoundingProblem(box, EVERYWHERE, symbols)
     quaternions = tuple(
@@ -75,6 +64,7 @@ def library_problem(kernel: Definition, operations: Operations) -> RoundingProbl
     )
     graphs = (output_graph(operations, index) for _, index in operations.outputs)
     angles = any(node[0] == "atan2" for graph in graphs for node in graph.nodes)
+    # angles from a quaternion: unit norm, at least 1/10 away from the points where an angle is undefined
     return RoundingProblem(box, Region(quaternions, CLEARANCE if angles else 0.0), symbols)
 
 
@@ -147,9 +137,7 @@ def largest_box(
 ) -> tuple[float, dict[str, tuple[Fraction, Fraction]]]:  # fmt: skip
     """Return (size, box): the largest multiple of ``box`` on which every rounding error is at most ``target``.
 
-    Each range in ``box`` is made ``size`` times as wide and keeps its middle: the range 1 to 3 becomes 0 to 4 for size
-    2. If ``places`` names inputs, only their ranges change. The size is computed by doubling and 12 steps of bisection.
-    The other arguments are those of :func:`symrot.certificates.rounding.bounds.bound_outputs`.
+    For size 2, the range 1 to 3 becomes 0 to 4.
 
     Raises
     ------
@@ -181,6 +169,7 @@ def largest_box(
         low, high = high, 2 * high
         if high > LARGEST:
             return low, resized(box, low, chosen)
+    # bisection, after doubling
     for _ in range(STEPS):
         middle = (low + high) / 2
         low, high = (middle, high) if holds(middle) else (low, middle)

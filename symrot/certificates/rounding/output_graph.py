@@ -1,12 +1,8 @@
 """The computation of one output as a graph, in the form in which its rounding error is bounded.
 
-A graph contains the operations on which an output depends. Inputs are numbered by first use, so that equal computations
-of different kernels are equal graphs. Some computations have a finite derivative although their steps do not, such as
-sin(x)/x at 0; such a computation is a single node:
-
-``norm``: the root of a sum of squares, whose derivative x/|x| is at most 1 even at zero;
-``sinc``: ``x == 0 ? 1 : sin(x)/x``;  ``arc_ratio``: ``s == 0 ? 1/c : atan2(s, c)/s``, with s a root and c not negative;
-``gap``: ``x*x < split ? series : formula`` for (x - sin x)/x^3 or (sin x - x cos x)/x^3, with a graph of its own.
+A graph contains the operations on which an output depends. Inputs are numbered by first use, so that equal
+computations of different kernels are equal graphs. A computation such as sin(x)/x, whose steps have infinite
+derivatives at 0, is a single node.
 """
 
 import hashlib
@@ -29,25 +25,22 @@ CALLS = ("sin", "cos", "atan2")
 
 @dataclass(frozen=True)
 class OutputGraph:
-    """The computation of one output: nodes, each after its operands; the last node is the output.
-
-    A node is a tuple of a kind and its operands, the indices of earlier nodes. Besides those of :class:`Operations`
-    there are::
-
-        ("in", number)                     an input
-        ("square", i) ("sin", i) ("cos", i) ("atan2", i, j)
-        ("norm", roundings, i, ...)        sqrt of a sum of squares whose computation has ``roundings`` roundings
-        ("sinc", i)                        sin(x)/x
-        ("arc_ratio", i, j)                atan2(s, c)/s
-        ("gap", name, OutputGraph, i)      (x - sin x)/x^3 or (sin x - x cos x)/x^3, with its own computation from x
-        ("select", condition, x, y)        x if the condition holds, else y
-
-    ``conditions`` are tuples (relation, i, j) that compare the nodes i and j.
-    """
+    """The computation of one output: nodes, each after its operands; the last node is the output."""
 
     precision: str
     places: tuple[str, ...]  # place of each input, by number
+    # a node is a tuple of a kind and its operands, indices of earlier nodes; besides those of ``Operations``:
+    #     ("in", number)                     an input
+    #     ("square", i) ("sin", i) ("cos", i) ("atan2", i, j)
+    #     ("norm", roundings, i, ...)        sqrt of a sum of squares, computed with ``roundings`` roundings; its
+    #                                        derivative x/|x| is at most 1 even at zero
+    #     ("sinc", i)                        x == 0 ? 1 : sin(x)/x
+    #     ("arc_ratio", i, j)                s == 0 ? 1/c : atan2(s, c)/s, with s a root and c not negative
+    #     ("gap", name, OutputGraph, i)      x*x < split ? series : formula, for (x - sin x)/x^3 or
+    #                                        (sin x - x cos x)/x^3, with its own computation from x
+    #     ("select", condition, x, y)        x if the condition holds, else y
     nodes: tuple[Node, ...]
+    # (relation, i, j) compares the nodes i and j
     conditions: tuple[tuple[str, int, int], ...]
 
     @cached_property
@@ -78,16 +71,14 @@ class OutputGraph:
 
     @cached_property
     def contraction_safe(self) -> bool:
-        """Whether the rounding error bound of this output also holds if a compiler uses fused multiply-adds.
-
-        It does if each product in a sum is used nowhere else: a fused multiply-add makes one rounding error, at most
-        the sum of the two errors that it replaces. A product that is fused in one place and rounded in another has two
-        different values. The bound would be wrong, because it lets the effects of one error on the output cancel.
-        """
+        """Whether the rounding error bound of this output also holds if a compiler uses fused multiply-adds."""
         users: list[list[int]] = [[] for _ in self.nodes]
         for index in range(len(self.nodes) - 1, -1, -1):
             for place in operand_places(self.nodes[index]):
                 users[place] += users[index] if self.nodes[index][0] == "neg" else [index]
+        # It holds if each product in a sum is used nowhere else: one rounding error replaces two, and is at most their
+        # sum. A product that is fused in one sum and rounded in another has two values; the bound would let the effects
+        # of one error cancel.
         fused = all(
             len(users[k]) == 1 or not any(self.nodes[user][0] in ("add", "sub") for user in users[k])
             for k, node in enumerate(self.nodes)
@@ -97,14 +88,11 @@ class OutputGraph:
 
     @cached_property
     def exact(self) -> tuple[bool, ...]:
-        """For each node, whether its computed value has no rounding error.
-
-        This is so for an input, for a constant such as 1/2 that has few significant bits (:func:`is_short`), and for
-        the negative, the absolute value or a change of sign (copysign) of such a node.
-        """
+        """For each node, whether its computed value has no rounding error."""
         flags: list[bool] = []
         for node in self.nodes:
             kind = node[0]
+            # inputs, constants with few significant bits such as 1/2, and their negatives and absolute values
             own = kind in ("in", "neg", "abs", "copysign") or (kind == "const" and is_short(node[1]))
             flags.append(own and all(flags[i] for i in operand_places(node)))
         return tuple(flags)
@@ -138,11 +126,7 @@ class OutputGraph:
         return f"{node[0]}({', '.join(operands)})"
 
     def singular_operand(self, index: int) -> int:
-        """Return the index of the node whose value 0 makes the value or derivative of the node ``index`` infinite.
-
-        That is the divisor of a quotient and the radicand of a square root. For any other kind of node, ``index``
-        itself is returned.
-        """
+        """Return the node whose value 0 makes node ``index`` infinite, its divisor or radicand, or else ``index``."""
         node = self.nodes[index]
         return int({"div": node[-1], "sqrt": node[-1]}.get(node[0], index))
 
@@ -171,11 +155,8 @@ def is_short(value: Fraction) -> bool:
 
 
 def _modulo_two_pi(graph: OutputGraph, index: int, sign: int = 1) -> tuple[int, int]:
-    """Return (i, s), a node and a sign, such that ``s`` times node i equals ``sign`` times node ``index`` modulo 2 pi.
-
-    Constants near 2 pi are dropped from sums: for the node ``2*pi - x`` and ``sign`` 1, the result is (index of x, -1).
-    A sine or cosine of the simpler node replaces that of the sum.
-    """
+    """Return (i, s) such that ``s`` times node i equals ``sign`` times node ``index`` modulo 2 pi."""
+    # constants near 2 pi are dropped from sums; a sine or cosine of the simpler node replaces that of the sum
     node = graph.nodes[index]
     if node[0] == "neg":
         return _modulo_two_pi(graph, node[1], -sign)
@@ -186,6 +167,7 @@ def _modulo_two_pi(graph: OutputGraph, index: int, sign: int = 1) -> tuple[int, 
         left, right = node[1:]
         if _is_two_pi(graph.nodes[right]):
             return _modulo_two_pi(graph, left, sign)
+        # 2*pi - x gives (index of x, -1)
         if _is_two_pi(graph.nodes[left]):
             return _modulo_two_pi(graph, right, sign if node[0] == "add" else -sign)
     return index, sign
@@ -250,14 +232,12 @@ class _GraphReader:
         return self.put(kind, *(self.read(i) for i in operands(node)))
 
     def squares(self, index: int, depth: int = 0) -> list[tuple[int, int]] | None:
-        """Return pairs (x, roundings) for the terms of a sum of squares x^2, or None if the operation is no such sum.
+        """Return (x, roundings) for each term x^2 of a sum: (a, 2), (b, 3), (c, 3) for a^2 + (b^2 + c^2).
 
-        ``index`` is the operation, and x the index of an operation that is squared. ``roundings`` counts the roundings
-        of its term: one in the square, and one in each addition on the way to the operation for which the search began.
-        ``depth`` is the number of these additions between that operation and ``index``, 0 in the first call. For a^2 +
-        (b^2 + c^2) the result is [(a, 2), (b, 3), (c, 3)].
+        The result is None if it is no sum of squares.
         """
         node = self.source[index]
+        # one rounding in the square, and one in each addition on the way to the sum (``depth``)
         if node[0] == "mul" and node[1] == node[2]:
             return [(node[1], depth + 1)]
         if node[0] == "add":
@@ -309,10 +289,9 @@ _GAPS = {"sine_gap": Fraction(1, 6), "tangent_gap": Fraction(1, 3)}  # function 
 
 
 def _at_origin(reader: _GraphReader, index: int, square: int) -> Fraction | None:
-    """Return the value that the operation ``index`` has if the operation ``square`` is 0, as a fraction.
+    """Return the constant term of a polynomial in the operation ``square``: 1/6 for ``1/6 - square*(1/120)``.
 
-    This is the constant term of a polynomial in ``square``: 1/6 for ``1/6 - square*(1/120)``. Return None if the
-    operation contains anything besides ``square``, constants, sums and products.
+    The result is None if the operation ``index`` is no such polynomial.
     """
     node = reader.source[index]
     if index == square:
@@ -328,15 +307,11 @@ def _at_origin(reader: _GraphReader, index: int, square: int) -> Fraction | None
 
 
 def _gap(reader: _GraphReader, node: Node) -> int | None:
-    """Return the index of a new node of the kind ``gap`` if the operation ``node`` computes a gap function, else None.
-
-    The gap functions are (x - sin x)/x^3 and (sin x - x cos x)/x^3, whose formulas lose all digits near 0. The C text
-    computes one as ``x*x < c ? series : formula``. Its series has the value 1/6 or 1/3 at x = 0, which tells which of
-    the two functions it is.
-    """
+    """Return a new node for (x - sin x)/x^3 or (sin x - x cos x)/x^3 if ``node`` computes it, else None."""
     if node[0] != "select" or node[1] != "<" or reader.source[node[2]][0] != "mul":
         return None
     leaf, other = reader.source[node[2]][1:]
+    # these formulas lose all digits near 0, so the C text has x*x < c ? series : formula; the series is 1/6 or 1/3 at 0
     origin = _at_origin(reader, node[4], node[2])
     names = [name for name, value in _GAPS.items() if origin is not None and abs(origin - value) < Fraction(1, 2**20)]
     if leaf != other or not names:

@@ -1,7 +1,7 @@
 """Regions: restrictions of the inputs in a box, such as a quaternion of unit norm.
 
-In a box of unit quaternions, the ranges of three components limit the fourth component, because the squares sum to 1.
-Halving the box in three components therefore narrows the fourth as well.
+The ranges of three components of a unit quaternion limit the fourth, so that halving a box in three components narrows
+the fourth as well.
 """
 
 from collections.abc import Sequence
@@ -20,14 +20,11 @@ UNIT_NORM = 2.0**-20  # tolerance of the squared norm of a unit quaternion; roun
 
 @dataclass(frozen=True)
 class Region:
-    """Restrictions of the inputs in a box, such as a quaternion of unit norm.
+    """Restrictions of the inputs in a box, such as a quaternion of unit norm."""
 
-    ``unit`` are groups of input components, such as ``("q[0]", "q[1]", "q[2]", "q[3]")``, whose squares add up to 1,
-    within 2^-20; ``clearance`` is the least length of the vector (y, x) of arguments of every atan2, so that the angle
-    is defined.
-    """
-
+    # input components, such as ("q[0]", "q[1]", "q[2]", "q[3]"), whose squares add up to 1, within 2^-20
     unit: tuple[tuple[str, ...], ...] = ()
+    # least length of the vector (y, x) of arguments of every atan2, so that the angle is defined
     clearance: float = 0.0
 
 
@@ -74,13 +71,11 @@ def narrowed(boxes: Array, region: Region, places: Sequence[str]) -> Array:
 
 
 def _left_by(others: Sequence[Array], count: int) -> tuple[Array, Array]:
-    """Return (least, largest) values of |x| for which x^2 and the squares of ``others`` sum to 1.
-
-    The sum may differ from 1 by the tolerance UNIT_NORM. ``others`` are arrays with an interval on each of ``count``
-    boxes; the results are arrays with a number for each box. Both numbers are 0 where the other squares exceed 1.
-    """
+    """Return (least, largest) values of |x| on each box for which x^2 and the squares of ``others`` sum to 1."""
+    # the sum may differ from 1 by the tolerance UNIT_NORM
     rest = intervals.point(1.0, count) + np.array([[-UNIT_NORM], [UNIT_NORM]])
     for other in others:
         rest = intervals.add(rest, intervals.negative(intervals.square(other)))
+    # 0 where the other squares exceed 1
     least, most = intervals.square_root(np.maximum(rest, 0.0))
     return least, most

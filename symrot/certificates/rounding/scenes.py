@@ -1,6 +1,6 @@
 """Rounding bounds for the kernel of a scene: the box of its inputs, and the lines about bounds in its header comment.
 
-A scene fixes the parameters and the time span, but not the ranges of the states; the user has to state these ranges.
+A scene fixes the parameters and the time span, but not the ranges of the states; the user states these.
 """
 
 from collections.abc import Mapping
@@ -25,16 +25,14 @@ ANY, UNIT = (-LARGEST, LARGEST), (Fraction(-1), Fraction(1))
 
 @dataclass(frozen=True)
 class SceneInputs:
-    """The arguments of a scene's kernel, the values of its parameters, and its first and last time (s).
-
-    ``formulas`` maps a parameter, such as ``"p[0]"``, to its name and formula; ``constants`` maps the name
-    of each physical constant in these formulas to its value.
-    """
+    """The arguments of a scene's kernel, the values of its parameters, and its first and last time (s)."""
 
     arguments: tuple[Argument, ...]
     parameters: tuple[float, ...]
     times: tuple[Fraction, Fraction]
+    # parameter such as "p[0]" -> its name and formula
     formulas: Mapping[str, tuple[str, Node]]
+    # physical constant in these formulas -> its value
     constants: Mapping[str, Fraction]
 
     @property
@@ -50,13 +48,13 @@ class SceneInputs:
 def scene_problem(inputs: SceneInputs, operations: Operations) -> RoundingProblem:
     """Return the box and the restrictions that follow from a scene: fixed parameters, time span, unit quaternion.
 
-    States other than the quaternion are missing from the box, for the user to add; an input that the kernel does not
-    use may be any number.
+    The user adds the ranges of the other states.
     """
     symbols = {place: inputs.components[place][0] for place in operations.inputs}
     used = {place for _, index in operations.outputs for place in output_graph(operations, index).places}
     points = {f"p[{i}]": (Fraction(value), Fraction(value)) for i, value in enumerate(inputs.parameters)}
     known = points | {"t": inputs.times} | {p: UNIT for p, symbol in symbols.items() if symbol in QUATERNION}
+    # an input that the kernel does not use may be any number
     known |= dict.fromkeys(set(symbols) - used, ANY)
     quaternion = tuple(place for place, symbol in symbols.items() if symbol in QUATERNION)
     region = Region((quaternion,)) if quaternion else EVERYWHERE
@@ -64,10 +62,7 @@ def scene_problem(inputs: SceneInputs, operations: Operations) -> RoundingProble
 
 
 def header_lines(inputs: SceneInputs, section: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
-    """Return the lines about rounding bounds in the header comment of a scene's C file, each as (title, text).
-
-    ``section`` holds the bounds, the section ``rounding`` of a certificate.
-    """
+    """Return lines (title, text) about rounding bounds, for the header comment of a scene's C file."""
     names: dict[tuple[float, float], list[str]] = {}
     parameters = {f"p[{i}]": value for i, value in enumerate(inputs.parameters)}
     for place, ends in section["box"].items():
@@ -75,6 +70,7 @@ def header_lines(inputs: SceneInputs, section: Mapping[str, Any]) -> tuple[tuple
         if (Fraction(low), Fraction(high)) != ANY and not (low == high == parameters.get(place)):
             names.setdefault((low, high), []).append(inputs.components[place][0])
     ranges = [f"{', '.join(each)} {_range(low, high)}" for (low, high), each in names.items()]
+    # ``section`` is the section ``rounding`` of a certificate
     (part,) = section["precisions"]
     errors: dict[str, list[tuple[str, Fraction]]] = {}
     for each in part["outputs"]:

@@ -1,9 +1,8 @@
 """The store of rounding bounds: in memory, in the table that comes with symrot, and in the user's cache.
 
-The table, ``bounds.json``, holds the bounds of the library's kernels on their boxes, so that kernels are emitted with
-bounds at once; ``python -m symrot.workshop.bound_table`` prints it. The key of a bound covers everything on which the
-bound depends: the operations, the box, the region, the budget and the error of libm
-(:class:`~symrot.certificates.rounding.bounds.BoundTask`).
+The table ``bounds.json`` holds the bounds of the library's kernels, printed by ``python -m
+symrot.workshop.bound_table``. The key of a bound is a hash of its task: operations, box, region, budget and error of
+libm.
 """
 
 import ast
@@ -28,11 +27,11 @@ _NUMBERS = ("bound", "pointwise", "largest_value")
 
 
 def code_without_prose(source: str) -> str:
-    """Return Python source without its docstrings, its comments and the lines that then are blank.
+    r"""Return Python source without its docstrings, its comments and the lines that then are blank.
 
-    All other characters stay as they are, so that the result is the same in every version of Python:
-    ``"def f(x):\\n    # why\\n    return x  # m\\n"`` gives ``"def f(x):\\n    return x\\n"``.
+    ``"def f(x):\n    # why\n    return x  # m\n"`` gives ``"def f(x):\n    return x\n"``.
     """
+    # all other characters stay, so that the result is the same in every version of Python
     documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
     nodes = [node for node in ast.walk(ast.parse(source)) if isinstance(node, documented)]
     docstrings = {node.body[0].lineno for node in nodes if ast.get_docstring(node, clean=False) is not None}
@@ -49,20 +48,16 @@ def code_without_prose(source: str) -> str:
 
 @cache
 def method() -> str:
-    """Return the SHA-256 of the source files that compute bounds, called the method, without docstrings and comments.
-
-    It is a part of the key of each stored bound, so that a bound by other code is not used.
-    """
+    """Return the SHA-256 of the source files that compute bounds (the "method"), without docstrings and comments."""
+    # part of the key of each stored bound, so that a bound by other code is not used
     sources = (Path(__file__).with_name(f"{name}.py").read_text(encoding="utf-8") for name in _METHOD)
     return hashlib.sha256("\0".join(map(code_without_prose, sources)).encode()).hexdigest()
 
 
 @cache
 def table() -> Mapping[str, Any]:
-    """Return the table of bounds that comes with symrot, as a map with two keys.
-
-    ``bounds`` maps the key of a task to its bound; ``method`` is the hash of the code that computed them.
-    """
+    """Return the table of bounds that comes with symrot."""
+    # "bounds": key of a task -> its bound; "method": hash of the code that computed them
     try:
         return dict(json.loads(TABLE.read_text(encoding="utf-8")))
     except OSError:
@@ -70,10 +65,8 @@ def table() -> Mapping[str, Any]:
 
 
 def printed_table(bounds: Iterable[tuple[str, SearchResult]]) -> str:
-    """Return the text of the table of bounds that comes with symrot, one bound per line, in the order of the keys.
-
-    ``bounds`` are pairs (key, result of a search); the key is the hash of the task.
-    """
+    """Return the text of the table of bounds that comes with symrot, one bound per line, in the order of the keys."""
+    # a key is the hash of a task
     rows = [f'  "{key}": {json.dumps(_to_json(bound))}' for key, bound in sorted(dict(bounds).items())]
     return f'{{\n "method": "{method()}",\n "bounds": {{\n' + ",\n".join(rows) + "\n }\n}\n"
 
@@ -89,19 +82,14 @@ def _from_json(plain: Mapping[str, Any]) -> SearchResult:
 
 
 class Store:
-    """A store of rounding error bounds: in memory, in the table that comes with symrot, and in the user's cache.
-
-    The key of a bound is a hash of its task: operations, box, and options of the search.
-    """
+    """A store of rounding error bounds: in memory, in the table that comes with symrot, and in the user's cache."""
 
     def __init__(self) -> None:
         self.memory: dict[str, SearchResult] = {}
 
     def get(self, key: str, with_table: bool = True) -> SearchResult | None:
-        """Return the bound stored under a key, or None if there is no such bound.
-
-        With ``with_table=False`` the table of bounds that comes with symrot is not searched.
-        """
+        """Return the bound stored under a key, or None if there is no such bound."""
+        # the table of bounds that comes with symrot
         if with_table and key in table()["bounds"]:
             return _from_json(table()["bounds"][key])
         if key not in self.memory:

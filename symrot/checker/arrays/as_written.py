@@ -1,7 +1,4 @@
-"""Formulas with quaternions and Pauli's matrices as people write them: ``q p`` for qmul(q, p), 1 for eye(4).
-
-A claim with quaternions is decided with columns of four numbers, so that ``|q|²`` is the column (|q|², 0, 0, 0).
-"""
+"""Formulas with quaternions and Pauli's matrices as people write them: ``q p`` for qmul(q, p), 1 for eye(4)."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -11,27 +8,23 @@ from symrot.checker.claim.tree import Node, negated, number, product, walk
 
 __all__ = ["as_written", "has_arrays", "inverse_of", "is_odd", "with_inverses"]
 
+# a claim with quaternions is decided with columns of four numbers: ``|q|²`` is the column (|q|², 0, 0, 0)
 QUATERNION, UNIT = ("qmul", "conjugate"), eye()
 IMAGINARY = Node("name", "i")
 
 
 def has_arrays(sides: Sequence[Node]) -> bool:
-    """Return whether formulas call a function for quaternions or contain ``eye(4)``, which :func:`as_written` replaces.
-
-    ``eye(4)`` is the number 1 in equations with Pauli's matrices, which are computed as real 4 x 4 matrices.
-    """
+    """Return whether formulas call a function for quaternions or contain ``eye(4)``, which is written as 1."""
+    # Pauli's matrices are computed as real 4 x 4 matrices
     nodes = [node for side in sides for _, node in walk(side)]
     return UNIT in nodes or any(node.kind == "call" and node.value in QUATERNION for node in nodes)
 
 
 def is_odd(sides: Sequence[Node]) -> bool:
-    """Return whether a repair, given by its sides, has a part that no author writes; it is then not offered.
-
-    Such parts are ``i^T``, the transpose of the imaginary unit, and ``trace(-i M)``. The trace of a complex matrix M is
-    stored as a term for its real part and one for its imaginary part, which has ``trace(-i M)``. An edit of one term
-    alone leaves a ``trace(-i M)`` that cannot be written as ``trace(M)`` again.
-    """
+    """Return whether a repair, given by its sides, contains a term that no author writes, such as ``i^T``."""
     nodes = [node for side in sides for _, node in walk(as_written(side))]
+    # the trace of a complex M is stored as two terms; an edit of one term alone leaves a ``trace(-i M)`` that cannot be
+    # written as ``trace(M)`` again
     return Node("transpose", None, (IMAGINARY,)) in nodes or any(map(_is_imaginary_trace, nodes))
 
 
@@ -66,12 +59,10 @@ def _determinant(factors: Sequence[Node]) -> Node | None:
 
 
 def inverse_of(side: Node, source: str) -> Node | None:
-    """Return q if a side of a claim is the inverse of the quaternion q, and its text ``source`` writes it as a power.
-
-    The side is ``conjugate(q)/dot(q, q)``, as ``q^{-1}`` is read. The result is None otherwise.
-    """
+    """Return q if a side is the inverse of the quaternion q and its text ``source`` writes it as a power; else None."""
     if not any(mark in source for mark in INVERSES) or side.kind != "product" or len(side.args) != 2:
         return None
+    # ``q^{-1}`` is read as conjugate(q)/dot(q, q)
     above, below = side.args
     is_conjugate = above.kind == "call" and above.value == "conjugate" and below.kind == "inv"
     return above.args[0] if is_conjugate and below.args[0] == Node("call", "dot", above.args * 2) else None

@@ -1,6 +1,6 @@
 """Splitting formulas such as ``exp(i*x)`` into their real and imaginary parts, as trees.
 
-Two complex formulas are equal exactly if both their parts are; the engine then decides two equations of real formulas.
+Two complex formulas are equal exactly if both their parts are.
 """
 
 import re
@@ -39,55 +39,48 @@ MOST_FACTORS = 16
 
 
 def imaginary_unit(trees: Sequence[Node]) -> Node | None:
-    """Return the node of a letter i, j or I that is the imaginary unit; None if no formula has such a letter.
-
-    A letter i, j or I is the imaginary unit in ``e^(i x)`` and ``exp(i x)``, and in a product whose other factors are
-    numbers, sines and cosines, as in ``cos(x) + i*sin(x)``. Elsewhere only i and j can be, if one of these is true:
-
-    - a sum has the form ``x + i*y``, and some formula applies Re, Im, a conjugate or bars to a complex number, or has
-      a name such as z;
-    - it is the only letter, as in ``i^2 = -1``;
-    - a sum and its conjugate occur, or ``x + i*y`` in a product or power;
-    - both circular and hyperbolic functions occur, and the letter is in the argument of one of them.
-    """
+    """Return the node of a letter i, j or I that is the imaginary unit, as in ``e^(i x)``; None if there is none."""
     nodes = [node for tree in trees for _, node in walk(tree)]
     has_matrices = any(node.kind == "transpose" or node.value in OF_MATRICES for node in nodes)
     below = [part for node in nodes if node.kind == "inv" for part in node.args]
     for letter in LETTERS[: 2 if has_matrices else None]:  # cos(x)*I + (1 - cos(x))*n*n.T has the unit matrix
         for node in nodes:
+            # e^(i x) or exp(i x)
             inside = _exponent(node)
             if inside is not None and (own := _letter_in(inside, letter)):
                 return own
             is_divisor = letter == "I" and node in below  # 2*I*cos(theta) has a moment of inertia
+            # a product with numbers, sines and cosines alone, as in cos(x) + i*sin(x)
             if node.kind == "product" and not is_divisor and (own := _factor_of_sines(node, letter)):
                 return own
     return next((own for letter in LETTERS[:2] if (own := _evident(trees, nodes, letter))), None)
 
 
 def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node | None:
-    """Return the node of a letter i or j if its surroundings, such as ``|x + i*y|``, show it to be the imaginary unit.
-
-    Return None if they do not. The list in :func:`imaginary_unit` says which surroundings do. ``nodes`` are all nodes
-    of the formulas ``trees``.
-    """
+    """Return the node of a letter i or j if its surroundings, such as ``|x + i*y|``, show the imaginary unit."""
     own = next((node for node in nodes if (node.kind, node.value) == ("name", letter)), None)
     if own is None:
         return None
     names = {node.value for node in nodes if node.kind == "name"} - {"pi"}
     functions = {str(node.value) for node in nodes if node.kind == "call"}
+    # the only letter, as in i^2 = -1
     is_alone = names == {letter} and not any(
         first == own and second.kind == "number" for first, second in permutations(trees, 2)
     )
+    # circular and hyperbolic functions, and the letter in the argument of one of them
     has_both = bool(functions & {*CIRCULAR}) and bool(functions & {*HYPERBOLIC}) and any(
         node.kind == "call" and node.value in (*CIRCULAR, *HYPERBOLIC) and _letter_in(node.args[0], letter)
         for node in nodes
     )  # fmt: skip
     sums = [node for node in nodes if node.kind == "sum" and _letter_in(node, letter)]
+    # a sum and its conjugate
     has_conjugates = any(_conjugate(node, letter) in sums for node in sums)
+    # a sum x + i*y, and Re, Im, a conjugate, bars or a name such as z
     has_parts = any(map(_has_factor, sums, repeat(letter))) and (
         bool(names & {*NUMBERS}) or any(map(_is_of_complex, nodes, repeat(letter)))
     )
     pairs = {*map(frozenset, PAIRS)}
+    # x + i*y in a product or power
     has_pairs = any(
         _pair(part, letter) in pairs
         for node in nodes
@@ -100,10 +93,7 @@ def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node 
 
 
 def _pair(node: Node, letter: str) -> frozenset[str]:
-    """Return the names {x, y} if a sum is ``x + i*y`` or ``x - i*y``; an empty set for any other sum.
-
-    i is the ``letter``.
-    """
+    """Return the names {x, y} if a sum is ``x + i*y`` or ``x - i*y``, i being the ``letter``; else an empty set."""
     first, *rest = map(_without_sign, node.args)
     if len(rest) != 1 or first.kind != "name" or rest[0].kind != "product" or len(rest[0].args) != 2:
         return frozenset()
@@ -124,19 +114,19 @@ def _without_sign(term: Node) -> Node:
 def _is_of_complex(node: Node, letter: str) -> bool:
     """Return whether a formula is Re, Im, the conjugate or the absolute value of a number that may be complex.
 
-    The number must be a name, as in ``|z|`` and ``z_bar``, or contain the imaginary unit ``letter``, as in
-    ``Re(x + i*y)``.
+    ``letter`` is the imaginary unit.
     """
     if node.kind == "name" and str(node.value).endswith(BAR):
         return True
     argument = node.args[0] if node.kind == "call" and node.value in OF_COMPLEX else None
+    # a name, as in |z|, or a formula with the imaginary unit, as in Re(x + i*y)
     return argument is not None and (argument.kind == "name" or _letter_in(argument, letter) is not None)
 
 
 def substituted(tree: Node, numbers: Mapping[str, Node]) -> Node:
-    """Return a tree with formulas in place of the names of complex numbers; ``z_bar`` becomes a conjugate.
+    """Return a tree with the formulas ``numbers`` in place of names: ``x + i*y`` for z.
 
-    ``numbers`` gives the formula for each name, such as ``x + i*y`` for z.
+    ``z_bar`` becomes the conjugate of the formula.
     """
     if tree.kind == "name" and tree.value in numbers:
         return numbers[str(tree.value)]
@@ -148,23 +138,20 @@ def substituted(tree: Node, numbers: Mapping[str, Node]) -> Node:
 def open_numbers(formulas: Sequence[Node], letter: str = "i") -> dict[str, Node]:
     """Return complex numbers that nothing defines, such as z in ``|z|^2 = z z_bar``, each as ``Re_z + i*Im_z``.
 
-    ``letter`` is the imaginary unit in the results. Only z, w and zeta, with or without a number as in w_1, can be
-    complex numbers. All of them that the formulas use are taken as complex in two cases: ``conjugate``, ``Re`` or
-    ``Im`` is applied to one of them, or one is barred (``z_bar``) and the formulas also have an absolute value,
-    ``conjugate``, ``Re`` or ``Im``.
-
-    The result is empty in all other cases, for formulas with integrals, and for formulas that bar any other name: there
-    ``z_bar`` is a coordinate of a centre of mass.
+    ``letter`` is the imaginary unit.
     """
     nodes = [node for tree in formulas for _, node in walk(tree)]
     names = [str(node.value) for node in nodes if node.kind == "name"]
     calls = [node for node in nodes if node.kind == "call"]
+    # only z, w and zeta, with or without a number as in w_1, can be complex numbers
     own = {name for name in names if NUMBER.fullmatch(name)}
     barred = {name.removesuffix(BAR) for name in names if name.endswith(BAR)}
+    # with another barred name, z_bar is a coordinate of a centre of mass
     if not barred <= own or any(node.value in ("integrate", "integral_over_body", "qmul", "Matrix") for node in calls):
         return {}
     inside = {node.value: {str(n.value) for _, n in walk(node.args[0])} for node in calls if node.value in OF_COMPLEX}
     parts = set().union(*(names for call, names in inside.items() if call != "abs"))
+    # conjugate, Re or Im is applied to one of them, or one is barred and such a function or an absolute value occurs
     is_evident = bool(own & parts) or (bool(barred) and bool(inside))
     used = [name for name in names if name.removesuffix(BAR) in own]
     if not is_evident or len(used) < 2:
@@ -200,10 +187,7 @@ def _factor_of_sines(node: Node, letter: str) -> Node | None:
 
 
 def is_complex(sides: Sequence[Node], letter: str) -> bool:
-    """Return whether the sides of an equation contain complex numbers.
-
-    They do if the imaginary unit ``letter`` occurs, or Re, Im, the conjugate or the absolute value of a name.
-    """
+    """Return whether the sides of an equation contain complex numbers: the imaginary unit ``letter``, or Re(z)."""
     return any(
         _letter_in(side, letter) or any(_is_of_complex(node, letter) for _, node in walk(side)) for side in sides
     )
@@ -212,9 +196,7 @@ def is_complex(sides: Sequence[Node], letter: str) -> bool:
 def with_parts(relation: tuple[str, Node, Node], letter: str, source: str) -> tuple[str, Node, Node]:
     """Return a complex equation with each side as a column (real part, imaginary part).
 
-    ``letter`` is the imaginary unit, and ``source`` the typed text, for messages. If a side is a single name, as in
-    ``z = exp(i*x)``, it stays as it is: it only gives the other side a name. The other side becomes a column, or its
-    real part alone if it has no imaginary part.
+    ``letter`` is the imaginary unit, ``source`` the typed text, for messages.
 
     Raises
     ------
@@ -223,6 +205,8 @@ def with_parts(relation: tuple[str, Node, Node], letter: str, source: str) -> tu
     """
     sign, *sides = relation
     split = _Splitter(letter, source)
+    # a name such as z in z = exp(i*x) only names the other side, which becomes a column, or its real part alone if it
+    # has no imaginary part
     if any(side.kind == "name" and side.value != letter for side in sides):
         left, right = (side if side.kind == "name" else _real_or_column(split.parts(side)) for side in sides)
         return sign, left, right

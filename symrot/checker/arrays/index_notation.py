@@ -29,9 +29,7 @@ MOST_ENTRIES, WIDTH = 81, 9
 
 
 def written_out(relation: Relation) -> tuple[Relation, str]:
-    """Return an equation with delta_ij or epsilon_ijk written out in components, and a note that says so.
-
-    Any other equation is returned unchanged, with an empty text, and so is a condition such as R_ik R_jk = delta_ij.
+    """Return an equation with delta_ij or epsilon_ijk written out in components, and a note, empty for other equations.
 
     Raises
     ------
@@ -40,6 +38,7 @@ def written_out(relation: Relation) -> tuple[Relation, str]:
     """
     sign, left, right = relation
     nodes = [node for side in (left, right) for _, node in walk(side)]
+    # a condition such as R_ik R_jk = delta_ij stays as it is too
     if not any(_symbol(node) for node in nodes) or _is_condition(left, right):
         return relation, ""
     free = {_free(term) for side in (left, right) for term in _terms(side)}
@@ -65,14 +64,12 @@ def written_out(relation: Relation) -> tuple[Relation, str]:
 
 
 def component_of_cross(pair: Sequence[Node], index: str, used: str) -> Node | None:
-    """Return ``epsilon_ijk a_j b_k``, the component ``index`` (here i) of the cross product of the ``pair`` a, b.
-
-    j and k are letters that are not in ``used``. Return None if a or b is no name, as in ``((a + b) × c)_i``.
-    """
+    """Return ``epsilon_ijk a_j b_k``, the component ``index`` of the cross product of the names ``pair``; else None."""
     left, right = pair
     free = [letter for letter in "pqrskjlmni" if letter not in used + index]
     if left.kind != "name" or right.kind != "name" or len(free) < 2 or not re.fullmatch("[i-np-s]", index):
         return None
+    # letters that do not occur in the text ``used``
     j, k = free[:2]
     return product([Node("name", f"epsilon_{index}{j}{k}"), *(
         Node("name", f"{str(vector.value).removesuffix(MARK)}_{n}") for vector, n in ((left, j), (right, k))
@@ -80,12 +77,8 @@ def component_of_cross(pair: Sequence[Node], index: str, used: str) -> Node | No
 
 
 def has_index_symbols(relation: Relation) -> bool:
-    """Return whether an equation contains a symbol delta_ij or epsilon_ijk.
-
-    :func:`written_out` replaces these symbols by numbers in an equation that may be an identity. It leaves them in an
-    equation that determines its matrix: ``R_ik R_jk = delta_ij`` says that R is orthogonal, which most matrices are
-    not.
-    """
+    """Return whether an equation contains a symbol delta_ij or epsilon_ijk."""
+    # written_out leaves them in an equation such as R_ik R_jk = delta_ij, which says that R is orthogonal
     return any(_symbol(node) for side in relation[1:] for _, node in walk(side))
 
 
@@ -101,19 +94,18 @@ def _indices(node: Node) -> str:
 
 
 def _is_condition(left: Node, right: Node) -> bool:
-    """Return whether an equation is no identity but restricts quantities, as R_ik R_jk = delta_ij does.
-
-    It counts as an identity if both sides have the same quantities; if one side is zero, and a quantity occurs twice on
-    the other, so that its terms can cancel; or if one side is a component v_i, for which the other is a formula.
-    """
+    """Return whether an equation is no identity but restricts quantities, as R_ik R_jk = delta_ij does."""
     own = [Counter(_quantities(side)) for side in (left, right)]
     if "sigma" in (names := {*own[0], *own[1]}) and names <= OF_PAULI:
         return False
     for side, other in ((0, 1), (1, 0)):
+        # an equation v_i = .. defines v
         if _is_component((left, right)[side], (left, right)[other]):
             return False
         if (left, right)[side] == number(0):
+            # the terms of a side that equals 0 can cancel only if a quantity occurs twice
             return not any(count > 1 for count in own[other].values())
+    # an identity has the same quantities on both sides
     return {*own[0]} != {*own[1]}
 
 
@@ -160,13 +152,10 @@ def _counts(term: Node) -> Counter[str]:
 
 
 def _free_counts(integrand: Node) -> Counter[str]:
-    """Return the free indices of the integrand of an integral over a body, {"i": 1, "j": 1} for ``r_i r_j``.
-
-    An index is free if it occurs once in a term of the integrand. An index that occurs twice in a term, as k in ``r_k
-    r_k``, is summed inside the integral and is left out. If the terms have different free indices, the value is the
-    number of terms that have the index.
-    """
+    """Return the free indices of the integrand of an integral over a body: {"i": 1, "j": 1} for ``r_i r_j``."""
+    # an index that occurs twice in a term, as k in r_k r_k, is summed inside the integral
     free = [_once(_counts(term)) for term in _terms(integrand)]
+    # for terms with different free indices, the number of terms that have the index
     return free[0] if len({frozenset(own) for own in free}) == 1 else sum(free, Counter())
 
 
@@ -184,9 +173,9 @@ def _free(term: Node) -> tuple[str, ...]:
 
 
 def _component(side: Node, values: Mapping[str, str]) -> Node:
-    """Return one component of a side: with the numbers ``values`` for its free indices, and with its sums written out.
+    """Return one component of a side, for the ``values`` of its free indices, with its sums written out.
 
-    The component 1 of ``A_ij b_j`` is ``A_11 b_1 + A_12 b_2 + A_13 b_3``.
+    ``A_ij b_j`` gives ``A_11 b_1 + ..`` for i = 1.
     """
     if side.kind == "sum":
         return sum_of([_component(part, values) for part in side.args])

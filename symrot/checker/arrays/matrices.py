@@ -1,7 +1,7 @@
 """Names that a text uses as matrices, columns or lengths of vectors, although it does not define them.
 
-In ``tr A``, ``det A``, ``(A B)^T`` and ``A B A^T`` the capital letters are read as 3 x 3 matrices whose entries are
-independent symbols. A small letter with a transpose, as in ``r^T r``, is read as a column.
+A capital letter in ``tr A`` or ``(A B)^T`` is a 3 x 3 matrix of independent symbols, a small letter in ``r^T r`` a
+column. ``shapes`` maps names to shapes: (3, 1) is a vector.
 """
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -24,10 +24,7 @@ COLUMN = (3, 1)
 
 
 def matrix_of_entries(name: str, timed: bool = False) -> Node:
-    """Return the tree of a 3 x 3 matrix, for the ``name`` A with the entries A_11, A_12 and so on.
-
-    The entries are functions of time, as A_11(t), if it is ``timed``.
-    """
+    """Return the tree of a 3 x 3 matrix of the symbols A_11, A_12 and so on, or functions A_11(t) if ``timed``."""
     kind, args = ("call", (TIME,)) if timed else ("name", ())
     rows = [[Node(kind, f"{name}_{i}{j}", args) for j in "123"] for i in "123"]
     return Node("call", "Matrix", (_list([_list(row) for row in rows]),))
@@ -41,10 +38,7 @@ def matrices_of_entries(definitions: Sequence[tuple[str, Node]]) -> list[str]:
 
 
 def as_rotations(definitions: Sequence[tuple[str, Node]], names: Collection[str]) -> list[tuple[str, Node]]:
-    """Return definitions in which each matrix of ``names`` is a rotation, not a matrix of any nine entries.
-
-    The rotation is a product of rotations about z, x and z, whose angles are free symbols.
-    """
+    """Return definitions in which each matrix of ``names`` is a rotation instead of a matrix of any nine entries."""
     return [
         (name, _rotation(name, tree == matrix_of_entries(name, timed=True)) if name in names else tree)
         for name, tree in definitions
@@ -52,12 +46,12 @@ def as_rotations(definitions: Sequence[tuple[str, Node]], names: Collection[str]
 
 
 def _rotation(name: str, timed: bool) -> Node:
-    """Return the tree ``Rz(a1)*Rx(a2)*Rz(a3)``, which stands for the matrix ``name`` if that is a rotation.
+    """Return the tree ``Rz(a1)*Rx(a2)*Rz(a3)`` with free angles, for the rotation ``name``.
 
-    The angles a1, a2 and a3 are free symbols. For R they are called R_angle1, R_angle2 and R_angle3; if ``timed``, they
-    are functions of time, such as R_angle1(t). Every rotation can be written so.
+    If ``timed``, the angles are functions of time.
     """
     kind, args = ("call", (TIME,)) if timed else ("name", ())
+    # every rotation can be written so; for R the angles are R_angle1, R_angle2 and R_angle3
     turns = [Node("call", f"R{axis}", (Node(kind, f"{name}_angle{n}", args),)) for n, axis in enumerate("zxz", 1)]
     return Node("product", None, tuple(turns))
 
@@ -67,11 +61,7 @@ def _list(members: Sequence[Node]) -> Node:
 
 
 def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ...]:
-    """Return the capital letters that a claim uses as matrices, as A and B in ``det(A B)``.
-
-    Left out are the names in ``known``, which the claim defines, and names of the unit matrix such as I. Only in
-    ``det(I)`` and ``tr(I)`` does I count as a matrix of the claim, for example an inertia tensor.
-    """
+    """Return the capital letters that a claim uses as matrices, as A and B in ``det(A B)``, except ``known`` ones."""
     names = dict.fromkeys(name for name in _inverted_in_order(sides) if name not in (*known, *UNIT_NAMES))
     for side in sides:
         for _, node in walk(side):
@@ -79,6 +69,7 @@ def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, .
             alone = [part for part in inside if part.kind == "name" and node.kind == "call"]
             for part in inside:
                 for leaf in _factors(part):
+                    # I is the unit matrix, except in det(I) and tr(I), where it may be an inertia tensor
                     is_unit = leaf in UNIT_NAMES and not (len(alone) == len(inside) == 1)
                     if leaf[0].isupper() and leaf not in known and not is_unit:
                         names[leaf] = None
@@ -86,36 +77,33 @@ def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, .
 
 
 def _inverted_in_order(sides: Sequence[Node]) -> list[str]:
-    """Return the capital letters A and B of ``(A B)^-1 = A^-1 B^-1``, whose order would matter for matrices alone.
-
-    With the right order for matrices, B^-1 A^-1, the equation is true for numbers too, and the list is empty.
-    """
+    """Return the capital letters of ``(A B)^-1 = A^-1 B^-1``, whose order is wrong for matrices; else an empty list."""
     for side, other in (sides, sides[::-1]):
         base = side.args[0] if _is_inverse(side) else side
         if base is side or base.kind != "product" or other.kind != "product" or not all(map(_is_inverse, other.args)):
             continue
         names, inverted = ([_name_of_array(factor) for factor in part.args] for part in (base, other))
+        # (A B)^-1 = B^-1 A^-1 is true for numbers too; only the wrong order shows that matrices are meant
         if sorted(names) == sorted(inverted) and inverted != names[::-1] and all(n[:1].isupper() for n in names):
             return names
     return []
 
 
 def bold_unit_matrices(sides: Sequence[Node]) -> set[str]:
-    """Return {"I"} if a bold I is the unit matrix and no tensor of inertia; an empty set otherwise.
-
-    It is if one side is I alone and the other has a transpose, or if the equation has a skew matrix or ``a a^T``, and
-    in both cases no angular velocity.
-    """
+    """Return {"I"} if a bold I is the unit matrix and no tensor of inertia; an empty set otherwise."""
     nodes = [node for side in sides for _, node in walk(side)]
     names = {str(node.value) for node in nodes if node.kind in ("name", "call")}
     has_transpose = any(node.kind == "transpose" for node in nodes)
+    # one side is I alone, and the other has a transpose
     is_alone = any(side.kind == "name" and side.value == "I" for side in sides) and has_transpose
+    # a skew matrix or a a^T
     has_square = "skew" in names or any(
         second.kind == "transpose" and second.args[0] == first
         for node in nodes if node.kind == "product" for first, second in pairwise(node.args)
     )  # fmt: skip
     in_sum = any(node.kind == "sum" and any("I" in map(_name_of_array, _factors_of_term(term)) for term in node.args)
                  for node in nodes)  # fmt: skip
+    # with an angular velocity, I is a tensor of inertia
     is_of_motion = any(name.startswith(("omega", "Omega", "alpha")) for name in names)
     return {"I"} if (is_alone or (has_square and in_sum)) and not is_of_motion else set()
 
@@ -130,19 +118,17 @@ def _is_inverse(node: Node) -> bool:
 
 
 def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, bool]:
-    """Return those bold capital letters, among the names ``vectors``, that are matrices and not vectors.
-
-    Each comes with whether it depends on time. Such a name is on the left of another vector or matrix in a product, as
-    R in ``R v`` and ``R [w]x``, or the argument of a determinant or trace.
-    """
+    """Return the bold capital letters among ``vectors`` that are matrices, mapped to whether they depend on time."""
     matrices: dict[str, bool] = {}
     nodes = [node for side in sides for _, node in walk(side)]
     for node in nodes:
+        # the argument of a determinant or trace
         name = str(node.args[0].value) if node.kind == "call" and node.value in ("det", "trace") else ""
         if name[:1].isupper() and name in vectors and not is_tensor(name):
             matrices[name] = False
     for node in nodes:
         for first, second in pairwise(node.args if node.kind == "product" else ()):
+            # on the left of a vector or matrix in a product, as R in R v and R [w]x
             name = _name_of_array(first)
             is_vector = Node("call", "dot", (first, second)) in nodes  # F·d = F d cos θ
             is_capital = name[:1].isupper() and name in vectors and not is_tensor(name)
@@ -153,13 +139,10 @@ def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, 
 
 
 def rate_matrices(relation: tuple[str, Node, Node]) -> dict[str, bool]:
-    """Return the matrices R of equations such as ``R' = skew(w) R``, mapped to whether R is a function of time.
-
-    The value is True if the equation has the time derivative of R, as in ``R'`` or ``R' R^T``: R is then R(t). It is
-    False if the equation writes the rate as a symbol ``R_dot``: R is then a matrix of plain symbols.
-    """
+    """Return the matrices R of equations such as ``R' = skew(w) R``, mapped to whether R is a function of time."""
     matrices: dict[str, bool] = {}
     for side, other in (relation[1:], relation[:0:-1]):
+        # R' is the derivative of R(t); R_dot is a symbol, beside a matrix R of plain symbols
         is_rate = is_derivative(side) and len(side.args) == 2
         name = str(side.args[0].value) if is_rate else str(side.value).removesuffix("_dot")
         if not name[:1].isupper() or (not is_rate and name == side.value):
@@ -202,13 +185,11 @@ def _is_array(node: Node, vectors: Collection[str]) -> bool:
 
 
 def used_columns(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ...]:
-    """Return the small letters that a claim uses as columns, as r and v in ``r^T r`` and ``(R v)^T``.
-
-    The names in ``known``, which the claim defines, are left out.
-    """
+    """Return the small letters that a claim uses as columns, as r and v in ``r^T r`` and ``(R v)^T``."""
     names: dict[str, None] = {}
     for side in sides:
         for _, node in walk(side):
+            # names in known are defined in the claim
             if node.kind == "transpose":
                 names |= {leaf: None for leaf in _factors(node.args[0]) if leaf[0].islower() and leaf not in known}
     return tuple(names)
@@ -235,10 +216,7 @@ def _of_matrix(node: Node) -> Sequence[Node]:
 
 
 def _of_form(factors: Sequence[Node]) -> list[Node]:
-    """Return the capital letters between a transposed column and a column, which are matrices: A in ``a^T A b``.
-
-    ``factors`` are those of a product. The result is empty if they do not begin and end with such columns.
-    """
+    """Return the capital letters between a transposed column and a column, which are matrices: A in ``a^T A b``."""
     first, *between, last = factors
     columns = [first.args[0] if first.kind == "transpose" else number(0), last]
     if not between or not all(column.kind == "name" and column.value[0].islower() for column in columns):
@@ -258,15 +236,11 @@ def _factors(node: Node) -> Iterator[str]:
 def with_lengths(
     relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]
 ) -> tuple[tuple[str, Node, Node], tuple[str, ...]]:
-    """Return a relation with lengths of vectors where only a scalar makes sense, and the names of these vectors.
-
-    In ``a b sin(x)`` both vectors are replaced, since two columns cannot be multiplied: the result is ``|a| |b|
-    sin(x)`` and the names are (a, b). A vector is also replaced in a sum with a scalar, and where it is a factor of one
-    side and the other side is a scalar. ``shapes`` maps each name to its shape; a vector has (3, 1).
-    """
+    """Return a relation with lengths of vectors where only scalars fit, as in ``|a| |b| sin(x)``, and the vectors."""
     lengths = _Lengths(shapes)
     sign, left, right = relation
     left, right = lengths.read(left), lengths.read(right)
+    # a factor of one side is a length too if the other side is a scalar
     shape_left, shape_right = shape_of(left, shapes), shape_of(right, shapes)
     if shape_left is None and shape_right == COLUMN and left.kind != "name":
         right = lengths.scalar(right)
@@ -285,8 +259,10 @@ class _Lengths:
     def read(self, node: Node) -> Node:
         node = replace(node, args=tuple(self.read(child) for child in node.args))
         own = [shape_of(child, self.shapes) for child in node.args]
+        # two columns cannot be multiplied
         if node.kind == "product" and own.count(COLUMN) > 1 and {*own} <= {COLUMN, None}:
             return self.scalar(node)
+        # a column cannot be added to a scalar
         if node.kind == "sum" and None in own and COLUMN in own and not _has_added_name(node):
             return replace(node, args=tuple(self.scalar(child) for child in node.args))
         return node
@@ -302,9 +278,7 @@ class _Lengths:
 
 
 def _has_added_name(node: Node) -> bool:
-    """Return whether a term of a sum is a single name, as a and b in ``a + b``.
-
-    Such a name may be a vector too, so that the other terms need not be scalars.
-    """
+    """Return whether a term of a sum is a single name, as a and b in ``a + b``."""
+    # such a name may be a vector too, so the other terms need not be scalars
     bare = [term.args[0] if term.kind == "neg" else term for term in node.args]
     return any(term.kind == "name" and not is_tensor(str(term.value)) for term in bare)

@@ -35,18 +35,9 @@ CALLS = ("sin", "cos", "sqrt", "Matrix", *OF_MATRICES)
 
 
 def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Relation, tuple[tuple[str, Node], ...]]:
-    """Return an equation of Pauli's matrices in which each scalar multiplies the unit matrix, and the definitions.
+    """Return an equation of Pauli's matrices with scalars as multiples of the unit matrix, and its definitions.
 
-    The definitions give the matrices that occur, i and the unit matrix, each as a real 4 x 4 matrix. Names like sigma_x
-    mean Pauli's matrices in each of these equations:
-
-    - it has i and at least two of the names, as ``sigma_x sigma_y = i sigma_z``;
-    - it has a product or power of the names and no other name, as ``sigma_x^2 = 1``;
-    - it has the trace or the determinant of one, as ``det(sigma_x) = -1``;
-    - it gives the square of a sum of them without new letters, as ``(a sigma_x + b sigma_y)^2 = a^2 + b^2``.
-
-    In any other equation sigma_x is a number, such as a stress. The equation is then returned unchanged, with no
-    definitions. The same holds if the claim itself defines one of the names or i (``known`` are the names it defines).
+    Any other equation is returned unchanged, without definitions.
 
     Raises
     ------
@@ -62,9 +53,13 @@ def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Rel
     names_another = any(side.kind == "name" and side.value not in (*matrices, *UNITS) for side in (left, right))
     is_plain = all(node.kind in PARTS or (node.kind == "call" and node.value in CALLS) for node in nodes)
     sigmas = [node for node in nodes if node.kind == "name" and node.value in NAMES]
+    # a product or power without other names: sigma_x^2 = 1
     multiplied = any(_is_product_of_matrices(node) for node in nodes) and used <= {*NAMES, UNIT_MATRIX}
+    # trace or determinant: det(sigma_x) = -1
     of_matrix = any(node.value in OF_MATRICES and _names_in(node) & {*NAMES} for node in nodes if node.kind == "call")
+    # in other equations sigma_x is a number, such as a stress
     is_evident = (IMAGINARY in used and len(sigmas) > 1) or multiplied or of_matrix or _is_square(left, right)
+    # the claim itself defines one of the names
     is_known = bool({*known} & {*matrices, IMAGINARY})
     if not matrices or names_another or not is_plain or not is_evident or is_known:
         return relation, ()
@@ -82,14 +77,12 @@ def _is_product_of_matrices(node: Node) -> bool:
 
 
 def _is_square(left: Node, right: Node) -> bool:
-    """Return whether an equation gives the square of a sum of Pauli matrices, as ``(a sigma_x + sigma_y)^2 = a^2 + 1``.
-
-    One side has the square of a sum with two or more Pauli matrices; the other has none, and no letter that the first
-    side lacks. If sigma_x and sigma_y were numbers, both sides would contain them: so they must be matrices.
-    """
+    """Return whether an equation gives the square of a sum of Pauli matrices: ``(a sigma_x + sigma_y)^2 = a^2 + 1``."""
     for side, other in ((left, right), (right, left)):
         bases = [node.args[0] for _, node in walk(side) if node.kind == "power" and node.args[1] == number(2)]
         squared = any(len(_names_in(base) & {*NAMES}) > 1 for base in bases)
+        # the other side has no Pauli matrix and no new letter: for numbers sigma_x and sigma_y, both sides would
+        # contain them
         if squared and not _names_in(other) & {*NAMES} and _names_in(other) <= {*_names_in(side), UNIT_MATRIX}:
             return True
     return False
@@ -100,10 +93,8 @@ def _names_in(tree: Node) -> set[str]:
 
 
 def commutator(first: Node, second: Node, sign: str = "-") -> Node | None:
-    """Return the tree of the commutator ``[A, B]`` of two formulas, A B - B A; with ``sign`` "+", A B + B A.
-
-    Return None unless A and B each contain one of Pauli's matrices: otherwise ``[A, B]`` is a list of two components.
-    """
+    """Return the tree of A B - B A, or A B + B A for ``sign`` "+"; None unless A and B contain Pauli matrices."""
+    # otherwise [A, B] is a list of two components
     if not all(any(STEM.match(str(node.value)) for _, node in walk(part)) for part in (first, second)):
         return None
     backwards = product([second, first])
@@ -119,20 +110,18 @@ def _with_commutators(tree: Node) -> Node:
 
 
 def _with_traces(tree: Node) -> Node:
-    """Return a tree with each trace and determinant of a complex 2 x 2 matrix M as a formula of its real matrix R.
-
-    R is 4 x 4 and has the block ``[[a, -b], [b, a]]`` for each entry a + i b of M. So a stands twice on the diagonal of
-    R, and the trace of M is ``tr(R)/2 + i tr(-i R)/2``. In this formula -i inside the trace stands for the 4 x 4 matrix
-    of the number -i. The determinant of M is ``((tr M)^2 - tr(M M))/2``.
-    """
+    """Return a tree with traces and determinants of complex 2 x 2 matrices as formulas of real 4 x 4 matrices."""
     args = tuple(map(_with_traces, tree.args))
     if tree.kind == "call" and tree.value == "det":
         (matrix,) = args
         trace, trace_of_square = (Node("call", "trace", (part,)) for part in (matrix, product([matrix, matrix])))
+        # det M = ((tr M)^2 - tr(M M))/2
         difference = sum_of([product([trace, trace]), negated(trace_of_square)])
         return _with_traces(product([Node("inv", None, (number(2),)), difference]))
     if tree.kind != "call" or tree.value != "trace":
         return replace(tree, args=args)
+    # R has the block [[a, -b], [b, a]] for each entry a + i b of M, so tr M = tr(R)/2 + i tr(-i R)/2, where -i in the
+    # second trace is the 4 x 4 matrix of -i
     half, unit = Node("inv", None, (number(2),)), Node("name", IMAGINARY)
     turned = Node("call", "trace", (negated(product([unit, *args])),))
     return sum_of([product([half, Node("call", "trace", args), eye()]), product([half, turned, unit])])
@@ -170,10 +159,11 @@ def _in_exponent(nodes: Sequence[Node], matrices: Collection[str]) -> str:
 def _as_matrix(side: Node, shapes: dict[str, tuple[int, int]]) -> Node:
     """Return a side as a matrix: a scalar s becomes s times the unit matrix.
 
-    In a written-out matrix, each scalar entry becomes such a matrix. ``shapes`` tells which names are matrices.
+    ``shapes`` tells which names are matrices.
     """
     if side.kind == "call" and side.value == "Matrix":
         (rows,) = side.args
+        # each scalar entry of a written-out matrix becomes such a matrix
         return replace(
             side, args=(_list([_list([_as_matrix(entry, shapes) for entry in row.args]) for row in rows.args]),)
         )

@@ -1,7 +1,7 @@
 """Quaternions that a text does not define: in ``q ⊗ p``, ``q v q*``, a conjugate, an inverse or a norm.
 
-A quaternion q has the scalar part q_0 and the vector part q_1, q_2, q_3, or a vector that the text names q_v; products
-are Hamilton's. A vector in a product is the quaternion with the scalar part zero.
+q has the scalar part q_0 and the vector part q_1, q_2, q_3; products are Hamilton's. A vector in a product has the
+scalar part zero. Names in ``known`` are those that the claim defines.
 """
 
 import re
@@ -33,25 +33,18 @@ ENDINGS = ("_vec", "_v", "v")
 
 @dataclass(frozen=True)
 class Quaternions:
-    """The quaternions of an equation: their definitions, notes, and the equation with quaternion products.
-
-    ``vectors`` are the names of the vectors that are multiplied by quaternions.
-    """
+    """The quaternions of an equation: their definitions, notes, and the equation with quaternion products."""
 
     relation: tuple[str, Node, Node]
     definitions: tuple[tuple[str, Node], ...] = ()
-    vectors: tuple[str, ...] = ()
+    vectors: tuple[str, ...] = ()  # names of vectors that are multiplied by quaternions
     notes: tuple[str, ...] = ()
 
 
 def used_quaternions(
     relation: tuple[str, Node, Node], vectors: Collection[str], shapes: Mapping[str, Shape], known: Collection[str]
 ) -> Quaternions:
-    """Decide which names of a relation are quaternions, from the way in which they are used.
-
-    Names in ``known`` are left out. Each quaternion q that remains gets components as its definition, such as ``[q_0,
-    q_1, q_2, q_3]``. Return these definitions, sentences about the interpretation, and the relation with products of
-    quaternions in place of plain ones.
+    """Return the quaternions of a relation, as q in ``q v q*``, and the relation with quaternion products.
 
     Parameters
     ----------
@@ -99,10 +92,7 @@ def used_quaternions(
 
 
 def _has_units(sides: Sequence[Node], others: Collection[str]) -> bool:
-    """Return whether i, j and k are the only names of a claim and mean units of quaternions, as in ``i² = j² = -1``.
-
-    A name in ``others``, the vectors and defined names, is no such unit.
-    """
+    """Return whether i, j and k are the only names of a claim and mean units of quaternions, as in ``i² = j² = -1``."""
     nodes = [node for side in sides for _, node in walk(side)]
     names = {str(node.value) for node in nodes if node.kind == "name"}
     squares = any(node.kind == "power" for node in nodes)
@@ -111,32 +101,25 @@ def _has_units(sides: Sequence[Node], others: Collection[str]) -> bool:
 
 
 def _of_units(relation: tuple[str, Node, Node]) -> Quaternions:
-    """Interpret i, j and k in ``relation`` as the units of quaternions, as in ``i j = k``.
-
-    Return ``relation`` with products of quaternions in place of plain ones, the definitions of the units in it (i is
-    the column [0, 1, 0, 0]), and a sentence about this interpretation.
-    """
+    """Return an equation such as ``i j = k`` with quaternion products and with definitions of the units i, j, k."""
     sign, left, right = relation
     reader = _Products(tuple(UNITS), set())
     sides = [reader.read(_without_squares(side)) for side in (left, right)]
     first, second = _of_one_shape(sides, reader.shapes({}))
     used = {str(node.value) for side in (first, second) for _, node in walk(side) if node.kind == "name"}
+    # i is the column [0, 1, 0, 0]
     definitions = [(name, _column([number(int(n == place)) for n in range(4)])) for name, place in UNITS.items()]
     note = "i, j and k are the units of quaternions, with i j = k"
     return Quaternions((sign, first, second), tuple(d for d in definitions if d[0] in used), (), (note,))
 
 
 def _by_components(relation: tuple[str, Node, Node], known: Collection[str]) -> Quaternions | None:
-    """Return ``q = a + b i + c j + d k`` as the equation of q and the column ``[a, b, c, d]``.
-
-    The result is None if the equation has another form: the left side must be one of the usual letters of quaternions,
-    and the right side must have a scalar part and all three units, which may be bold. A defined name, one in ``known``,
-    is no unit.
-    """
+    """Return an equation ``q = a + b i + c j + d k`` as that of q and the column ``[a, b, c, d]``, or None."""
     sign, left, right = relation
     if left.kind != "name" or str(left.value)[0] not in LETTERS or {*UNITS, left.value} & {*known}:
         return None
     parts = _components(right)
+    # a scalar part and all three units, which may be bold, are required
     if parts is None or not all(parts):
         return None
     column = _column([sum_of(part) for part in parts])
@@ -144,15 +127,16 @@ def _by_components(relation: tuple[str, Node, Node], known: Collection[str]) -> 
 
 
 def _components(node: Node) -> tuple[list[Node], ...] | None:
-    """Return the terms of the scalar part of a formula, and of its factors of i, j and k; None if it is not linear.
+    """Return the terms without units of a formula, and the factors of i, j and k.
 
-    ``s*(x*i + y*j)`` has no term in the scalar part, one term ``s*x`` of i and one term ``s*y`` of j.
+    ``s*(x*i + y*j)`` gives [], [s*x], [s*y], [].
     """
     if not {str(part.value) for _, part in walk(node) if part.kind == "name"} & {*UNITS}:
         return [node], [], [], []
     if node.kind == "name":
         return tuple([number(1)] if UNITS[str(node.value)] == place else [] for place in range(4))
     if node.kind not in ("sum", "neg", "product"):
+        # not linear
         return None
     parts = [_components(argument) for argument in node.args]
     if any(part is None for part in parts):
@@ -180,7 +164,7 @@ def _without_squares(node: Node) -> Node:
 def quaternion_product(left: Node, right: Node) -> Node:
     """Return the tree of the product of two quaternions, with the scalar factors of ``left`` in front.
 
-    If ``left`` is a product, its last factor is the quaternion, and the factors before are scalars: ``q/2`` times p.
+    The last factor of ``left`` is the quaternion.
 
     Examples
     --------
@@ -201,10 +185,7 @@ def _bare(node: Node) -> Node:
 def _quaternion_names(
     sides: Sequence[Node], vectors: Collection[str], shapes: Mapping[str, Shape], known: Collection[str]
 ) -> tuple[str, ...]:
-    """Return the names that a claim uses as quaternions, in order of occurrence, as q in ``q v q*``.
-
-    Names of ``vectors``, and names that the claim defines (``known``), are left out.
-    """
+    """Return the names that a claim uses as quaternions, as q in ``q v q*``, except ``vectors`` and ``known`` names."""
     names: dict[str, None] = {}
 
     def add(node: Node) -> None:
@@ -245,12 +226,7 @@ def _quaternion_names(
 
 
 def _turned(sides: Sequence[Node]) -> Sequence[Node]:
-    """Return the name q as a list [q] if an equation shows by its form that q is a quaternion; else an empty sequence.
-
-    Two forms show it: ``v' = q v q`` for a rotation of v, and ``q' = 1/2 omega q`` for the rate of q. If q were a
-    number, the first would be ``v' = q^2 v``, and nobody writes that as q v q. The author probably wrote the conjugate
-    of q for the last factor, and the star or bar was lost when the text was copied.
-    """
+    """Return [q] if an equation's form shows a quaternion q, as ``v' = q v q`` or ``q' = 1/2 omega q``; else ()."""
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         factors = [_bare(factor) for factor in other.args if factor.kind != "number" and factor.kind != "inv"]
         if other.kind != "product" or not all(factor.kind == "name" for factor in factors):
@@ -258,6 +234,7 @@ def _turned(sides: Sequence[Node]) -> Sequence[Node]:
         names = [str(factor.value) for factor in factors]
         rate = _bare(side.args[0]) if is_derivative(side) else side
         moved = {str(rate.value), str(rate.value).removesuffix("_prime")} if rate.kind == "name" else set()
+        # for a number q, nobody would write q^2 v as q v q; probably the star of the last q was lost in copying
         is_sandwich = len(names) == 3 and names[0] == names[2] != names[1] and names[1] in moved
         if is_sandwich and names[0].islower():
             return factors[:1]
@@ -269,14 +246,10 @@ def _turned(sides: Sequence[Node]) -> Sequence[Node]:
 
 
 def _rotating(side: Node, other: Node) -> Node | None:
-    """Return the quaternion q if ``side`` is a rotation of a vector v such as ``q v q^-1``; otherwise None.
-
-    ``side`` must be ``q v q^-1``, ``q v q_bar`` or one of these in reverse order, and the ``other`` side must be the
-    rotated vector: ``R v``, or a name with the same first letter as v, such as ``v'``. Then q is no number: numbers
-    commute, so nobody would write such a product of numbers.
-    """
+    """Return the quaternion q if ``side`` is ``q v q^-1`` and ``other`` its vector, ``R v`` or ``v'``; else None."""
     if side.kind != "product" or len(side.args) != 3:
         return None
+    # numbers commute: nobody would write such a product of numbers
     for first, vector, last in (side.args, side.args[::-1]):
         is_inverse = last.value == f"{first.value}_bar" or (_is_inverse(last) and last.args[0] == first)
         if first.kind != "name" or str(first.value)[0] not in LETTERS or vector.kind != "name" or not is_inverse:
@@ -377,17 +350,14 @@ def _is_angular(node: Node) -> bool:
 
 
 def _of_one_shape(sides: Sequence[Node], shapes: Mapping[str, Shape]) -> tuple[Node, Node]:
-    """Return both sides in one shape: a scalar s equal to a quaternion becomes (s, 0, 0, 0).
-
-    If a side is a vector or a name, the vector part of the quaternion on the other side is used. ``shapes`` tells which
-    names are vectors and quaternions.
-    """
+    """Return both sides in one shape: a scalar s equal to a quaternion becomes (s, 0, 0, 0)."""
     made = []
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         own, opposite = shape_of(side, shapes), shape_of(other, shapes)
         if opposite == (4, 1) and own is None and not _is_list(side) and side.kind != "name":
             side = Node("call", "Matrix", (Node("list", ("[", "]"), (side, *[number(0)] * 3)),), side.span)
         elif own == (4, 1) and opposite in ((3, 1), None) and (opposite or other.kind == "name"):
+            # the other side is a vector or a name
             side = Node("call", "vector_part", (side,), side.span)
         made.append(side)
     return made[0], made[1]
@@ -396,14 +366,14 @@ def _of_one_shape(sides: Sequence[Node], shapes: Mapping[str, Shape]) -> tuple[N
 def _definitions(name: str, used: Collection[str], moving: bool) -> list[tuple[str, Node]]:
     """Return the definition of the quaternion ``name`` by its components, as q = (q_0, q_1, q_2, q_3).
 
-    If a name for the vector part of q, as q_v, is among the names ``used`` in the text, its definition comes first. The
-    components are functions of time if ``moving``.
+    If ``moving``, the components are functions of time.
     """
     style = "" if f"{name}0" in used or f"{name}1" in used else "_"
     parts = [
         Node("call", f"{name}{style}{n}", (TIME,)) if moving else Node("name", f"{name}{style}{n}") for n in range(4)
     ]
     own = [(name, _column(parts))]
+    # a name for the vector part, as q_v, is defined first
     vector = next((f"{name}{ending}" for ending in ENDINGS if f"{name}{ending}" in used), "")
     return [(vector, _column(parts[1:])), *own] if vector else own
 

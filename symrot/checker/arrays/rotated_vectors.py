@@ -1,6 +1,6 @@
 """The matrix of a rotation that a text states by a quaternion, as R in ``q v q* = R v``.
 
-The equation is meant for every vector v, so it gives the matrix R of the linear map on its other side.
+The equation is meant for every vector v, so R is the matrix of the linear map on its other side.
 """
 
 from collections.abc import Collection
@@ -44,10 +44,8 @@ def as_matrix_of_map(relation: Relation, vectors: Collection[str], known: Collec
 
 
 def _is_image(image: Node, vector: Node) -> bool:
-    """Return whether ``image`` is a linear map of a vector: the vector part of a product that has the vector once.
-
-    An example is the vector part of ``q v q*``, for the vector v.
-    """
+    """Return whether ``image`` is the vector part of a product that contains ``vector`` once, as ``q v q*`` has v."""
+    # such a product is a linear map of the vector
     nodes = [node for _, node in walk(image)]
     return image.kind == "call" and image.value == "vector_part" and nodes.count(vector) == 1
 

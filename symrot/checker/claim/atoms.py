@@ -9,15 +9,15 @@ __all__ = ["atoms_of"]
 
 
 def atoms_of(formulas: Iterable[Expr]) -> set[Expr]:
-    """Return the atoms of formulas: symbols, functions of time ``f(t)``, and derivatives.
-
-    A derivative ``diff(f(t), t)`` is one atom; the ``f(t)`` inside it does not count as a second one.
+    """Return the symbols, functions of time ``f(t)``, and derivatives in formulas: x and ``diff(f(t), t)`` for
+    ``x*diff(f(t), t)``.
     """
     atoms: set[Expr] = set()
     stack = list(formulas)
     while stack:
         node = stack.pop()
         if node.is_Symbol or isinstance(node, AppliedUndef) or node.is_Derivative:
+            # the f(t) inside a derivative is no atom of its own
             atoms.add(node)
         else:
             stack.extend(node.args)

@@ -1,6 +1,6 @@
-"""Claims (equations to be checked): first as syntax trees, then as formulas of SymPy.
+"""Claims: equations to be checked, as syntax trees and as SymPy formulas.
 
-A claim keeps its syntax trees because the search for its fault edits them.
+The search for the fault of a false claim edits the trees.
 """
 
 from collections.abc import Mapping, Sequence
@@ -123,7 +123,7 @@ class Claim:
         return definitions
 
     def with_definitions(self, value: Any) -> Any:
-        """Return a SymPy value with the formulas of :attr:`defining` in place of names: ``cos(alpha)`` for c1."""
+        """Return a SymPy value with the formulas that hypotheses define in place of names: ``cos(alpha)`` for c1."""
         interpreter = self.interpreter()
         for name, tree in self.defining.items():
             value = value.xreplace({interpreter.read(Node("name", name)): interpreter.read(tree)})
@@ -131,7 +131,7 @@ class Claim:
 
     @property
     def expanded(self) -> "Claim":
-        """The claim with the formulas of :attr:`defining` in place of names, without the defining hypotheses."""
+        """The claim with the formulas that hypotheses define in place of names, without these hypotheses."""
         definitions = self.defining
         if self.relation is None or not definitions:
             return self
@@ -150,21 +150,19 @@ class Claim:
         return self.sources.get("claim") or relation_text(self.relation)
 
     def label(self, key: str) -> str:
-        """Return the place of an error for messages: the id of the claim and the key of its text, as in "C3: define R".
-
-        Keys are "claim" for the equation, "given" for hypotheses, "define NAME" for definitions, "value" and
-        "printed_value" for numbers. The result is "" if the claim has no id, as when a user typed it.
+        """Return where a text of the claim stands in a file, as in ``"C3: define R"``; empty if the claim has no
+        id.
         """
+        # a claim that a user typed has no id; keys are claim, given, define NAME, value and printed_value
         return f"{self.id}: {key}" if self.id else ""
 
     def with_relation(self, relation: Relation, **changes: Any) -> "Claim":
-        """Return the claim with another equation.
-
-        ``changes`` are new values of other fields. They must not change the values of the definitions, which
-        are reused.
+        """Return the claim with another equation, and with ``changes`` of other fields, which must leave
+        definitions unchanged.
         """
         other = replace(self, relation=relation, **changes)
         if "definitions" in self.__dict__:
+            # computed values of definitions are reused
             other.__dict__["definitions"] = self.definitions
         return other
 
@@ -208,7 +206,7 @@ class Claim:
         )  # fmt: skip
 
     def interpreter(self) -> Interpreter:
-        """Return a new interpreter, which turns further syntax trees that use the names of the claim into SymPy."""
+        """Return a new interpreter that turns further syntax trees with the claim's names into SymPy."""
         known = self.definitions
         return Interpreter(
             values=dict(known.values), functions=set(known.functions), implied=self.implied,
@@ -260,7 +258,7 @@ def relation_text(relation: Relation) -> str:
 
 
 def _differences(left: Any, right: Any, where: str) -> list[Expr]:
-    """Return left - right of a hypothesis that is an equation, as a list: one difference for each entry of a matrix."""
+    """Return the differences left - right of a hypothesis that is an equation, one for each entry of a matrix."""
     try:
         lefts, rights, _ = matched_sides(left, right)
     except ShapeMismatch:
@@ -269,7 +267,9 @@ def _differences(left: Any, right: Any, where: str) -> list[Expr]:
 
 
 def assumed_names(hypotheses: Sequence[Relation], sign: str) -> set[str]:
-    """Return the names x of hypotheses ``x > 0`` (or ``0 < x``). With the sign ``>=``, return those of ``x >= 0``."""
+    """Return the names that hypotheses assume to be positive, as ``x > 0`` does; with the sign ">=", to be
+    nonnegative.
+    """
     mirrored = {">": "<", ">=": "<="}[sign]
     zero = ("number", 0)
     names = set()

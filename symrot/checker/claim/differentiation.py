@@ -1,7 +1,7 @@
-"""Rules of differentiation, such as ``diff(x*y, q) == diff(x, q)*y + x*diff(y, q)``, whose letters are functions.
+"""Rules of differentiation, such as ``diff(x*y, q) == diff(x, q)*y + x*diff(y, q)``.
 
-SymPy syntax writes such a letter without its argument. Nothing says what the function is, so that a rule is true if it
-holds for all functions.
+The letters x and y are functions of q, though the text does not write ``x(q)``. A rule is true if it holds for all
+functions.
 """
 
 from collections.abc import Collection, Iterator, Sequence
@@ -21,11 +21,10 @@ __all__ = ["as_functions", "is_rule"]
 
 
 def as_functions(claim: Claim) -> Claim | None:
-    """Return a claim in which the letters that it differentiates are functions of the time t; or None.
+    """Return a claim with functions of time for the letters that it differentiates: ``diff(x(t), t)`` for
+    ``diff(x, q)``.
 
-    ``diff(x, q)`` becomes ``diff(x(t), t)``: the variable becomes t, since a rule of differentiation does not depend on
-    its name. Return None for a claim without such letters, with hypotheses, with several variables, or with both t and
-    another variable.
+    None if there are no such letters.
     """
     assert claim.relation is not None
     sign, *sides = claim.relation
@@ -38,8 +37,10 @@ def as_functions(claim: Claim) -> Claim | None:
     moving = {*names, *functions, *dict(claim.define), *(str(variable.value) for variable in variables)}
     letters = [_letters(derivative.args[0]) for derivative in derivatives]
     names |= {name for inner in letters if moving.isdisjoint(inner) for name in inner} - {"pi"}
+    # no rule of differentiation: hypotheses, several variables, or (below) both t and another variable
     if claim.hypotheses or len(variables) != 1 or not names:
         return None
+    # the variable is renamed to t: a rule of differentiation does not depend on its name, unless t is also in the claim
     (variable,) = variables
     if variable.kind != "name" or (variable != TIME and TIME in nodes):
         return None
@@ -59,10 +60,8 @@ def _letters(tree: Node) -> set[str]:
 def _on_letters(
     names: Collection[str], derivatives: Sequence[Node], variable: str, defined: Collection[str]
 ) -> Iterator[str]:
-    """Yield notes for the user: which letters in the ``derivatives`` are read as functions, and which as constants.
-
-    ``names`` are the functions, ``variable`` is the one by which the text differentiates, and ``defined`` are names
-    with a definition.
+    """Yield notes that tell the user which letters of a rule are functions of ``variable``, and which are
+    constants.
     """
     yield f"{' and '.join(sorted(names))} {'is a function' if len(names) == 1 else 'are functions'} of {variable} here"
     letters = {str(node.value) for tree in derivatives for _, node in walk(tree.args[0]) if node.kind == "name"}
@@ -71,11 +70,8 @@ def _on_letters(
 
 
 def is_rule(claim: Claim) -> bool:
-    """Return whether a claim is a rule of differentiation, such as ``diff(u*v, t) == u*diff(v, t) + v*diff(u, t)``.
-
-    Each side must have a derivative, and at least one derivative must be of a formula such as u*v, rather than of a
-    single name. One side must have all letters of the other. ``diff(y, x) == y`` is an equation for y and no rule, and
-    so is ``diff(x, t) == diff(y, t)``.
+    """Return whether a claim is a rule of differentiation, such as ``diff(u*v, t) == u*diff(v, t) + v*diff(u,
+    t)``.
     """
     assert claim.relation is not None
     nodes = [[node for _, node in walk(side)] for side in claim.relation[1:]]
@@ -84,6 +80,8 @@ def is_rule(claim: Claim) -> bool:
     values = [[_plain(value) for value in flatten(side)[0]] for side in sides]
     letters = [{letter for value in side for letter in value.atoms(Symbol, AppliedUndef)} for side in values]
     has_all = letters[0] <= letters[1] or letters[1] <= letters[0]
+    # both sides differentiate, one of them a formula such as u*v: diff(x, t) == diff(y, t) is an equation for x
+    # diff(y, x) == y is no rule, but an equation for y
     return has_all and all(derivatives) and any(map(_is_of_formula, [*derivatives[0], *derivatives[1]]))
 
 

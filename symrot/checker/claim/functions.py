@@ -1,4 +1,4 @@
-"""The built-in functions of claims, such as sin and cross: a table with the function that evaluates each of them.
+"""The built-in functions of claims, such as sin and cross, each with the function that evaluates it.
 
 Every divisor and every formula under a root is recorded before SymPy can cancel it.
 """
@@ -35,19 +35,20 @@ __all__ = ["BUILT_IN", "ROTATIONS", "inverted"]
 LARGEST_MATRIX = 12
 
 ROTATIONS = {f"R{bar}{axis}": axis.upper() for bar in ("", "_") for axis in "xyz"}
-"""Function -> the axis of its rotation. R_x with an underscore is a symbol, unless an angle in brackets follows."""
+"""Maps a function to the axis of its rotation. Without brackets, R_x is a symbol; with an angle, R_x(a) is a
+function."""
 
 
 def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] | None = None) -> Any:
-    """Return the evaluator of a scalar function: given the tree of a call such as ``tan(x)``, it returns its value.
-
-    If the value has a denominator, ``below`` returns it, as cos(x) for tan(x); it is recorded as a divisor.
+    """Return a function that evaluates calls of a scalar function: it turns the tree of ``tan(x)`` into SymPy's
+    tan(x).
     """
 
     def call(scope: Scope, node: Node) -> Expr:
         value = scope.argument(node.args[0], f"as the argument of {node.value}")
         if terms_of_angle(value) > MOST_ANGLE_TERMS:
             raise scope.fail(node.args[0], f"an angle whose sine has at most {MOST_ANGLE_TERMS} terms when expanded")
+        # below(x) is the denominator of the value, as cos(x) for tan(x)
         if below is not None:
             scope.divide_by(below(value), node)
         made = function(value)
@@ -246,11 +247,10 @@ def _of_blocks(scope: Scope, node: Node, rows: Any) -> ImmutableMatrix:
 
 
 def _block(cell: Any, height: int, width: int) -> ImmutableMatrix | None:
-    """Return one cell of a block matrix ``[[A, b], [0, 1]]`` as a matrix with ``height`` rows and ``width`` columns.
-
-    The cell is a matrix or a scalar. A scalar 0 becomes a zero matrix of that size; any other scalar is a 1 x 1 matrix.
-    Return None if the size differs.
+    """Return an entry of a block matrix ``[[A, b], [0, 1]]`` as a matrix of the given size; None if its size
+    differs.
     """
+    # a scalar 0 stands for a zero matrix of any size
     if cell == 0 and not is_matrix(cell):
         return ImmutableMatrix.zeros(height, width)
     matrix = cell if is_matrix(cell) else ImmutableMatrix([[cell]])
@@ -351,10 +351,8 @@ COORDINATES = re.compile(r"[xyzr]|xi|eta|zeta|[rs]_[xyz123]")
 
 
 def _integral_over_body(scope: Scope, node: Node) -> Any:
-    """Return an integral over a body of unknown shape.
-
-    Each product of coordinates has an unknown integral, for which a new symbol stands: one for x^2, another for
-    x*y.
+    """Return an integral over a body of unknown shape, such as ∫ x^2 dm, with one new symbol per product of
+    coordinates.
     """
     value = scope.evaluate(node.args[0])
     scope.shape(value, node.args[0])
@@ -421,4 +419,5 @@ BUILT_IN: Mapping[str, tuple[int, int, Callable[[Scope, Node], Any]]] = {
     "vector_part": (1, 1, _vector_part),
     "dcm_of": (1, 4, _dcm_of),
 }
-"""Name -> (fewest arguments, most arguments, evaluation)."""
+"""Maps the name of a function to the smallest and the largest number of its arguments, and the function that
+evaluates it."""

@@ -14,9 +14,7 @@ MOST_TERMS = 2000
 
 @lru_cache(maxsize=64)
 def definite_integral(integrand: Expr, variable: Symbol, lower: Expr, upper: Expr) -> tuple[Expr, tuple[Expr, ...]]:
-    """Return the integral over an interval, and the coefficients of the variable that its value divides by.
-
-    The integral of cos(k x), for example, divides by k, so that k must not be zero.
+    """Return an integral over an interval, and its divisors: k for the integral of cos(k x).
 
     Parameters
     ----------
@@ -41,19 +39,16 @@ def definite_integral(integrand: Expr, variable: Symbol, lower: Expr, upper: Exp
 
 
 def _rewritten(integrand: Expr, variable: Symbol) -> Expr:
-    """Return the integrand as a sum of exponentials and powers, which can be integrated term by term.
-
-    Each sine and cosine whose argument contains ``variable``, also sin(2*x), is first replaced by complex exponentials:
-    cos(u) by (e^(iu) + e^(-iu))/2. Then all products are multiplied out. Raises InputError if the degree is above
-    LARGEST_DEGREE, or the sum has more than MOST_TERMS terms.
-    """
+    """Return an integrand as a sum of powers and complex exponentials: ``(e^(ix) + e^(-ix))/2`` for cos(x)."""
     angles = [node for node in integrand.atoms(sin, cos) if node.has(variable)]
+    # each term of such a sum has an elementary integral
     exponentials = {}
     for node in angles:
         argument = node.args[0].expand()
         forward, backward = exp(I * argument), exp(-I * argument)
         exponentials[node] = (forward + backward) / 2 if node.func is cos else (forward - backward) / (2 * I)
     plain = integrand.xreplace(exponentials)
+    # refuses an integrand that takes too long to expand
     if any(node.exp.is_Integer and node.exp > LARGEST_DEGREE for node in plain.atoms() if node.is_Pow):
         raise InputError(f"expected an integrand of degree at most {LARGEST_DEGREE}, got {integrand}")
     expanded = plain.expand()

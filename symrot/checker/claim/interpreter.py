@@ -30,10 +30,10 @@ UNKNOWN_HERE = (
     "ln", "arcsin", "arccos", "arctan", "E", "I", "Rational", "nan", "NaN", "NAN", "inf", "Inf", "INF", "oo", "zoo",
     "infinity", "Infinity", *DISPUTED_NAMES,
 )  # fmt: skip
-"""Names that never become symbols or functions of the user by mere use: to most readers they mean something else."""
+"""Names that a claim must declare to use them as symbols, since to most readers they mean something else."""
 
 INSTEAD = {"I": "I_1", "E": "E_k"}
-"""Such a name -> a name for the quantity that books on mechanics call by it."""
+"""Maps such a name to a name that mechanics uses for the quantity."""
 
 
 @dataclass

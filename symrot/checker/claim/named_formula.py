@@ -1,4 +1,4 @@
-"""Claims such as ``k^2 = I/m`` that give a formula for a quantity which nothing in the claim defines.
+"""Claims such as ``k^2 = I/m`` that give a formula for a quantity which the claim itself does not define.
 
 Such a claim is no identity: whether it holds depends on what its letters mean.
 """
@@ -24,19 +24,25 @@ __all__ = [
 
 Solve = Callable[[Node], Node]
 MARKED = ("_prime", "_dot", "_star")
-"""Endings of names with a mark that makes them depend on another quantity: ``theta'`` and ``z*``."""
+"""Endings of names such as ``theta'`` and ``z*``, whose marks say that they depend on theta and z."""
 
 INVERSES = {"sin": "asin", "cos": "acos", "tan": "atan", "exp": "log", "log": "exp"}
-"""Function of a quantity -> the function that solves for the quantity."""
+"""Maps a function to its inverse, which solves for its argument."""
 
 
 class NamedFormula(NamedTuple):
-    """A quantity that the claim does not define, and the formula that the claim gives for it.
+    """A claim such as ``k^2 = I/m``, split into a quantity that it does not define (k) and a formula for it.
 
-    ``side`` is the side of the claim with the quantity, and ``formula`` the other side. ``name`` is the name of the
-    quantity; if ``is_rate``, its time derivative is meant. ``solve`` turns a formula for ``side`` into a formula
-    for the quantity: I/m into sqrt(I/m) for k^2 = I/m. If the claim is not solved for one name, ``solve`` is None
-    and ``name`` is the text of ``side``.
+    Attributes
+    ----------
+    name : str
+        The quantity, k; the text of ``side`` if the claim is not solved for one quantity.
+    side, formula : Node
+        The side of the claim with the quantity, ``k^2``, and the other side, ``I/m``.
+    is_rate : bool
+        Whether the claim gives the time derivative of the quantity.
+    solve : function or None
+        Turns a formula for ``side`` into one for the quantity: I/m into sqrt(I/m). None if the claim is not solved.
     """
 
     name: str
@@ -47,15 +53,15 @@ class NamedFormula(NamedTuple):
 
 
 def named_formula(claim: Claim) -> NamedFormula | None:
-    """Return the name and the formula of a claim such as ``T = m v^2/2``, which gives a formula for an undefined name.
+    """Return T and its formula for a claim such as ``T = m v^2/2``, or None.
 
-    The name is a symbol, a function of time or its derivative, and occurs nowhere else in the claim. Return None for
-    any other claim.
+    Nothing else in the claim may define T.
     """
     assert claim.relation is not None
     _, left, right = claim.relation
     others = [side for relation in claim.hypotheses for side in relation[1:]] + [tree for _, tree in claim.define]
     known, defined = _known(claim), dict(claim.define)
+    # the quantity may be a symbol, a function of time or its derivative, and must occur nowhere else
     for side, formula in ((left, right), (right, left)):
         inner = side.args[0] if _is_rate(side) else side
         is_wrong_shape = inner.value in defined and formula.kind == "number" and formula.value
@@ -68,16 +74,13 @@ def named_formula(claim: Claim) -> NamedFormula | None:
 
 
 def open_formula(claim: Claim) -> NamedFormula | None:
-    """Return both sides of an equation that differentiates a name without a definition, such as ``diff(L, q) == 0``.
-
-    The equation restricts the unknown function L; it is no identity, since it fails for most functions. So the caller
-    does not compare the two sides as they are. Return None for any other claim, also for one with hypotheses.
-    """
+    """Return both sides of an equation for an unknown function L, such as ``diff(L, q) == 0``, or None."""
     assert claim.relation is not None
     _, left, right = claim.relation
     if not claim.implied or claim.hypotheses:
         return None
     known = {"pi", "t", *dict(claim.define)}
+    # it fails for most functions L: it restricts L and is no identity, so its sides must not be compared
     for side in (left, right):
         for _, node in walk(side):
             if is_derivative(node):
@@ -88,19 +91,16 @@ def open_formula(claim: Claim) -> NamedFormula | None:
 
 
 def _is_open_rate(side: Node, other: Node) -> bool:
-    """Return whether an equation gives a time derivative that only a law of motion can give; ``side`` contains it.
-
-    The derivative is zero, as in ``(I w)' = 0`` and ``C w_3' = 0``; or it is the derivative of a formula, and
-    ``other``, the other side, has a letter that this formula lacks, as alpha in ``(I w^2/2)' = I w alpha``. No such
-    equation is an identity.
-    """
+    """Return whether ``side`` has a time derivative whose value only a law of motion can give, as ``(I w)' = 0``."""
     derivatives = (node for _, node in walk(side) if is_derivative(node))
     has_rate = any(not _is_name(node.args[0]) and {v.value for v in node.args[1:]} == {"t"} for node in derivatives)
     others = {*_letters_of([other])}
     if any(is_derivative(node) for _, node in walk(other)):
         return False  # both sides are derivatives: nothing is given by a letter
+    # C w_3' = 0
     if other == number(0) and side.kind == "product" and any(map(_is_rate, side.args)):
         return True
+    # in (I w^2/2)' = I w alpha, the letter alpha does not follow from the derivative
     return has_rate and (other == number(0) or bool(others - {*_letters_of([side])} - {"pi", "t"}))
 
 
@@ -111,7 +111,7 @@ def _letters_of(trees: Sequence[Node]) -> Iterator[str]:
 
 
 def _depends_on_time(derivative: Node) -> bool:
-    """Return whether a ``derivative`` is by time, and its formula contains a function of time: ``diff(x(t)**2, t)``."""
+    """Return whether a derivative is by the time t and contains a function of time, as ``diff(x(t)**2, t)``."""
     inner, *variables = derivative.args
     return any(v.value == "t" for v in variables) and any(
         node.kind == "call" and node.value != "diff" and _is_name(node) for _, node in walk(inner)
@@ -119,11 +119,9 @@ def _depends_on_time(derivative: Node) -> bool:
 
 
 def related_formula(claim: Claim) -> NamedFormula | None:
-    """Return the two sides of a claim that is no identity, but may hold by the meaning of its letters; otherwise None.
+    """Return the formula of a claim that holds only by the meaning of its letters, such as ``k^2 = I/m``.
 
-    If one side is a quantity, or can be solved for one, the result is that quantity and its formula: k and its square
-    for ``k^2 = I/m``. If the claim relates several quantities, as ``m*a == m*g - T`` does, the left side takes the
-    place of the quantity and the right side that of the formula.
+    None for an identity.
     """
     assert claim.relation is not None
     left, right = _without_common_factors(*claim.relation[1:])
@@ -161,6 +159,7 @@ def related_formula(claim: Claim) -> NamedFormula | None:
         for side, formula in ((left, right), (right, left)):
             if (inverted := solution(side)) is not None:
                 (name, is_rate), solve = inverted
+                # k^2 = I/m gives k
                 return NamedFormula(name, side, formula, is_rate, solve)
         return NamedFormula(text(left), left, right, solve=None)
     if (equation := _equation_of_motion(left, right)) is not None:
@@ -169,14 +168,13 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     is_open = (is_whole and _is_constraint(left, right, letters)) or (
         _has_own_letters(letters) and _depends_on_own_letters(claim)
     )
+    # m*a = m*g - T relates several quantities: its sides stand for a quantity and its formula
     return NamedFormula(text(left), left, right, solve=None) if is_open else None
 
 
 def _has_hidden_zero(claim: Claim, left: Node, right: Node) -> bool:
-    """Return whether one side is zero for all values of its letters, but is not written as 0, such as ``2*y - y - y``.
-
-    ``diff(x**2, t) == 0`` states that x is constant. With a hidden zero, it is an attempt at an identity.
-    """
+    """Return whether a side of an equation is zero but not written as 0, such as ``2*y - y - y``."""
+    # diff(x**2, t) == 0 states that x is constant; with a hidden zero it is meant as an identity
     try:
         sides = [claim.interpreter().read(side) for side in (left, right) if side != number(0)]
         return any(not is_matrix(value) and normal_form(value) == 0 for value in sides)
@@ -185,28 +183,24 @@ def _has_hidden_zero(claim: Claim, left: Node, right: Node) -> bool:
 
 
 def _says_something(claim: Claim, left: Node, right: Node) -> bool:
-    """Return whether the values of both sides depend on letters, and at least one side is more than a single letter.
-
-    ``z/z`` and ``sin(a)^2 + cos(a)^2`` depend on no letter.
-    """
+    """Return whether both sides depend on letters, as neither ``z/z`` nor ``sin(a)^2 + cos(a)^2`` does."""
     try:
         values = [claim.interpreter().read(side) for side in (left, right)]
         forms = [value if is_matrix(value) else normal_form(value) for value in values]
     except (InputError, TooLarge):
         return True
+    # x = y relates two single letters, which is no formula
     return all(form.free_symbols for form in forms) and not all(form.is_Symbol for form in forms)
 
 
 def _solved_for_vector(claim: Claim, left: Node, right: Node) -> NamedFormula | None:
-    """Solve an equation for a vector that is one of its terms and occurs only once; return it and its formula.
-
-    From ``v = w x r + u`` follows the formula of v. Return None without such a vector.
-    """
+    """Return the formula that an equation gives for one of its vectors, v in ``v - u = w x r``, or None."""
     terms = [*_terms(left), *map(negated, _terms(right))]
     generic = {name for name, tree in claim.define if is_components(name, tree)}
     everywhere = [node.value for term in terms for _, node in walk(term) if node.kind == "name"]
     for term in terms:
         bare = term.args[0] if term.kind == "neg" else term
+        # the vector must be a whole term and occur once
         if bare.kind == "name" and bare.value in generic and everywhere.count(bare.value) == 1:
             rest = sum_of([other for other in terms if other is not term])
             return NamedFormula(str(bare.value), bare, rest if term.kind == "neg" else negated(rest))
@@ -214,10 +208,7 @@ def _solved_for_vector(claim: Claim, left: Node, right: Node) -> NamedFormula | 
 
 
 def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, bool]]]) -> bool:
-    """Return whether an equation restricts letters by a number, as q0^2 + q1^2 + q2^2 + q3^2 = 1 and T/U = 2 do.
-
-    ``letters`` are the quantities on its left and on its right side.
-    """
+    """Return whether an equation restricts letters by a number, as ``x^2 + y^2 = 1`` and ``T/U = 2`` do."""
     polynomial, constant = (left, right) if letters[0] else (right, left)
     if polynomial.kind == "product" and not _quantities(constant) and constant != number(0):
         factors = [factor.args[0] if factor.kind == "inv" else factor for factor in polynomial.args]
@@ -231,10 +222,8 @@ def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, boo
 
 
 def _letters_by_definition(claim: Claim, left: Node, right: Node) -> list[set[tuple[str, bool]]]:
-    """Return the quantities on each side of an equation whose left side is defined on an earlier line.
-
-    In ``F == k*x`` after ``F = m*a``, these are m and a on the left, and k and x on the right. Both sets are empty if
-    the left side is not defined.
+    """Return the quantities in ``F == k*x`` after the line ``F = m*a``, {m, a} and {k, x}; empty sets without such
+    a line.
     """
     defined = {name: tree for name, tree in claim.define if not is_components(name, tree)}
     if left.value not in defined:
@@ -251,29 +240,21 @@ def _letters_by_definition(claim: Claim, left: Node, right: Node) -> list[set[tu
 
 
 def _has_own_letters(letters: Sequence[set[tuple[str, bool]]]) -> bool:
-    """Return whether each side has a quantity that the other side lacks, as ``m*a == m*g - T`` has.
-
-    ``letters`` are the quantities on the left and on the right. Such an equation determines its quantities; it is not
-    meant as an identity.
-    """
+    """Return whether each side of an equation has a quantity that the other side lacks, as in ``m*a == m*g - T``."""
     left, right = letters
+    # such an equation determines its quantities; nobody means it as an identity
     return bool(left - right) and bool(right - left)
 
 
 def _depends_on_own_letters(claim: Claim) -> bool:
-    """Return whether each side has a letter that the other lacks, as m and k in ``m*a == k*x``.
-
-    Such an equation determines its letters; it is no identity, and is not refuted as one. Letters that cancel on their
-    side do not count. The result is False where one letter was probably mistyped: each side has one own letter, a on
-    the left and b on the right, and the sides are equal with a for b. ``x*cos(a) == x*cos(b)`` is then decided as a
-    false identity.
-    """
+    """Return whether each side depends on a letter that the other side lacks, as in ``m*a == k*x``."""
     try:
         sides = [list(map(normal_form, flatten(side)[0])) for side in (claim.equation.left, claim.equation.right)]
         left, right = map(atoms_of, sides)
         own = [*(left - right), *(right - left)]
         if len(own) == 2 and all(atom.is_Symbol for atom in own) and left - right and right - left:
             other = dict([own])
+            # sides that agree with b for a have a mistyped letter: x*cos(a) == x*cos(b) is a false identity
             changed = [form.xreplace(other) for form in sides[0]]
             return any(normal_form(a - b) != 0 for a, b in zip(changed, sides[1], strict=True))
     except TooLarge:
@@ -282,53 +263,44 @@ def _depends_on_own_letters(claim: Claim) -> bool:
 
 
 def _is_condition_on_vectors(left: Node, right: Node, unit: bool) -> bool:
-    """Return whether an equation restricts vectors: it sets a product or a length to a number, as ``a . b = 0`` does.
-
-    If ``unit``, vectors have length one: then an equation about a length restricts nothing.
-    """
+    """Return whether an equation sets a product of vectors or a length to a number, as ``a . b = 0`` does."""
     for side, other in ((left, right), (right, left)):
         product_of = side.args[0] if side.kind == "call" and side.value == "sqrt" else side
         if other.kind == "number" and product_of.kind == "call" and product_of.value in ("dot", "cross"):
             first, second = product_of.args
+            # the length of a unit vector is no condition
             return not (unit and first == second)
     return False
 
 
 def _is_condition_on_matrix(left: Node, right: Node, generic: Collection[str]) -> bool:
-    """Return whether an equation only restricts one undefined matrix, as ``R.T*R == eye(3)`` and ``det(R) == 1`` do.
-
-    Besides numbers, the equation must have one name only, R, and R must be in ``generic``, the vectors and matrices for
-    which the claim has no definition. Such an equation is a condition on R and no identity.
+    """Return whether an equation is a condition on one undefined matrix, such as ``R.T*R == eye(3)`` or
+    ``det(R) == 1``.
     """
     nodes = [node for side in (left, right) for _, node in walk(side)]
     names = {str(node.value) for node in nodes if node.kind == "name"}
     kinds = {node.kind if node.kind != "call" else str(node.value) for node in nodes}
     of_product = kinds <= {"name", "number", "neg", "product", "power", "transpose", "inverse", "eye"}
     of_value = kinds <= {"name", "number", "neg", "det", "trace"}
+    # ``generic`` holds the vectors and matrices without a definition
     return len(names) == 1 and names <= {*generic} and (of_product or of_value)
 
 
 def _has_own_angle(left: Node, right: Node, generic: Collection[str]) -> bool:
-    """Return whether an equation defines the angle between two vectors: ``a . b = |a| |b| cos(theta)``.
-
-    This is so if the angle, which occurs once inside cos or sin, is the only scalar in the equation. ``generic`` are
-    the names of vectors without a definition.
-    """
+    """Return whether an equation defines the angle between two vectors, as ``a . b = |a| |b| cos(theta)`` does."""
     nodes = [node for side in (left, right) for _, node in walk(side)]
     scalars = [node for node in nodes if node.kind == "name" and node.value not in generic and node.value != "pi"]
     angles = [
         node for node in nodes if node.kind == "call" and node.value in ("sin", "cos") and node.args[0] in scalars
     ]
     vectors = {str(node.value) for node in nodes if node.kind == "name"} & {*generic}
+    # the angle must be the only scalar; ``generic`` holds the vectors without a definition
     return len(scalars) == len(angles) == 1 and len(vectors) > 1
 
 
 def _has_open_derivative(left: Node, right: Node, known: Collection[str]) -> bool:
-    """Return whether a side has ``diff(L, q)``, where the name L has no definition and q is not the time t.
-
-    ``known`` are the names with a definition. The value of such a derivative is unknown, so the equation is no
-    identity.
-    """
+    """Return whether an equation contains a derivative of a name without a definition, such as ``diff(L, q)``."""
+    # its value is unknown, so the equation is no identity; time derivatives are treated elsewhere
     for side in (left, right):
         for _, node in walk(side):
             if is_derivative(node) and node.args[0].kind == "name":
@@ -354,10 +326,8 @@ def _factors(tree: Node) -> list[Node]:
 
 
 def _known(claim: Claim) -> set[str]:
-    """Return the names that mean something already: pi, the time t, and the names that the claim defines.
-
-    A vector whose definition only lists its components is not one of them.
-    """
+    """Return the names that have a meaning: pi, the time t, and the names that the claim defines."""
+    # Matrix([a_x, a_y, a_z]) only names the components of a, which defines nothing
     return {"pi", "t", *(name for name, tree in claim.define if not is_components(name, tree))}
 
 
@@ -386,9 +356,8 @@ def _quantities(tree: Node) -> set[tuple[str, bool]]:
 
 
 def solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
-    """Return the only quantity of one side of an equation, and a function that solves for it; None without one.
-
-    For the side 2*k^2 the quantity is k, and the function turns the other side, I, into (I/2)^(1/2).
+    """Return the only quantity in one side of an equation, k in ``2*k^2``, and a function that solves for it; or
+    None.
     """
     steps: list[Solve] = []
     while not (_is_name(side) or _is_rate(side)):
@@ -418,6 +387,7 @@ def solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
             side = side.args[0]
         else:
             return None
+    # for 2*k^2 the function turns the other side of the equation, I, into (I/2)^(1/2)
     (quantity,) = _quantities(side)
     return quantity, partial(_after, steps)
 
@@ -450,15 +420,15 @@ def _without_common_factors(left: Node, right: Node) -> tuple[Node, Node]:
 
 
 def _equation_of_motion(left: Node, right: Node) -> NamedFormula | None:
-    """Return the highest derivative of a linear differential equation, and the formula to which it is equal.
+    """Return the highest derivative in a linear differential equation, with its formula; or None.
 
-    Return None for any other equation, and for one with the derivative of a product, sum or function, which may be a
-    rule of differentiation.
+    ``m*x'' + k*x = 0`` gives x'' and ``-k*x/m``.
     """
     terms = [*_terms(left), *map(negated, _terms(right))]
     derivatives = {node for term in terms for _, node in walk(term) if is_derivative(node)}
     order = max((len(node.args) for node in derivatives), default=0)
     highest = [node for node in derivatives if len(node.args) == order]
+    # the derivative of a product, sum or function may belong to a rule of differentiation
     if len(highest) != 1 or not all(map(_is_rate, derivatives)):
         return None
     (rate,) = highest

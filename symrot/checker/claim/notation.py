@@ -60,9 +60,8 @@ class TypedNotation:
         return plain.replace("real_part(", "Re(").replace("imaginary_part(", "Im(")
 
     def _spelled(self, node: Node, parent: str = "") -> Node:
-        """Return a tree with names as the user typed them, primes for rates, and ``[..]`` for matrices.
-
-        ``parent`` is the kind of the node above the tree; empty for a whole formula.
+        """Return a tree in the user's spelling, such as ``q'`` for ``diff(q(t), t)``, and ``[..]`` for
+        ``Matrix([..])``.
         """
         if is_derivative(node):
             name = str(node.args[0].value)
@@ -75,6 +74,7 @@ class TypedNotation:
         if node.kind == "call" and node.value == "qmul":
             factors = [self._spelled(factor, "call") for factor in node.args]
             return Node("name", " ⊗ ".join(f"({text(f)})" if f.kind in BOUND_LOOSELY else text(f) for f in factors))
+        # inside a call, a power or an index, brackets alone would be ambiguous
         if node.kind == "call" and node.value == "Matrix" and parent not in ("call", "power", "index"):
             return self._spelled(node.args[0], "list")
         if node.kind == "number":
@@ -118,15 +118,15 @@ class TypedNotation:
 
 
 def with_formulas(source: str, formula: Callable[[Node], str], signs: Mapping[str, str]) -> str:
-    """Rewrite a condition in SymPy syntax, such as ``0 <= x <= pi and y > 0``, and return its text.
-
-    ``formula`` writes each formula. ``signs`` maps a sign in SymPy syntax to the sign to write, as ``==`` to ``=``.
-    An unreadable condition stays unchanged.
+    """Return a condition such as ``0 <= x <= pi and y > 0`` in another notation, with ``signs`` for signs such as
+    ``==``.
     """
     pieces = SIGN.split(source)
     try:
+        # ``formula`` returns the text of a formula in this notation
         formulas = [formula(read_expression(piece)) for piece in pieces[::2]]
     except InputError:
+        # an unreadable condition stays unchanged
         return source
     between = [signs.get(sign.strip(), sign.strip()) for sign in pieces[1::2]] + [""]
     return " ".join(f"{each} {sign}".strip() for each, sign in zip(formulas, between, strict=True))
@@ -146,17 +146,15 @@ def notation_of(reading: Reading) -> TypedNotation:
 
 
 BOUND_LOOSELY = ("sum", "neg", "product")
-"""The kinds of trees that need brackets as factors of a product of quaternions."""
+"""Kinds of trees that need brackets in a product of quaternions."""
 
 END = Node("name", "")
-"""A stand-in for the factor after the last one."""
+"""Stands in for the missing factor after the last factor of a product."""
 
 
 def _is_number_power(node: Node) -> bool:
-    """Return whether a tree is a power with a number as exponent, such as x^3.
-
-    With a slash after it, as in x^3/2, it might be read as x^(3/2).
-    """
+    """Return whether a tree is a power with a number as exponent, such as x^3."""
+    # such a power needs brackets before a slash: x^3/2 might be read as x^(3/2)
     return node.kind == "power" and node.args[1].kind == "name" and str(node.args[1].value) in ("1", "3", "5", "7", "9")
 
 
@@ -165,7 +163,8 @@ def _is_over_digit(node: Node) -> bool:
 
 
 def _is_rate_of_name(node: Node) -> bool:
-    """Return whether a derivative is that of a single name by the time t: ``diff(q, t)``, which is printed ``q'``."""
+    """Return whether a derivative is the time derivative of a single name, as ``diff(q, t)`` is."""
+    # it is printed q'
     return node.args[0].kind == "name" and all((a.kind, a.value) == ("name", "t") for a in node.args[1:])
 
 

@@ -12,23 +12,19 @@ __all__ = [
 ]  # fmt: skip
 
 OTHER_MEANINGS = {"I": "the imaginary unit", "E": "the number e = 2.718.."}
-"""Letters that name a quantity in books on mechanics, and a number in SymPy -> the number in words."""
+"""Maps each letter that is a quantity in mechanics, and a number in SymPy, to words for the number."""
 
 OF_NUMBERS = frozenset(BUILT_IN) - {
     "sqrt", "abs", "diff", "integrate", "Matrix", "diag", "hstack", "cross", "dot", "skew", "trace", "det", "transpose",
 }  # fmt: skip
-"""Functions of which a moment of inertia or an energy is no argument."""
+"""Functions whose argument is never a moment of inertia or an energy."""
 
 USUAL_QUANTITIES = frozenset("mMgGhlLrRvFkTVUKJHNpqsabdcw")
 
 
 def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
-    """Return which of I and E are quantities: I a moment of inertia, E an energy, and not the numbers i and e of SymPy.
-
-    First, a letter that occurs only as a whole side is a quantity, if there are no other names: ``I = 0.5*2*0.1^2``.
-    Otherwise the formulas must have another usual name of mechanics, such as m or omega; if not, the result is empty.
-    Even then a letter is a number if it stands inside exp, log or a trigonometric function, or in a product with
-    nothing but sines, or, for E, as the base of a power such as E^(a t).
+    """Return the letters among I and E that name a moment of inertia or an energy here, not SymPy's numbers i and
+    e.
     """
     nodes = [node for tree in trees for _, node in walk(tree)]
     names = {
@@ -38,6 +34,7 @@ def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
     sides = [tree for tree in trees if tree.kind == "name" and tree.value in OTHER_MEANINGS]
     if not others and sides and {*sides} == {sides[0]} and nodes.count(sides[0]) == len(sides):
         return (str(sides[0].value),)  # I = 0.5*2*0.1^2
+    # without another usual name of mechanics, I and E are numbers
     if not any(
         name in USUAL_QUANTITIES or (len(name) > 1 and name not in ("pi", "theta", "phi", "psi")) for name in others
     ):
@@ -45,6 +42,7 @@ def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
     letters = []
     below = [part for node in nodes if node.kind == "inv" for part in node.args]
     for letter in OTHER_MEANINGS:
+        # a number: inside exp, log or sin, in a product with sines only, or as the base of E^(a t)
         used = [node for node in nodes if (node.kind, node.value) == ("name", letter)]
         calls = [node for node in nodes if node.kind == "call" and node.value in OF_NUMBERS]
         inside = [node for call in calls for _, node in walk(call)]
@@ -58,26 +56,22 @@ def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
 
 
 def _is_imaginary(product: Node, letter: str) -> bool:
-    """Return whether ``letter`` is the imaginary unit in a product, as I in ``2*I*sin(x)``.
-
-    It is if all other factors are numbers, sines and cosines, with at least one sine or cosine.
-    """
+    """Return whether ``letter`` is the imaginary unit in a product, as I is in ``2*I*sin(x)``."""
     others = [factor for factor in product.args if (factor.kind, factor.value) != ("name", letter)]
     pure = all(
         factor.kind == "number" or (factor.kind == "call" and factor.value in ("sin", "cos", "sinh"))
         for factor in others
     )
+    # all other factors are numbers, sines or cosines, at least one of them no number
     return len(others) < len(product.args) and pure and any(factor.kind == "call" for factor in others)
 
 
 def has_natural_base(trees: Sequence[Node]) -> bool:
-    """Return whether the letter e is the base of the exponential function.
-
-    It is if an exponent of e is not a number, or if e occurs in the argument of a logarithm.
-    """
+    """Return whether e is the base of the exponential function, as in ``e^x`` or ``log(e)``."""
     nodes = [node for tree in trees for _, node in walk(tree)]
     logarithms = (node.args[0] for node in nodes if node.kind == "call" and node.value == "log")
     of_e = any(e.value == "e" for argument in logarithms for e in (argument, *argument.args[:1]) if e.kind == "name")
+    # in e^2 and e*x, e may be an eccentricity
     return of_e or any(_is_exponential(node, "e") for node in nodes)
 
 

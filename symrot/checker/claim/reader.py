@@ -1,10 +1,8 @@
 """The reader of claims: it parses text into trees, without Python's ``eval`` and without SymPy.
 
-It reads two notations: SymPy syntax (``left == right`` with ``+ - * / **``, calls, ``Matrix([[..], [..]])``, ``.T`` and
-``M[0, 1]``), and formulas as people type them (``2x``, ``sin^2 x``, ``m g l``, ``x'``, ``ω₁``, ``½``, chains ``a = b =
-c``, several lines). Text in neither notation is refused with the position of the fault; nothing is dropped.
-
-SymPy syntax has one reading (interpretation). Typed formulas may have several, of which the usual one comes first.
+It reads SymPy syntax, such as ``left == right`` with ``Matrix([[..], [..]])``, and formulas as people type them, such
+as ``2x``, ``sin^2 x`` and ``ω₁``. Typed formulas may have several readings (interpretations), the usual one first.
+InputError tells the position where a text is unreadable.
 """
 
 import re
@@ -45,22 +43,21 @@ LONGEST_TEXT = 20_000
 MOST_PIECES = 5_000
 MOST_READINGS = 6
 MOST_DOUBTS = 40
-"""The most readings of one text that are tried, and the most places with two readings that are looked at."""
+"""The most readings of one text, and the most ambiguous places of a text that are examined."""
 
 DOT_OF_PRODUCTS = ("(", None, None, ")", "·", "(", None, None, ")")
 """The tokens of ``(R a)·(R b)``, with None in place of each name."""
 
 FIRST_AND_LAST = ("i", "f")
-"""Indices of the first and last value of a quantity."""
+"""Indices that mark the first (initial) and the last (final) value of a quantity."""
 
 Relation = tuple[str, Node, Node]
 
 
 @dataclass(frozen=True)
 class Declared:
-    """The names that a claim declares or defines: symbols and functions of time.
-
-    The reader never splits such a name into a product of letters, as it splits ``mgl`` into m g l.
+    """The names of symbols and functions of time that a claim declares. None of them is split, as ``mgl`` is into
+    m g l.
     """
 
     symbols: Collection[str] = ()
@@ -132,7 +129,7 @@ class Reading:
 
     @property
     def relation(self) -> Relation:
-        """The relation of a text that has exactly one, as (sign, left, right); of a longer text, the first one."""
+        """The first relation of the text, as (sign, left, right); most texts have only one."""
         return self.lines[0].links[0]
 
 
@@ -161,7 +158,8 @@ class _Text:
     def read(
         self, whole: bool, as_sympy: bool, flips: Collection[tuple[str, int]] = (), one_side: bool = False
     ) -> Reading:
-        """Return one reading of the text, in which the ambiguous places ``flips`` have their less usual meaning.
+        """Return the reading (interpretation) of the text in which the ambiguous places ``flips`` have their less
+        usual meaning.
 
         Parameters
         ----------
@@ -239,14 +237,8 @@ class _Text:
     def words(
         self, alone: Collection[str], flips: Collection[tuple[str, int]], vectors: Collection[str]
     ) -> tuple[dict[str, tuple[str, ...]], list[str], list[Doubt]]:
-        """Return the words that are products of names, such as mgl; notes about them; and the ambiguous places.
-
-        The first result maps each such word to its names: "mgl" to ("m", "g", "l"). The second has a sentence for each
-        word of which the user should know that it was split. The third has a Doubt for each word that can also be one
-        name: its ``key`` is the kind of the ambiguity and the position of the word.
-
-        ``alone`` are names that also occur by themselves, and ``vectors`` are names that are not split. ``flips`` has
-        the keys of the ambiguous words that get their less usual meaning in this reading of the text.
+        """Return the words that are products of names, as mgl is of m, g and l, notes on them, and the ambiguous
+        words.
         """
         words: dict[str, tuple[str, ...]] = {}
         notes, doubts = [], []
@@ -273,6 +265,7 @@ class _Text:
                 continue
             doubt = Doubt(("word" if usual else "name", start), word)
             doubts.append(doubt)
+            # flips holds the ambiguous words with their less usual meaning
             if usual != (doubt.key in flips):
                 alone |= {piece for piece in pieces if piece in ("x", "y", "z")}
                 words[word] = pieces
@@ -303,10 +296,7 @@ class _Text:
     ) -> list[Token]:
         """Return tokens in which cos(θ) and sin(θ) replace the short forms cθ and sθ.
 
-        In the usual reading, letters such as cθ and sθ are short forms if the text has both and if neither c nor s
-        occurs alone; otherwise they are names. If ``flips`` has the key of this ambiguity, the less usual reading is
-        returned, in which names and short forms are exchanged. Notes and ambiguous places are added to ``notes`` and
-        ``doubts``.
+        New notes and ambiguous places are added to ``notes`` and ``doubts``.
         """
         short = [form for form in shorthands(tokens) if tokens[form.place].text not in self.declared.symbols]
         if not short:
@@ -316,6 +306,7 @@ class _Text:
         both = {form.function for form in short} == {"cos", "sin"}
         if not both and all(form.length == 1 for form in short):
             return tokens  # a name with an index
+        # short forms, if the text has cθ and sθ but neither c nor s alone; in the less usual reading the opposite
         usual = both and not alone & {"c", "s", "C", "S"}
         first, last = tokens[short[0].place], tokens[short[0].place + short[0].length - 1]
         doubt = Doubt(("shorthand", first.start), self.source[first.start : last.end])
@@ -329,11 +320,7 @@ class _Text:
         return tokens
 
     def with_indices(self, tokens: list[Token], flips: Collection[tuple[str, int]], doubts: list[Doubt]) -> list[Token]:
-        """Return tokens in which ``ωp`` is the name omega_p where it is the left side of an equation.
-
-        Anywhere else ``ωp`` is the product of ω and p. Ambiguous places are added to ``doubts``; ``flips`` are the keys
-        of those that get their less usual meaning.
-        """
+        """Return tokens with the name omega_p for ``ωp`` on the left of an equation, where it is not ω times p."""
         padded = [None, *tokens]
         for place in range(len(tokens) - 3, -1, -1):
             before, first, second, after = padded[place], *tokens[place : place + 3]
@@ -343,6 +330,7 @@ class _Text:
                 whole = True
             if not greek or not whole or not second.tight or len(second.text) > 1 or first.text == "pi":
                 continue
+            # flips holds the ambiguous places with their less usual meaning, here the product
             doubt = Doubt(("index", first.start), self.source[first.start : second.end])
             doubts.append(doubt)
             if doubt.key not in flips:
@@ -351,13 +339,11 @@ class _Text:
         return tokens
 
     def has_first_and_last(self, letter: str) -> bool:
-        """Return whether the text has the initial and the final value of ``letter``, as ``ωi`` and ``ωf`` for ω.
-
-        The result is False if i or f also occurs as a name of its own: then ``ωi`` is probably ω times i.
-        """
+        """Return whether the text has the initial and the final value of ``letter``, as ``ωi`` and ``ωf`` for ω."""
         pairs = list(pairwise(self.tokens))
         after = {second.text for first, second in pairs if first.text == letter and second.tight}
         alone = {second.text for first, second in pairs if not second.tight or first.kind != "name"}
+        # if i or f is a name of its own, ωi is probably ω times i
         return {*FIRST_AND_LAST} <= after and not alone & {*FIRST_AND_LAST}
 
     def lines(self, tokens: Sequence[Token]) -> Iterator[list[Token]]:
@@ -384,9 +370,8 @@ class _Text:
 
     @staticmethod
     def is_comma_between(line: Sequence[Token], token: Token, tokens: Sequence[Token]) -> bool:
-        """Return whether ``token`` is a comma between two equations on one line, as in ``a = b, c = d``.
-
-        ``line`` are the tokens in front of the comma on its line, ``tokens`` those of the whole text.
+        """Return whether ``token`` is a comma between two equations, as in ``a = b, c = d``; ``line`` holds the
+        tokens of a = b.
         """
         if token.text != "," or not any(piece.text in SIGNS for piece in line):
             return False
@@ -395,11 +380,7 @@ class _Text:
         return any(piece.text in SIGNS for piece in after[:end])
 
     def is_new_line(self, line: Sequence[Token], token: Token, tokens: Sequence[Token]) -> bool:
-        """Return whether ``token``, which follows a line break, starts another equation.
-
-        If not, it continues ``line``, the tokens before it, as a leading + does. ``tokens`` are those of the whole
-        text.
-        """
+        """Return whether the first token after a line break starts a new equation; if not, it continues ``line``."""
         if line[-1].text in ("+", "-", "*", "/", "^", "**", "·", "×", "⊗", *SIGNS) or token.kind == "end":
             return False
         if token.text in SIGNS or token.text in ("+", "*", "/", "^", "**", "·", "×", "⊗", ")", "]", ","):
@@ -436,38 +417,30 @@ def _with_signs(line: list[Token]) -> Iterator[list[Token]]:
 
 
 def _alone(tokens: Sequence[Token], vectors: Collection[str]) -> Iterator[str]:
-    """Yield the names in a text that no bracket follows, so that they are no functions with arguments.
-
-    A letter x that is the sign of a cross product is left out. ``vectors`` are the names of vectors.
-    """
+    """Yield the names in a text that no bracket follows, so that they are no functions."""
     padded = [*tokens, tokens[-1]]
     for before, token, after, last in zip((None, *tokens), tokens, tokens[1:], padded[2:], strict=False):
         own = last if is_mass_before_vector(after, last) else after
+        # the x of a cross product is a sign, no name
         if token.kind == "name" and after.text != "(" and not _is_cross(before, token, after, own, vectors):
             yield token.text
 
 
 def _is_cross(before: Token | None, token: Token, after: Token, factor: Token, vectors: Collection[str]) -> bool:
-    """Return whether ``token`` is a letter x that means a cross product, as in ``r x m v``.
-
-    It does if blanks stand around the x, and the names before and after it are vectors. ``before`` is the token before
-    the x (r). ``after`` is the token directly after it (m), which must only have a blank before it. ``factor`` is the
-    first token after the x that is no mass (v). ``vectors`` are the names known as vectors.
+    """Return whether ``token`` is an x that means a cross product, as in ``r x v``; ``before`` and ``factor`` are
+    r and v.
     """
     if token.text != "x" or not token.spaced or not after.spaced or before is None:
         return False
+    # in r x m v the token after the x is the mass m, and the factor is v
     return is_cross_letter(before, factor, vectors)
 
 
 def _crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collection[tuple[str, int]]) -> Iterator[str]:
-    """Yield the names before and after the signs of cross products, ``×`` or x; these names are vectors.
-
-    In a text with rates, which would make functions of time of them, so are names in ``cross(a, b)`` and ``skew(a)``.
-    ``vectors`` are names that are already known to be vectors. ``flips`` are the keys of ambiguous places with their
-    less usual meaning, in which x is a name.
-    """
+    """Yield the names next to ``×`` or to an x that means a cross product: they are vectors."""
     alone = set(_alone(tokens, vectors))
     padded = [*tokens, tokens[-1]]
+    # a text with rates would make functions of time of the names in cross(a, b)
     if any(token.kind in ("prime", "dots") for token in tokens):
         for function, opening, operand, closing in zip(tokens, tokens[1:], tokens[2:], padded[3:], strict=False):
             is_call = function.text in ("cross", "skew") and opening.text == "(" and closing.text in (",", ")")
@@ -475,6 +448,7 @@ def _crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collectio
                 yield operand.text
     for before, sign, after, last in zip(tokens, tokens[1:], tokens[2:], padded[3:], strict=False):
         factor = last if is_mass_before_vector(after, last) else after
+        # flips holds the keys of letters x that are names in this reading
         if (sign.kind == "mark" and sign.text == "×") or (
             "x" not in alone and _is_cross(before, sign, after, factor, vectors) and ("cross", sign.start) not in flips
         ):
@@ -488,12 +462,10 @@ def _crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collectio
 
 
 def _without_totals(tokens: list[Token]) -> tuple[list[Token], list[str]]:
-    """Return tokens without the sum signs of totals such as ``ΣM_x`` and ``sum F``, and a note on each.
-
-    The total of all torques is one quantity, named M_x.
-    """
+    """Return tokens without the sum signs of totals such as ``ΣM_x``, and a note on each."""
     others, notes = [], []
     for token, after in zip(tokens, [*tokens[1:], tokens[-1]], strict=True):
+        # the total of all torques is one quantity, named M_x
         is_sum = token.kind == "sum" or (token.kind, token.text) == ("name", "sum")
         if is_sum and after.kind == "name" and re.fullmatch(r"(M|F|N|T|tau|Gamma)(_\w+|[A-Za-z0-9])?", after.text):
             notes.append(f"the sum of {after.text} is read as one quantity, the total")
@@ -503,14 +475,11 @@ def _without_totals(tokens: list[Token]) -> tuple[list[Token], list[str]]:
 
 
 def _marked(tokens: Sequence[Token]) -> Iterator[str]:
-    """Yield the names that their notation shows to be vectors: a hat, a tilde, ``[n]×``, ``[n×]``, and ``a . b``.
-
-    In ``a·b = |a| |b| cos x`` the names a and b are vectors, since their lengths occur; in ``(R a)·(R b)`` a and b
-    are vectors that a matrix R rotates.
-    """
+    """Yield the names that their notation shows to be vectors, such as ``a`` with a hat, ``[n]×`` or ``a . b``."""
     triples = list(zip(tokens, tokens[1:], tokens[2:], strict=False))
     yield from _by_angle(tokens)
     lengths = {name.text for left, name, right in triples if left.text == right.text == "|" and name.kind == "name"}
+    # a·b = |a| |b| cos x: names whose lengths occur
     for left, dot, right in triples:
         if dot.text == "·" and {left.text, right.text} <= lengths:
             yield from (left.text, right.text)
@@ -518,6 +487,7 @@ def _marked(tokens: Sequence[Token]) -> Iterator[str]:
         pieces = [tokens[place + n].text for n in range(len(DOT_OF_PRODUCTS))]
         if all(sign in (None, piece) for sign, piece in zip(DOT_OF_PRODUCTS, pieces, strict=True)):
             (matrix, first), (other, second) = pieces[1:3], pieces[6:8]
+            # (R a)·(R b): names that one matrix rotates
             if matrix == other and matrix.isupper() and is_usual_vector(first) and is_usual_vector(second):
                 yield from (first, second)
     for place, name in enumerate(tokens[:-1]):
@@ -539,12 +509,7 @@ SCALARS = ("m", "I", "J", "t")
 
 
 def _by_angle(tokens: Sequence[Token]) -> Iterator[str]:
-    """Yield the two letters of a scalar product that is equated to its lengths: F and d for ``F·d = F d cos θ``.
-
-    With the cosine they must be vectors, since F d cos θ is the scalar product of vectors. In ``F·d = F d`` without
-    cosine, they count as vectors only if books usually mean vectors by both letters: for numbers the equation would say
-    F d = F d, and nobody writes that.
-    """
+    """Yield the two letters of a scalar product that is equated to their lengths, as in ``F·d = F d cos θ``."""
     sides: list[list[str]] = [[]]
     for token in tokens:
         if token.text in ("=", "=="):
@@ -560,6 +525,7 @@ def _by_angle(tokens: Sequence[Token]) -> Iterator[str]:
         has_cosine = "cos" in names and len(names) <= 4 and first.isalpha() and second.isalpha()
         has_vectors = is_usual_vector(first) and is_usual_vector(second)
         are_letters = len(first) == len(second) == 1 and not {first, second} & {*SCALARS}
+        # for numbers, F·d = F d without a cosine says nothing: the letters are vectors if books usually mean vectors
         is_bare = lengths in ([first, second], [second, first], [first + second]) and has_vectors
         if has_lengths and (is_bare or (has_cosine and (has_vectors or are_letters))):
             yield from (first, second)
@@ -580,11 +546,8 @@ def _listed(words: Sequence[str]) -> str:
 
 
 def _finished(node: Node, timed: Collection[str], vectors: Collection[str], parent: str = "") -> Node:
-    """Return the final tree: functions of time become ``f(t)``, tables of numbers become matrices.
-
-    ``timed`` are the names of functions of time. A name in ``vectors`` stays without ``(t)``, and its square becomes a
-    scalar product. ``parent`` is the kind of the node above.
-    """
+    """Return the final tree of a typed formula: functions of time become ``f(t)``, lists become matrices."""
+    # vectors stay without (t), and their squares become scalar products
     if node.kind in ("name", "call") and node.value in vectors:
         return Node("name", node.value, (), node.span)
     if node.kind == "name" and node.value in timed:
@@ -615,7 +578,7 @@ def with_time(node: Node, names: Collection[str]) -> Node:
 
 
 def readings_of(source: str, where: str = "", declared: Declared | None = None) -> list[Reading]:
-    """Return the readings of a claim, the usual one first.
+    """Return the readings (interpretations) of a claim, the usual one first.
 
     Raises
     ------
@@ -657,9 +620,9 @@ def _readings(text: _Text, one_side: bool) -> Iterable[Reading]:
 
 
 def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
-    """Yield the readings of a text that is not SymPy syntax: the usual one first.
+    """Yield the readings (interpretations) of a text that is not SymPy syntax: the usual one first.
 
-    A text that cannot be read has none; if ``required``, InputError is raised for it.
+    If ``required``, an unreadable text raises InputError.
     """
     try:
         yield from each_reading(lambda flips: text.read(False, False, flips, one_side))
@@ -669,10 +632,9 @@ def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
 
 
 def each_reading(read: Callable[[Collection[tuple[str, int]]], Reading]) -> Iterator[Reading]:
-    """Yield the readings of a text: the usual one first, then those with other meanings of ambiguous places.
+    """Yield the readings (interpretations) of a text that ``read(flips)`` returns: the usual one first.
 
-    ``read`` parses the text; its argument lists the keys of the ambiguous places that take their less usual meaning.
-    Ambiguous places of one kind take it together, since a writer is consistent; most kinds also take it one by one.
+    ``flips`` are keys of ambiguous places with their less usual meaning.
     """
     usual = read(())
     yield usual
@@ -688,27 +650,22 @@ def each_reading(read: Callable[[Collection[tuple[str, int]]], Reading]) -> Iter
 
 
 def distinct_readings(readings: Iterable[Reading]) -> list[Reading]:
-    """Return the readings without those that have the same trees as an earlier one, the usual reading first.
-
-    At most MOST_READINGS are returned. If there are more, the rest is dropped, and a note in the usual reading tells
-    the user about it.
-    """
+    """Return at most MOST_READINGS readings (interpretations) with different trees, the usual one first."""
     by_trees: dict[Any, Reading] = {}
     for reading in readings:
         by_trees.setdefault(reading.lines, reading)
     usual, *others = by_trees.values()
     if len(others) >= MOST_READINGS:
+        # the user learns that some are dropped
         note = f"the text has more readings than the {MOST_READINGS} that are decided here; brackets leave fewer"
         usual = replace(usual, notes=(*usual.notes, note))
     return [usual, *others[: MOST_READINGS - 1]]
 
 
 def _only(readings: Sequence[Reading], source: str, where: str, rates: bool = False) -> Reading:
-    """Return the usual reading of a text if it is the only one; raise InputError for an ambiguous text.
-
-    With ``rates``, a prime after a name always means its rate and makes no text ambiguous.
-    """
+    """Return the usual reading (interpretation) of a text, or raise InputError if the text is ambiguous."""
     usual = readings[0]
+    # with ``rates``, x' is always the rate of x, and no prime is ambiguous
     doubts = [doubt for doubt in usual.doubts if not (rates and doubt.key[0] == "prime")]
     if usual.plain and len(readings) > 1 and doubts:
         doubt = doubts[0]
@@ -751,9 +708,7 @@ def read_expression(source: str, where: str = "", declared: Declared | None = No
 
 
 def read_relation(source: str, where: str = "", declared: Declared | None = None, rates: bool = False) -> Relation:
-    """Return (sign, left, right) of ``left == right``; the signs ``!= > >= < <=`` are read for hypotheses.
-
-    With ``rates``, ``x'`` is always the rate of x, never a name of its own.
+    """Return (sign, left, right) of an equation or inequality; with ``rates``, ``x'`` is always the rate of x.
 
     Raises
     ------
@@ -779,12 +734,12 @@ def read_relation(source: str, where: str = "", declared: Declared | None = None
 
 
 def _strict(text: _Text, one_side: bool) -> tuple[Reading | None, InputError | None]:
-    """Parse a text as SymPy syntax; return its reading (interpretation) or None, and the error or None.
-
-    Both are None for a text that can be parsed, but that has other notation than SymPy syntax, such as ``2x``.
+    """Return the reading (interpretation) of a text as SymPy syntax, or None, and the error of an unreadable text,
+    or None.
     """
     try:
         strict = text.read(whole=True, as_sympy=True, one_side=one_side)
     except InputError as reason:
         return None, reason
+    # a readable text may have other notation too, such as 2x
     return (None if strict.plain else strict), None

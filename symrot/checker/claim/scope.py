@@ -69,12 +69,10 @@ class Scope(ABC):
 
     @property
     def assumed_bases(self) -> tuple[Expr, ...]:
-        """The bases of powers that are assumed to be positive, since nothing else in the claim's text implies it.
-
-        A logarithm of a base, for example, would imply that it is positive.
-        """
+        """The bases of powers that must be assumed to be positive, as x in x^a."""
         powers = Counter(self.bases)
         radicands = Counter(self.radicands)
+        # elsewhere in the claim, log(x) or sqrt(x) would already imply it
         return tuple(base for base, times in powers.items() if radicands[base] <= times)
 
     def fail(self, node: Node, expected: str) -> InputError:
@@ -92,11 +90,10 @@ class Scope(ABC):
         return value
 
     def argument(self, node: Node, of: str) -> Expr:
-        """Return the value of ``node``, the argument of a function; raise InputError if it is no scalar.
-
-        Functions that are nested too deeply are refused, too. ``of`` are words for the error message, such as "as the
-        argument of sin".
+        """Return the value of ``node``, the argument of a function; InputError if it is no scalar, or nested too
+        deeply.
         """
+        # ``of`` is for the message, such as "as the argument of sin"
         value = self.scalar(node, of)
         self.within_nesting(value, node)
         return value
@@ -135,11 +132,8 @@ class Scope(ABC):
         return value
 
     def divide_by(self, value: Expr, node: Node) -> None:
-        """Record that the text divides by a value.
-
-        Raise InputError if SymPy sees at once that the value is zero. A zero that takes a proof, such as
-        ``sin(x)**2 + cos(x)**2 - 1``, is refused when the claim is decided.
-        """
+        """Record that the text divides by a value; InputError if the value is obviously zero."""
+        # a zero that takes a proof, such as sin(x)**2 + cos(x)**2 - 1, is refused when the claim is decided
         if value.is_zero:
             raise self.fail(node, "a divisor that is not zero")
         for factor in Mul.make_args(value):

@@ -1,7 +1,7 @@
-"""The shapes of the formulas of a claim, from its trees alone, and the unit matrices that a text writes as I or 1.
+"""The shapes (rows, columns) of a claim's formulas, and the unit matrices that a text writes as I or 1.
 
-In ``R R^T = I`` and in ``cos(a) I + (1 - cos(a)) n n^T``, I is the unit matrix; in ``L = I omega`` it is a moment of
-inertia. The shapes tell which: a scalar can neither be added to a matrix nor be equal to one.
+In ``R R^T = I``, I is the unit matrix; in ``L = I omega`` it is a moment of inertia. The shapes tell which: a scalar
+can neither be added to a matrix nor be equal to one.
 """
 
 from collections.abc import Mapping
@@ -69,14 +69,10 @@ def _shape_of_call(node: Node, inner: list[Shape], shapes: Mapping[str, Shape]) 
 
 
 def with_unit_matrices(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> tuple[str, Node, Node]:
-    """Return an equation with ``eye(n)`` for a scalar I or 1 where only a matrix makes sense, as in ``R - I``.
-
-    That is so where the letter I or the number 1 is a term of a sum with an n x n matrix, or is one side of the
-    equation and the other side is an n x n matrix. ``I = [[a, b], [c, d]]`` stays unchanged, since there I is the name
-    of the matrix. ``shapes`` maps each name to its shape.
-    """
+    """Return an equation with ``eye(3)`` for a scalar I or 1 where only a matrix makes sense, as in ``R - I``."""
     sign, *sides = relation
     if any(_is_name_of(*pair) for pair in (sides, sides[::-1])):
+        # I = [[a, b], [c, d]] defines a matrix named I
         return relation
     left, right = (_with_unit_matrices(side, shapes) for side in sides)
     for side, other in ((left, right), (right, left)):
@@ -87,19 +83,15 @@ def with_unit_matrices(relation: tuple[str, Node, Node], shapes: Mapping[str, Sh
 
 
 def _is_name_of(name: Node, matrix: Node) -> bool:
-    """Return whether ``name`` is I or another name of a unit matrix, and ``matrix`` a list of entries with letters.
-
-    Both are sides of an equation, which then defines a matrix that is called I.
-    """
+    """Return whether an equation defines a matrix named I, as ``I = [[a, b], [c, d]]`` does."""
     is_literal = matrix.kind == "list" or (matrix.kind == "call" and matrix.value == "Matrix")
     letters = [node for _, node in walk(matrix) if node.kind == "name"]
     return name.kind == "name" and name.value in UNIT_MATRICES and is_literal and bool(letters)
 
 
 def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return names that must be vectors or matrices, since they are added to one, each with the shape of the sum.
-
-    In ``a + cross(w, r)`` this is a. ``shapes`` are those of the names whose shape is known.
+    """Return the names that are added to a vector or matrix, each with its shape: (3, 1) for a in
+    ``a + cross(w, r)``.
     """
     added: dict[str, Shape] = {}
     for side in relation[1:]:
@@ -114,13 +106,10 @@ def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -
 
 
 def operand_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return the names that must be vectors as arguments of cross, dot or skew, each mapped to the shape (3, 1).
-
-    For ``cross(r, m*v)`` these are r and v: a mass before a name is skipped. Names whose shape is in ``shapes`` are
-    left out.
-    """
+    """Return the names that must be vectors as arguments of cross, dot or skew, each with the shape (3, 1)."""
     calls = [node for side in relation[1:] for _, node in walk(side) if node.value in ("cross", "dot", "skew")]
     arguments = [argument for call in calls if call.kind == "call" and len(call.args) < 3 for argument in call.args]
+    # in cross(r, m*v), these are r and v: a mass before a name is skipped
     names = [name for name in map(_without_mass, arguments) if name.kind == "name"]
     return {str(name.value): (3, 1) for name in names if shapes.get(str(name.value)) is None}
 
@@ -132,16 +121,13 @@ def _without_mass(tree: Node) -> Node:
 
 
 def multiplied_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return a map from each name that must be a column vector, since a matrix times it is a vector, to (3, 1).
-
-    In ``q' = (1 + [q] + q q^T) w``, where q is known to be a vector and [q] is its skew matrix, the result is {"w": (3,
-    1)}. ``shapes`` maps the names whose shape is known to their shapes.
-    """
+    """Return the names that must be vectors since a matrix times the name is a vector, each with the shape (3, 1)."""
     columns: dict[str, Shape] = {}
     for side, other in (relation[1:], relation[:0:-1]):
         name = str(side.value).removesuffix("_dot") if side.kind == "name" else ""
         if (shapes.get(name) if name else shape_of(side, shapes)) != (3, 1) or other.kind != "product":
             continue
+        # w in q' = (1 + [q] + q q^T) w, where [q] is the skew matrix of the vector q
         for first, second in pairwise(other.args):
             if shape_of(first, shapes) == (3, 3) and second.kind == "name" and shapes.get(str(second.value)) is None:
                 columns[str(second.value)] = (3, 1)
@@ -161,10 +147,7 @@ def _with_unit_matrices(node: Node, shapes: Mapping[str, Shape]) -> Node:
 
 
 def _as_matrix(node: Node, shape: Shape) -> Node | None:
-    """Return a term such as ``cos(a)*I`` with the unit matrix ``eye(3)`` in place of I or 1; None without I or 1.
-
-    ``shape`` is that of the sum to which the term belongs.
-    """
+    """Return a term such as ``cos(a)*I`` with the unit matrix ``eye(3)`` for I or 1; None without them."""
     assert shape is not None
     unit = Node("call", "eye", (number(shape[0]),), node.span)
     if node == number(1) or (node.kind == "name" and node.value in UNIT_MATRICES):

@@ -27,17 +27,16 @@ MOST_PRODUCTS = 2_000
 """The most products of entries in a determinant; a full 6 x 6 matrix has 720, a full 7 x 7 matrix 5040."""
 
 LARGEST_INVERSE = 200
-"""The most such products for a matrix to be inverted, since all minors are computed; a full 5 x 5 matrix has 120."""
+"""The most products of entries in the determinant of a matrix that is inverted; a full 5 x 5 matrix has 120."""
 
 LARGE_MATRIX = 1_000
-"""The number of pieces from which on the determinant of a matrix is expanded by cofactors and not shortened."""
+"""The size (symbols, numbers and operations) of a matrix from which its determinant is expanded by cofactors."""
 
 MOST_ANGLE_TERMS = 2_000
-"""The most terms of a sine, expanded into sines and cosines of the angles in its argument; a sum of eleven has 1024."""
+"""The most terms of a sine, expanded into sines and cosines of single angles; the sine of a sum of eleven has 1024."""
 
 MOST_NESTED = 16
-"""The most nested functions and fractional powers. To make a function, SymPy examines its argument: at depth 16 this
-takes seconds, at depth 25 minutes."""
+"""The most nested functions and fractional powers; SymPy needs seconds for depth 16, and minutes for depth 25."""
 
 
 def nesting(formula: Expr) -> int:

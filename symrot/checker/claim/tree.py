@@ -1,8 +1,6 @@
 """The tree of a claim's text: the formula as it is written, with positions, before any simplification. No SymPy.
 
-Sums and products are flat lists and keep their order, since edits of a formula (a sign, a factor, the order of a
-product) are edits of their members. ``a - b`` is a sum whose second term is ``neg``; ``a/b`` is a product whose second
-factor is ``inv``.
+Sums and products are flat lists in written order: ``a - b`` is a sum with a ``neg``, ``a/b`` a product with an ``inv``.
 
 =========  =======================  ==================================
 kind       value                    args
@@ -44,7 +42,7 @@ Path = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """One node of a formula's tree; ``span`` is its place in the source text, which comparisons ignore."""
+    """One node of a formula's tree; comparisons ignore ``span``, its place in the source text."""
 
     kind: str
     value: Any = None
@@ -68,7 +66,7 @@ def number(value: int | Fraction) -> Node:
 
 
 def sum_of(terms: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
-    """Return the sum of terms, in which terms that are sums themselves are merged; 0 for an empty list."""
+    """Return the sum of terms, with the terms of inner sums merged; 0 for an empty list."""
     flat: list[Node] = []
     for term in terms:
         flat.extend(term.args if term.kind == "sum" else (term,))
@@ -78,9 +76,8 @@ def sum_of(terms: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
 
 
 def product(factors: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
-    """Return the product of factors, with its sign in front; factors that are products themselves are merged.
-
-    The product of an empty list is 1.
+    """Return the product of factors, with the factors of inner products merged and its sign in front; 1 for an
+    empty list.
     """
     flat: list[Node] = []
     negative = False
@@ -119,10 +116,8 @@ _BINDING = {"sum": SUM, "neg": SUM, "product": PRODUCT, "inv": PRODUCT, "power":
 
 
 def text(node: Node, binding: int = 0) -> str:
-    """Return the text of a tree, with as few brackets as its meaning allows; parsing it gives the same tree again.
-
-    ``binding`` is the rank of the operation around the tree, such as a product; a sum in a product gets brackets.
-    """
+    """Return the text of a tree, with no more brackets than its meaning needs: ``x*(y + z)``."""
+    # ``binding`` is the rank of the operation around the tree: a sum in a product gets brackets
     own = _BINDING.get(node.kind, ATOM)
     if node.kind == "number" and node.value.denominator != 1:
         own = PRODUCT

@@ -1,7 +1,7 @@
-"""The vectors and tensors of a claim: how their components are named, and where their names mean lengths.
+"""The vectors and tensors of a claim: the names of their components, and names that mean lengths.
 
-A name with a mark (bold type, an arrow or a hat) is a vector, ``a`` with the components a_x, a_y and a_z; the same
-letter in plain type is its length. While LaTeX is read, names with a mark end with ``MARK``.
+A name in bold type, or with an arrow or a hat, is a vector: **a** has the components a_x, a_y and a_z. The plain
+letter is its length. While LaTeX is read, names of vectors end with ``MARK``.
 """
 
 import re
@@ -23,10 +23,11 @@ __all__ = [
 
 MARK = "\N{RIGHTWARDS ARROW}"
 BASES = (("i", "j", "k"), *(tuple(f"e{mark}{axis}" for axis in axes) for mark in ("_", "") for axes in ("123", "xyz")))
-"""Names of the vectors of a basis: these are the axes if a text has two of them, and, but for i, no other vector."""
+"""Names of basis vectors, which mean the axes if a text has two of them; all but i, j and k then allow no other
+vectors."""
 
 AXES = ("xyz", "123", "1234", "0123")
-"""The last letters of the names of the components of vectors; of four for a quaternion."""
+"""Endings of the names of a vector's components, "xyz" for a_x, a_y and a_z; the four digits are for quaternions."""
 
 TENSOR = re.compile(r"[IJ](_[A-Za-z]\w*)?", re.ASCII)
 """The names of inertia tensors."""
@@ -36,9 +37,17 @@ TENSOR = re.compile(r"[IJ](_[A-Za-z]\w*)?", re.ASCII)
 class Vector:
     """A name that means a vector or, as I and J do, a symmetric tensor.
 
-    ``timed``: whether its components depend on time. ``unit``: whether its length is one, as a hat over the name says.
-    ``axes``: the last letters of the names of its components, "xyz" for a_x, a_y and a_z. ``place``: for a unit vector
-    of a basis, such as i or e_x, the number of its axis (0, 1 or 2).
+    Attributes
+    ----------
+    name : str
+    timed : bool
+        Whether its components depend on time.
+    unit : bool
+        Whether its length is one, as a hat over the name says.
+    axes : str
+        The last letters of the names of its components: "xyz" for a_x, a_y and a_z.
+    place : int or None
+        The number of its axis, 0 to 2, for a unit vector of a basis, such as i or e_x.
     """
 
     name: str
@@ -49,7 +58,9 @@ class Vector:
 
     @property
     def components(self) -> Node:
-        """The tree of its components: ``Matrix([a_x, a_y, a_z])``, or the numbers 0 and 1 for a coordinate axis."""
+        """The tree of the vector's components: ``Matrix([a_x, a_y, a_z])``, or the numbers 0 and 1 for a
+        coordinate axis.
+        """
         if self.is_axis:
             place = "xyz".index(self.name) if self.place is None else self.place
             return _matrix([number(int(place == other)) for other in range(3)])
@@ -60,7 +71,7 @@ class Vector:
 
     @property
     def is_axis(self) -> bool:
-        """Whether it is the unit vector of a coordinate axis: x, y or z with a hat, or i, j or k of a basis."""
+        """Whether the vector is a coordinate axis: x, y or z with a hat, or i, j or k of a basis."""
         return self.place is not None or (self.unit and self.name in ("x", "y", "z"))
 
     def _entry(self, name: str) -> Node:
@@ -87,10 +98,7 @@ def is_tensor(name: str) -> bool:
 
 
 def is_components(name: str, tree: Node) -> bool:
-    """Return whether the definition ``tree`` of a vector or matrix gives its components no values.
-
-    It then only lists their names: ``Matrix([a_x, a_y, a_z])`` for a, ``R_11, R_12, ..`` for R.
-    """
+    """Return whether a definition only names the components of a vector or matrix, as ``Matrix([a_x, a_y])`` does."""
     if any(tree == Vector(name, timed, axes=axes).components for timed in (False, True) for axes in AXES):
         return True
     base = name.partition("_")[0]
@@ -101,36 +109,27 @@ def is_components(name: str, tree: Node) -> bool:
 
 
 def without_marks(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[list[Node], dict[str, bool]]:
-    """Return the sides of a claim without the marks of vectors (bold, an arrow, a hat), and the vectors that they mark.
-
-    The second result maps the name of each marked vector to whether its mark was a hat, so that it is a unit vector.
-    Where the name of a vector occurs without its mark, it means the length of the vector and becomes ``sqrt(dot(a,
-    a))``.
+    """Return a claim's sides without the marks of vectors, and the marked vectors (True for one with a hat).
 
     Parameters
     ----------
     sides : sequence of Node
     names : mapping of str to bool
-        The marked names; True for one with a hat.
+        The names with a mark (bold type, an arrow or a hat); True for one with a hat.
     """
     plain = {node.value for side in sides for _, node in walk(side) if node.kind == "name"}
     spelled = {name: f"{name}_tensor" if is_tensor(name) and name in plain else name for name in names}
     parts = {name for name in names if {name, f"{name}_0"} <= plain}  # of a quaternion, whose name has no mark
     spelled |= {name: f"{name}_vec" for name in parts}
     vectors = [Node("name", name) for name in names if not is_tensor(name) and name not in parts]
+    # a name without its mark means the length, sqrt(dot(a, a))
     sides = [_without_marks(side, spelled, vectors) for side in sides]
     sides = [with_scalar_products(side, [spelled[name] for name in parts]) if parts else side for side in sides]
     return sides, {spelled[name]: unit for name, unit in names.items()}
 
 
 def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vector, ...]:
-    """Return the vectors of a claim for which component names must be made.
-
-    A vector that is a whole side of the claim, and occurs nowhere else, needs none. Usually a has the components a_x,
-    a_y and a_z, but R has R_1, R_2 and R_3, since R_x means a rotation about x.
-
-    ``names`` are the names of vectors and tensors; the value is True for one with a hat.
-    """
+    """Return the vectors of a claim for which component names must be made."""
     trees = [node for side in sides for _, node in walk(side)]
     used = {str(node.value) for node in trees if node.kind == "name"}
     rates = [node for node in trees if is_derivative(node) and node.args[-1] == TIME]
@@ -143,6 +142,7 @@ def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vect
     }
     axes = {name for name in names if Vector(name, unit=names[name]).is_axis} | {*places}
     names = {**names, **dict.fromkeys(sorted(used & {*places}), True)}
+    # a vector that is a whole side, and occurs nowhere else, needs none
     needed = (used & {*names}) - (_lone_names(sides) - axes)
     return tuple(
         Vector(name, name in moving, names[name], _axes(name, used), places.get(name))
@@ -152,14 +152,12 @@ def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vect
 
 
 def _axes(name: str, used: Collection[str]) -> str:
-    """Return the endings of the names of a vector's components: "xyz", or "123" if the claim has ``a_1``.
-
-    For a quaternion, whose components in the claim are numbered from 0 or up to 4, they are "0123" or "1234". The
-    endings for the name R are always numbers. ``used`` are the names in the claim.
-    """
+    """Return the endings of the names of a vector's components: "xyz", or "123" if the claim has ``a_1``."""
     numbers = [n for n in "01234" if f"{name}_{n}" in used or (n in "04" and f"{name}{n}" in used)]
     if {"0", "4"} & {*numbers} and {"1", "2", "3"} & {*numbers}:
+        # of a quaternion
         return "0123" if "0" in numbers else "1234"
+    # R_x means a rotation about x
     return "123" if numbers or name == "R" else "xyz"
 
 
@@ -175,10 +173,7 @@ def _without_marks(node: Node, spelled: Mapping[str, str], vectors: Sequence[Nod
 
 
 def gyroscopic_tensors(sides: Sequence[Node]) -> Iterator[str]:
-    """Yield the names of inertia tensors in ``cross(w, J*w)`` and ``skew(w)*J*w``: with a scalar J these would be zero.
-
-    In ``w.T*J*w`` J is a tensor too.
-    """
+    """Yield the names of inertia tensors: J in ``cross(w, J*w)``, ``skew(w)*J*w`` and ``w.T*J*w``."""
     for side in sides:
         for _, node in walk(side):
             factors: Sequence[Node] = ()
@@ -187,18 +182,17 @@ def gyroscopic_tensors(sides: Sequence[Node]) -> Iterator[str]:
             elif node.kind == "product":
                 wrapped = [f.kind == "transpose" or (f.kind == "call" and f.value == "skew") for f in node.args]
                 factors = [f.args[0] if inside else f for f, inside in zip(node.args, wrapped, strict=True)]
+            # with a scalar J, the cross products would be zero
             for before, name, after in zip(factors, factors[1:], factors[2:], strict=False):
                 if name.kind == "name" and before == after and is_tensor(str(name.value)):
                     yield str(name.value)
 
 
 def _lone_names(sides: Sequence[Node]) -> set[str]:
-    """Return the names that are a whole side of a claim and occur nowhere else in it, as L in ``L = r x p``.
-
-    There are none if a side is a number other than zero.
-    """
+    """Return the names that are a whole side of a claim and occur nowhere else in it, as L in ``L = r x p``."""
     everywhere = [node.value for side in sides for _, node in walk(side) if node.kind == "name"]
     is_number = any(side.kind == "number" and side.value for side in sides)
+    # a side such as 3 asks for the components: then no name is lone
     alone = [side for side in sides if side.kind == "name" and not is_number]
     return {str(side.value) for side in alone if everywhere.count(side.value) == 1}
 

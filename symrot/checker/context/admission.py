@@ -1,7 +1,7 @@
-"""Whether a known formula fits the context of a claim, judged by the words in the name of the formula.
+"""Whether a known formula fits the context of a claim, judged by the words in the formula's name.
 
-Each formula that symrot derives has a name, such as "moment of inertia of a thin rod about an end, x axis". A place is
-the point through which an axis passes; its title is a phrase such as "about an end".
+The name of a formula is a phrase such as "moment of inertia of a thin rod about an end, x axis". Its place is the
+point of the body through which the axis goes, here "about an end".
 """
 
 import re
@@ -36,13 +36,13 @@ _STOP = frozenset({
     "formula", "theorem", "principal", "components", "component", "unit", "dq/dt", "omega", "b", "e", "b^-1", "=",
     "i", "squared", "acos", "asin", "atan2", "2", "without", "minus", "sign", "physical",
 })  # fmt: skip
-"""Words in the names of derived formulas that distinguish no formulas for one quantity."""
+"""Words in the names of derived formulas that do not tell formulas for one quantity apart."""
 
 
 COMPONENTS = {
     "first": "x1Ap", "second": "y2Bq", "third": "z3Cr", "scalar": "04sw", "x": "x1Ap", "y": "y2Bq", "z": "z3Cr",
 }  # fmt: skip
-"""A component or an axis of a known formula -> the last letters of names for it; p, q and r are aircraft rates."""
+"""Maps a component or an axis to the endings of names for it; p, q and r are the rates of an aircraft."""
 
 INDICES = frozenset("xyz0123")
 ANGLES = ("phi", "theta", "psi")
@@ -60,44 +60,33 @@ def sequence_of(name: str) -> str:
 
 
 def place_of(name: str) -> str:
-    """Return the place in the name of a derived formula, such as "about an end"; an empty text if it names no place.
-
-    A place is where the axis goes through the body. The result is its title in PLACES, also if the name uses other
-    words for it: "about an end" for a name with "about the centre of an end".
-    """
+    """Return the place in the name of a derived formula, such as "about an end"; empty if it names none."""
     places = [(phrase, title) for title, _, phrases in PLACES for phrase in phrases if phrase in name]
+    # the longest phrase counts: "about the centre of an end" means an end, not the centre
     return max(places, key=lambda pair: len(pair[0]))[1] if places else ""
 
 
 def admits_name(context: Context, name: str, quantity: str) -> bool:
-    """Return whether a claim that gives ``quantity``, such as I_z, may mean the derived formula named ``name``.
-
-    It may not if the name contradicts the context: "moment of inertia of a rod about an end" contradicts "about the
-    centre".
-    """
+    """Return whether a claim about ``quantity``, such as I_z, may mean the derived formula named ``name``."""
+    # "moment of inertia of a rod about an end" contradicts the context "about the centre"
     return not any(misfits(context, name, quantity))
 
 
 def is_usual_for_body(context: Context, sequence: str) -> bool:
-    """Return whether an Euler ``sequence`` is usual for the body of the context; False only for a top.
-
-    For a top, books use ZXZ and ZYZ, whose second angle tilts the axis of the top. Every sequence is accepted if the
-    context names no top, or if it states a sequence itself.
-    """
+    """Return whether books use an Euler sequence for the body of the context. Only a top restricts the sequence."""
     is_top = context.body is not None and context.body.kind.title in TOPS
+    # the second angle of ZXZ and ZYZ tilts the axis of the top; a stated sequence is always accepted
     return bool(context.sequence) or not is_top or sequence.upper() in ("ZXZ", "ZYZ")
 
 
 def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
-    """Yield each way in which a derived formula with this ``name`` contradicts the context or ``quantity``.
-
-    ``quantity`` is the name for which the claim gives a formula. Its index counts too: a formula for the x axis does
-    not fit I_zz. Each contradiction is a phrase about the formula, such as "for the space frame" if the context says
-    that components are in the body frame. If nothing is yielded, the claim may mean this formula.
+    """Yield each contradiction between a known formula's ``name`` and a claim about ``quantity``, such as "for the
+    space frame".
     """
     is_relation = name.startswith("relation for ") or not quantity
     meaning = None if is_relation else context.meaning_of(quantity)
     if not is_relation and not is_component(name, quantity):
+        # a formula for the x axis does not fit I_zz
         yield "for another component"
     frame, sequence, place = frame_of(name), sequence_of(name), place_of(name)
     if meaning is None and "component of the angle rates" in name and has_order(sequence):
@@ -136,21 +125,21 @@ def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
 TOPS = ("symmetric top", "heavy top", "fast top", "sleeping top")
 GYRATION = "radius of gyration"
 DIRECTIONS = {"axial moment of inertia": "z", "transverse moment of inertia": "xy"}
-"""Title of a quantity -> the axes of a round body that it is about."""
+"""Maps the title of a moment of inertia to the axes of a round body about which it may be."""
 
 
 def _has_axes(name: str, axes: str) -> bool:
-    """Return whether a moment of inertia, by its ``name``, is about one of the ``axes``, a text such as "xy".
-
-    For a body that is neither round nor a rod, any axis is accepted.
-    """
+    """Return whether a moment of inertia is about one of the ``axes``, such as "xy", by the name of its formula."""
     _, bodies = LINES["about a transverse axis through the centre"]
     axis = re.search(r", ([xyz]) axis", name)
+    # only the directions of rods and round bodies are checked
     return axis is None or not bodies_of_formula(name) & {*bodies} or axis[1] in axes
 
 
 def _is_along(name: str, line: str) -> bool:
-    """Return whether the formula named ``name`` is for an axis along a ``line`` of its body: "about a diameter"."""
+    """Return whether the formula named ``name`` is for an axis along a ``line`` of its body, such as "about a
+    diameter".
+    """
     _, bodies = LINES[line]
     axis = re.search(r", ([xyz]) axis", name)
     return any(
@@ -161,34 +150,27 @@ def _is_along(name: str, line: str) -> bool:
 
 
 def _where_else(place: str, line: str, name: str) -> str:
-    """Return words for the axis of the formula ``name``, such as "about an end", which is not along ``line``.
-
-    ``line`` is a key of LINES, such as "about a diameter", and ``place`` the place of the axis in ``name``. The result
-    is ``place``. It is "about another axis" if ``place`` is empty, or if ``line`` passes through ``place`` too, so that
-    the place does not tell the two axes apart.
+    """Return words for the axis of a formula: its ``place``, or "about another axis" if ``line`` goes through this
+    place too.
     """
     _, bodies = LINES[line]
     places = [own for body, (own, _) in bodies.items() if body in bodies_of_formula(name)]
+    # ``line`` is a title such as "about a diameter", to which the formula's axis is not parallel
     return place if place and place not in places else "about another axis"
 
 
 def _is_radial(name: str, quantity: str) -> bool:
-    """Return whether a formula is for the axis along the radius to a point of the rim or surface, by its ``name``.
-
-    Hardly anybody means this axis by "about a point of the rim", so a claim with these words is not compared with the
-    formula. The result is False if the index of ``quantity`` names the axis, as in I_x: then the author may mean it.
-    """
+    """Return whether a formula is for the axis along the radius to a point of the rim or surface."""
+    # hardly anybody means it by "about a point of the rim", unless an index names it, as in I_x
     return place_of(name) in (RIM, SURFACE) and quantity[-1:] not in INDICES and not _is_along(name, "about a tangent")
 
 
 def is_component(name: str, quantity: str) -> bool:
-    """Return whether a formula's ``name`` agrees with the index of ``quantity``: "z axis" with I_zz, not with I_xx.
-
-    A quantity without an index agrees with every name, and so does the rate of an angle such as dphi.
-    """
+    """Return whether a formula's name agrees with the index of ``quantity``: "z axis" with I_zz, not with I_xx."""
     axis = re.search(r", ([xyz]) axis", name)
     word = axis[1] if axis else name.partition(" ")[0] if " component" in name else ""
     index = quantity[-1:]
+    # without an index, every name agrees; dphi is a rate
     is_indexed = len(quantity) > 1 and not quantity.startswith("d") and index in INDICES
     return not is_indexed or word not in COMPONENTS or index in COMPONENTS[word]
 
@@ -199,10 +181,8 @@ def place_exists(place: str) -> bool:
 
 
 def is_at_open_place(context: Context, name: str) -> bool:
-    """Return whether a body's formula has a place in its ``name``, "about an end", that the context leaves open.
-
-    The context leaves it open with words such as "about the pivot": a pivot may be anywhere.
-    """
+    """Return whether a formula is for one place of a body, such as an end, that the context leaves open."""
+    # "about the pivot" leaves it open, since a pivot may be anywhere
     places = {context.place, *(meaning.place for meaning in context.meanings)}
     return bool(places & {*OPEN_PLACES} and place_of(name) and bodies_of_formula(name))
 
@@ -211,13 +191,9 @@ OPEN_PLACES = tuple(title for title, _, phrases in PLACES if not phrases)
 
 
 def admits_letters(context: Context, name: str, mapping: Mapping[str, str], letters: Iterable[str]) -> bool:
-    """Return whether the letters of a claim can mean the symbols of a derived formula, by the words of the context.
-
-    ``name`` is the name of the formula, and ``mapping`` the letter for each symbol that is renamed; any other of the
-    claim's ``letters`` means the symbol of the same name. A letter r, for example, cannot mean the symbol theta if the
-    context says that r is a radius.
-    """
+    """Return whether a claim's letters can mean the symbols of a derived formula, by the words of the context."""
     sequence = sequence_of(name)
+    # ``mapping`` has the letter for each renamed symbol; other letters mean the symbol of the same name
     pairs = [(plain(known), plain(new)) for known, new in mapping.items()]
     renamed = {new for _, new in pairs}
     parts = {part for new in renamed for part in (re.sub(r"_?[xyz1-3]$", "", new), matrix_of(new))}
@@ -233,6 +209,7 @@ def admits_letters(context: Context, name: str, mapping: Mapping[str, str], lett
             continue
         if meaning is None and has_order(context.sequence) and {symbol, letter} in EXCHANGED:
             return False
+        # a letter r cannot mean theta if the context says that r is a radius
         if meaning is not None and not _is_symbol_of(meaning, symbol):
             return False
     if context.body is None:
@@ -254,25 +231,21 @@ PLACE_OF_RATE = {"dphi": "first", "dtheta": "second", "dpsi": "third"}
 
 
 def same_rotation(sequence: str) -> str:
-    """Return the sequence that gives the same rotation with its three angles in reverse order: xyz for ZYX.
-
-    Lower case means fixed axes, upper case moving axes. The result is an empty text for a sequence such as ZXZ, whose
-    first and third angle all books call phi and psi: in reverse order these letters would have other meanings.
+    """Return the sequence of the same rotation with its angles in reverse order, xyz for ZYX; empty for ZXZ and its
+    like.
 
     Examples
     --------
     >>> same_rotation("ZYX"), same_rotation("ZXZ")
     ('xyz', '')
     """
+    # all books call the first angle of ZXZ phi and the third psi: in reverse order these letters mean other angles
+    # lower case means fixed axes, upper case moving axes
     return "" if has_order(sequence) else sequence[::-1].swapcase()
 
 
 def _is_symbol_of(meaning: Meaning, symbol: str) -> bool:
-    """Return whether ``symbol``, from a derived formula, can be the quantity that has this ``meaning`` in the context.
-
-    The patterns in QUANTITIES decide this: ``dphi`` can be a "rate of precession", A cannot. The result is True for a
-    quantity without a pattern.
-    """
+    """Return whether a derived formula's symbol can have this meaning, as dphi can be a rate of precession."""
     pattern = meaning.quantity.symbols
     if not pattern:
         return True
@@ -289,11 +262,10 @@ def plain(name: str) -> str:
 
 
 def guesses(context: Context, name: str, stated: str) -> list[str]:
-    """Return the words in a derived formula's ``name`` that neither the context nor the name of the quantity states.
-
-    A verdict that relies on the formula has guessed these words, such as "about an end". ``stated`` are the words that
-    the quantity's name implies, such as "moment of inertia z axis" for I_zz.
+    """Return the words in a derived formula's name that neither the context nor the claim's quantity (``stated``)
+    implies.
     """
+    # "moment of inertia z axis" is stated by I_zz
     words = [stated, context.frame, context.sequence, "moment of inertia" if "inertia" in stated else ""]
     for meaning in context.meanings:
         words += [*meaning.quantity.phrases, *meaning.quantity.formulas, meaning.place, meaning.rest, meaning.frame]
@@ -328,7 +300,7 @@ def is_place(words: str) -> bool:
 
 @lru_cache(maxsize=20_000)
 def _tokens(text: str) -> tuple[str, ...]:
-    """Return the words of a text in one spelling, without those, such as "of", that tell no formulas apart."""
+    """Return the words of a text in one spelling, without words such as "of"."""
     return tuple(
         word
         for word in re.findall(r"[\w'/^-]+", plain_words(text).replace("-frame", " frame"))

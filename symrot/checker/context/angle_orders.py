@@ -1,7 +1,7 @@
-"""Assigning the letters of a claim to the angles of an Euler sequence, by words about them or by the usage of books.
+"""Assigning the letters of a claim to the angles of an Euler sequence.
 
-Words decide first: "yaw" is the angle about z, "precession angle" the first one. If no words say which angle a letter
-is, each order is tried that books use for the letters; for alpha, beta and gamma, every order.
+Words decide first: "yaw" is the angle about z, "precession angle" the first one. Otherwise, the orders are tried in
+which books use the letters.
 """
 
 import re
@@ -17,25 +17,29 @@ FAMILIES: tuple[tuple[str, str, str], ...] = (
     ("phi", "theta", "psi"), ("alpha", "beta", "gamma"), ("yaw", "pitch", "roll"),
     ("theta_1", "theta_2", "theta_3"), ("q_1", "q_2", "q_3"),
 )  # fmt: skip
-"""Three letters that books use together for the angles of a sequence, in the usual order."""
+"""Triples of letters that books use for the first, second and third angle."""
 
 SPELLINGS = {"varphi": "phi", "vartheta": "theta", "Phi": "phi", "Theta": "theta", "Psi": "psi", "heading": "yaw",
              "bank": "roll"}  # fmt: skip
-"""Another way of writing an angle -> its letter."""
+"""Maps another name of an angle to its usual letter."""
 
 AXIS_OF_ANGLE = {"yaw": "Z", "pitch": "Y", "roll": "X"}
 PLACE_OF_ANGLE = {
     "precession angle": 0, "precession rate": 0, "angle of the axis": 1, "nutation rate": 1, "spin angle": 2,
 }  # fmt: skip
-"""Title of a quantity in words -> the place of the angle in a sequence, from 0."""
+"""Maps the title of a quantity to the position of its angle in a sequence, from 0."""
 
 
 @dataclass(frozen=True)
 class Order:
-    """One assignment of letters to the angles of a sequence: ``places`` maps each letter to its position 0, 1 or 2.
+    """One assignment of letters to the three angles of an Euler sequence.
 
-    ``guess`` tells the user which part of the assignment was guessed, because neither the claim nor its context states
-    it; it is empty if nothing was guessed.
+    Attributes
+    ----------
+    places : dict
+        Maps each letter to the position of its angle, 0, 1 or 2.
+    guess : str
+        Tells the user what was guessed, since neither the claim nor its context states it; empty if nothing was.
     """
 
     places: dict[str, int]
@@ -43,21 +47,14 @@ class Order:
 
 
 def has_order(sequence: str) -> bool:
-    """Return whether all books give the first and third angle of a sequence the same letters, in the same order.
-
-    They do so for sequences such as ZXZ, with the same first and last axis: phi is the first angle, psi the third. In
-    ZYX the usage differs. ``sequence`` may be empty; the result is then False.
-    """
+    """Return whether all books use phi for the first angle of a sequence and psi for the third, as in ZXZ."""
+    # the first and last axis are equal; in ZYX the usage differs, and an empty text is no sequence
     return bool(sequence) and sequence[0] == sequence[-1]
 
 
 def are_roll_pitch_yaw(sequence: str, places: Mapping[str, int]) -> bool:
-    """Return whether phi, theta and psi can be read as books on aircraft use them, for roll, pitch and yaw.
-
-    ``places`` maps letters to their places (0, 1, 2) in the sequence. In a sequence with three different axes, phi must
-    be the angle about x, theta about y and psi about z. A sequence such as ZXZ has no roll, pitch and yaw: the result
-    is then True, because the usage for aircraft restricts nothing.
-    """
+    """Return whether phi, theta and psi can be roll, pitch and yaw: the angles about x, y and z."""
+    # ZXZ has no roll, pitch and yaw, so that the usage of these books restricts nothing
     axes = {"phi": "X", "theta": "Y", "psi": "Z"}
     return has_order(sequence) or all(
         sequence[place].upper() == axes[letter] for letter, place in places.items() if letter in axes
@@ -86,13 +83,11 @@ def place_by_words(title: str, sequence: str) -> int | None:
 
 
 def orders(context: Context, letters: Sequence[str], sequence: str) -> Iterator[Order]:
-    """Yield the possible assignments of ``letters`` to the angles of a ``sequence``, the likeliest first.
-
-    Only orders that agree with the words of the context are yielded; none for letters that no book uses together.
-    """
+    """Yield the possible assignments of ``letters`` to the angles of a sequence, the likeliest first."""
     spelled = {letter: letter_of_angle(letter) for letter in letters}
     family = next((own for own in FAMILIES if {*spelled.values()} <= {*own}), None)
     if family is None or len({*spelled.values()}) < len(spelled):
+        # no book uses these letters together
         return
     stated = {}
     for letter, plain in spelled.items():
@@ -101,6 +96,7 @@ def orders(context: Context, letters: Sequence[str], sequence: str) -> Iterator[
         if (place := place_by_words(title, sequence)) is not None:
             stated[plain] = place
     usual = list(_usual_orders(family, sequence))
+    # only orders that agree with the words of the context
     chosen = [order for order in usual if _agrees(order, stated)]
     if not chosen and stated:
         chosen = [order for order in permutations(family) if _agrees(order, stated)]
@@ -125,12 +121,8 @@ def _guess(places: dict[str, int], sequence: str) -> str:
 
 
 def _first_order(family: tuple[str, str, str], sequence: str) -> tuple[str, ...]:
-    """Return the letters of ``family`` in the order in which most books give them to the first, second and third angle.
-
-    ``sequence`` is that of the three angles. The result is ``family`` itself, such as (phi, theta, psi); only in ZYX
-    these three letters are reversed to (psi, theta, phi), since psi is the yaw there. The caller uses this order if the
-    context states no other one.
-    """
+    """Return the letters of a sequence's three angles in most books, such as (phi, theta, psi) for ZXZ."""
+    # in ZYX psi is the yaw and comes first
     return family[::-1] if family == FAMILIES[0] and sequence == "ZYX" else family
 
 

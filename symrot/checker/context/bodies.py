@@ -78,13 +78,10 @@ class Body:
 
     @property
     def formulas(self) -> tuple[str, ...]:
-        """Phrases for the body in the names of derived formulas, such as "hollow cylinder".
-
-        Where a kind of body may have a thin wall, one stated radius means the thin wall, and two mean the thick one;
-        without a stated radius, the phrases for both are returned.
-        """
+        """Phrases for the body in the names of derived formulas, such as "hollow cylinder"."""
         if not self.kind.thin:
             return self.kind.formulas
+        # two radii mean a thick wall, one a thin wall; without radii it may be either
         thin = self.kind.thin[0]
         if self.letters.keys() & {"R_1", "R_2"}:
             return self.kind.formulas
@@ -173,11 +170,11 @@ BODIES: tuple[Kind, ...] = (
     Kind("gyroscope", ("wheel", "gyroscopic wheel", "rotor"),
          ("a level axle", "steady precession", "of a top", "fast top")),
 )  # fmt: skip
-"""Every body that words can name; the longest phrase in a text decides which one it is. The phrases for an ellipsoid
-and other words with a vowel have the article "a", as names are compared without "an"."""
+"""Every body that words can name; the longest matching phrase decides. All phrases have the article "a", also before
+a vowel."""
 
 ALONE = (" about one axis", " about the z axis")
-"""The ends of names of formulas for rotation about a fixed axis, which no body in general motion has."""
+"""Endings of the names of formulas for rotation about a fixed axis."""
 
 _FORMULA_PHRASES = tuple(
     sorted({phrase for kind in BODIES for phrase in kind.formulas}, key=lambda phrase: (-len(phrase), phrase))
@@ -199,13 +196,14 @@ _NOUNS = {
     "tube": ("tube radius",), "base": ("base",), "apex": ("apex",), "bottom": ("bottom radius",),
     "top": ("top radius",), "a": ("length",), "b": ("width", "breadth"), "c": ("height", "thickness", "depth"),
 }  # fmt: skip
-"""Name of a dimension of a shape -> the nouns for it, as in "of height h"; a diameter has "diameter" for "radius"."""
+"""Maps a dimension of a body to nouns for it, as in "of height h"; a noun with "radius" may also have "diameter"."""
 
 _SIDES: dict[str, tuple[tuple[str, Fraction], ...]] = {
     "ellipsoid": ((r"(?:half|semi)-?\s?ax[ei]s", Fraction(1)), (r"diameters|full axes", Fraction(1, 2))),
     "other": ((r"(?:half|semi)[- ]?(?:sides?|edges?|ax[ei]s)", Fraction(2)), ("sides?|edges?", Fraction(1))),
 }  # fmt: skip
-"""Shape -> the nouns for a list of its dimensions, each with the dimension in units of its letter."""
+"""Maps the form of a body to nouns for a list of its dimensions, each with the factor by which a letter is
+multiplied."""
 
 _HARMLESS = re.compile(
     r"\b(uniform|homogeneous|rigid|solid|(of |with )?(constant|uniform) density|(of |with |and )?mass( [a-zA-Z]\b)?"
@@ -228,7 +226,7 @@ _DIRECTIONS: tuple[tuple[tuple[str, ...], str, str], ...] = (
     ((*_FLAT, *_ROUND), rf"(?:perpendicular|normal) to (?:plane of )?{_FACES}", "z"),
     ((*_FLAT, *_ROUND), rf"(?:parallel to|lying in|in) (?:plane of )?{_FACES}", "xy"),
 )
-"""Kinds of bodies, or shapes -> words for the direction of an axis through them -> the axes of that direction."""
+"""Kinds or forms of bodies, words for the direction of an axis through them, and the axes with this direction."""
 
 _PLANE = re.compile(
     r",? ?\b(?:that )?(?:lying |lies |placed |is )?in (?:plane (?:of )?)?"
@@ -295,23 +293,17 @@ def body_of_words(words: str) -> Body | None:
 
 
 def _without_plane(kind: Kind, words: str) -> tuple[str, str]:
-    """Return words without those for the plane of a flat body, and the axis normal to that plane, "z" for "xy".
-
-    For a plate, whose sides are along x and y in the derived formulas, only this plane is understood. The second result
-    is empty without such words.
-    """
+    """Return words without "in the xy plane", and the axis normal to this plane, "z"; empty if no plane is stated."""
     match = _PLANE.search(words) if kind.title in _FLAT else None
     normal = "xyz".replace(match[1], "").replace(match[2], "") if match else ""
+    # the derived formulas have the sides of a plate along x and y: only this plane is known
     if match is None or len(normal) > 1 or (normal != "z" and kind.shape not in _ROUND):
         return words, ""
     return " ".join(_PLANE.sub(" ", words, count=1).split()), normal
 
 
 def _direction(kind: Kind, words: str) -> tuple[str, str]:
-    """Return the axes of a body that have the direction in words, "xy" for "parallel to its base", and the other words.
-
-    The first result is empty if the words state no direction.
-    """
+    """Return the axes of a body that words state, "xy" for "parallel to its base", and the other words."""
     for kinds, pattern, axes in _DIRECTIONS:
         if kind.title in kinds or kind.shape in kinds:
             rest = re.sub(rf"{_LINE}{pattern}", " ", words, count=1)
@@ -334,13 +326,10 @@ def _dimensions(kind: Kind) -> list[Dimension]:
 
 
 def _letters(kind: Kind, words: str, rest: str) -> tuple[dict[str, str], dict[str, Fraction], str]:
-    """Return letters of a body's dimensions and moments, their factors, and ``rest`` without the words for them.
-
-    From "of diameter d" follow the letters {"R": "d"} and the factors {"R": 1/2}. ``words`` are the user's words, in
-    which case matters; ``rest`` are those of them that are not yet used, in lower case.
-    """
+    """Return a body's letters and their factors, {"R": "d"} and {"R": 1/2} for "diameter d", and the unused words."""
     letters: dict[str, str] = {}
     factors: dict[str, Fraction] = {}
+    # ``rest`` are the unused words in lower case; in ``words`` case matters
     dimensions = _dimensions(kind)
     for dimension in dimensions:
         nouns = [(noun, Fraction(1)) for noun in _NOUNS.get(dimension.name, ())]

@@ -1,6 +1,6 @@
 """The context of a claim, which a person states in words: it is parsed and checked for contradictions here.
 
-With a context, a claim that gives a formula for a quantity can be decided: the words say which known formula is meant.
+The words say which known formula a claim means, so that a claim such as ``I = m l^2/3`` can be decided.
 """
 
 import re
@@ -43,7 +43,7 @@ FRAMES = {
     "body": ("body", "body frame", "body axes", "body-fixed", "b", "moving"),
     "space": ("space", "space frame", "space axes", "space-fixed", "s", "inertial", "inertial frame", "fixed"),
 }
-"""A frame -> the words for it."""
+"""Maps a frame to words for it."""
 
 _FRAME_WORDS = (("body", r"in (the )?body( frame| axes)?"), ("space", r"in (the )?(space|inertial)( frame| axes)?"))
 
@@ -51,7 +51,7 @@ SEQUENCE_WORDS = {
     "yaw-pitch-roll": "ZYX", "aerospace": "ZYX", "aircraft": "ZYX", "tait-bryan": "ZYX", "roll-pitch-yaw": "xyz",
     "rpy": "xyz", "ypr": "ZYX", "euler": "ZXZ",
 }  # fmt: skip
-"""Usual name of a sequence of angles -> the sequence."""
+"""Maps a usual name, such as yaw-pitch-roll, to the sequence of Euler angles."""
 
 RATES = ("rad/s", "rad/s^2", "W", "m/s", "m/s^2", "")
 """The units of quantities that may be rates."""
@@ -95,11 +95,8 @@ class Meaning:
     rest: str = ""
 
     def is_of(self, name: str) -> bool:
-        """Return whether this is the meaning of ``name``, or of the vector or matrix that has ``name`` as an entry.
-
-        A meaning that the user gave for L counts for L_x too, and one for A counts for A_12; one for a quaternion beta
-        counts for beta_0.
-        """
+        """Return whether this is the meaning of ``name``, or of a vector or matrix with that entry, as L for L_x."""
+        # a quaternion beta has the entry beta_0, a matrix A the entry A_12
         stem = re.sub(r"_?[0-4]$" if self.quantity.title == "quaternion" else r"_?[xyz1-3]$", "", name)
         return name in self.names or stem in self.names or f"{stem}_i" in self.names or matrix_of(name) in self.names
 
@@ -208,10 +205,8 @@ _OF_AXES = re.compile(
 
 
 def _has_line(body: Body, line: str) -> bool:
-    """Return whether a body has a ``line``: a disk has the line "about a diameter", a box has not.
-
-    If ``line`` is a place, such as "about an end", the result is True for every body.
-    """
+    """Return whether a body has the stated axis: a disk has one "about a diameter", a box has not."""
+    # a place such as "about an end" is no axis, and suits every body
     return line not in LINES or bool({*body.formulas} & {*LINES[line][1]})
 
 
@@ -308,10 +303,7 @@ def _original(rest: str, words: str) -> str:
 
 
 def _readings_of_name(part: str, prefix: str, is_rate: bool = False) -> Iterator[str]:
-    """Yield the names that a typed name can mean: ``x_dot`` is a name, and may also be ``dx``, the rate of x.
-
-    ``is_rate`` says that the words about the name mean a rate: then ``x'`` is ``dx``, otherwise the name ``x_prime``.
-    """
+    """Yield the names that a typed name can mean: ``x_dot`` itself, and ``dx``, the rate of x."""
     bare = part.rstrip("'\u2032")
     primes = len(part) - len(bare)
     latex = "\\" in bare or "{" in bare
@@ -324,6 +316,7 @@ def _readings_of_name(part: str, prefix: str, is_rate: bool = False) -> Iterator
         raise InputError(
             f"{prefix}expected a name before '=', got the formula {part[:40]!r}; state the equation with --given"
         )
+    # x' is a rate only if the words about the name mean a rate
     yield f"{'d' * primes}{name}" if is_rate else name + "_prime" * primes
     if name.endswith("_dot"):
         yield f"d{name.removesuffix('_dot')}"
@@ -359,9 +352,8 @@ def _name(tree: Node) -> str | None:
 
 
 def _frame_in(words: str) -> tuple[str, str]:
-    """Return the frame that some words state, "body" or "space", and the words that are left without the phrase for it.
-
-    "velocity in the body frame" gives "body" and "velocity". Without such a phrase the frame is an empty text.
+    """Return the frame that words state, if any, and the other words: "velocity in the body frame" gives "body"
+    and "velocity".
     """
     for frame, pattern in _FRAME_WORDS:
         if match := re.search(rf"\b{pattern}(?![\w-])", words):
@@ -370,15 +362,13 @@ def _frame_in(words: str) -> tuple[str, str]:
 
 
 _NO_AXIS_OF = ("", r"(?! (?:in|through|perpendicular|normal|parallel|at)\b)")
-"""What may not follow a phrase, by whether it ends with "axis": an axis in the plane is not the axis of a body."""
+"""What may not follow a phrase that ends with "axis" (second pattern): "axis in the plane" is not the axis of a
+body."""
 
 
 def _quantity(plain: str, words: str, prefix: str) -> tuple[Quantity, str]:
-    """Return the Quantity that some words state, such as the torque, and the phrase in ``plain`` that states it.
-
-    ``words`` are the words as the user wrote them, for error messages, which begin with ``prefix``. ``plain`` are the
-    same words in lower case, with the spelling that :func:`plain_words` gives them.
-    """
+    """Return the quantity that words state, such as the torque, and the phrase that states it."""
+    # ``plain`` are the words in the usual spelling, ``words`` and ``prefix`` are for messages
     phrases = [
         (match.start(), -len(phrase), phrase, quantity)
         for quantity in QUANTITIES
@@ -397,10 +387,8 @@ def _quantity(plain: str, words: str, prefix: str) -> tuple[Quantity, str]:
 
 
 def _hint(words: str, phrases: dict[str, str]) -> str:
-    """Return the end of an error message: it suggests known phrases similar to ``words``, which symrot does not know.
-
-    ``phrases`` maps each known phrase to the text that the message suggests for it.
-    """
+    """Return the end of an error message that suggests known phrases similar to the unknown ``words``."""
+    # ``phrases`` maps each known phrase to the suggested text
     nearest = get_close_matches(words, phrases, MOST_NEAREST, 0.4)
     whole = [phrase for phrase in phrases if set(words.split()) & set(phrase.split())]
     names = list(dict.fromkeys(phrases[phrase] for phrase in [*nearest, *whole]))[:MOST_NEAREST]
@@ -433,9 +421,7 @@ def read_frame(words: str, prefix: str = "") -> str:
 
 
 def read_sequence(words: str, prefix: str = "") -> str:
-    """Return the sequence of Euler angles that words state, one of :data:`symrot.conventions.SEQUENCES`.
-
-    Upper case and numbers mean rotations about moving axes; lower case or the word "space" means fixed axes.
+    """Return the sequence of Euler angles that words state: upper case for moving axes, lower case for fixed axes.
 
     Raises
     ------
@@ -468,14 +454,13 @@ def read_sequence(words: str, prefix: str = "") -> str:
 
 
 def _with_case(letters: str, kinds: Sequence[str]) -> str:
-    """Return the three letters of a sequence in upper case for moving axes, in lower case for fixed axes.
-
-    ``kinds`` are the words that state which: "body", "space", "intrinsic" and so on. Without words, the letters stay as
-    they are; the result is an empty text for contradicting words.
+    """Return three axes in upper case if ``kinds`` says that they move, in lower case if fixed; empty for
+    contradicting words.
     """
     fixed = {kind in ("space", "extrinsic", "fixed") for kind in kinds}
     if len(fixed) > 1:
         return ""
+    # ``kinds`` are words such as "body" and "extrinsic"
     return letters if not fixed else letters.lower() if fixed == {True} else letters.upper()
 
 
@@ -510,11 +495,9 @@ def _check_consistency(context: Context, prefix: str) -> None:
 
 
 def _check_unit(meaning: Meaning, prefix: str) -> None:
-    """Raise InputError if the meaning of a name has another unit than the name usually has, as in "omega = mass".
-
-    The usual unit is the one in the convention of symrot: rad/s for omega. ``prefix`` begins the message.
-    """
+    """Raise InputError if a name has a meaning with another unit than usual, as in "omega = mass"."""
     for name in meaning.names:
+        # the usual unit of omega is rad/s
         usual = conventional_unit(name) if len(name) > 1 else None
         own = meaning.quantity.unit
         if usual and own and read_unit(own) != read_unit(usual) and "_prime" not in name:

@@ -1,12 +1,7 @@
-"""Verdicts in a context: once the meanings of names are stated, a claim that gives a formula for a quantity is decided.
+"""Verdicts on claims about a quantity in a context, which states the meanings of names.
 
-The name of a known formula, such as "moment of inertia of a rod about an end", is a list of words. The claim means this
-formula if each of these words follows from the context or from the name of the claim's quantity, as "moment of inertia"
-follows from I.
-
-The claim is true if it is equal to a formula that it means. It is false if it differs from all of them, however its
-letters are assigned to the letters of those formulas. If some words follow from nothing, the verdict stays what it is
-without a context, and a note names these words.
+A claim means a known formula, such as the "moment of inertia of a rod about an end", if its context or its quantity
+states each word of this name. It is true if it equals such a formula, false if it differs from all.
 """
 
 import re
@@ -59,13 +54,13 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["in_context"]
 
 MOST_ASSIGNMENTS = 24
-"""The most ways of assigning the letters of a claim to the symbols of a derived formula that are decided."""
+"""The most assignments of a claim's letters to the symbols of a derived formula that are decided."""
 
 MOST_CHOICES = 10_000
-"""The most ways of choosing a symbol for each letter that are tried, whether or not they keep the axes together."""
+"""The most choices of symbols for letters that are tried, before it is known whether they suit the axes."""
 
 MOST_DIAGNOSED = 4
-"""The most ways of assigning letters for which the fault of a claim is sought."""
+"""The most assignments of letters for which the fault of a claim is sought."""
 
 MOST_COSTLY = 2.0
 """The cost of a repair that is a derived formula as a whole."""
@@ -97,16 +92,24 @@ USUAL: tuple[tuple[str, str], ...] = (
     ("I_zz", "I_?(zz|z|33|3)"), ("I_xy", "I_?(xy|12)"), ("I_xz", "I_?(xz|13|zx)"), ("I_yz", "I_?(yz|23)"),
     ("q([0-3])", r"q_?[0-3]"), ("rho", "rho"), ("e", "e"),
 )  # fmt: skip
-"""Symbol of derived formulas -> the letters that are certainly meant as that symbol, where a claim has it."""
+"""Pairs of patterns: symbols of derived formulas, and the letters that books use for them."""
 
 
 @dataclass(frozen=True)
 class Meant:
-    """A known formula that a claim may mean: ``value`` is the formula in the letters of the claim.
+    """A known formula that a claim may mean, in the letters of the claim.
 
-    ``mapping`` gives the claim's letter for each renamed symbol. ``open_place`` is True if the formula is for an axis
-    through the centre of mass, or for one through an end of the body, and the claim does not say through which of the
-    two. ``how`` says in which form the formula is meant, such as "transposed"; it is empty for the formula as it is.
+    Attributes
+    ----------
+    known : Known
+    value : Expr or Matrix
+        The formula in the claim's letters.
+    mapping : dict
+        The claim's letter for each symbol that is renamed.
+    open_place : bool
+        Whether the claim leaves open through which point of the body the axis goes.
+    how : str
+        The form in which the formula is meant, such as "transposed"; empty for the formula as it is.
     """
 
     known: Known
@@ -122,29 +125,22 @@ class Meant:
 
 
 def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim that gives a formula for a quantity, with the words of its context used.
+    """Return the verdict on a claim about a quantity, with the words of its context used.
 
-    ``verdict`` is the verdict so far, "recognised", "doubtful" or "definition", by the known formulas that fit the
-    context. Where all words are used, it may become "true" or "false"; otherwise it stays open, and a note lists the
-    words that symrot does not use.
+    ``verdict`` is the verdict without these words.
     """
     verdict = _with_all_words(claim, named, verdict)
     sequence = claim.context.sequence
     if verdict.verdict not in ("false", "doubtful", "definition") or not sequence.islower():
         return verdict
+    # perhaps the user did not know that lower case means fixed axes
     note = f"{sequence} in lower case is about fixed axes; for moving axes write {sequence.upper()}"
     return replace(verdict, notes=(*verdict.notes, note))
 
 
 def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim in its context: "true" or "false" only if all words of the context are used.
-
-    A word is used if symrot understands it, or if it occurs in the names of the known formulas of the verdict or in the
-    claim. With unused words, "true" becomes "recognised", and in place of "false" the verdict without the context is
-    returned; a note lists the words. If symrot does not understand words about the body or the axis, the verdict is
-    "definition": the claim is then taken as a definition, neither true nor false. ``verdict`` is the verdict without
-    the context.
-    """
+    """Return the verdict on a claim in its context, "true" or "false" only if all words of the context are used."""
+    # words about the body or its axis that symrot does not understand leave open what the claim means
     if obscure := claim.context.obscure:
         reason = f"of the context, these words are not understood: {obscure}; write it without them, or in other words"
         return Verdict("definition", reason=reason)
@@ -158,6 +154,7 @@ def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verd
     names = " ".join(known.name for known in verdict.recognised_as)
     own = {*plain_words(names).split(), *plain_words(text(named.formula)).split(), *ENGLISH}
     letters = {letter.lower() for letter in letters_of(named.formula)}
+    # a word is also used if the claim or the names of its formulas have it
     unused = [word for rest in claim.context.rest for word in rest.split() if word not in own | letters]
     if not unused:
         return verdict
@@ -168,14 +165,12 @@ def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verd
 
 
 def _with_order(context: Context, verdict: Verdict, letters: Sequence[str]) -> Verdict:
-    """Replace "true" by "recognised" if the claim uses phi and psi in an unusual order that nothing states.
-
-    ``letters`` are those of the claim's formula. In ZYX psi is usually the first angle, and phi the third (yaw, pitch,
-    roll); in every other sequence phi is the first.
-    """
+    """Return the verdict, with "recognised" in place of "true" if the claim uses phi and psi in an unusual order."""
     angles = [letter for letter in letters if letter in ("phi", "psi", "dphi", "dpsi")]
+    # an order that words state is not unusual
     if not context.sequence or not angles or any(context.meaning_of(letter.removeprefix("d")) for letter in angles):
         return verdict
+    # psi is usually the first angle of ZYX (yaw, pitch, roll), phi that of other sequences
     usual = context.sequence == "ZYX"
     reverse = same_rotation(context.sequence)
     readings = [
@@ -191,13 +186,9 @@ def _with_order(context: Context, verdict: Verdict, letters: Sequence[str]) -> V
 
 
 def _with_sides(verdict: Verdict) -> Verdict:
-    """Return "recognised" for "true" if it was guessed along which axis the claim's letters a, b and c lie.
-
-    The known formulas call the sides of a box, or the semi-axes of an ellipsoid, along x, y and z by the letters a, b
-    and c. If one formula in ``recognised_as`` fits without renaming these, nothing was guessed: the verdict stays
-    "true" with such formulas only.
-    """
+    """Return the verdict, with "recognised" in place of "true" if the axes of the sides a, b and c were guessed."""
     readings = [known for known in verdict.recognised_as if not any(re.fullmatch(SIDES, old) for old in known.mapping)]
+    # known formulas call the sides, or semi-axes, along x, y and z a, b and c: without renaming, nothing is guessed
     if readings:
         return replace(verdict, recognised_as=tuple(readings))
     note = "guessed, not stated: which letter is the side along which axis"
@@ -205,27 +196,20 @@ def _with_sides(verdict: Verdict) -> Verdict:
 
 
 def _with_tangent(context: Context, verdict: Verdict) -> Verdict:
-    """Replace "true" by "recognised" if the claim is true for the less usual of the two tangents of a disk or ring.
-
-    A tangent may lie in the plane of the body, or be normal to it at the rim. The words "about a tangent" leave this
-    open. If the formula is the one for the normal axis, the verdict is no longer "true", and a note says what was
-    guessed.
+    """Return the verdict, with "recognised" in place of "true" if the claim holds for the less usual tangent of a
+    disk.
     """
     places = {context.place, *(meaning.place for meaning in context.meanings)}
     normal = all(known.name.endswith("rim, z axis") for known in verdict.recognised_as)
     if TANGENT not in places or not normal or (context.body and context.body.axes):
         return verdict
+    # the words "about a tangent" usually mean one in the plane of the body
     note = "guessed, not stated: the tangent is normal to the plane of the body, not in it"
     return replace(verdict, verdict="recognised", notes=(*verdict.notes, note))
 
 
 def _with_axes(context: Context, verdict: Verdict) -> Verdict:
-    """Return "recognised" for "true" if it was guessed to which axis a letter with a number or axis belongs.
-
-    Nothing is guessed if I_1 stands for the moment about the first axis, and so for each other index, or if words about
-    the letter or about the moments of the body state the axis: the verdict then stays "true". If I_1 has to be the
-    moment about the second axis for the claim to be right, that is a guess.
-    """
+    """Return the verdict, with "recognised" in place of "true" if the axis of a letter such as I_1 was guessed."""
     stated = set(context.body.letters.values()) if context.body else set()
     readings = [
         known
@@ -233,6 +217,7 @@ def _with_axes(context: Context, verdict: Verdict) -> Verdict:
         if is_consistent([(old, new) for old, new in known.mapping.items()
                           if new not in stated and context.meaning_of(plain(new)) is None], fixed=True)
     ]  # fmt: skip
+    # nothing is guessed if I_1 is the moment about the first axis, or if words state the axis
     if readings:
         return replace(verdict, recognised_as=tuple(sorted(readings, key=lambda k: context.sequence not in k.name)))
     note = "guessed, not stated: which letter belongs to which axis"
@@ -251,9 +236,9 @@ ENGLISH = ("from", "to", "that", "at", "between", "on", "of")
 def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
     """Return the verdict on a claim by comparison with the known formulas that its context means.
 
-    ``verdict`` is the verdict so far; it is returned where the context adds nothing. Whether all words of the context
-    are used is checked afterwards, by the caller.
+    ``verdict`` is returned if these decide nothing.
     """
+    # the caller checks that all words of the context are used
     context, quantity = claim.context, _name(named)
     stated = _stated_by_name(named)
     if verdict.verdict in ("recognised", "doubtful"):
@@ -292,15 +277,13 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
-    """Return the known formulas that a claim fits if its context is changed, so that the message can name them.
-
-    A claim about an end, for example, may be the formula for the centre. Three changes are tried in turn: the place of
-    the axis left out, the other frame ("body" for "space"), and no context at all. The formulas of the first change
-    that gives any are returned; empty if none does.
+    """Return the known formulas that a claim fits if another place, another frame or no context is stated; perhaps
+    none.
     """
     context = claim.context
     if context.body and (context.place or context.body.axes):
         elsewhere = replace(context, body=replace(context.body, place="", axes=""))
+        # a claim about an end may be the formula for the centre: the message names it
         of_body = verdict_on_name(replace(claim, context=elsewhere), named, repair=False).recognised_as
         if of_body:
             return of_body
@@ -313,14 +296,12 @@ def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification,
 
 
 def _with_guesses(context: Context, verdict: Verdict, stated: str) -> Verdict:
-    """Return ``verdict`` with the formulas that need fewest guesses first, and with a note on the guesses of the first.
-
-    A guess is a word in a known formula's name that follows neither from the context nor from ``stated``. ``stated``
-    are the words that the name of the claim's quantity implies, such as "moment of inertia z axis" for I_zz. If "solid"
-    is not stated, the note says "guessed, not stated: solid". Without guesses, no note is added.
+    """Return the verdict with its likeliest formula first, and a note on the guesses for it: "guessed, not stated:
+    solid".
     """
     readings = sorted(verdict.recognised_as, key=lambda known: len(guesses(context, known.name, stated)))
     verdict, likeliest = replace(verdict, recognised_as=tuple(readings)), readings[0]
+    # a guess is a word in the formula's name that neither the context nor the claim's quantity states
     what = " ".join([*guesses(context, likeliest.name, stated), likeliest.how]).strip()
     return replace(verdict, notes=(*verdict.notes, f"guessed, not stated: {what}")) if what else verdict
 
@@ -348,9 +329,8 @@ def _true(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _false(verdict: Verdict, decision: Decision) -> Verdict:
-    """Return the verdict "false" on a claim, with the counterexample of ``decision``.
-
-    ``decision`` compares the claim with the known formula that the context means; at the counterexample they differ.
+    """Return the verdict "false" on a claim, with the point at which the claim differs from the formula that it
+    means.
     """
     return replace(verdict, verdict="false", counterexample=decision.counterexample, reason="")
 
@@ -373,11 +353,9 @@ def _against_repair(claim: Claim, named: NamedFormula, verdict: Verdict) -> Deci
 def _by_meant_formulas(
     claim: Claim, named: NamedFormula, verdict: Verdict, quantity: str, stated: str
 ) -> Verdict | None:
-    """Return the verdict by comparing a claim with all known formulas that its context can mean.
+    """Return the verdict on a claim by comparison with all known formulas that its context can mean.
 
-    Return None if this decides nothing, for example because there is no such formula or one comparison is undecided.
-    ``quantity`` is the name for which the claim gives a formula, and ``stated`` are the words that this name implies,
-    such as "moment of inertia z axis" for I_zz.
+    None if this decides nothing.
     """
     try:
         formula = named.formula if named.solve is None else named.solve(named.formula)
@@ -387,6 +365,7 @@ def _by_meant_formulas(
     words = None if claim.context.meaning_of(quantity) else words_of(named)
     meant = [other for other in _meant(claim.context, value, quantity, stated) if has_word(other.known.name, words)]
     decisions = [(candidate, _equal(candidate.value, value)) for candidate in meant]
+    # one undecided comparison leaves the claim open
     if not meant or any(decision is None or _is_open(decision) for _, decision in decisions):
         return None
     equal = [candidate for candidate, decision in decisions if decision and decision.verdict == "true"]
@@ -407,23 +386,16 @@ def _by_meant_formulas(
 
 
 def _transposed(decisions: Sequence[tuple[Meant, Decision]]) -> Iterator[tuple[Meant, Decision]]:
-    """Yield the transpose of each rotation matrix among the known formulas, with the decision on the matrix.
-
-    A known matrix maps body components to space components; the author of a claim may mean the inverse map, which is
-    its transpose.
-    """
+    """Yield the transpose of each known rotation matrix, with the decision on the matrix itself."""
     for candidate, decision in decisions:
+        # known matrices map body components to space components; the author may mean the inverse map
         if candidate.known.name.startswith("rotation matrix"):
             yield replace(candidate, value=candidate.value.T, how="transposed"), decision
 
 
 def _without_letters(claim: Claim, named: NamedFormula, quantity: str, stated: str) -> Verdict | None:
-    """Return the verdict "doubtful" if the claim forgets a term or factor of the known formula; otherwise None.
-
-    The formula is the one that the context fixes: each word of its name follows from the context or from ``stated``,
-    the words that the name of the quantity implies ("moment of inertia z axis" for I_zz). The forgotten term or factor
-    must have letters that the claim does not use, as h in ``m*r^2/4`` for a cylinder. ``quantity`` is the name for
-    which the claim gives a formula.
+    """Return the verdict "doubtful" if a claim lacks a term or factor of the formula that its context states, or
+    None.
     """
     context = claim.context
     own_meaning = context.meaning_of(quantity)
@@ -447,6 +419,7 @@ def _without_letters(claim: Claim, named: NamedFormula, quantity: str, stated: s
     def assignments(known: Known, target: Any, own: set[Expr]) -> Iterator[Mapping[Expr, Expr]]:
         return _assignments(context, target, own, quantity, known, is_specific=True)
 
+    # the term must have letters of its own, as h in the moment of a cylinder, of which m*r^2/4 is a part
     return with_lacking_letters(named, value, stated_formulas, assignments)
 
 
@@ -459,12 +432,9 @@ def _is_transposed(target: Any, value: Any) -> bool:
 
 
 def _is_open(decision: Decision) -> bool:
-    """Return whether a ``decision`` on two formulas leaves open that they are equal.
-
-    It does if it is undecided, or if they are equal for some signs of the symbols. Formulas that are equal for special
-    values only, such as equal moments of inertia, are different formulas.
-    """
+    """Return whether a decision leaves open that two formulas are equal: it is undecided, or depends on signs."""
     if decision.verdict == "conditional":
+        # equal for special values only, such as equal moments of inertia: the formulas differ
         return any(requirement.signs or not requirement.zeros for requirement in decision.requires)
     return decision.verdict not in ("true", "false")
 
@@ -472,10 +442,8 @@ def _is_open(decision: Decision) -> bool:
 def _different(
     claim: Claim, named: NamedFormula, verdict: Verdict, decisions: Sequence[tuple[Meant, Decision]]
 ) -> Verdict:
-    """Return the verdict "false" on a claim that differs from all known formulas that its context can mean.
-
-    ``decisions`` has each of these formulas with the decision that the claim differs from it.
-    """
+    """Return the verdict "false" on a claim that differs from all known formulas that its context can mean."""
+    # each formula with the decision that the claim differs from it
     (candidate, decision), *_ = decisions
     diagnosis, repairs = verdict.diagnosis, verdict.repairs
     is_solved = named.solve is None or named.solve(named.formula) == named.formula
@@ -496,22 +464,16 @@ def _different(
 
 
 def _different_repairs(repairs: Sequence[tuple[Repair, ...]]) -> tuple[Repair, ...]:
-    """Return at most three repairs with different texts, from ``repairs`` towards several known formulas.
-
-    ``repairs`` has one tuple for each formula, with its best repair first. The result has the best repair of each
-    formula, then the second-best ones; repairs with the same text count as one.
+    """Return at most three different repairs towards several known formulas: the best one for each, then the
+    second-best ones.
     """
     in_turn = [repair for rank in zip_longest(*repairs) for repair in rank if repair is not None]
     return tuple({repair.text: repair for repair in in_turn}.values())[:MOST_REPAIRS]
 
 
 def _near(claim: Claim, named: NamedFormula, decisions: Sequence[tuple[Meant, Decision]]) -> Verdict | None:
-    """Return the verdict "doubtful" if a claim becomes equal to a known formula once one fault is corrected, or None.
-
-    ``decisions`` has each known formula that the claim may mean, with the decision that the claim differs from it. This
-    function is for claims that do not say through which place of the body the axis goes: then it is not certain which
-    of the formulas is meant, and the claim cannot be called false.
-    """
+    """Return the verdict "doubtful" if a claim is a known formula with one fault, or None."""
+    # the claim leaves open which place its axis goes through, so that it cannot be called false
     for candidate, decision in decisions[:MOST_DIAGNOSED]:
         diagnosis, repairs = _diagnosed(claim, named, candidate, decision)
         if repairs and repairs[0].cost < MOST_COSTLY and diagnosis.code != "two_faults":
@@ -523,10 +485,7 @@ def _near(claim: Claim, named: NamedFormula, decisions: Sequence[tuple[Meant, De
 def _diagnosed(
     claim: Claim, named: NamedFormula, candidate: Meant, decision: Decision
 ) -> tuple[Diagnosis, tuple[Repair, ...]]:
-    """Return the fault by which a claim's formula differs from the known formula ``candidate``, and repairs.
-
-    ``decision`` says that they differ. The repairs turn the claim's formula into the known one; there may be none.
-    """
+    """Return the fault by which a claim's formula differs from a known one, and its repairs, if any."""
     none = Diagnosis("none", "")
     try:
         target = read_expression(as_text(candidate.value))
@@ -544,7 +503,9 @@ def _diagnosed(
 
 
 def _neatness(repair: Repair) -> tuple[bool, int]:
-    """Return a sort key of a repair, by which repairs of one fault come before those of two, and short before long."""
+    """Return a sort key for repairs: repairs of one fault come before repairs of two faults, and short ones before
+    long ones.
+    """
     return repair.code == "two_faults", len(repair.text)
 
 
@@ -557,11 +518,7 @@ def _equal(target: Any, value: Any) -> Decision | None:
 
 
 def _meant(context: Context, value: Any, quantity: str, stated: str) -> Iterator[Meant]:
-    """Yield each known formula that ``quantity`` can mean in a context, in the letters of a claim.
-
-    ``value`` is the formula of the claim. If its letters can be assigned to the symbols in several ways, the known
-    formula is yielded once for each way. ``stated`` are the words that the name of the quantity implies.
-    """
+    """Yield each known formula that ``quantity`` can mean, in the letters of the claim's formula ``value``."""
     shape = value.shape if is_matrix(value) else None
     own = atoms_of(list(value) if shape else [value]) - {time}
     for known in _all_known():
@@ -577,6 +534,7 @@ def _meant(context: Context, value: Any, quantity: str, stated: str) -> Iterator
             continue
         target = _with_letters(context, target)
         is_specific = bool(bodies_of_formula(known.name)) or bool(context.sequence and context.sequence in known.name)
+        # a formula is yielded once for each assignment of letters
         for mapping in islice(_assignments(context, target, own, quantity, known, is_specific), MOST_ASSIGNMENTS):
             renamed = target.xreplace({**_unused_rates(mapping, own), **mapping})
             used = target.free_symbols
@@ -592,14 +550,13 @@ def _root(square: Expr) -> Expr:
 
 
 def _unused_rates(mapping: Mapping[Expr, Expr], own: set[Expr]) -> dict[Expr, Expr]:
-    """Return ``{dphi: diff(phi(t), t)}`` for the symbols of angle rates that ``mapping`` does not replace.
+    """Return ``{dphi: diff(phi(t), t)}`` for the angle rates that ``mapping`` does not replace.
 
-    ``mapping`` maps the symbols of a known formula to the letters of a claim. A claim that writes derivatives has no
-    letters for dphi, so ``mapping`` leaves this symbol unused. The caller substitutes both maps into the known formula,
-    to compare it with the claim. The result is empty if ``own``, the atoms of the claim, contains no derivative.
+    Empty if the claim has no derivatives.
     """
     if not any(atom.is_Derivative for atom in own):
         return {}
+    # a claim that writes derivatives has no letter for dphi
     functions = {symbol: Function(symbol.name[1:], real=True)(time) for symbol in ANGLES if symbol.name.startswith("d")}
     return {symbol: value.diff(time) for symbol, value in functions.items() if symbol not in mapping}
 
@@ -626,17 +583,14 @@ def _with_letters(context: Context, target: Any) -> Any:
 def _assignments(
     context: Context, target: Any, own: set[Expr], quantity: str, known: Known, is_specific: bool
 ) -> Iterator[dict[Expr, Expr]]:
-    """Yield ways to assign a claim's letters to the symbols of the known formula ``target``, as books use letters.
-
-    Each maps symbols of ``target`` to members of ``own``, the symbols and rates of the claim. All symbols need a
-    letter, unless the formula ``is_specific`` (for one body or one sequence).
-    """
+    """Yield ways to assign a claim's letters ``own`` to the symbols of a known formula, as books use letters."""
     own_symbols = sorted(target.free_symbols - {time}, key=str)
     if context.sequence and context.sequence in known.name:  # a formula may lack an angle that the claim has
         own_symbols = sorted({*own_symbols, *ANGLES}, key=str)
     pinned = set(context.body.letters.values()) if context.body else set()
     names = {symbol.name for symbol in own_symbols}
     atoms = [atom for atom in sorted(own, key=str) if plain(as_text(atom)) not in pinned - names]
+    # a formula for one body or one sequence may have symbols that the claim lacks
     if len(atoms) > len(own_symbols) or (len(atoms) < len(own_symbols) and not is_specific):
         return
     choices = []
@@ -661,12 +615,9 @@ def _assignments(
 
 
 def _may_be(context: Context, name: str, symbol: str, pinned: set[str]) -> bool:
-    """Return whether the letter ``name`` of a claim can stand for a ``symbol`` of a known formula: r for R.
-
-    A letter in ``pinned``, which the context gives to a dimension of the body, stands only for the symbol of the same
-    name.
-    """
+    """Return whether a letter of a claim can stand for a symbol of a known formula, as r for R."""
     if symbol in pinned or name in pinned:
+        # a letter that the context gives to a dimension of the body stands for that symbol alone
         return name == symbol
     meaning = context.meaning_of(name)
     if len(axes_of(symbol)) > 1 and axes_of(symbol) != axes_of(name):

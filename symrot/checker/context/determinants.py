@@ -1,7 +1,7 @@
-"""Claims about the determinant of a rate Jacobian: ``det T = -sin(theta)``, which says where the angles are singular.
+"""Claims about the determinant of a rate Jacobian, such as ``det T = -sin(theta)``, which tells singular angles.
 
-The determinant depends on the second angle alone, in the body frame and in the space frame. Its sign depends on the
-order in which the angles are listed, which the claim does not state: either sign is recognised.
+The determinant depends on the second angle alone. Its sign depends on the order of the angles, which the claim does
+not state: either sign is recognised.
 """
 
 import re
@@ -46,9 +46,7 @@ USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 
 @cache
 def determinants() -> dict[str, Expr]:
-    """Return the determinant of the rate Jacobian of each sequence, the usual sequences first.
-
-    The first and last angle are set to zero, since the determinant does not depend on them.
+    """Return the determinant of the rate Jacobian of each Euler sequence, the usual sequences first.
 
     Examples
     --------
@@ -56,15 +54,12 @@ def determinants() -> dict[str, Expr]:
     (-sin(theta), cos(theta))
     """
     order = dict.fromkeys((*USUAL_SEQUENCES, *SEQUENCES))
+    # the determinant does not depend on the first and last angle, so that these are set to zero
     return {name: expand(rate_jacobian(name).as_immutable().subs({PHI: 0, PSI: 0}).det()) for name in order}
 
 
 def verdict_on_determinant(claim: Claim, repair: bool) -> Verdict | None:
-    """Return the verdict on a claim ``det T = f(theta)`` in which nothing defines T; None for other claims.
-
-    It is "recognised" if f is the determinant of a sequence's rate Jacobian (of the stated sequence, if one is stated),
-    and, if ``repair``, "doubtful" if one edit makes f such a determinant.
-    """
+    """Return the verdict on a claim ``det T = f(theta)`` about an undefined matrix T; None for other claims."""
     assert claim.relation is not None
     generic = {*matrices_of_entries(claim.define)}
     for own, formula in (claim.relation[1:], claim.relation[:0:-1]):
@@ -72,17 +67,16 @@ def verdict_on_determinant(claim: Claim, repair: bool) -> Verdict | None:
         letter = next(iter(names)) if len(names) == 1 else ""
         if not _is_determinant(own, generic) or not SECOND_ANGLE.fullmatch(letter):
             continue
+        # f is the determinant of the rate Jacobian of the stated sequence, or of any sequence
         if readings := _readings(claim, formula, letter):
             return Verdict("recognised", recognised_as=readings)
+        # "doubtful" if one edit makes f such a determinant
         return _edited(claim, own, formula, letter) if repair else None
     return None
 
 
 def _is_determinant(tree: Node, generic: set[str]) -> bool:
-    """Return whether a tree is ``det(T)``, where T is a matrix without a definition that may be a rate Jacobian.
-
-    ``generic`` are the names of the matrices without a definition.
-    """
+    """Return whether a tree is ``det(T)`` for an undefined matrix T that may be a rate Jacobian."""
     return tree.kind == "call" and tree.value == "det" and tree.args[0].kind == "name" and (
         str(tree.args[0].value) in generic and not OTHER_MATRICES.fullmatch(str(tree.args[0].value))
     )  # fmt: skip
@@ -122,10 +116,8 @@ def _is_equal(first: Expr, second: Expr) -> bool:
 
 
 def _edited(claim: Claim, own: Node, formula: Node, letter: str) -> Verdict | None:
-    """Return the verdict "doubtful" if one edit makes ``formula`` the determinant of a rate Jacobian; otherwise None.
-
-    ``own`` is the other side of the claim, ``det T``, and ``letter`` the claim's letter for the second angle.
-    """
+    """Return the verdict "doubtful" if one edit makes ``formula`` the determinant of a rate Jacobian, or None."""
+    # ``own`` is the other side of the claim, det T, and ``letter`` stands for the second angle
     numeric = NumericFilter(claim)
     edits = single_edits(formula, numeric.names, numeric.functions, numeric.is_matrix, numeric.moving)
     repairs: dict[str, Repair] = {}

@@ -19,15 +19,13 @@ MOST_PAIRS = 10
 def by_exchanged_letters(
     claim: Claim, named: NamedFormula, verdict: Verdict, judge: Callable[[Claim, NamedFormula], Verdict]
 ) -> Verdict:
-    """Return "doubtful" in place of "definition" if a claim's formula is right once two of its letters are exchanged.
+    """Return the verdict "doubtful" if a claim's formula is right with two letters exchanged; otherwise ``verdict``.
 
-    ``verdict`` is the verdict on the claim so far; "definition" means that the claim was neither proven nor refuted. In
-    all other cases ``verdict`` itself is returned. ``judge`` returns the verdict on a claim, here on the one with
-    exchanged letters. Only two letters with a meaning in the context and the same unit are exchanged: other letters may
-    mean anything.
+    ``judge`` returns the verdict on a claim.
     """
     if verdict.verdict != "definition" or not claim.context.meanings or claim.relation is None:
         return verdict
+    # only letters with a meaning in the context and the same unit: others may mean anything
     units = {name: unit for name in _names(named.formula) if (unit := _unit(claim, name))}
     pairs = (pair for pair in combinations(sorted(units), 2) if units[pair[0]] == units[pair[1]])
     for first, second in islice(pairs, MOST_PAIRS):

@@ -1,6 +1,6 @@
 """Claims whose formula lacks a term or a factor of the formula that the context of the claim states.
 
-The lacking term or factor has letters that the rest of the formula does not have, as k*x in ``m*g*l + k*x``.
+The lacking term or factor has letters of its own, as k*x in ``m*g*l + k*x``.
 """
 
 import re
@@ -25,9 +25,9 @@ from symrot.exact.printing import as_text
 __all__ = ["with_lacking_letters"]
 
 LEAST_LETTERS = 2
-"""The fewest letters that a formula has in common with the formula that is meant."""
+"""The fewest letters that a claim's formula must share with a derived one."""
 MOST_ASSIGNMENTS = 6
-"""The most ways of assigning the letters of a claim to the symbols of one derived formula."""
+"""The most assignments of a claim's letters to the symbols of one derived formula."""
 
 Assignments = Callable[[Known, Any, set[Expr]], Iterator[Mapping[Expr, Expr]]]
 
@@ -35,13 +35,8 @@ Assignments = Callable[[Known, Any, set[Expr]], Iterator[Mapping[Expr, Expr]]]
 def with_lacking_letters(
     named: NamedFormula, value: Any, meant: Iterator[tuple[Known, Any]], assignments: Assignments
 ) -> Verdict | None:
-    """Return the verdict "doubtful" if a claim's formula is a derived one without a term or a factor; otherwise None.
-
-    ``value`` is the claim's formula. ``meant`` are the derived formulas whose names the context states word by word,
-    and their values. The claim ``m*g*l`` lacks a term of the derived ``m*g*l + k*x``: both are equal once k, which the
-    claim does not have, is zero. A claim lacks a factor if the derived formula divided by ``value`` has no letter of
-    the claim. ``assignments`` yields the ways to assign letters of the claim to the symbols of a derived formula.
-    """
+    """Return the verdict "doubtful" if a claim's formula is a derived one without a term or factor, or None."""
+    # ``meant`` are the derived formulas that the context states word by word
     own = {*atoms_of([value])} - {time}
     if is_matrix(value) or len(own) < LEAST_LETTERS:
         return None
@@ -51,6 +46,7 @@ def with_lacking_letters(
         symbols = target.free_symbols - {time}
         if len(own) >= len(symbols):
             continue
+        # each mapping assigns letters of the claim to the symbols of the derived formula
         for mapping in islice(assignments(known, target, own), MOST_ASSIGNMENTS):
             code = _fault(target.xreplace(dict(mapping)), value, symbols - {*mapping})
             if code:
@@ -59,16 +55,15 @@ def with_lacking_letters(
 
 
 def _fault(target: Expr, value: Expr, lacking: set[Expr]) -> str:
-    """Return how the formula ``value`` of a claim differs from the formula ``target`` that the claim should give.
-
-    It is "missing_term" if both are equal once a symbol of ``lacking``, which the claim does not have, is zero:
-    ``m*g*l`` for ``m*g*l + k*x``. It is "factor" if ``target/value`` has only symbols of ``lacking``: ``m*v`` for
-    ``m*v*r``. It is empty if neither holds.
+    """Return "missing_term" or "factor" if the formula ``value`` lacks one that ``target`` has; else an empty
+    text.
     """
+    # m*g*l lacks a term of m*g*l + k*x: both are equal for k = 0, and k is not in the claim
     for symbol in sorted(lacking, key=str):
         rest = target.subs(symbol, 0)
         if not rest.has(symbol) and rest.is_finite is not False and decide(rest, value).verdict == "true":
             return "missing_term"
+    # m*v lacks a factor of m*v*r: the quotient has only letters that are not in the claim
     quotient = cancel(target / value)
     return "factor" if quotient.free_symbols and quotient.free_symbols <= lacking else ""
 

@@ -1,7 +1,7 @@
 """The quantities that words such as "moment of inertia about the centre" mean, with their synonyms.
 
-Each quantity also tells which known formulas are for it: by phrases in the names of the formulas, and by a pattern for
-the symbols that stand for the quantity in them, such as E_k for the kinetic energy.
+Each quantity tells which known formulas are for it: by phrases in their names, and by symbols, such as E_k for the
+kinetic energy.
 """
 
 import re
@@ -162,10 +162,10 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("unit vector along the axis", ("axis of rotation", "unit axis", "rotation axis"),
              ("axis of",), "n[123]", "1"),
 )  # fmt: skip
-"""Every quantity that words can name; the longest phrase in a text decides which one it is."""
+"""Every quantity that words can name; the longest matching phrase decides."""
 
 AMBIGUOUS = {"moment": "'moment of inertia' or 'torque'", "rate": "a rate with its quantity, as in 'rate of spin'"}
-"""Words that name more than one quantity -> what to write instead."""
+"""Maps words that name more than one quantity to what should be written instead."""
 
 CENTRE, END, CORNER, RIM, SURFACE = (
     "about the centre of mass", "about an end", "about a corner", "about a point of the rim",
@@ -190,7 +190,7 @@ PLACES: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
     ("about the fixed point", ("pivot", "fixed point", "point o", "o", "pivot o"), ()),
     ("about the fixed axis", ("fixed axis", "one axis"), ("about one axis",)),
 )  # fmt: skip
-"""A place of an axis: its title, the words for it after "about", and the words for it in names of formulas."""
+"""Points through which axes go: the title, words for it after "about", and words for it in names of formulas."""
 
 ROUND = (
     "a cylinder", "a hollow cylinder", "a thin tube", "a annulus", "a cone", "a frustum", "a disk", "a ring", "a torus",
@@ -231,14 +231,14 @@ LINES: dict[str, tuple[tuple[str, ...], dict[str, tuple[str, str]]]] = {
         ("base", "base line", "base edge"), {"a plate": (CORNER, "xy"), "a triangular plate": (CORNER, "x")}
     ),
 }  # fmt: skip
-"""A line as an axis: its title -> the words for it after "about", and for each body that has such a line, the place in
-the names of derived formulas, and the axes there that are such lines. The other bodies have no such line."""
+"""Lines that serve as axes: the title, and words for it after "about". For each body with such a line follow its
+point in the names of formulas, and the axes that lie along it."""
 
 UNUSED = frozenset({
     "a", "an", "the", "of", "its", "their", "any", "some", "this", "that", "is", "are", "and", "in", "by",
     "constant", "unit", "axes", "axis", "component", "with",
 })  # fmt: skip
-"""Words that say nothing that the check could use or miss."""
+"""Words without a meaning that the check needs."""
 
 _SPELLINGS = (
     (r"∫|\\int|\bint\b", " integral of "), (r"\bcenter", "centre"), (r"\bdisc\b", "disk"), (r"φ|\\varphi|\\phi", "phi"),
@@ -271,11 +271,8 @@ def plain_words(text: str) -> str:
 
 
 def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str]:
-    """Return the place of an axis in words, such as "about an end", and the words without it.
-
-    The place is empty if the words name none. Besides points of a body, the axes in LINES count as places, such as
-    "about a diameter". ``formulas`` are names of bodies, such as "a disk": with them, only axes of these bodies count
-    (a rod has no diameter); without them, all do.
+    """Return the place of an axis that words state, such as "about an end", and the other words; the place may be
+    empty.
 
     Examples
     --------
@@ -283,6 +280,7 @@ def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str
     ('about an end', 'of a rod')
     """
     titled = [(title, phrases) for title, phrases, _ in PLACES]
+    # an axis such as "about a diameter" counts as a place, if one of the bodies named in ``formulas`` has it
     lines = [(title, phrases) for title, (phrases, bodies) in LINES.items() if not formulas or {*bodies} & {*formulas}]
     places = [
         (match, title)
@@ -300,16 +298,13 @@ def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str
 
 
 _BEFORE_PLACE = r"(through|about|hung at|hung from|at)(?: (?:any|some|one|either)(?: of)?(?! axis))?"
-"""The words before a place; "one axis" is the fixed axis of a body, and not its own axis."""
+"""Words before the place of an axis; "one axis" means the fixed axis of a body, not its own."""
 
 _END_OF_PLACE = r"(?![\w-])(?! (?:of|in|through|perpendicular|normal|parallel|along|at|inclined|tilted)\b)"
 
 
 def unused_words(words: str) -> str:
-    """Return the words with a meaning in ``words``, without articles, prepositions and the like.
-
-    ``words`` are what remains of the user's words once symrot has used the rest. If the result is not empty, symrot
-    does not understand all that the user wrote.
+    """Return the words in ``words`` that mean something, without articles, prepositions and the like.
 
     Examples
     --------

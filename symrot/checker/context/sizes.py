@@ -1,7 +1,7 @@
 """Moments of inertia in terms of other lengths: half the sides of a box, the axes of an ellipsoid, or a diameter.
 
-symrot writes the moments of a box with its sides, those of an ellipsoid with its semi-axes, those of round bodies with
-their radii. Authors also use other lengths. A formula that is exact for these is recognised, and a note says so.
+symrot uses the sides of a box, the semi-axes of an ellipsoid and radii. A formula that is exact for an author's other
+lengths is recognised, with a note.
 """
 
 from collections.abc import Callable
@@ -20,11 +20,18 @@ __all__ = ["by_other_sizes"]
 
 @dataclass(frozen=True)
 class Size:
-    """Dimensions of a body that authors use in place of symrot's, such as the diameter d for the radius R.
+    """Dimensions that authors use in place of symrot's, such as the diameter d for the radius R.
 
-    ``letters`` maps the author's letters to symrot's, {"d": "R"}; ``factor`` is symrot's dimension divided by the
-    author's, 1/2. ``bodies`` are the bodies for which authors do so. ``note`` tells the user what the author's letters
-    mean, "d is the diameter".
+    Attributes
+    ----------
+    letters : dict
+        Maps the author's letters to symrot's: {"d": "R"}.
+    factor : Fraction
+        symrot's dimension divided by the author's, 1/2.
+    bodies : tuple of str
+        The bodies for which authors use these dimensions.
+    note : str
+        Tells the user what the author's letters mean: "d is the diameter".
     """
 
     letters: dict[str, str]
@@ -49,11 +56,11 @@ Judge = Callable[[Claim, NamedFormula], Verdict]
 def by_other_sizes(claim: Claim, named: NamedFormula, verdict: Verdict, judge: Judge) -> Verdict:
     """Return "recognised" for a moment of inertia that is right with other dimensions; otherwise ``verdict``.
 
-    ``m*d^2/8`` is right for a disk if d is its diameter. ``judge`` returns the verdict on the claim with symrot's
-    dimensions. Nothing is tried if the words about the body say what its letters are.
+    ``judge`` returns the verdict on a claim.
     """
     body = claim.context.body
     if verdict.verdict not in TRIED or not MOMENT.fullmatch(named.name) or (body is not None and body.letters):
+        # words about the body may say what its letters are: then nothing else is tried
         return verdict
     own: set[Any] = {node.value for _, node in walk(named.formula) if node.kind == "name"}
     for size in SIZES:
@@ -64,6 +71,7 @@ def by_other_sizes(claim: Claim, named: NamedFormula, verdict: Verdict, judge: J
             or (body is not None and f" {body.kind.shape.replace('_', ' ')} " not in size.bodies)
         ):
             continue
+        # m*d^2/8 is right for a disk if d is its diameter
         formula = _in_dimensions(named.formula, size)
         other = judge(
             claim.with_relation(("==", named.side, formula), alternatives=()), named._replace(formula=formula)

@@ -1,8 +1,7 @@
-"""Conditions under which a false claim becomes true: a unit norm, equal moments, no products of inertia, a root's sign.
+"""Conditions under which a false claim becomes true, such as a unit norm, equal moments, or the sign of a root.
 
-A condition is a common factor of all residuals (the left minus the right sides of the entries): where it is zero, the
-claim is true. Only conditions that textbooks state count, since every false claim is "true" where its residual happens
-to vanish.
+A condition is a common factor of all residuals (left minus right side of each entry): where it is zero, the claim is
+true. Only conditions that textbooks state count, since every residual vanishes somewhere.
 """
 
 import re
@@ -28,7 +27,7 @@ PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)",
 """Names of moments of inertia, and of products of inertia."""
 
 MOST_TERMS, LARGEST_DEGREE, MOST_LETTERS = 400, 24, 20
-"""The most terms, the largest degree and the most letters of a residual that is factored.
+"""The most terms, the largest degree and the most letters of a residual (left minus right) that is factored.
 
 The difference of the traces of A B C and B A C has 48 terms in 27 letters; factoring it takes seconds.
 """
@@ -63,11 +62,10 @@ def requirements(
 
 
 def _shared_factors(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[PolyElement]:
-    """Return the irreducible factors that divide the left minus the right side of every entry, given by ``numerators``.
-
-    Where one of these factors is zero, all entries agree and the claim is true. The list is empty if no factor is
-    common, or if the polynomials are too large to be factored.
+    """Return the irreducible factors that divide all ``numerators``; none if the polynomials are too large to be
+    factored.
     """
+    # each numerator is one of left minus right: where a shared factor is zero, all entries agree
     smallest = min(numerators, key=len)
     if not ring.generators or len(smallest) > MOST_TERMS or max(map(sum, smallest)) > LARGEST_DEGREE:
         return []
@@ -78,16 +76,13 @@ def _shared_factors(ring: FormulaRing, numerators: Sequence[PolyElement]) -> lis
 
 
 def _left_out(requirement: Requirement, sides: Sequence[tuple[Expr, Expr]], hypotheses: Sequence[Expr]) -> bool:
-    """Return whether the author of a false claim may have assumed a condition, such as ``A = B``, without stating it.
-
-    ``requirement`` is that condition. The result is True if one side of each pair lacks A or B: who takes them as equal
-    writes only one of the two. It is False if both sides have both, as ``(A - B) w`` against ``(B - A) w``, or if one
-    side has both and the other neither: such claims are wrong in another way. A side that has x counts as having A too
-    if one of the ``hypotheses`` relates x to A.
+    """Return whether the author of a false claim may have assumed a condition such as ``A = B`` without stating
+    it.
     """
     (formula,) = requirement.zeros
     symbols = formula.free_symbols
 
+    # a side with x has A too if a hypothesis relates x to A
     def involved(side: Expr) -> set[Any]:
         own = side.free_symbols
         groups = [own, *(h.free_symbols for h in hypotheses if own & h.free_symbols)]
@@ -96,6 +91,8 @@ def _left_out(requirement: Requirement, sides: Sequence[tuple[Expr, Expr]], hypo
     def one_sided(pair: tuple[Expr, Expr]) -> bool:
         return any(symbols <= side.free_symbols and not involved(other) for side, other in (pair, pair[::-1]))
 
+    # who assumes A = B writes only one of them on a side: (A - B) w against (B - A) w is wrong in another way,
+    # and so is a pair of which one side has A and B and the other neither
     return all(any(involved(side) != symbols for side in pair) and not one_sided(pair) for pair in sides)
 
 
@@ -104,10 +101,8 @@ def _associated(first: PolyElement, second: PolyElement) -> bool:
 
 
 def _classified(ring: FormulaRing, factor: PolyElement) -> Requirement | None:
-    """Return the condition ``factor == 0`` if textbooks state conditions of its kind, else None.
-
-    There are four kinds: a unit norm (``q0**2 + q1**2 == 1``), two equal moments of inertia (``A == B``), a moment that
-    is the sum of two others (``A + B == C``), and a product of inertia that is zero (``I_xy == 0``).
+    """Return the condition ``factor == 0`` if textbooks state such conditions, as ``q0**2 + q1**2 == 1``;
+    otherwise None.
     """
     places = [n for n, degree in enumerate(factor.degrees()) if degree > 0]
     leaves = {number: leaf for leaf, number in ring.symbols.items()}
@@ -120,6 +115,7 @@ def _classified(ring: FormulaRing, factor: PolyElement) -> Requirement | None:
         return Requirement("requires_unit_norm", f"{squares} == 1", (formula,))
     linear = all(sum(mono) == 1 and abs(coefficient) == 1 for mono, coefficient in factor.items())
     if linear and len(names) in (2, 3) and all(_matches(MOMENT, name) for name in names):
+        # A == B, or A + B == C
         return _of_moments(factor, names, ring, formula)
     if len(names) == 1 and _matches(PRODUCT_OF_INERTIA, names[0]) and len(factor) == 1:
         return Requirement("requires_condition", f"{names[0]} == 0", (formula,))
@@ -127,14 +123,11 @@ def _classified(ring: FormulaRing, factor: PolyElement) -> Requirement | None:
 
 
 def _of_moments(factor: PolyElement, names: list[Expr], ring: FormulaRing, formula: Expr) -> Requirement | None:
-    """Return the condition ``I1 == I2`` or ``I1 + I2 == I3`` for a factor such as I1 - I2 or I1 + I2 - I3.
-
-    ``names`` are the moments in the factor, ``formula`` the factor as an expression. Return None for a sum of moments
-    of inertia: it is positive, so that it cannot be zero.
-    """
+    """Return the condition ``I1 + I2 == I3`` for the factor I1 + I2 - I3, or None for a factor that cannot vanish."""
     coefficients = [int(factor[ring.ring.gens[ring.symbols[name]].leading_expv()]) for name in names]
     sides = [[str(n) for n, c in zip(names, coefficients, strict=True) if c * sign > 0] for sign in (1, -1)]
     if not all(sides):
+        # a sum of moments of inertia is positive and cannot be zero
         return None
     left, right = sorted(sides, key=lambda side: (-len(side), side))
     code = "requires_symmetric_top" if len(names) == 2 else "requires_condition"
@@ -155,15 +148,12 @@ def _is_unit_norm(factor: PolyElement, variables: int) -> bool:
 def _no_products(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]]
 ) -> list[Requirement]:
-    """Return [the condition that all products of inertia are zero] if it makes the claim true, else [].
-
-    It is returned only if in every pair (left, right) of ``sides`` one side contains no product of inertia: a book that
-    assumes principal axes leaves them out. ``numerators`` are those of left minus right.
-    """
+    """Return [the condition that all products of inertia are zero] if it makes a claim true, else []."""
     products = [(leaf, n) for leaf, n in ring.symbols.items() if _matches(PRODUCT_OF_INERTIA, leaf)]
     if not products or not all(any(mono[n] for _, n in products) for poly in numerators for mono in poly):
         return []
     used = [leaf for leaf, n in products if any(mono[n] for poly in numerators for mono in poly)]
+    # a book that assumes principal axes leaves products of inertia out on one side
     if not all(any(not side.has(*used) for side in pair) for pair in sides):
         return []
     return [Requirement("requires_condition", " and ".join(f"{leaf} == 0" for leaf in used), tuple(used))]
@@ -177,13 +167,8 @@ def _matches(pattern: re.Pattern[str], leaf: Expr) -> bool:
 
 
 def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[Requirement] | None:
-    """Return the conditions on signs under which residuals with a square root vanish; None if no sign suffices.
-
-    An example is ``x >= 0`` for ``sqrt(x**2) == x``. Let a residual, whose numerator is one of ``numerators``, be
-    ``a + b g`` with the root ``g``, ``g^2 = P``. If ``a^2 - b^2 P`` is zero, g is ``a/b`` or ``-a/b`` everywhere. The
-    claim says ``g = -a/b``, which holds exactly where ``-a/b >= 0``. Where b is zero, a is zero too, and the claim
-    holds; so the condition does not mention ``b != 0``. The list is empty if ``-a/b >= 0`` holds wherever the claim is
-    defined.
+    """Return the signs under which a claim with square roots is true, ``x >= 0`` for ``sqrt(x**2) == x``; None if
+    none suffice.
     """
     for root, place in ring.roots.items():
         if root.index != 2 or root.expression.is_number:
@@ -192,9 +177,12 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
         square = ring._polynomial(root)
         signs: dict[str, Expr] = {}
         for poly in numerators:
+            # the numerator of a residual is a + b*g with the root g, g^2 = P: where a^2 - b^2 P = 0, g is a/b or -a/b
             without, rest = _split(poly, place, generator)
             if not rest or ring.reduce(without**2 - rest**2 * square):
                 break
+            # the claim says g = -a/b, which holds exactly where -a/b >= 0
+            # where b is zero, a is zero too, and the claim holds: so b != 0 is no condition
             value = normal_form(-without.as_expr(*ring.generators) / rest.as_expr(*ring.generators), ring.hypotheses)
             if not surely_nonnegative(value):
                 signs[f"{as_text(value)} >= 0"] = value

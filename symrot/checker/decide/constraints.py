@@ -1,10 +1,7 @@
 """The real points at which a claim is to hold, as polynomial constraints on the generators (unknowns) of its ring.
 
-Three kinds of polynomials vanish: hypotheses, ``sin^2 + cos^2 - 1`` of each angle, and the equation ``root^n = base``
-of each root. Divisors do not vanish. Some symbols, and all even roots, have a known sign. A generator is ``free`` if it
-may have every value that these conditions allow. Two kinds are not free: a function of a symbol, such as tanh(x), and
-the sine and cosine of an angle whose symbols occur elsewhere too. Constraints on generators that are not free are not
-used.
+Hypotheses, ``sin^2 + cos^2 - 1`` of angles, and ``root^n - base`` of roots are zero; divisors are not. A ``free``
+generator may have every value that these constraints allow. Constraints on others, such as tanh(x), are not used.
 """
 
 from collections.abc import Iterator, Sequence
@@ -22,7 +19,7 @@ from symrot.exact.ring.ring import FormulaRing
 __all__ = ["Constraints", "constraints_of", "distinct_factors", "occurring"]
 
 MOST_TERMS, MOST_UNKNOWNS, LARGEST_DEGREE = 40, 4, 12
-"""Bounds on a polynomial that is factored; of a larger one only unknowns that divide every term are split off."""
+"""The most terms, the most unknowns and the largest degree of a polynomial that is factored."""
 
 
 @dataclass(frozen=True)
@@ -75,12 +72,10 @@ def occurring(polynomials: Sequence[PolyElement]) -> set[int]:
 
 
 def distinct_factors(poly: PolyElement) -> list[PolyElement]:
-    """Return the different factors of a polynomial that is not constant, each with leading coefficient 1.
-
-    A large polynomial is not factored; only unknowns that divide every term are split off.
-    """
+    """Return the different factors of a polynomial that is not constant, each with leading coefficient 1."""
     if len(poly) <= MOST_TERMS and len(occurring([poly])) <= MOST_UNKNOWNS and max(map(sum, poly)) <= LARGEST_DEGREE:
         return [factor.monic() for factor, _ in poly.factor_list()[1]]
+    # a large polynomial is not factored: only unknowns that divide every term are split off
     shared = [min(column) for column in zip(*poly, strict=True)]
     unknowns = [poly.ring.gens[place] for place, power in enumerate(shared) if power]
     if unknowns:
@@ -89,12 +84,10 @@ def distinct_factors(poly: PolyElement) -> list[PolyElement]:
 
 
 def constraints_of(ring: FormulaRing) -> Constraints:
-    """Return what is known of the real points at which the formulas in a ring are to hold, as polynomial constraints.
-
-    They include all divisors that have been read into the ring so far.
-    """
+    """Return the constraints on the real points at which the formulas in a ring are to hold."""
     target = PolyRing(ring.ring.symbols, QQ, grevlex)
     symbols = {leaf: n for leaf, n in ring.symbols.items() if ring.leaves[leaf]}
+    # tanh(x) is not free, nor are the sine and cosine of an angle whose symbols occur elsewhere too
     free = {*symbols.values(), *_free_angles(ring)}
     zeros, products = [], []
     for atom, sine in ring.sines.items():
@@ -122,6 +115,7 @@ def constraints_of(ring: FormulaRing) -> Constraints:
         signed = (value.numerator * ring.ratios.denominator(value)).set_ring(target)
         if signed and not signed.is_ground and occurring([signed]) <= set(symbols.values()):
             products.append(signed)
+    # the divisors that have been read into the ring so far
     factors = [poly.set_ring(target) for poly in ring.ratios.factors]
 
     def having(assumption: str) -> frozenset[int]:
@@ -138,15 +132,15 @@ def constraints_of(ring: FormulaRing) -> Constraints:
 
 
 def _free_angles(ring: FormulaRing) -> Iterator[int]:
-    """Yield the indices of the ring's generators sin(u) and cos(u), for each angle u that is independent of all else.
-
-    Such an angle is proportional to a symbol, or a function of time, that occurs nowhere else. Its time derivatives may
-    occur, since at one instant they are independent of the value of the function.
+    """Yield the indices of a ring's generators sin(u) and cos(u), for each angle u that is independent of all
+    else.
     """
     holders: list[Expr] = [*ring.bases, *(leaf for leaf in ring.symbols if not leaf.is_Derivative)]
     for atom in ring.bases:
         factors = atom.args if atom.is_Mul else (atom,)
         others = [holder for holder in holders if holder is not atom]
+        # u is proportional to a symbol or a function of time that occurs nowhere else; its time derivatives may occur,
+        # since at one instant they are independent of the value of the function
         plain = all(isinstance(factor, Symbol | AppliedUndef) for factor in factors)
         own = any(not any(other.has(factor) for other in others) for factor in factors)
         if plain and own and atom not in ring.symbols:

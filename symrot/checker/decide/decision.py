@@ -1,8 +1,7 @@
 """The decision on a claim: the stages of :mod:`symrot.exact.decision`, and further stages that only claims need.
 
 A claim may have hypotheses, and its text may have divisors and roots that SymPy has cancelled. The further stages use
-the hypotheses (:mod:`symrot.checker.decide.hypotheses`) and look for a condition under which the claim is true
-(:mod:`symrot.checker.decide.conditions`).
+these, and look for a condition under which a false claim is true.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -58,10 +57,10 @@ from symrot.exact.ring.roots import is_positive_where_defined, written
 __all__ = ["Equation", "decide_equation", "for_positive_bases", "is_large"]
 
 MUCH_LARGER = 5
-"""A formula with more than this many times the pieces of another one certainly has the longer text."""
+"""The ratio of sizes from which on the larger formula certainly has the longer text."""
 
 MOST_ON_THE_CUT = 4
-"""The most symbols of a formula with atan2 that is examined at points where some of them are zero."""
+"""The most symbols of a claim with atan2 that is examined at points with simple coordinates."""
 
 
 @dataclass(frozen=True)
@@ -121,13 +120,13 @@ def decide_equation(equation: Equation) -> Decision:
 
 
 def _with_positive_symbols(equation: Equation, decision: Decision) -> Decision:
-    """Return the decision "true" on an undecided equation if it is proven for the signs that its conditions require.
-
-    Otherwise return ``decision``. In ``asech(x) == acosh(1/x)`` the left side needs x > 0, so that ``abs(x)`` is x.
+    """Return the decision "true" if an equation is proven for the signs that its conditions require; otherwise
+    ``decision``.
     """
     known = positive_symbols(decision.conditions)
     if not known or equation.hypotheses:
         return decision
+    # in asech(x) == acosh(1/x) the left side needs x > 0, so that abs(x) is x
     left, right = (side.xreplace(known) for side in (equation.left, equation.right))
     divisors, nonzero, radicands = (
         tuple(formula.xreplace(known) for formula in formulas)
@@ -145,10 +144,8 @@ def _with_positive_symbols(equation: Equation, decision: Decision) -> Decision:
 
 
 def _without_needless(decision: Decision, equation: Equation) -> Decision:
-    """Return a conditional decision whose conditions do not divide by y, if the equation is true for ``y = 0`` too.
-
-    The proof of ``sqrt(x**2*y**2) == x*y`` gives the condition ``x/abs(y) >= 0``; it becomes ``x >= 0``.
-    """
+    """Return a decision whose conditions do not divide by y, if the equation is true for ``y = 0`` too."""
+    # the proof of sqrt(x**2*y**2) == x*y gives the condition x/abs(y) >= 0, which becomes x >= 0
     return replace(decision, conditions=tuple(_without_divisor(each, equation) for each in decision.conditions))
 
 
@@ -168,13 +165,14 @@ def _without_divisor(condition: Any, equation: Equation) -> Any:
 
 
 def _is_true_at_zeros(formula: Expr, equation: Equation) -> bool:
-    """Return whether an equation is proven to be true at each zero of a polynomial ``formula`` in one symbol.
+    """Return whether an equation is proven to be true at each zero of a polynomial in one symbol.
 
-    Return False if the formula has several symbols, is no polynomial, or has an irrational zero.
+    False for other formulas.
     """
     symbol = next(iter(formula.free_symbols))
     if formula.free_symbols != {symbol} or not formula.is_polynomial(symbol):
         return False
+    # at an irrational zero nothing is proven
     zeros = Poly(formula, symbol).real_roots()
     return all(zero.is_Rational and _is_true_at({symbol: zero}, equation) for zero in zeros)
 
@@ -249,43 +247,32 @@ class _ClaimCase(Case):
 
     @cached_property
     def hypotheses(self) -> Hypotheses:
-        """The claim's hypotheses, together with the conditions under which both sides are real numbers.
-
-        These conditions also say that the divisors of the two sides are not zero. The result is computed once and
-        stored, so use it only after both sides have been read into ``ring``: later divisors are not in it.
-        """
+        """The claim's hypotheses, together with the conditions under which both sides are real numbers."""
+        # computed once: read both sides into the ring first, since later divisors are not in it
         return Hypotheses(self.ring, _needs(self))
 
     @property
     def lacks_evidence(self) -> bool:
-        """Whether the search for a counterexample must go on.
-
-        It is False if a counterexample is known. It is also False if a claim without hypotheses is known to be true
-        under conditions on the signs of its roots. Under hypotheses the search goes on, since these conditions are
-        derived without the hypotheses.
-        """
+        """Whether the search for a counterexample must go on."""
+        # known conditions on the signs of roots end the search; under hypotheses it goes on, since they ignore these
         return self.counterexample is None and (bool(self.ring.hypotheses) or self.branches is None)
 
     def within_domain(self, search: Search) -> Search:
-        """Return a search for counterexamples that drops points at which a side, as it is written, has no value.
-
-        An example is a point where a divisor that SymPy has cancelled is zero.
-        """
+        """Return a search for counterexamples that drops points at which a side, as it is written, has no value."""
 
         def searched(
             ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
         ) -> Counterexample | None:
             witness = search(ring, left, right, entry)
             values = dict(witness.point) if witness else {}
+            # a divisor that SymPy has cancelled may be zero there
             return witness if all(is_nonnegative_at(formula, values) for formula in ring.domain) else None
 
         return searched if self.ring.domain else search
 
     def conditions_of(self, rings: Sequence[FormulaRing]) -> tuple[Any, ...]:
-        """Return the conditions that a proof in ``rings`` needs, such as ``x != 0``, in alphabetical order.
-
-        Conditions that are hypotheses of the claim are left out.
-        """
+        """Return the conditions that a proof in ``rings`` needs, such as ``x != 0``."""
+        # conditions that are hypotheses of the claim are granted
         ring, granted = self.ring, self.nonzero_factors
         forms = [*domain.divisors(ring, granted), *(pair for other in rings for pair in domain.divisors(other))]
         free = set(domain.divisors(ring)) - set(domain.divisors(ring, granted))
@@ -311,10 +298,8 @@ class _ClaimCase(Case):
         return Decision("undecided", self.conditions, reason=reason)
 
     def can_hold(self, requirement: Requirement) -> bool:
-        """Return whether a point is known at which the condition ``requirement`` holds and both sides are real numbers.
-
-        A condition that holds nowhere is not offered.
-        """
+        """Return whether a point is known at which a condition holds and both sides are real numbers."""
+        # a condition that holds nowhere is not offered
         signs = [Need(value, ">= 0") for value in (*requirement.signs, *domain.split_radicands(self.ring))]
         if not self.hypotheses.consistent_with(requirement.zeros):
             return False
@@ -325,21 +310,16 @@ class _ClaimCase(Case):
 
 
 def nonzero_by_hypothesis(case: _ClaimCase) -> None:
-    """Read the formulas that are nonzero by a hypothesis into the ring, so that proofs may divide by them.
-
-    This is the first stage, so the ring has no other divisors yet: ``case.nonzero_factors`` becomes the set of their
-    indices in the ring's list of divisors.
-    """
+    """Read the formulas that are nonzero by a hypothesis into the ring, so that proofs may divide by them."""
     for formula in case.equation.nonzero:
         case.ring.ratios.invert(case.ring.ratio(formula), formula)
+    # this is the first stage: the ring has no other divisors yet
     case.nonzero_factors = set(range(len(case.ring.ratios.factors)))
 
 
 def domain_of_text(case: _ClaimCase) -> None:
-    """Add the divisors of the claim's text to the ring, as the proof must not lose the condition that they are nonzero.
-
-    Raise InputError if there is provably no point where both sides are real numbers.
-    """
+    """Add the divisors of a claim's text to the ring; InputError if the sides are provably real nowhere."""
+    # the proof must not lose the condition that they are nonzero
     for divisor in case.equation.divisors:
         case.ring.ratios.invert(case.ring.ratio(divisor), divisor)
     case.hypotheses.refuse_if_nowhere()
@@ -355,10 +335,8 @@ def nearby_witness(case: _ClaimCase) -> None:
 
 
 def branch(case: _ClaimCase) -> Decision | None:
-    """Return "true" for a claim that holds on one branch of a root or of asin, if its domain implies this branch.
-
-    For example, ``sqrt(x**2) == x`` needs x >= 0, which a ``sqrt(x)`` elsewhere in the claim implies. Return None for
-    any other claim.
+    """Return the decision "true" if a claim holds on the branch of a root or asin that its domain implies, or
+    None.
     """
     case.branches, rings = _branches(case.ring, case.numerators)
     case.rely_on((*case.proof_rings, *rings))
@@ -366,6 +344,7 @@ def branch(case: _ClaimCase) -> Decision | None:
         return None
     known = [(formula, ">= 0") for formula in (*case.equation.radicands, *domain.signs(case.ring))]
     known += [(formula, "!= 0") for formula in case.equation.divisors]
+    # sqrt(x**2) == x needs x >= 0, which a sqrt(x) elsewhere in the claim implies
     signs = [sign for requirement in case.branches for sign in requirement.conditions]
     return case.confirmed() if follow(signs, known) else None
 
@@ -424,17 +403,15 @@ STAGES = (
 
 
 def for_positive_bases(decision: Decision, equation: Equation) -> Decision:
-    """Return a decision "true" as "conditional" if it assumes a positive base of a power with letters in the exponent.
-
-    For ``a**b``, the condition is a > 0: the power may have a value for a negative a too, if b is a whole number, and
-    nothing is proven about that. Every other decision is returned unchanged.
-    """
+    """Return the decision, with "conditional" in place of "true" if it assumes a > 0 for a power ``a**b``."""
+    # of powers with letters in their exponents
     bases = [base for base in equation.bases if leaves_of([base]) and not is_positive_where_defined(base)]
     if not bases or decision.verdict != "true":
         return decision
     text = range_text([(base, "> 0") for base in bases])
     if not text:  # each base is proven to be positive
         return decision
+    # for a whole number b the power has a value for a negative a too, about which nothing is proven
     required = Requirement("positive_base", text, signs=tuple(bases), strict=tuple(bases))
     return replace(decision, verdict="conditional", requires=(required,), conditions=(required, *decision.conditions))
 
@@ -443,12 +420,11 @@ def for_positive_bases(decision: Decision, equation: Equation) -> Decision:
 
 
 def _conditional_at_branch_cut(decision: Decision, case: _ClaimCase) -> Decision:
-    """Turn "true" into "conditional" if the sides differ at a point on the branch cut of an atan2.
-
-    The proof may divide by a formula that is zero there. For continuous functions that does no harm: sides that are
-    equal on both sides of such a point are equal at it too. But atan2 jumps where its first argument is zero and its
-    second one negative. If no such point is known, the decision is returned unchanged.
+    """Return the decision, with "conditional" in place of "true" if the sides differ at a point on an atan2's
+    branch cut.
     """
+    # the proof may divide by a formula that is zero there: continuous sides that agree around a point agree at it,
+    # but atan2 jumps where its first argument is zero and its second one negative
     symbols = sorted({symbol for side in case.sides for symbol in side.free_symbols}, key=str)
     cuts = sorted({node.args[0] for side in case.sides for node in side.atoms(atan2)}, key=str)
     needs = _needs(case)
@@ -467,17 +443,14 @@ def _conditional_at_branch_cut(decision: Decision, case: _ClaimCase) -> Decision
 
 
 def _points_on_cuts(symbols: Sequence[Expr], cuts: Sequence[Expr]) -> Iterator[dict[Expr, Rational]]:
-    """Yield points with simple coordinates, each of them as it is and then moved to the cuts of atan2.
-
-    ``cuts`` are the first arguments of atan2, which are zero on its cut. A point is moved only along a symbol in which
-    the argument is linear.
-    """
+    """Yield points with simple coordinates, each as it is and then moved to where an argument in ``cuts`` is zero."""
     for values in product((0, -1, 1, Rational(-3, 2)), repeat=len(symbols)):
         point = dict(zip(symbols, map(Rational, values), strict=True))
         yield point
         for cut, symbol in product(cuts, symbols):
             slope = cut.diff(symbol)
             at_zero, steep = (value.subs({**point, symbol: 0}) for value in (cut, slope))
+            # the argument is linear in this symbol
             if not slope.has(symbol) and steep.is_Rational and steep and at_zero.is_Rational:
                 yield {**point, symbol: -at_zero / steep}
 
@@ -496,12 +469,12 @@ def _sides(equation: Equation) -> tuple[list[Expr], list[Expr], Shape]:
 
 
 def _needs(case: _ClaimCase) -> list[Need]:
-    """Return the conditions under which sides and hypotheses of a claim are real numbers, as its text has them.
-
-    The text may have divisors and roots that SymPy has cancelled: ``x/x`` needs x != 0.
+    """Return the conditions under which the sides and hypotheses of a claim are real numbers, as its text has
+    them.
     """
     equation = case.equation
     hypotheses = [as_zero(relation) for relation in equation.hypotheses]
+    # the text may have divisors and roots that SymPy has cancelled: x/x needs x != 0
     stated = _stated_needs(equation)
     return [*needs_of([*case.sides, *hypotheses, *(need.formula for need in stated)]), *stated]
 
@@ -518,8 +491,6 @@ def _stated_needs(equation: Equation) -> list[Need]:
 
 def _decide_large(equation: Equation, lefts: Sequence[Expr], rights: Sequence[Expr], size: int) -> Decision:
     """Return the decision on an equation whose powers are too large to be expanded, such as ``(a - x)**6000``.
-
-    ``lefts`` and ``rights`` are the entries of its sides, and ``size`` is its degree, for the message.
 
     Raises
     ------
@@ -539,10 +510,7 @@ def _decide_large(equation: Equation, lefts: Sequence[Expr], rights: Sequence[Ex
 
 
 def _with_shorter_powers(equation: Equation, lefts: Sequence[Expr], rights: Sequence[Expr]) -> Decision | None:
-    """Return the decision "true" on an equation that holds with letters in place of its large powers; or None.
-
-    ``lefts`` and ``rights`` are the entries of its sides. Matrices and equations with hypotheses are not tried.
-    """
+    """Return the decision "true" if an equation holds with letters in place of its large powers, or None."""
     if equation.hypotheses or len(lefts) > 1:
         return None
     formulas = [lefts[0], rights[0], *equation.divisors, *equation.radicands]
@@ -567,15 +535,12 @@ def _with_shorter_powers(equation: Equation, lefts: Sequence[Expr], rights: Sequ
 
 
 def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
-    """Return ``nonzero`` (text -> formula that must not be zero) without the formulas that need not be stated.
-
-    These are formulas that never vanish, as ``sin(a)**2 + cos(a)**2``, and powers of others, as ``sin(a)**2*cos(b)**2 +
-    cos(a)**2*cos(b)**2`` if cos(b) is there.
-    """
+    """Return the formulas that must not be zero, by their texts, without superfluous ones."""
     remaining = {}
     for text, form in nonzero.items():
         value = normal_form(form) if form.is_Add and _pieces(form) < MOST_PIECES else form
         base, _ = value.as_base_exp()
+        # sin(a)**2 + cos(a)**2 never vanishes, and cos(b)**2*(sin(a)**2 + cos(a)**2) follows from cos(b)
         if not (value.is_number and value != 0) and (base == form or as_text(base) not in nonzero):
             remaining[text] = form
     return remaining
@@ -586,13 +551,10 @@ MOST_PIECES = 60
 
 
 def _shorter(first: Expr, second: Expr) -> Expr:
-    """Return that one of two formulas for the same divisor which is easier to read in a printed condition.
-
-    If one has more than MUCH_LARGER times as many symbols and operations as the other, the other one is returned,
-    without writing both as text. Otherwise it is the one with the shorter text.
-    """
+    """Return the more readable one of two formulas for the same divisor."""
     few, many = sorted((first, second), key=_pieces)
     if _pieces(many) > MUCH_LARGER * _pieces(few):
+        # a much larger formula is not even written as text
         return few
     return min(first, second, key=lambda formula: len(written(formula)))
 
@@ -604,17 +566,13 @@ def _pieces(formula: Expr) -> int:
 def _branches(
     ring: FormulaRing, numerators: Sequence[PolyElement]
 ) -> tuple[list[Requirement] | None, tuple[FormulaRing, ...]]:
-    """Return (conditions, rings): conditions on signs that make a claim true, and the rings in which proofs computed.
-
-    ``numerators`` are those of left minus right, as polynomials of ``ring``. The conditions are [] if the claim is true
-    without any, and None if no such conditions are known. A proof may need a larger ring than ``ring``, for example one
-    that contains the angle of an arcsine; its divisors become conditions too.
-    """
+    """Return conditions on signs that make a claim true (None if none are known), and the rings of the proofs."""
     try:
         branches = branch_requirements(ring, numerators) if ring.roots else None
     except TooLarge:
         return None, ()
     if branches is None and len(numerators) == 1:
+        # a proof may need a larger ring, for example with the angle of an arcsine; its divisors become conditions too
         for lift in lifts(ring, numerators[0]):
             branches = branch_requirements(lift.ring, [poly for poly in lift.numerators if poly])
             if branches is not None:
@@ -625,6 +583,7 @@ def _branches(
             ends += [(end, "> 0") for end in within.positive if not end.is_positive]
             text, signs = range_text(ends), tuple(end for end, _ in ends)
             required = Requirement("principal_value", text, signs=signs, strict=within.positive)
+            # no condition is needed if the text is empty
             return [required] if text else [], within.rings
     return branches, ()
 

@@ -6,16 +6,15 @@ from sympy import Abs, Add, Expr, Mul, Pow
 __all__ = ["surely_nonnegative"]
 
 MOST_TERMS_OF_SQUARE = 40
-"""The most terms of a sum that is factored to see if it is a square."""
+"""The most terms of a sum that is factored, since it may be a square."""
 
 
 def surely_nonnegative(value: Expr) -> bool:
-    """Return whether the form of a real formula shows that it is never negative: True for ``x**2 + abs(y)``.
-
-    Its square roots are assumed to be real. False means only that the form does not show it.
-    """
+    """Return whether a real formula is never negative by its form, as ``x**2 + abs(y)`` is."""
+    # False means only that the form does not show it
     if value.is_nonnegative or isinstance(value, Abs | sympy.exp):
         return True
+    # square roots are real here
     if isinstance(value, Pow) and value.exp.is_Rational:
         even = value.exp.q == 1 and value.exp.p % 2 == 0
         return bool(even or value.exp.q % 2 == 0 or surely_nonnegative(value.base))

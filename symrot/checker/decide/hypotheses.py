@@ -1,8 +1,7 @@
 """The hypotheses of a claim: points where they hold, and whether they imply the claim or can hold at all.
 
-A claim under hypotheses that hold nowhere, or about sides that are defined nowhere, says nothing. It is refused if that
-can be proven. It is undecided if no point is known at which the sides are real numbers and the hypotheses hold
-(:mod:`symrot.exact.domain.known_points`).
+A claim says nothing if its hypotheses hold nowhere, or if its sides are real nowhere: it is refused if that can be
+proven, and undecided if no point is known at which it says something.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -35,10 +34,10 @@ from symrot.exact.ring.ring import FormulaRing
 __all__ = ["Hypotheses"]
 
 FEW = 24
-"""The number of points that are drawn before proofs are tried, which cost more."""
+"""The number of points that are drawn before proofs, which take longer, are tried."""
 
 CANDIDATES = 8
-"""The number of points where the sides differ; the one with the shortest numbers becomes the counterexample."""
+"""The number of points at which the sides differ before the shortest becomes the counterexample."""
 
 OTHER_VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (2, 1), (1, 2), (-1, 1), (3, 1), (-1, 3), (5, 7), (-3, 2)))
 """Values for symbols that occur in no hypothesis."""
@@ -75,12 +74,10 @@ class Hypotheses:
         return real_points(self.constraints)
 
     def points(self, attempts: int = ATTEMPTS) -> Iterator[RealPoint]:
-        """Yield points that obey all constraints: one for each of the ``attempts`` random drawings that succeeds.
-
-        Each point is drawn once and stored for later calls.
-        """
+        """Yield random points that obey all constraints, from at most ``attempts`` drawings."""
         number = 0
         while number < attempts:
+            # each point is drawn once and stored for later calls
             if number == len(self._drawn):
                 self._drawn.append(next(self._source, None))
             point = self._drawn[number]
@@ -132,9 +129,8 @@ class Hypotheses:
                 )
 
     def refuse_if_nowhere(self) -> None:
-        """Raise InputError if the ranges of formulas show that the sides are real nowhere, as ``sqrt(-1 - x**2)``.
-
-        Raise it, too, if they show that a hypothesis holds nowhere.
+        """Raise InputError if ranges show that a side is real nowhere, as ``sqrt(-1 - x**2)``, or that a
+        hypothesis holds nowhere.
         """
         for need in self.needs:
             if fails_everywhere(need):
@@ -146,11 +142,8 @@ class Hypotheses:
                 raise InputError(f"the hypotheses hold at no real point: {contradiction}")
 
     def _polynomial_core(self, needs: Sequence[Need]) -> bool:
-        """Return whether points that meet all ``needs`` are proven to exist in every neighbourhood, without a search.
-
-        That is so if each need says that a divisor is nonzero, as ``x != 0``, and if :func:`is_dense` shows that the
-        points where no divisor vanishes are dense.
-        """
+        """Return whether points that meet all ``needs`` provably exist in every neighbourhood."""
+        # the points where no divisor vanishes are dense; no other need than x != 0 may restrict them
         return is_dense(self.ring) and all(need.sign == "!= 0" for need in needs)
 
     def _true_number(self, need: Need) -> bool:
@@ -171,11 +164,8 @@ class Hypotheses:
         return zero or holds(need, {})
 
     def _drawn_point(self, needs: Sequence[Need], attempts: int) -> bool:
-        """Return whether a random point was found that obeys the hypotheses exactly and meets the conditions ``needs``.
-
-        At most ``attempts`` points are tried. The result is False, too, if a hypothesis is not among the constraints
-        that these points obey.
-        """
+        """Return whether one of ``attempts`` random points obeys the hypotheses exactly and meets ``needs``."""
+        # the points need not obey a hypothesis that is not among the constraints
         if not self.constraints.complete:
             return False
         formulas = [need.formula for need in needs]
@@ -186,14 +176,12 @@ class Hypotheses:
         return False
 
     def _values(self, point: RealPoint) -> dict[Expr, Expr]:
-        """Return the values of symbols at ``point``, which has values for the unknowns of the ring.
-
-        An angle theta has a value too: the point has those of its sine and cosine, of which atan2 gives theta.
-        """
+        """Return the values of symbols and angles at a point of the ring."""
         values = {leaf: point.number(point.values[n]) for leaf, n in self.ring.symbols.items() if n in point.values}
         for atom, place in self.ring.sines.items():
             if place in point.values and is_leaf(atom):
                 sine, cosine = (point.number(point.values[n]) for n in (place, self.ring.cosines[atom]))
+                # the point has values for sin(theta) and cos(theta), of which atan2 gives theta
                 values[atom] = atan2(sine, cosine) * atom / base_angle(atom, self.ring.bases[atom])
         return values
 
@@ -227,28 +215,26 @@ class Hypotheses:
         raise InputError(f"the hypotheses hold at no real point{divisors}: {reason}")
 
     def entails(self, numerators: Iterable[PolyElement]) -> bool:
-        """Return whether the hypotheses imply that all ``numerators``, those of left - right, provably vanish.
-
-        Then the claim follows. The result is False without hypotheses.
+        """Return whether the hypotheses provably make all ``numerators`` of left minus right zero; False without
+        hypotheses.
         """
         target = self.constraints.ring
         return self.present and all(vanishes_on(self.constraints, poly.set_ring(target)) for poly in numerators)
 
     def consistent_with(self, zeros: Sequence[Expr]) -> bool:
-        """Return False if the formulas ``zeros`` provably cannot all be zero under the hypotheses; otherwise True.
-
-        ``zeros`` are the formulas of a condition: one that contradicts the hypotheses is not offered.
+        """Return whether the formulas ``zeros`` may all be zero under the hypotheses: False if that is provably
+        impossible.
         """
         if not self.present or not zeros:
             return True
+        # a condition that contradicts the hypotheses is not offered
         target = self.constraints.ring
         added = [self.ring.ratio(zero).numerator.set_ring(target) for zero in zeros]
         return infeasibility_proof(replace(self.constraints, zeros=(*self.constraints.zeros, *added))) is None
 
     def checked(self, search: Search) -> Search:
-        """Return a search for counterexamples that also drops points at which a divisor of the claim is zero.
-
-        ``search`` is the search for points at which the sides differ.
+        """Return ``search``, a search for counterexamples, without the points at which a divisor of the claim is
+        zero.
         """
 
         def searched(
@@ -273,11 +259,7 @@ class Hypotheses:
     def witness(
         self, ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None, attempts: int = ATTEMPTS
     ) -> Counterexample | None:
-        """Return a counterexample, or None: an exact point that obeys the hypotheses and where left and right differ.
-
-        At most ``attempts`` random points are tried. ``entry`` is (row, column) if the sides are an entry of a matrix;
-        it is copied into the counterexample.
-        """
+        """Return a counterexample, an exact point that obeys the hypotheses and where the sides differ, or None."""
         if not self.present or not self.constraints.real or not self.constraints.complete:
             return None
         residual = ring.difference(left, right).numerator.set_ring(self.constraints.ring)
@@ -292,6 +274,7 @@ class Hypotheses:
                 break
         if not candidates:
             return None
+        # ``entry`` is (row, column) if the sides are an entry of a matrix
         return self._counterexample(min(candidates, key=lambda point: point.size), left, right, entry)
 
     def _counterexample(
@@ -315,10 +298,7 @@ class Hypotheses:
         return ratio.numerator.set_ring(target), self.ring.ratios.denominator(ratio).set_ring(target)
 
     def _named(self, point: RealPoint, used: set[Expr]) -> Iterator[tuple[Expr, Expr]]:
-        """Yield the symbols and angles in ``used``, the parts of the claim's formulas, with their values at a point.
-
-        An angle that is no multiple of pi/2 is stated by its cosine and sine.
-        """
+        """Yield the symbols and angles of a claim with their values at a point."""
         quarters = {(0, 1): 0, (1, 0): 1, (0, -1): 2, (-1, 0): 3}
         for leaf, place in self.ring.symbols.items():
             if leaf in used and place in point.values:
@@ -331,15 +311,15 @@ class Hypotheses:
             if (sine, cosine) in quarters:
                 yield atom, quarters[sine, cosine] * pi / 2 * atom / base
             else:
+                # an angle that is no multiple of pi/2 is stated by its cosine and sine
                 yield cosine_of(base), cosine
                 yield sine_of(base), sine
 
     def _by_enclosures(
         self, left: Expr, right: Expr, entry: tuple[int, int] | None, attempts: int
     ) -> Counterexample | None:
-        """Return a point at which the sides provably differ: intervals around their values, to 50 digits, are disjoint.
-
-        Return None if no such point is known. The arguments are those of :meth:`witness`.
+        """Return a point at which the sides provably differ, since intervals around their values are disjoint, or
+        None.
         """
         leaves = {place: leaf for leaf, place in self.ring.symbols.items()}
         involved = occurring([*self.constraints.zeros, *self.constraints.products])
@@ -360,10 +340,8 @@ class Hypotheses:
         return None
 
     def _other_divisors_nonzero(self, point: RealPoint) -> bool:
-        """Return whether the divisors in ``constraints.unconstrained``, such as tanh(x), are nonzero at a point.
-
-        The random search solves polynomial equations only, so that it does not regard these divisors.
-        """
+        """Return whether the divisors in ``constraints.unconstrained``, such as tanh(x), are nonzero at a point."""
+        # the random search solves polynomial equations only, and ignores these divisors
         factors = [factor.as_expr(*self.ring.generators) for factor in self.constraints.unconstrained]
         values = self._values_for(factors, point)
         enclosures = [enclosure(factor, values) for factor in factors]

@@ -1,11 +1,7 @@
 """Proofs that no real point obeys some constraints, and that a formula vanishes wherever they hold.
 
-A product that must vanish is split into factors (a case for each), a sum of squares into these squares; a Groebner
-basis then replaces the polynomials. A case is impossible if 1 = 0 follows, or if a polynomial is nowhere zero: by its
-form, by the ranges of its unknowns, or because it has no real roots. A formula f vanishes on the constraints if adding
-``z f = 1`` makes all cases impossible (Rabinowitsch). For example, f = x vanishes under each of these constraints:
-x^2 = 0; x^2 + y^2 = 0, for real x and y; x*y = 0, for a positive symbol y. In none of them f itself is a combination
-of the constraints.
+A vanishing product is split into one case per factor, a sum of squares into its squares; a Groebner basis then
+replaces the polynomials. A case is impossible if 1 = 0 follows, or if a polynomial is nowhere zero.
 """
 
 from collections.abc import Sequence
@@ -26,7 +22,7 @@ __all__ = ["Infeasibility", "infeasibility_proof", "vanishes_on"]
 
 MOST_CASES = 40
 MOST_ROUNDS = 6
-"""The most cases of a proof, and the most rounds of splitting in one case."""
+"""The most cases of a proof, and the most Groebner bases in one case."""
 
 MOST_PRODUCTS = 150_000
 """The most products of terms in all Groebner bases of one proof."""
@@ -67,6 +63,8 @@ def infeasibility_proof(constraints: Constraints) -> Infeasibility | None:
 
 def vanishes_on(constraints: Constraints, formula: PolyElement) -> bool:
     """Return whether a polynomial of the same ring provably vanishes at all real points that obey the constraints."""
+    # that is, if z*formula = 1 is impossible (Rabinowitsch): x vanishes under x^2 = 0, under x^2 + y^2 = 0, and under
+    # x*y = 0 for y > 0, though it is no multiple of any of these polynomials
     return infeasibility_proof(replace(constraints, nonzero=(*constraints.nonzero, formula))) is not None
 
 
@@ -88,11 +86,11 @@ class _Prover:
         self.forbidden = {poly.monic() for poly in constraints.nonzero if poly and not poly.is_ground}
 
     def impossible(self, zeros: Sequence[PolyElement], rounds: int = MOST_ROUNDS) -> Infeasibility:
-        """Return the reason why the polynomials ``zeros`` cannot all vanish; raise ``_Undecided`` if no proof is known.
-
-        ``rounds`` is the number of Groebner bases that may still be computed.
+        """Return the reason why the polynomials ``zeros`` cannot all vanish; raise ``_Undecided`` if no proof is
+        known.
         """
         self.cases += 1
+        # ``rounds`` is the number of Groebner bases that may still be computed
         if self.cases > MOST_CASES or rounds == 0:
             raise _Undecided
         simple: list[PolyElement] = []
@@ -123,11 +121,11 @@ class _Prover:
         return "a polynomial that would have to vanish keeps its sign", poly
 
     def factors(self, poly: PolyElement) -> list[PolyElement]:
-        """Return those different factors of a polynomial that may be zero somewhere: x - y for ``(x^2 + 1)*(x - y)``.
-
-        The list is empty if no factor can be zero, and for the polynomial zero.
+        """Return the different factors of a polynomial that may be zero somewhere: x - y for
+        ``(x^2 + 1)*(x - y)``.
         """
         if not poly or poly.is_ground:
+            # a constant has no factor; the caller treats the polynomial zero itself
             return []
         return [
             f
@@ -136,12 +134,9 @@ class _Prover:
         ]
 
     def parts(self, poly: PolyElement) -> list[PolyElement]:
-        """Return simpler polynomials, all of which vanish wherever ``poly`` does.
-
-        They are its terms, without exponents, if all terms have one sign: x and y for ``x^2 + y^4``. They are the
-        linear forms of :meth:`squares` if it is a sum of squares. Otherwise the result is ``poly`` itself.
-        """
+        """Return simpler polynomials that vanish wherever ``poly`` does: x and y for ``x^2 + y^4``."""
         signs = {self.sign_of_term(mono, coefficient) for mono, coefficient in poly.items()}
+        # all terms have one sign
         if len(poly) > 1 and (signs <= {1} or signs <= {-1}):
             radicals = [tuple(min(power, 1) for power in mono) for mono in poly]
             return [self.ring.from_dict({mono: self.ring.domain.one}) for mono in radicals]
@@ -151,10 +146,8 @@ class _Prover:
     # -- signs --------------------------------------------------------------------------------------------------------
 
     def sign_of_term(self, mono: tuple[int, ...], coefficient: Any) -> int:
-        """Return +1 for a term that is never negative, -1 for one that is never positive, 0 for any other term.
-
-        ``mono`` has the exponents of the unknowns, whose signs may be assumed, and ``coefficient`` is the number.
-        """
+        """Return +1 for a term that is never negative, -1 for one that is never positive, otherwise 0."""
+        # ``mono`` has the exponents of the unknowns, some of which have a known sign
         sign = 1 if coefficient > 0 else -1
         for place, power in enumerate(mono):
             if power % 2 and place in self.constraints.negative:
@@ -173,13 +166,11 @@ class _Prover:
         return bool(squares) and any(form.is_ground for _, form in squares)
 
     def keeps_its_sign(self, poly: PolyElement, zeros: Sequence[PolyElement]) -> bool:
+        # nowhere zero: by its form, because it has no real roots, or by the ranges of its unknowns
         return self.one_signed(poly) or self.rootless(poly) or self.out_of_range(poly, zeros)
 
     def rootless(self, poly: PolyElement) -> bool:
-        """Return whether a polynomial in one unknown has no real root with the sign that is assumed for the unknown.
-
-        The roots are counted by Sturm's theorem.
-        """
+        """Return whether a polynomial in one unknown has no real root with the unknown's sign, by Sturm's theorem."""
         places = occurring([poly])
         if len(places) != 1:
             return False
@@ -194,9 +185,8 @@ class _Prover:
         return roots == int(at_zero)
 
     def squares(self, poly: PolyElement) -> list[tuple[Any, PolyElement]]:
-        """Write a polynomial, or its negative, as a sum of d*l^2 with d > 0 and l linear; return the pairs (d, l).
-
-        The list is empty if that is impossible.
+        """Return pairs (d, l) with d > 0 and l linear, whose sum of d*l^2 is a polynomial or its negative; none if
+        impossible.
         """
         if max(map(sum, poly)) != 2:
             return []
@@ -207,10 +197,8 @@ class _Prover:
         return []
 
     def _completed(self, rest: PolyElement) -> list[tuple[Any, PolyElement]]:
-        """Return pairs (d, l) for which the quadratic polynomial ``rest`` is the sum of d*l^2, with d > 0 and linear l.
-
-        Completing the squares gives x^2 + 2*x*y + 3*y^2 = 1*(x + y)^2 + 2*y^2. The list is empty if ``rest`` has no
-        such form.
+        """Return pairs (d, l) with d > 0 and l linear, whose sum of d*l^2 is a quadratic polynomial; none if
+        impossible.
         """
         squares = []
         for place in sorted(occurring([rest])):
@@ -222,6 +210,7 @@ class _Prover:
                 if place in occurring([rest]):
                     return []
                 continue
+            # x^2 + 2*x*y + 3*y^2 = 1*(x + y)^2 + 2*y^2
             form = rest.diff(place).quo_ground(2 * leading)
             squares.append((leading, form))
             rest = rest - form**2 * leading
@@ -232,9 +221,8 @@ class _Prover:
     # -- ranges -------------------------------------------------------------------------------------------------------
 
     def out_of_range(self, poly: PolyElement, zeros: Sequence[PolyElement]) -> bool:
-        """Return whether a polynomial is nonzero for all values that its unknowns can have: x - 2 if x^2 + y^2 = 1.
-
-        The bounds of the unknowns follow from the constraints and from the equations ``zeros``.
+        """Return whether a polynomial is nonzero for all values of its unknowns within their bounds: x - 2 if x^2
+        + y^2 = 1.
         """
         bounds = self.bounds(zeros)
         low, high = Fraction(0), Fraction(0)
@@ -244,11 +232,7 @@ class _Prover:
         return low > 0 or high < 0
 
     def bounds(self, zeros: Sequence[PolyElement]) -> dict[int, tuple[Any, Any]]:
-        """Return the bounds (low, high) of unknowns, by the indices of the unknowns in the ring.
-
-        They follow from the assumed signs, and from equations such as ``x^2 + 2*y^2 = 1``, by which |x| <= 1. The
-        equations are those of the constraints, and ``poly = 0`` for each polynomial in ``zeros``.
-        """
+        """Return the bounds (low, high) of unknowns by their indices: (-1, 1) for x if ``x^2 + 2*y^2 = 1``."""
         bounds: dict[int, tuple[Any, Any]] = {}
         for poly in (*self.constraints.zeros, *zeros):
             constant = poly.coeff(1)
@@ -259,6 +243,7 @@ class _Prover:
                         place = mono.index(max(mono))
                         size = _root_above(_fraction(-constant) / _fraction(poly[mono]), max(mono))
                         bounds[place] = (-size, size)
+        # the known signs
         for place in self.nonnegative:
             bounds[place] = (Fraction(0), bounds.get(place, (0, inf))[1])
         for place in self.constraints.negative:
@@ -271,10 +256,7 @@ def _fraction(value: Any) -> Fraction:
 
 
 def _root_above(value: Fraction, power: int) -> Fraction:
-    """Return a rational number at least as large as the root of order ``power`` of a positive number.
-
-    It is the root itself if that is an integer.
-    """
+    """Return a rational number at least as large as the root of order ``power`` of a positive number."""
     size = Fraction(1)
     while size**power < value:
         size *= 2

@@ -1,7 +1,7 @@
 """Equations with powers too large to be expanded, such as ``(a - x)**6000 == (x - a)**6000``.
 
-Among the large powers of one base u, the smallest becomes a letter Z, and the others become ``Z u^m``. An equation that
-holds for all values of the letters holds for the powers too. A false equation is refuted at a point with small numbers.
+Among the powers of a base u, the smallest becomes a letter Z, and others become ``Z u^m``. An equation that holds for
+all values of the letters holds for the powers. A false one is refuted at a point.
 """
 
 from collections.abc import Mapping, Sequence
@@ -24,13 +24,13 @@ from symrot.exact.intervals import DIGITS, enclosure
 __all__ = ["LARGEST_DEGREE", "ShorterPowers", "degree_of", "point_of_difference", "shorter_powers"]
 
 LARGEST_DEGREE = 240
-"""The largest degree of a side in its symbols, sines and cosines; a formula of larger degree is not expanded."""
+"""The largest degree in symbols, sines and cosines of a formula that is expanded."""
 
 LARGEST_EXPANDED = 64
-"""Powers are replaced if their exponent, times the degree of their base, is larger."""
+"""The largest product of an exponent and the degree of its base for which a power is not replaced."""
 
 HIGHEST_OF_BASE = 4
-"""The highest power of one base that another base is compared with."""
+"""The highest power of a base that is compared with another base."""
 
 MOST_POINTS = 500
 MOST_BASES = 12
@@ -41,17 +41,15 @@ LONGEST_WHOLE_NUMBER = 40
 """The most digits of a whole number that is written exactly."""
 
 DIGITS_WRITTEN = (10, 20, 30, 40, 50)
-"""Numbers of digits for other numbers, of which the smallest that shows a difference of the sides is used."""
+"""Numbers of digits for a pair of values, from which the first is used that shows a difference."""
 
 
 # -- the degree of formulas -------------------------------------------------------------------------------------------
 
 
 def degree_of(formulas: Sequence[Expr]) -> int:
-    """Return an upper bound on the degree that any of ``formulas`` has when it is multiplied out.
-
-    The degree counts symbols, sines and cosines. It shows early that an expansion would take too long.
-    """
+    """Return an upper bound on the degree of multiplied out ``formulas`` in symbols, sines and cosines."""
+    # a large degree shows early that an expansion would take too long
     plain = sum(map(_size, formulas)) <= LARGEST_DEGREE
     bases = {} if plain else _base_multiples(formulas)
     known: dict[Expr, int] = {}
@@ -63,10 +61,8 @@ def _size(formula: Expr) -> int:
 
 
 def _base_multiples(formulas: Sequence[Expr]) -> Mapping[Expr, Fraction]:
-    """Return, for each symbol in an angle or exponent, the largest number of which all its coefficients are multiples.
-
-    For ``sin(x/2)`` and ``sin(3*x)`` this is 1/2 for x: then the degree of ``sin(3*x)``, in the sine and cosine of x/2,
-    is 6.
+    """Return, by symbol, the largest number of which its coefficients in angles are multiples: 1/2 for sin(x/2)
+    and sin(3*x).
     """
     arguments = {
         node.args[0]
@@ -74,13 +70,14 @@ def _base_multiples(formulas: Sequence[Expr]) -> Mapping[Expr, Fraction]:
         for node in preorder_traversal(formula)
         if node.is_Function and len(node.args) == 1
     }
+    # in the sine and cosine of x/2, sin(3*x) has the degree 6
     return base_coefficients(linear_form(argument, turns=False) for argument in arguments)
 
 
 def _degree(node: Expr, known: dict[Expr, int], bases: Mapping[Expr, Fraction]) -> int:
     """Return an upper bound on the degree of a formula's numerator plus that of its denominator.
 
-    ``known`` stores results; ``bases`` is explained in :func:`_multiple`.
+    ``known`` stores results; ``bases`` are those of :func:`_base_multiples`.
     """
     if node not in known:
         below = [_degree(part, known, bases) for part in node.args]
@@ -98,18 +95,16 @@ def _degree(node: Expr, known: dict[Expr, int], bases: Mapping[Expr, Fraction]) 
 
 
 def _multiple(argument: Expr, bases: Mapping[Expr, Fraction]) -> int:
-    """Estimate the degree of the sine of an angle as a polynomial in sines and cosines of its symbols: 5 for 3*x + y/2.
-
-    A term (p/q)*x adds p*q: 3 for 3*x and 2 for y/2. ``bases`` maps y to 1/2 if the polynomials already use sin(y/2) in
-    place of sin(y). Then the term c*y adds c divided by that number: 1 for y/2, and 2 for y.
-    """
+    """Return an estimate of the degree of an angle's sine in sines and cosines of its symbols: 5 for 3*x + y/2."""
     total = 0
     for term in argument.as_ordered_terms() if argument.is_Add else [argument]:
         number, atom = term.as_coeff_Mul()
         constant = atom is pi and cyclotomic.needs_cyclotomic_field(int(number.q))
         if atom in bases and number.is_Rational:
+            # where sin(y/2) already replaces sin(y), so that y is mapped to 1/2, c*y adds 2*c
             total += abs(int(Fraction(int(number.p), int(number.q)) / bases[atom]))
         else:
+            # (p/q)*x adds p*q: 3 for 3*x, 2 for y/2
             total += abs(int(number.p)) * int(number.q) if number.is_Rational and not constant else 1
     return total
 
@@ -133,18 +128,16 @@ class ShorterPowers:
 
 
 def shorter_powers(formulas: Sequence[Expr]) -> ShorterPowers | None:
-    """Return formulas with letters in place of large powers, such as Z for ``(a - x)**6000``.
-
-    A base that is a power of another one becomes that power: ``(1 - cos(x)**2)**64`` becomes ``sin(x)**128`` if there
-    is another power of the sine. Return None if no power is large, or if the large ones have too many different bases.
-    """
+    """Return formulas with letters in place of large powers, such as Z for ``(a - x)**6000``, or None."""
     powers = {node for formula in formulas for node in formula.atoms(Pow) if node.exp.is_Integer}
     large = {node for node in powers if abs(node.exp) * max(1, _size(node.base)) > LARGEST_EXPANDED}
     bases: dict[Expr, dict[Expr, int]] = {}
     for base in sorted({node.base for node in large}, key=lambda base: (_size(base), str(base))):
+        # with another power of sin(x), (1 - cos(x)**2)**64 becomes sin(x)**128
         same, power = next(((other, power) for other in bases for power in range(1, HIGHEST_OF_BASE + 1)
                             if _equal_up_to_sign(base, other**power)), (base, 1))  # fmt: skip
         bases.setdefault(same, {})[base] = power
+    # there is no large power, or there are too many different bases
     if not large or len(bases) > MOST_BASES:
         return None
     values: dict[Expr, Expr] = {}
@@ -170,9 +163,8 @@ def _equal_up_to_sign(first: Expr, second: Expr) -> bool:
 
 
 def point_of_difference(left: Expr, right: Expr, stated: Sequence[Need]) -> Counterexample | None:
-    """Return a point with small numbers at which the sides differ and all conditions ``stated`` are met, or None.
-
-    The sides must also have real values there.
+    """Return a point with small numbers at which the sides are real and differ, and ``stated`` conditions hold, or
+    None.
     """
     leaves = leaves_of([left, right, *(need.formula for need in stated)])
     needs = [*needs_of([left, right]), *stated]
@@ -188,9 +180,8 @@ def point_of_difference(left: Expr, right: Expr, stated: Sequence[Need]) -> Coun
 
 
 def _written(value: Any, digits: int) -> str:
-    """Return an interval around a value as text: a short integer if it is exact, else the first ``digits`` digits.
-
-    Digits are followed by dots, as in ``3.1416..``.
+    """Return the middle of an interval as text: a short integer if it is exact, otherwise ``digits`` digits, as
+    ``3.1416..``.
     """
     middle = mpf(value.mid)
     if value.a == value.b and middle == int(middle) and len(str(int(middle))) <= LONGEST_WHOLE_NUMBER:

@@ -1,6 +1,6 @@
 """Rational points of quadrics, which are the zeros of polynomials of degree 2.
 
-A search gives one point with simple coordinates; all other points lie on straight lines through it.
+A search gives one simple point; all other points lie on straight lines through it.
 """
 
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ SIMPLE = tuple(
 """Values that coordinates may have, the simplest first."""
 
 TRIES = 60
-"""The most simple points tried on one quadric, and the most lines tried through one point of it."""
+"""The most simple points that are tried on a quadric, and the most lines through one of them."""
 
 
 def rational_square_root(value: Any) -> Any:
@@ -59,10 +59,7 @@ def point_of_quadric(poly: PolyElement, places: Sequence[int], source: Random) -
 
 
 def _simple_point(poly: PolyElement, places: Sequence[int], source: Random) -> dict[int, Any] | None:
-    """Return a rational zero of a polynomial of degree 2, or None; all coordinates but one are numbers of few digits.
-
-    The arguments are those of :func:`point_of_quadric`.
-    """
+    """Return a rational zero of a polynomial of degree 2, with few digits in all coordinates but one, or None."""
     for attempt in range(TRIES):
         last = source.choice(places)
         pool = SIMPLE[: 3 + attempt // 4]

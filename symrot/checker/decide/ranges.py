@@ -1,8 +1,7 @@
-"""Conditions on signs as text, as a book writes them: ``0 <= x <= pi`` instead of ``x >= 0 and pi - x >= 0``.
+"""Conditions on signs as text, as a book writes them: ``0 <= x <= pi`` for ``x >= 0 and pi - x >= 0``.
 
-A condition is a pair (formula, sign) with the sign ``">= 0"``, ``"> 0"`` or ``"!= 0"``. Each formula is factored;
-factors of known sign are left out, bounds of one quantity are joined, and conditions that hold everywhere or follow
-from the others are dropped. The text holds exactly where the conditions hold and their formulas have values.
+A condition is a pair (formula, sign); signs are ``">= 0"``, ``"> 0"`` and ``"!= 0"``. Conditions that follow from
+others are dropped. The text holds where the conditions hold and their formulas have values.
 """
 
 import re
@@ -27,16 +26,16 @@ from symrot.exact.size import pieces
 __all__ = ["condition_texts", "follow", "positive_symbols", "range_text", "with_domain"]
 
 MOST_PIECES = 80
-"""A formula with more symbols and operations is written as it is."""
+"""The most symbols and operations of a formula that is simplified."""
 
 Sign = tuple[Expr, str]
-"""(formula, sign): the condition that the formula is ``"> 0"``, ``">= 0"`` or ``"!= 0"``."""
+"""A condition (formula, sign): the formula is ``"> 0"``, ``">= 0"`` or ``"!= 0"``."""
 
 
 def range_text(signs: Sequence[Sign], divided: bool = True) -> str:
-    """Return conditions as text, joined by ``and``; the text is empty if they hold everywhere.
+    """Return conditions as text, joined by ``and``; empty if they hold everywhere.
 
-    With ``divided=False`` the text does not say that divisors are nonzero.
+    Without ``divided``, the text does not mention that divisors are nonzero.
 
     Examples
     --------
@@ -54,14 +53,10 @@ def follow(signs: Sequence[Sign], known: Sequence[Sign]) -> bool:
 
 
 def condition_texts(conditions: Iterable[Any]) -> tuple[str, ...]:
-    """Return the conditions of a decision as texts, such as ``"x >= 0"``.
-
-    First come the texts of the :class:`Requirement` objects, which make the claim true, then those of the other
-    conditions, which say where the sides are defined. If there is exactly one requirement, other conditions that follow
-    from it are left out.
-    """
+    """Return the conditions of a decision as texts, such as ``"x >= 0"``: first those that make the claim true."""
     conditions = list(conditions)
     required = [each for each in conditions if isinstance(each, Requirement)]
+    # conditions that follow from the only requirement are left out
     assumed = required[0].conditions if len(required) == 1 else []
     texts = _texts(_Conditions.of([*assumed, *_signs(conditions)]))
     stated = required[0].text.split(" and ") if assumed else []
@@ -70,13 +65,12 @@ def condition_texts(conditions: Iterable[Any]) -> tuple[str, ...]:
 
 
 _EMPTY_RANGE = re.compile(r"^(.+) < (\w+) < \1$")
-"""A range without a number, such as ``0 < x < 0``; two conditions that contradict each other are easier to read."""
+"""A range without a number, such as ``0 < x < 0``, which is easier to read as two conditions."""
 
 
 def positive_symbols(conditions: Iterable[Any]) -> dict[Expr, Expr]:
-    """Return the symbols that conditions make positive or nonnegative, each with a symbol to put in its place.
-
-    SymPy knows the sign of the new symbol: it has the same name and the assumption ``positive`` or ``nonnegative``.
+    """Return the symbols that conditions make positive or nonnegative, each with a SymPy symbol that has this
+    assumption.
     """
     signed = _with_positive_symbols(_Conditions.of(_signs(conditions)).ranges)
     return {
@@ -87,9 +81,8 @@ def positive_symbols(conditions: Iterable[Any]) -> dict[Expr, Expr]:
 
 
 def with_domain(requirement: Requirement, conditions: Iterable[Any]) -> Requirement:
-    """Return a requirement whose text also contains what the conditions say about its quantities.
-
-    ``x >= 0`` under the condition ``x != 0`` becomes ``x > 0``.
+    """Return a requirement that includes the conditions on its quantities: ``x > 0`` for ``x >= 0`` under
+    ``x != 0``.
     """
     signs = _signs(conditions)
     if not requirement.signs or not signs:
@@ -138,10 +131,7 @@ def _nonnegative_at_zero(product: Expr, factor: Expr) -> bool:
 
 
 def _with_plain_functions(formula: Expr) -> Expr:
-    """Return a formula with the arguments of its functions in normal form, so that SymPy can evaluate these.
-
-    ``cos(sin(x)/cos(x) - tan(x))`` becomes ``cos(0)``, which is 1.
-    """
+    """Return a formula with simplified arguments of functions: ``cos(0)`` for ``cos(sin(x)/cos(x) - tan(x))``."""
     try:
         return with_plain_arguments([formula])[0][0]
     except InputError:
@@ -153,10 +143,8 @@ def _leaves(formula: Expr) -> list[Expr]:
 
 
 def _factors(formula: Expr) -> tuple[int, dict[Expr, int]] | None:
-    """Factor a formula; return (sign, factor -> power), where sign is 1 or -1, and positive numbers are dropped.
-
-    ``_factors(-4*x**2/y)`` is (-1, {x: 2, y: -1}). None is returned if SymPy cannot factor the formula, or if the sign
-    of a number in it is not known.
+    """Return the sign and the factors of a formula, (-1, {x: 2, y: -1}) for ``-4*x**2/y``; None if these are
+    unknown.
     """
     above, below = sympy.fraction(sympy.together(formula))
     sign, powers = 1, dict[Expr, int]()
@@ -164,9 +152,11 @@ def _factors(formula: Expr) -> tuple[int, dict[Expr, int]] | None:
         try:
             constant, pairs = sympy.factor_list(part)
         except PolynomialError:
+            # SymPy cannot factor it
             return None
         if constant.is_zero or not constant.is_real:
             return None
+        # positive numbers are dropped
         sign *= 1 if constant > 0 else -1
         for factor, power in pairs:
             if factor.is_number:
@@ -185,15 +175,15 @@ def _factors(formula: Expr) -> tuple[int, dict[Expr, int]] | None:
 
 
 def _stronger_term(factor: Expr) -> Expr:
-    """Return the term of a sum of two that gives the sum its sign everywhere: x for ``x + sqrt(x^2 - 1)``.
-
-    Return other formulas unchanged. The square of this term is larger than that of the other one, unless both are zero.
+    """Return the term of a sum of two that gives it its sign everywhere, x for ``x + sqrt(x^2 - 1)``, or
+    ``factor``.
     """
     if not factor.is_Add or len(factor.args) != 2 or not factor.has(Abs, sympy.Pow):
         return factor
     for first, second in (factor.args, factor.args[::-1]):
         excess = (first**2 - second**2).expand().replace(Abs, lambda inner: sympy.sqrt(inner**2))
         vanishing = excess.args[0] if excess.is_Pow and excess.is_nonnegative else None
+        # its square exceeds that of the other term, unless both are zero
         if excess.is_positive or (vanishing and vanishing.is_Symbol and first.subs(vanishing, 0) == 0):
             return first
     return factor
@@ -217,10 +207,7 @@ def _always_positive(factor: Expr) -> bool:
 
 
 def _exceeds_absolute(factor: Expr) -> bool:
-    """Return whether a factor has the form ``sqrt(P) + a`` with ``P > a^2``, so that it is positive.
-
-    An example is ``sqrt(x^2 + 1) - x``.
-    """
+    """Return whether a factor is ``sqrt(P) + a`` with ``P > a^2``, and so positive, as ``sqrt(x^2 + 1) - x`` is."""
     roots = [term for term in Add.make_args(factor) if term.is_Pow and term.exp == Rational(1, 2)]
     if len(roots) != 1 or not factor.is_Add:
         return False
@@ -250,12 +237,10 @@ class _Range:
     high_closed: bool = True
 
     def narrow(self, root: Expr, closed: bool, above: bool) -> None:
-        """Add a bound: the quantity is above ``root`` if ``above``, otherwise below it; ``closed``: it may be equal.
-
-        A bound that is weaker than the one so far changes nothing.
-        """
+        """Add a lower (``above``) or an upper bound of the quantity, which the quantity may equal if ``closed``."""
         name = "low" if above else "high"
         known = getattr(self, name)
+        # a weaker bound than the known one changes nothing
         tighter = known is None or ((root - known) if above else (known - root)).is_positive
         if tighter:
             setattr(self, name, root)
@@ -264,15 +249,14 @@ class _Range:
             setattr(self, f"{name}_closed", closed and getattr(self, f"{name}_closed"))
 
     def sign_of(self, root: Expr) -> tuple[int, bool]:
-        """Return (sign, may_vanish) of q - root for a quantity q in this range.
-
-        ``sign`` is 1, -1, or 0 if it is not known; ``may_vanish`` tells whether q may equal ``root``. For the range q
-        >= 2 and the root 2, the result is (1, True).
+        """Return the sign of q - root for q in this range, and whether it may vanish: (1, True) for q >= 2, root
+        2.
         """
         for bound, closed, sign in ((self.low, self.low_closed, 1), (self.high, self.high_closed, -1)):
             distance = None if bound is None else sign * (bound - root)
             if distance is not None and distance.is_nonnegative:
                 return sign, bool(distance.is_zero) and closed
+        # the sign is not known
         return 0, True
 
 
@@ -300,13 +284,10 @@ class _Conditions:
 
     @classmethod
     def of(cls, signs: Sequence[Sign], divided: bool = True) -> "_Conditions":
-        """Return the conditions ``signs`` in their simplest form.
-
-        If ``divided``, ``x/y >= 0`` also gives ``y != 0``. A caller that states the nonzero divisors itself passes
-        False.
-        """
+        """Return the conditions ``signs`` in their simplest form."""
         conditions = cls()
         for formula, sign in signs:
+            # if ``divided``, x/y >= 0 also gives y != 0; other callers state nonzero divisors themselves
             conditions._add(_with_plain_functions(formula), sign, divided)
         conditions._settle()
         return conditions
@@ -350,15 +331,12 @@ class _Conditions:
             self.nonzero[_bound(factor).formula] = None
 
     def _settle(self) -> None:
-        """Simplify each condition on a product of factors until none becomes simpler.
-
-        Factors of known sign are dropped. If one factor remains, the condition becomes a bound on it, in the ranges:
-        ``x*(y - 1) >= 0`` with x > 0 gives y >= 1.
-        """
+        """Simplify each condition on a product as far as possible: ``x*(y - 1) >= 0`` with x > 0 becomes y >= 1."""
         changed = True
         while changed:
             changed = False
             for entry in list(self.products):
+                # a single factor becomes a bound in the ranges
                 simpler = self._simpler(entry)
                 if simpler != entry:
                     self.products.remove(entry)
@@ -376,11 +354,8 @@ class _Conditions:
         }
 
     def _simpler(self, entry: tuple[Mapping[Expr, int], int, str]) -> tuple[Mapping[Expr, int], int, str] | None:
-        """Return the condition ``entry`` without the factors of known sign, or None if it need not be stored any more.
-
-        ``entry`` is (factors, direction, sign), such as ({x: 1, y: 1}, -1, ">= 0") for ``-x*y >= 0``. It need not be
-        stored if it holds everywhere, or if it restricts one quantity to a range: the range is then narrowed instead.
-        """
+        """Return a condition without its factors of known sign, or None if it need not be stored any more."""
+        # ({x: 1, y: 1}, -1, ">= 0") is -x*y >= 0
         factors, direction, sign = entry
         bounds = {factor: _bound(factor) for factor in factors}
         if sign == ">= 0" and all(bound.formula in self.nonzero for bound in bounds.values()):
@@ -391,6 +366,7 @@ class _Conditions:
             self.ranges.setdefault(bound.quantity, self._new_range(bound.quantity)).narrow(
                 bound.root, sign == ">= 0", above
             )
+            # a bound on one quantity narrows its range instead
             return None
         if len({bound.quantity for bound in bounds.values()}) == 1 and self._between(bounds, direction, sign):
             return None
@@ -405,6 +381,7 @@ class _Conditions:
                 continue
             may_vanish = may_vanish or zero
             direction *= known * bound.slope
+        # it holds everywhere
         if not open_factors and direction > 0 and (sign == ">= 0" or not may_vanish):
             return None
         return (open_factors, direction, sign) if open_factors and not may_vanish else (*entry[:2], sign)
@@ -416,12 +393,8 @@ class _Conditions:
         return _Range(Integer(0)) if surely_nonnegative(quantity) else _Range()
 
     def _between(self, bounds: Mapping[Expr, _Bound], direction: int, sign: str) -> bool:
-        """Narrow the range of q to the points from a to b if a condition is ``(q - a)*(b - q) >= 0`` or ``> 0``.
-
-        ``bounds`` has, for each factor, its form slope*(q - root); ``direction`` (1 or -1) times the product of the
-        factors is ``>= 0`` or ``> 0`` according to ``sign``. If the condition has another form, False is returned and
-        nothing changes.
-        """
+        """Narrow the range of q if a condition is ``(q - a)*(b - q) >= 0``, or with ``> 0``; return whether it is."""
+        # each factor is slope*(q - root), and ``direction`` is the factor 1 or -1 of the product
         first, second, *more = sorted(bounds.values(), key=lambda bound: bound.root.evalf())
         if more or direction * first.slope * second.slope > 0:
             return False
@@ -431,22 +404,20 @@ class _Conditions:
         return True
 
     def _excludes(self, formula: Expr) -> bool:
-        """Return whether the ranges imply ``formula != 0`` for a linear formula, so that it need not be printed.
-
-        If the zero is an end of a stored range, this end is removed from the range, and the result is True: with x !=
-        0, ``x >= 0`` becomes ``x > 0``.
-        """
+        """Return whether the ranges imply ``formula != 0``, after a range that ends at its zero has lost this end."""
         bound = _bound(formula)
         if bound.root == 0 and isinstance(bound.quantity, sin | cos) and self._angle_excludes(bound.quantity):
             return True
         if any(self._lies_between(bound, factors, direction) for factors, direction, _ in self.products):
             return True
+        # x >= 0 becomes x > 0
         own = self.ranges.get(bound.quantity)
         if own is None:
             if not isinstance(bound.quantity, sin | cos):
                 return False
             own = self._new_range(bound.quantity)
             return own.sign_of(bound.root) != (0, True) and not own.sign_of(bound.root)[1]
+        # the zero is an end of the range, which then excludes it
         if own.low == bound.root:
             own.low_closed = False
         if own.high == bound.root:
@@ -454,37 +425,32 @@ class _Conditions:
         return bool(own.sign_of(bound.root)[0])
 
     def _lies_between(self, bound: _Bound, factors: Mapping[Expr, int], direction: int) -> bool:
-        """Return whether the condition ``direction * (product of the factors) >= 0`` excludes the point ``bound.root``.
-
-        ``(x - 1)*(x + 1) >= 0`` excludes x = 0, since it excludes all points between -1 and 1.
+        """Return whether a condition on a product excludes the zero of ``bound``, as ``(x - 1)*(x + 1) >= 0``
+        excludes x = 0.
         """
         pair = [_bound(factor) for factor in factors]
         if len(pair) != 2 or any(other.quantity != bound.quantity for other in pair):
             return False
+        # the condition excludes all points between the roots of both factors
         outside = direction * pair[0].slope * pair[1].slope > 0
         return outside and bool(((bound.root - pair[0].root) * (bound.root - pair[1].root)).is_negative)
 
     def grants(self, quantity: Expr, own: _Range) -> bool:
-        """Return whether the condition that ``quantity`` lies in the range ``own`` need not be printed, as it holds.
-
-        Only cosines qualify; for other quantities the result is False. -1 <= cos(u) <= 1 always holds. cos(u) > -1
-        holds if the stored conditions say that cos(u/2) is not zero, and cos(u) < 1 holds if they say that sin(u/2) is
-        not zero.
+        """Return whether a cosine lies in the range ``own`` anyway, so that this need not be printed; False for
+        other quantities.
         """
         if not isinstance(quantity, cos):
             return False
         half = quantity.args[0] / 2
         factors = {factor for product in self.products if product[2] == "> 0" for factor in product[0]}
         known = {*self.nonzero, *factors}
+        # cos(u) > -1 holds if cos(u/2) is not zero, cos(u) < 1 if sin(u/2) is not zero
         below = own.low == -1 and (own.low_closed or cos(half) in known)
         above = own.high == 1 and (own.high_closed or sin(half) in known)
         return below and above
 
     def _angle_excludes(self, function: Expr) -> bool:
-        """Return whether ``function``, a sine or cosine, is nonzero for all values in the range of its angle.
-
-        This is so for sin(x) under the condition 0 < x < pi.
-        """
+        """Return whether a sine or cosine is nonzero in the range of its angle, as sin(x) for 0 < x < pi."""
         angle = _bound(function.args[0])
         own = self.ranges.get(angle.quantity)
         if own is None or own.low is None or own.high is None or angle.slope < 0 or angle.root != 0:
@@ -521,10 +487,8 @@ def _texts(conditions: _Conditions) -> list[str]:
 
 
 def _product_text(factors: Mapping[Expr, int], direction: int, sign: str) -> str:
-    """Return the condition that ``factors``, times ``direction`` (1 or -1), have the given sign, as text.
-
-    ``(x - 1)*(x + 1) >= 0`` becomes ``abs(x) >= 1``.
-    """
+    """Return a condition on the sign of a product as text: ``abs(x) >= 1`` for ``(x - 1)*(x + 1) >= 0``."""
+    # ``direction`` is the factor 1 or -1 of the product
     bounds = [_bound(factor) for factor in factors]
     if len(bounds) == 2:
         first, second = bounds
@@ -549,11 +513,8 @@ def _with_positive_symbols(ranges: Mapping[Expr, _Range]) -> dict[Expr, Expr]:
 
 
 def _holds(formula: Expr, sign: str, positive: Mapping[Expr, Expr]) -> bool:
-    """Return whether a condition follows from the signs of its symbols: ``formula`` x + y with the ``sign`` "> 0", say.
-
-    ``sign`` is "> 0", ">= 0" or "!= 0". ``positive`` has, for each symbol of known sign, a SymPy symbol that has this
-    sign as its assumption.
-    """
+    """Return whether a condition follows from the signs of its symbols, as x + y > 0 from x > 0 and y > 0."""
+    # ``positive`` replaces symbols of known sign by SymPy symbols that have this sign
     value = formula.xreplace(dict(positive))
     if sign == ">= 0":
         return surely_nonnegative(value)
@@ -561,12 +522,10 @@ def _holds(formula: Expr, sign: str, positive: Mapping[Expr, Expr]) -> bool:
 
 
 def _follows(quantity: Expr, own: _Range, positive: Mapping[Expr, Expr]) -> bool:
-    """Return whether the range ``own`` of a compound quantity follows from the signs of its symbols.
-
-    So x + y >= 0 need not be printed beside x >= 0 and y >= 0. ``positive`` is that of :func:`_holds`.
-    """
+    """Return whether a range of a compound quantity follows from the signs of its symbols."""
     if quantity.is_Symbol or own.high is not None or own.low is None:
         return False
+    # x + y >= 0 follows from x >= 0 and y >= 0
     return _holds(quantity - own.low, ">= 0" if own.low_closed else "> 0", positive)
 
 

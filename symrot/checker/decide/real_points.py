@@ -1,9 +1,7 @@
-"""Exact real points that obey constraints: first rational points, then points with algebraic coordinates.
+"""Exact real points that obey constraints: rational points first, then points with algebraic coordinates.
 
-A point is drawn at random, equation by equation. An equation that is linear in an unknown is solved for it. A quadric
-gives points on lines through one of its rational points. A polynomial in one unknown gives its roots. A product
-vanishes with one of its factors. If no equation has such a form, an unknown gets a simple value. Every point is checked
-exactly before it is returned.
+A point is drawn at random, equation by equation. An equation is solved if it is linear in an unknown, a quadric, a
+polynomial in one unknown, or a product; otherwise an unknown gets a simple value. Every point is checked exactly.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -22,14 +20,14 @@ __all__ = ["ATTEMPTS", "RealPoint", "real_points", "value_at"]
 
 ATTEMPTS = 120
 RATIONAL = 60
-"""The most points that are drawn; after the first ``RATIONAL`` of them irrational roots are allowed too."""
+"""The most points that are drawn, and the number of points that are drawn before irrational roots are allowed."""
 
 MOST_STEPS = 60
 MOST_TERMS = 300
 """The most steps of one drawing, and the most terms of its equations."""
 
 MOST_BARREN = 3
-"""The number of times that a quadric may fail to give a point before it is no longer tried."""
+"""The number of failures after which a quadric is not tried any more."""
 
 LARGEST_EXTENSION = 8
 """The largest degree of a field of algebraic numbers."""
@@ -37,8 +35,8 @@ LARGEST_EXTENSION = 8
 LARGEST_NORM, MOST_NORMS = 24, 400
 """The largest norm of a polynomial that is factored over such a field, and the largest sum of norms in a search.
 
-The norm is the degree of the polynomial times the degree of the field. Factoring one of norm 24 takes a fifth of a
-second, one of norm 64 six seconds.
+The norm is the degree of the polynomial times the degree of the field. A norm of 24 takes a fifth of a second, a
+norm of 64 six seconds.
 """
 
 
@@ -211,17 +209,13 @@ class _Drawing:
         return False
 
     def substitution(self) -> bool:
-        """Solve an equation for an unknown that has a number as its coefficient, as ``2*x + y^2 = 1`` for x.
-
-        Return whether there is such an equation.
+        """Solve an equation for an unknown with a number as coefficient, as ``2*x + y^2 = 1`` for x; return
+        whether one exists.
         """
         return self._solve(lambda slope: slope.is_ground)
 
     def fraction(self) -> bool:
-        """Solve an equation that is linear in an unknown, by division, as ``y*x + z = 1`` for x.
-
-        Return whether there is such an equation.
-        """
+        """Solve an equation that is linear in an unknown, as ``y*x + z = 1`` for x; return whether one exists."""
         return self._solve(lambda slope: True)
 
     def _solve(self, fits: Callable[[PolyElement], bool]) -> bool:
@@ -277,12 +271,9 @@ class _Drawing:
         return False
 
     def guess(self) -> bool:
-        """Set one unknown to a simple random number, to reduce the number of unknowns; return True.
-
-        The equation is chosen at random from ``self.zeros``, and the unknown from those that occur in it. True tells
-        the caller that a step was made; a guess is always possible.
-        """
+        """Set one unknown to a simple random number; return True, since that is always possible."""
         poly = self.source.choice(self.zeros)
+        # an unknown of a random equation
         place = self.source.choice(sorted(occurring([poly])))
         self.put({place: self.field.convert(self.drawn(place), QQ)})
         return True
@@ -309,21 +300,18 @@ class _Drawing:
         return self.adjoined(self.source.choice(factors), place)
 
     def spend(self, degree: int) -> None:
-        """Add the cost of factoring a polynomial of this degree; raise _DeadEnd if the sum of costs exceeds the budget.
-
-        Only a polynomial over an algebraic field, with irrational numbers, costs anything.
-        """
+        """Add the cost of factoring a polynomial of this degree; raise _DeadEnd if the sum exceeds the budget."""
         if self.field != QQ:
+            # only polynomials over an algebraic field, with irrational numbers, cost anything
             norm = degree * self.field.mod.degree()
             self.known["norms"] = self.known.get("norms", 0) + norm
             if norm > LARGEST_NORM or self.known["norms"] > MOST_NORMS:
                 raise _DeadEnd
 
     def adjoined(self, factor: PolyElement, place: int) -> Any:
-        """Return an irrational real root of ``factor``, which contains one unknown, with the index ``place``.
+        """Return an irrational root of ``factor``, a polynomial in one unknown, and add it to the number field.
 
-        The root is added to the number field, and the values of the other unknowns are converted to the new field.
-        Raise _DeadEnd if no real root has the sign assumed for the unknown, or if the new field would be too large.
+        _DeadEnd if that is impossible.
         """
         degree = factor.degrees()[place]
         numbers = [
@@ -336,6 +324,7 @@ class _Drawing:
             self.known[key] = Poly([QQ.to_sympy(c) for c in reversed(numbers)], Symbol("x")).real_roots()
         signs = (place in self.constraints.positive | self.constraints.nonnegative, place in self.constraints.negative)
         roots = [r for r in self.known[key] if not (signs[0] and r < 0) and not (signs[1] and r > 0)]
+        # no real root has the sign of the unknown
         if not roots:
             raise _DeadEnd
         root = self.source.choice(roots)
@@ -343,6 +332,7 @@ class _Drawing:
         field = self.known.setdefault(("field", *self.roots), None) or QQ.algebraic_field(*self.roots)
         self.known["field", *self.roots] = field
         self.field, self.ring = field, self.ring.clone(domain=field)
+        # the values of the other unknowns in the new field
         raised = {n: self.field.convert(value, old) for n, value in self.values.items()}
         self.values = raised
         self.zeros = [poly.set_ring(self.ring) for poly in self.zeros]
@@ -359,9 +349,8 @@ def _as_rational(value: Any, field: Any) -> Any:
 
 
 def _eliminated(poly: PolyElement, place: int, above: PolyElement, below: PolyElement) -> PolyElement:
-    """Return a polynomial with ``above/below`` in place of an unknown, times a power of ``below``.
-
-    The power is just so high that the result has no divisor. ``place`` is the index of the unknown.
+    """Return a polynomial with ``above/below`` in place of an unknown, multiplied by a power of ``below`` so that
+    it has no divisor.
     """
     degree = poly.degrees()[place]
     if not degree:
@@ -385,4 +374,4 @@ _ORDERS: tuple[Sequence[_Step], ...] = (
     (_Drawing.factor, _Drawing.univariate, _Drawing.quadric, _Drawing.substitution, _Drawing.guess),
     (_Drawing.factor, _Drawing.univariate, _Drawing.guess),
 )
-"""Orders in which steps are tried, one for each attempt: most systems can be solved in one of them."""
+"""Orders of steps, one for each attempt: in one of them, most systems can be solved."""

@@ -17,10 +17,10 @@ LARGEST_DEGREE = 20
 """The highest degree of a polynomial whose real roots are counted."""
 
 MOST_UNKNOWNS = 12
-"""The most unknowns of a sum that is written as a sum of squares."""
+"""The most unknowns of a polynomial that is written as a sum of squares."""
 
 RANGES = {sympy.sin: (-1, 1), sympy.cos: (-1, 1), sympy.tanh: (-1, 1), sympy.cosh: (1, None), sympy.exp: (0, None)}
-"""Function -> its range over the real numbers; None stands for no bound."""
+"""Maps a function to its range over the real numbers, with None for no bound."""
 
 Bounds = tuple[Expr | None, Expr | None]
 
@@ -75,7 +75,7 @@ def _by_form(formula: Expr, strict: bool) -> bool:
 
 
 def _by_factors(formula: Expr, strict: bool) -> bool:
-    """Return whether the signs of its factors prove that a formula is nonnegative, or positive if ``strict``."""
+    """Return whether the signs of a formula's factors prove it nonnegative, or positive if ``strict``."""
     negative = False
     for factor in formula.args:
         if _one(factor, strict):
@@ -97,9 +97,8 @@ def _one(factor: Expr, strict: bool) -> bool:
 
 
 def _by_range(formula: Expr, strict: bool) -> bool:
-    """Return whether the ranges of its terms prove that a formula is nonnegative, as for ``2 + sin(x)``.
-
-    With ``strict`` it must be proven positive.
+    """Return whether the ranges of a formula's terms prove it nonnegative, or positive if ``strict``: (1, 3) for
+    ``2 + sin(x)``.
     """
     low, _ = _bounds(formula)
     if low is None:
@@ -145,20 +144,18 @@ def _size(formula: Expr) -> Expr | None:
 
 
 def _by_absolute_values(formula: Expr) -> bool:
-    """Return whether absolute values make a formula nonnegative, as |x| + |y| - |x + y| is by the triangle inequality.
-
-    Two methods are tried. If the only negative term is -c|u| and the other terms have a nonnegative sum v, the formula
-    is nonnegative where v^2 - c^2 u^2 is, so this difference of squares is examined in place of the formula. Second,
-    each term c|e| in the formula or the difference is replaced by c*e or by -c*e, which are not larger. If one of the
-    results is nonnegative, the answer is True.
+    """Return whether absolute values make a formula nonnegative, as |x| + |y| - |x + y| is by the triangle
+    inequality.
     """
     terms = Add.make_args(formula)
     negative = [term for term in terms if term.could_extract_minus_sign()]
     if len(negative) == 1:
         coefficient, inner = negative[0].as_coeff_Mul()
         rest = formula - negative[0]
+        # v - c|u| with v >= 0 is nonnegative where v^2 - c^2 u^2 is
         if isinstance(inner, Abs) and surely_nonnegative(rest):
             return _without_absolute(sympy.expand(rest**2 - coefficient**2 * inner.args[0] ** 2))
+    # terms c|e| are replaced by c*e or -c*e, which are not larger: it suffices that one result is nonnegative
     return _without_absolute(formula)
 
 
@@ -180,9 +177,8 @@ def _without_absolute(formula: Expr) -> bool:
 
 
 def _by_roots(formula: Expr, strict: bool) -> bool:
-    """Return whether counting real roots proves that a polynomial in one unknown is never negative.
-
-    With ``strict`` it must be proven positive.
+    """Return whether counting real roots proves a polynomial in one unknown nonnegative, or positive if
+    ``strict``.
     """
     symbols = formula.free_symbols
     if len(symbols) != 1 or not formula.is_polynomial(*symbols):
@@ -194,9 +190,8 @@ def _by_roots(formula: Expr, strict: bool) -> bool:
 
 
 def _by_squares(formula: Expr, strict: bool) -> bool:
-    """Return whether a polynomial of degree two is a sum of squares plus terms that are nonnegative by their signs.
-
-    With ``strict`` it must be positive.
+    """Return whether a quadratic polynomial is a sum of squares and nonnegative terms; with ``strict``, whether it
+    is positive.
     """
     try:
         poly = Poly(formula)
@@ -214,10 +209,7 @@ def _sign(unknown: Expr) -> int:
 
 
 def _gram(poly: Poly) -> list[list[Rational]]:
-    """Return the symmetric matrix of a quadratic polynomial in the vector (1, x, y, ..) of its unknowns x, y, ...
-
-    For x^2 + 4 x it is [[0, 2], [2, 1]].
-    """
+    """Return the symmetric matrix of a quadratic polynomial in (1, x, y, ..): [[0, 2], [2, 1]] for x^2 + 4 x."""
     size = len(poly.gens) + 1
     gram = [[S.Zero] * size for _ in range(size)]
     for powers, coefficient in poly.terms():
@@ -231,12 +223,11 @@ def _gram(poly: Poly) -> list[list[Rational]]:
 def _is_definite(gram: Sequence[Sequence[Rational]], strict: bool, sign: Callable[[int], int]) -> bool:
     """Return whether a quadratic form is never negative (and never zero if ``strict``), by completing squares.
 
-    ``gram`` is the matrix of the form in (1, u0, u1, ..). ``sign(n)`` is 1 if the unknown with the index n is known to
-    be nonnegative, else 0. Linear terms with a coefficient >= 0 in such an unknown are left out: they only increase the
-    value.
+    ``gram`` is its symmetric matrix.
     """
     rows = [list(row) for row in gram]
     for place in range(1, len(rows)):
+        # a linear term with a coefficient >= 0 in a nonnegative unknown only increases the value
         if rows[0][place] > 0 and sign(place - 1) > 0:
             rows[0][place] = rows[place][0] = S.Zero
     for place in reversed(range(1, len(rows))):

@@ -4,12 +4,10 @@ __all__ = ["is_unordered"]
 
 
 def is_unordered(reason: BaseException | None) -> bool:
-    """Return whether SymPy raised an error because it could not tell which of two numbers is larger.
-
-    ``reason`` is the error; errors before it, which it replaced, are examined too.
-    """
+    """Return whether SymPy raised an error because it could not tell which of two numbers is larger."""
     while reason is not None:
         if isinstance(reason, TypeError) and "truth value of Relational" in str(reason):
             return True
+        # the error that this one replaced
         reason = reason.__context__
     return False

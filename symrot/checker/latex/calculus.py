@@ -48,11 +48,7 @@ class CalculusPart(NamesPart):
         return self.trigonometric(replace(font, text=command)) if command in FUNCTIONS else super().spelled(font)
 
     def loose_argument(self, function: tree.Node) -> tuple[Node, Node | None]:
-        r"""Parse a function's argument without brackets, such as ``2\theta``; return its tree and the call's exponent.
-
-        The exponent is 2 if ``\sin\theta^2`` is read as (sin theta)^2; it is None if the power belongs to the argument
-        or if there is none.
-        """
+        r"""Parse a function's argument without brackets, ``2\theta``; return it, and the call's exponent or None."""
         expected = f"brackets around the argument of {function.text}"
         if self.at("-") and self.flips is None:
             raise self.fail(expected)
@@ -60,6 +56,7 @@ class CalculusPart(NamesPart):
         factors, power = [self.factor()], None
         is_power = factors[0].kind == "power"
         if is_power and self.doubtful("power of argument", function, self.peek().start, expected):
+            # \sin\theta^2 as (sin theta)^2
             factors, power = [factors[0].args[0]], factors[0].args[1]
         only_number = factors[0].kind == "number" or (factors[0].kind == "product" and not any(
             piece.kind in ("name", "call") for _, piece in walk(factors[0])))  # fmt: skip
@@ -71,9 +68,9 @@ class CalculusPart(NamesPart):
     def further_factors(self, function: tree.Node, expected: str, required: bool) -> list[Node]:
         r"""Parse and return the factors after the first one in an argument without brackets: t in ``\sin\omega t``.
 
-        ``function`` is the name of the function. If ``required``, at least one more factor is parsed. ``expected`` are
-        words for the error message about an ambiguous text.
+        ``expected`` are words for an error message.
         """
+        # after a number alone, one more factor is required
         factors = [self.factor()] if required else []
         first = self.items[self.index - 1]
         if self.at("t") and not self.is_spaced() and self.peek(1).text not in ("^", "_"):
@@ -160,7 +157,7 @@ class CalculusPart(NamesPart):
         return operand
 
     def differentiated(self) -> tuple[int, Node | None]:
-        r"""Parse ``d^n X``, the numerator of a derivative; return its order n, and the tree of the quantity X.
+        r"""Parse ``d^n X``, the numerator of a derivative; return n and X.
 
         X is None if it follows the fraction, as in ``\frac{d}{dt} X``.
         """

@@ -43,18 +43,14 @@ WRAPPERS = (
 
 @dataclass(frozen=True)
 class Names:
-    """The names that a claim declares, by kind.
-
-    ``matrices`` includes vectors; ``columns`` lists those matrices again that have one column. ``others`` are names of
-    scalars that the claim defines by a formula. If ``implied``, undeclared names are allowed too.
-    """
+    """The names that a claim declares, by kind."""
 
     symbols: Collection[str] = ()
     functions: Collection[str] = ()
-    matrices: Collection[str] = ()
-    columns: Collection[str] = ()
-    others: Collection[str] = ()
-    implied: bool = True
+    matrices: Collection[str] = ()  # vectors included
+    columns: Collection[str] = ()  # those matrices that have one column
+    others: Collection[str] = ()  # scalars that the claim defines by a formula
+    implied: bool = True  # whether undeclared names are allowed
 
     def __contains__(self, name: str) -> bool:
         return name in {*self.symbols, *self.functions, *self.matrices, *self.others}
@@ -159,10 +155,7 @@ class Cursor(cursor.Cursor):
         super().__init__(source, where, read(source, where, pieces))
 
     def doubtful(self, kind: str, item: tree.Node, stop: int, expected: str, place: tree.Node | None = None) -> bool:
-        """Record an ambiguous place of the text; return whether its key is among ``self.flips``.
-
-        If so, the parser must give the place its less usual meaning. The key is (``kind``, start of ``item``), where
-        ``kind`` is the kind of ambiguity. The place starts at ``item`` and ends at the position ``stop``.
+        """Record an ambiguous part of the text, ``item`` to ``stop``; return whether its less usual meaning applies.
 
         Raises
         ------
@@ -171,6 +164,7 @@ class Cursor(cursor.Cursor):
         """
         if self.flips is None:
             raise self.fail(expected, place or item)
+        # flips has the keys (kind, start) of such parts
         doubt = Doubt((kind, item.start), self.source[item.start : stop].strip())
         if doubt.key not in [known.key for known in self.doubts]:
             self.doubts.append(doubt)

@@ -1,6 +1,6 @@
 r"""LaTeX commands that abbreviate other LaTeX, such as ``\dv{x}{t}``, and commands that mean nothing in a formula.
 
-The tokens of the longer form have the position of the command, and the tokens of an argument keep their own positions.
+The tokens of the longer LaTeX have the position of the command; the tokens of an argument keep their own.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -97,10 +97,7 @@ def expanded(pieces: Sequence[Token], source: str, where: str = "") -> list[Toke
 
 
 def with_spelled_functions(pieces: Sequence[Token]) -> tuple[list[Token], list[str]]:
-    r"""Return tokens with commands in place of functions that are written as letters, and the names of these functions.
-
-    The letters stand side by side and no other letter touches them; an argument follows. ``tr(t)`` stays a product:
-    only a matrix, which has a capital or a bold letter, has a trace.
+    r"""Return tokens with commands for functions that are written as letters, and the names of these functions.
 
     Examples
     --------
@@ -115,6 +112,7 @@ def with_spelled_functions(pieces: Sequence[Token]) -> tuple[list[Token], list[s
         while pieces[place].kind == "letter" and _touches(pieces[end - 1], pieces[end]):
             end += 1
         word = "".join(piece.text for piece in pieces[place:end])
+        # the letters stand side by side and an argument follows; tr(t) stays a product, as only a matrix has a trace
         if word in SPELLED and _is_argument(pieces[end:], word):
             names += [word] if word not in names else []
             result += [piece._replace(start=pieces[place].start) for piece in _template(SPELLED[word])]
@@ -129,12 +127,9 @@ def _touches(letter: Token, after: Token) -> bool:
 
 
 def _is_argument(after: Sequence[Token], function: str) -> bool:
-    r"""Return whether the tokens after a function's name begin with its argument or a power; if not, it is a word.
-
-    ``after`` are these tokens. After ``function`` sin they may begin with "(", "^", a letter or a number. After tr, Tr
-    or trace they must begin with a matrix, perhaps in brackets: a capital letter or a mark such as ``\mathbf``.
-    """
+    """Return whether the tokens ``after`` a function's name begin with its argument or a power; else it is a word."""
     first, *rest = after
+    # tr, Tr or trace: a matrix must follow, perhaps in brackets, with a capital letter or a mark such as \mathbf
     if SPELLED[function] != f"\\{function}":
         inside = rest[0] if first.text == "(" and rest else first
         return inside.text in MATRIX_MARKS or (inside.kind == "letter" and inside.text.isupper())
@@ -182,7 +177,7 @@ class _Expansion:
     def longer(self, command: Token) -> Iterator[Token]:
         r"""Yield the tokens for which a command stands: those of ``\frac{dx}{dt}`` for ``\dv{x}{t}``.
 
-        The command's arguments are at the cursor. The table ``MACROS`` has the text for each such command.
+        The cursor is at the command's arguments.
         """
         forms = MACROS[command.text]
         if self.at("*"):

@@ -115,16 +115,13 @@ class NamesPart(SumsPart):
         return Node("call", "skew", (vector,))
 
     def change(self, name: str, item: tree.Node) -> Node:
-        r"""Parse a change of a quantity, such as ``\Delta t``, and return the node of the single name Delta_t.
-
-        The text is ambiguous: if ``self.flips`` asks for the less usual meaning, Delta times t, only the node of Delta
-        is returned, and t is parsed as the next factor.
-        """
+        r"""Parse a change of a quantity, such as ``\Delta t``, and return the node of the single name Delta_t."""
         follower = self.peek()
         product_or_change = f"\\{name}_{{..}} for a change, or \\cdot for a product"
         if self.flips is None:
             raise self.fail(product_or_change, follower)
         if self.doubtful("change", item, self.end_of_next(), product_or_change):
+            # Delta times t: t is parsed as the next factor
             return Node("name", name)
         quantity = self.letter(self.next())
         if quantity.kind != "name":
@@ -175,31 +172,26 @@ class NamesPart(SumsPart):
                 raise self.fail("letters and digits in a subscript", place)
 
     def resolved(self, name: str, subscript: str, others: tuple[str, ...] = ()) -> str:
-        """Return a name with its subscript in the form that the claim declares: ``I_1`` or else ``I1``.
-
-        ``others`` are further forms, tried after these two: ``xp`` for ``x_prime``, for example. The first declared
-        form is returned; if none is declared, ``I_1``.
-        """
+        """Return a name with its subscript as the claim declares it: ``I_1``, ``I1`` or one of ``others``."""
         forms = [f"{name}_{subscript}", f"{name}{subscript}"] if subscript else [name]
+        # undeclared names get the first form
         return next((form for form in [*forms, *others] if form in self.names), forms[0])
 
     def called_with_time(self) -> bool:
         return self.at("(") and self.peek(1).text == "t" and self.peek(2).text == ")"
 
     def derivative(self, node: Node, times: int, item: tree.Node) -> Node:
-        """Return the time derivative of a formula; ``times`` is its order.
-
-        An undeclared name becomes a function of time. If the claim declares a symbol such as dx for the derivative of
-        x, that symbol is returned.
-        """
+        """Return the time derivative, of the order ``times``, of a formula."""
         if node.kind == "name" and node.value not in (*self.names.functions, *self.names.matrices, *self.names.others):
             name = str(node.value)
             forms = ["d" * times + name, name + "dot", name + "d" * times]
+            # the claim may declare a symbol such as dx for the derivative of x
             declared = [form for form in forms if form in self.names.symbols] if times == 1 else forms[:0]
             if declared:
                 return Node("name", declared[0])
             if not self.names.implied:
                 raise self.fail(f"{name} to be declared as a function of t (it is differentiated)", item)
+            # an undeclared name becomes a function of time
             self.timed.add(name)
         for _ in range(times):
             node = appended(node, TIME)
@@ -243,12 +235,10 @@ class NamesPart(SumsPart):
         return self.factor()
 
     def vector(self, name: str) -> Node:
-        """Record that a name is a vector or tensor, so that the claim gives it components, and return its node.
-
-        The name in the node ends with an arrow (``MARK``), which distinguishes the vector r from its length r.
-        """
+        """Record that a name is a vector or tensor, which needs components, and return its node."""
         name = name.removesuffix(MARK)
         self.vectors.setdefault(name, False)
+        # an arrow at the end of the name distinguishes the vector r from its length r
         marked = name + MARK
         if marked not in self.names.matrices:
             columns = self.names.columns if is_tensor(name) else (*self.names.columns, marked)
@@ -256,12 +246,10 @@ class NamesPart(SumsPart):
         return Node("name", marked)
 
     def overlined(self, mark: tree.Accent | tree.Font) -> Node:
-        r"""Parse a name whose accent is part of the name, as in ``\bar I``, which is another symbol than ``I``.
-
-        A tilde over a vector means its skew matrix; a bar over a vector is part of its name.
-        """
+        r"""Parse a name whose accent is part of the name, as in ``\bar I``, which is another symbol than ``I``."""
         if tree.alone(mark.inside).text in VECTOR_MARKS and mark.text != "\\mathcal":
             inner = self.under(mark, self.expression)
+            # a tilde over a vector means its skew matrix
             if "tilde" in mark.text:
                 return Node("call", "skew", (inner,))
             return self.vector(str(inner.value).removesuffix(MARK) + NAME_MARKS[mark.text])
@@ -272,10 +260,7 @@ class NamesPart(SumsPart):
         return node
 
     def under(self, mark: tree.Accent | tree.Font, read: Callable[[], Node]) -> Node:
-        r"""Parse what is under a mark, such as a dot, as if the subscript and primes after the mark were inside it too.
-
-        ``\dot{\mathbf{H}}_G`` is the rate of H_G. ``read`` is the method that parses the content of the mark.
-        """
+        r"""Parse what is under a mark, and the subscript after the mark: H_G for ``\dot{\mathbf{H}}_G``."""
         scripts = []
         while script := self.script("_") or self.script("'"):
             scripts.append(script)
@@ -284,9 +269,9 @@ class NamesPart(SumsPart):
         return self.inside(tree.Row((*items, *scripts), inside.start, self.peek().start), read)
 
     def symbol(self, ending: str = "") -> Node:
-        """Parse a letter, a number or a command, or a symbol with a mark such as a hat; return its tree.
+        """Parse a letter, a number, a command, or a symbol with a mark; return its tree.
 
-        ``ending`` is added to the name, such as "_bar" for a letter under a bar.
+        ``ending``, such as ``_bar``, is added to the name.
         """
         item = self.next()
         if item.text in VECTOR_MARKS and not ending:  # \\hat{\\mathbf n}
@@ -298,8 +283,7 @@ class NamesPart(SumsPart):
     def spelled(self, font: tree.Font) -> Node:
         r"""Parse upright text and return its node: a call for a function's name, otherwise a name.
 
-        ``\operatorname{tr}(R)`` gives the call ``trace(R)``, and ``\mathrm{abc}`` the name abc of three letters.
-        ``font`` is the command with the text in its braces.
+        ``\operatorname{tr}(R)`` gives ``trace(R)``, ``\mathrm{abc}`` the name abc.
         """
         node = self.under(font, lambda: self.word(font))
         if node.kind == "call":

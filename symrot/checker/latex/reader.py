@@ -1,7 +1,7 @@
 r"""The LaTeX reader: from an equation to the tree of a claim. Every token is used, or refused with its position.
 
-Where usage is ambiguous (``\sin\theta/2``, ``\sin^{-1}``, ``a/bc``, ``x_12``, ``a \times b \times c``), the reader asks
-for brackets instead of guessing. The text of the claim shows how the LaTeX was read.
+Where usage is ambiguous, as in ``\sin\theta/2`` or ``a/bc``, the reader asks for brackets instead of guessing. The text
+of the claim shows how the LaTeX was read.
 """
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
@@ -84,10 +84,7 @@ def read_latex(source: str, where: str = "", names: Names | None = None) -> Equa
 def latex_readings(source: str, names: Names | None = None) -> list[Reading]:
     r"""Return the readings (interpretations) of a LaTeX text, the usual one first.
 
-    Each ambiguous place, such as ``\cos^{-1} x``, gives a further reading, in which it has its less usual meaning; the
-    attribute ``flipped`` has the texts of these places. A text may have chains ``a = b = c``, with commas between them
-    or on lines of their own. A text with ``\pm`` has, in every reading, the equations with the upper signs and those
-    with the lower ones.
+    Each ambiguous part, such as ``\cos^{-1} x``, gives a further reading.
 
     Raises
     ------
@@ -102,15 +99,14 @@ def latex_readings(source: str, names: Names | None = None) -> list[Reading]:
     >>> [reading.flipped for reading in latex_readings(r"\theta = \cos^{-1} x")]
     [(), ('\\cos^{-1} x',)]
     """
+    # a text may have chains a = b = c, with commas between them or on lines of their own; \pm gives the equations with
+    # the upper signs and those with the lower ones, in every reading
     return distinct_readings(each_reading(partial(_reading, source, names or Names())))
 
 
 def _reading(source: str, names: Names, flips: Collection[tuple[str, int]]) -> Reading:
-    """Return one reading of a LaTeX text: the ambiguous places in ``flips`` have their less usual meaning.
-
-    ``flips`` has the keys of the places, pairs (kind of ambiguity, position). Other ambiguous places have their usual
-    meaning.
-    """
+    """Return the reading of a LaTeX text in which the ambiguous parts ``flips`` have their less usual meaning."""
+    # flips has the keys (kind of ambiguity, position) of the parts
     lines, reader = _read(source, "", names, _Interpreter.equations, flips)
     if reader.both_signs:
         lines += _read(source, "", names, _Interpreter.equations, flips, upper=False)[0]
@@ -132,14 +128,12 @@ def _read(
     source: str, where: str, names: Names, read: "Callable[[_Interpreter], list[Line]]",
     flips: Collection[tuple[str, int]] | None = None, upper: bool = True,
 ) -> "tuple[list[Line], _Interpreter]":  # fmt: skip
-    """Return the lines that ``read`` parses from a LaTeX text, and the interpreter that parsed them.
-
-    If a name without a mark turns out to be a vector only late in the text, the text is parsed again. ``flips`` are the
-    keys of ambiguous places with their less usual meaning; if it is None, an ambiguous text is refused. ``upper``
-    chooses the upper or lower signs.
-    """
+    """Return the lines that ``read`` parses from a LaTeX text, and the interpreter that parsed them."""
+    # if a name without a mark turns out to be a vector only late in the text, the text is parsed again
     crossed: frozenset[str] = frozenset()
     while True:
+        # flips are keys of ambiguous parts; if it is None, an ambiguous text is refused
+        # upper chooses the upper or lower signs of \pm
         reader = _Interpreter(source, where, names, flips, upper)
         reader.crossed = set(crossed)
         try:
@@ -154,9 +148,9 @@ def _read(
 
 
 def _on_constants(sides: Sequence[Node], vectors: Collection[str]) -> tuple[str, ...]:
-    """Return notes for the user on the symbols, other than vectors, that time derivatives treat as constants.
+    """Return a note, or none, on the symbols other than vectors that time derivatives treat as constants.
 
-    ``sides`` are those of all equations of the text. There is at most one note.
+    ``sides`` are those of all equations.
     """
     nodes = [node for side in sides for _, node in walk(side)]
     rates = [node.args[0] for node in nodes if is_derivative(node) and node.args[-1] == TIME]
@@ -242,13 +236,10 @@ class _Interpreter(CalculusPart):
         return lines
 
     def chains(self, between: Collection[str] = (), line: Line | None = None) -> list[Line]:
-        """Parse chains ``a = b = c`` up to the end; return them as lines, one for each chain.
-
-        ``between`` are the marks that may separate two chains, such as a comma. ``line`` is the beginning of the first
-        chain, if that is already parsed.
-        """
+        """Parse chains ``a = b = c``, with marks such as a comma ``between`` them; return one line for each chain."""
         lines: list[Line] = []
         while True:
+            # otherwise the beginning of the first chain is already parsed
             if line is None:
                 line = [], [self.head() or self.expression()]
             signs, sides = line
@@ -288,11 +279,8 @@ class _Interpreter(CalculusPart):
         return True
 
     def head(self) -> Node | None:
-        r"""Parse the left side of a definition, as ``R(\phi) =`` before the entries of a matrix; return the name R.
-
-        Brackets around it, as in ``[M_3(\theta)] =``, are left out. Return None if there is no such left side:
-        then ``R(\phi)`` is a product.
-        """
+        r"""Parse the left side of a definition of a matrix, ``R(\phi) =``, and return the name R; else None."""
+        # brackets around it, as in [M_3(\theta)] =, are left out
         opened = 1 if self.at("[") else 0
         named = 2 if isinstance(self.peek(opened + 1), tree.Script) else 1
         first = self.index + opened + named
@@ -308,6 +296,7 @@ class _Interpreter(CalculusPart):
         if not all(is_letter(item) or item.text in (",", *VECTOR_MARKS) or item.text == "_" for item in inside):
             return None
         is_matrix = opened or {"table", "\\times"} & rest
+        # otherwise R(\phi) is a product
         if not (is_matrix or (letters and {*letters} <= rest)):
             return None
         self.index += opened
@@ -321,26 +310,23 @@ class _Interpreter(CalculusPart):
 
 
 def _rows(table: tree.Table) -> Iterator[tuple[tuple[tree.Node, ...], bool]]:
-    """Yield (items, continues) for each line of an environment: its items, and whether it continues the line before it.
+    """Yield (items, continues) for each line of an environment.
 
-    A line continues the equation before it in two cases: it starts with a plus or minus sign and has no relation sign,
-    as ``+ b``; or it has such a sign after an empty cell, as ``& + b = c``. Spaces, and commas and full stops at the
-    end of a line, are left out of the items.
+    ``continues`` tells whether the line continues the equation before it, as ``+ b`` does.
     """
     for line in table.lines:
         items = [item for cell in line for item in cell.items if item.kind != "space"]
+        # spaces, and commas and full stops at the end of a line, are left out
         while items and items[-1].text in (",", ".", ";"):
             items.pop()
         if items:
+            # a line continues if it starts with a plus or minus sign, and has no relation sign or an empty first cell
             whole = not any(item.text in SIGNS for item in items) or not line[0].items
             yield tuple(items), items[0].text in ("+", "-") and whole
 
 
 def _texts(items: Sequence[tree.Node]) -> set[str]:
-    """Return the texts of some items and of all items inside them; a matrix adds the text ``table``.
-
-    So the caller can look for a letter anywhere in a formula.
-    """
+    """Return the texts of some items and of all items inside them; a matrix adds the text ``table``."""
     texts: set[str] = set()
     for item in items:
         texts |= {item.text}

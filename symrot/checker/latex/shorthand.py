@@ -1,6 +1,6 @@
 r"""Short forms of cosines, sines and versines in LaTeX: ``c_\theta``, ``s\alpha``, ``v\theta`` and ``c_{12}``.
 
-They are read as functions only if the text has both a cosine and a sine in this form, and neither c nor s alone.
+They are functions only if the text has both a cosine and a sine of this form, and neither c nor s alone.
 """
 
 import re
@@ -33,13 +33,10 @@ FEWEST_NUMBERED = 2
 
 
 class Shorthand(NamedTuple):
-    r"""A short form of a cosine or sine: its function and the angles whose sum is the argument.
-
-    No angles are listed if the angle is the item that follows the letter, as in ``c\theta``.
-    """
+    """A short form of a cosine or sine: its function and the angles whose sum is the argument."""
 
     function: str
-    angles: tuple[str, ...]
+    angles: tuple[str, ...]  # empty if the angle is the item after the letter, as in c\theta
 
 
 def shorthands(pieces: Sequence[Token], declared: Collection[str] = ()) -> dict[int, Shorthand]:
@@ -66,11 +63,7 @@ def shorthands(pieces: Sequence[Token], declared: Collection[str] = ()) -> dict[
 
 
 def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int, Shorthand]:
-    """Return the short forms of functions in a text, such as c_1 for cos(theta_1), by their positions.
-
-    ``letters`` maps the letters of such forms to their functions, c to cos. The result is {} if one of these letters
-    also occurs as a name, or if the text lacks a cosine or a sine in this form.
-    """
+    """Return the short forms in a text by their positions; ``letters`` maps c to cos and s to sin, for example."""
     named: dict[int, Shorthand] = {}
     numbered: dict[int, tuple[str, str]] = {}
     for before, piece in enumerate(pieces[:-1]):
@@ -87,23 +80,21 @@ def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int
         elif subscript.isdigit():
             numbered[piece.start] = function, subscript
         elif after.text != "_" and function != "vers":
+            # one of the letters is a name
             return {}
+    # numbered has ("sin", "12") for s_{12}, which means sin(theta_1 + theta_2)
     short = named or _numbered(pieces, numbered)
+    # a cosine without a sine, or the reverse, is no evidence
     return short if {"cos", "sin"} <= {form.function for form in short.values()} else {}
 
 
 def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) -> dict[int, Shorthand]:
-    """Return the meaning of each short form with a number, by its position: cos(theta_1) for ``c_1``.
-
-    ``numbered`` has (function, number) by position: ("cos", "1") for c_1, and ("sin", "12") for s_{12}, which means
-    sin(theta_1 + theta_2). The result is {} unless the text has at least two different cosines and two different sines
-    of this kind, since c_1 alone may be a name. If the text has the rate of theta_1 too, one cosine and one sine
-    suffice.
-    """
+    """Return the meaning of each short form with a number, by its position: cos(theta_1) for ``c_1``."""
     digits = {digit for _, number in numbered.values() for digit in number}
     # next to the rate of theta_1, c_2 and s_3 are functions of theta_2 and theta_3
     fewest = 1 if _has_rate(pieces, digits) and len(numbered) > 1 else FEWEST_NUMBERED
     numbers = {name: {number for function, number in numbered.values() if function == name} for name in ("cos", "sin")}
+    # c_1 alone may be a name
     if min(map(len, numbers.values())) < fewest:
         return {}
     letter = _numbered_angle(pieces, {*digits, *RATES_OF_THREE} if fewest == 1 else digits)
@@ -116,17 +107,14 @@ def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) 
 
 
 def _has_rate(pieces: Sequence[Token], digits: Collection[str]) -> bool:
-    r"""Return whether a text has the rate of an angle with a number, such as ``\dot\theta_1``.
-
-    Beside such a rate, c_2 and s_3 are probably cos(theta_2) and sin(theta_3). ``digits`` are the numbers of these
-    short forms; they and the number of the rate must be 1, 2 or 3.
-    """
+    r"""Return whether a text has the rate of an angle with a number, such as ``\dot\theta_1``."""
     for place, piece in enumerate(pieces[:-3]):
         grouped = pieces[place + 1].text == "{"
         inner = pieces[place + 1 + grouped]
         after = place + 2 + 2 * grouped
         if piece.text == "\\dot" and _is_angle(inner) and pieces[after].text == "_":
             number = _subscript(pieces, after + 1)
+            # beside the rate, c_2 and s_3 are probably cos(theta_2) and sin(theta_3)
             if number and {number, *digits} <= {*RATES_OF_THREE}:
                 return True
     return False
@@ -171,17 +159,13 @@ def _subscript(pieces: Sequence[Token], place: int) -> str:
 
 
 def _numbered_angle(pieces: Sequence[Token], digits: Collection[str]) -> str:
-    r"""Return the letter of the angles that short forms such as c_1 mean: "theta" if the text has ``\theta_1``.
-
-    Candidates are the Greek letters for angles, and q, that have one of the ``digits`` as a subscript somewhere in the
-    text. A single candidate is returned, and "" for several. Without a candidate, the result is "theta" if the text has
-    no Greek angle and no q with a subscript at all; otherwise "".
-    """
+    r"""Return the letter of the angles that c_1 means: ``theta`` if the text has ``\theta_1``; empty if unclear."""
     numbered: dict[str, set[str]] = {}
     for place, piece in enumerate(pieces[:-2]):
         after = place + 1 + (pieces[place + 1].text == "}")  # the subscript of \dot{\theta}_1 follows the bracket
         if (_is_angle(piece) or piece.text == "q") and pieces[after].text == "_":
             numbered.setdefault(piece.text.removeprefix("\\"), set()).add(_subscript(pieces, after + 1))
+    # without any angle, theta is usual
     if not numbered and not any(_is_angle(piece) for piece in pieces):
         return "theta"
     letters = [letter for letter, subscripts in numbered.items() if subscripts & {*digits}]

@@ -115,26 +115,25 @@ class SumsPart(Cursor):
         return negated(left) if negative else left
 
     def has_bare_vectors(self, left: Node, right: Node, sign: str) -> bool:
-        r"""Return whether letters without a mark around ``\times`` or ``\cdot`` are vectors, as in ``\omega\times r``.
-
-        They are if books use both letters for vectors, and if the text shows it: by both signs, by a triple product, by
-        ``a\times b`` beside ``b\times a``, by an angular velocity or acceleration, by r as the first letter, by
-        ``a\times a = 0``, or by the lengths of both beside the cosine or sine of an angle. ``W = F\times d`` may be a
-        product of numbers.
-        """
+        r"""Return whether letters without a mark around ``\times`` or ``\cdot`` are vectors: ``\omega\times r``."""
         names = [name_of(last_factor(side)) for side in (left, right)]
         if self.flips is None or sign not in ("\\times", "\\cdot") or not all(map(is_usual_vector, names)):
             return False
         function = {"\\times": "\\sin", "\\cdot": "\\cos"}[sign]
         lengths = [rf"\|\s*\\?{re.escape(name)}\s*\\?(r?Vert)?\|" for name in names]
+        # the lengths of both beside the cosine or sine of an angle
         if function in self.source and all(re.search(length, self.source) for length in lengths):
             return True
         letters = [re.split("[_0-9]", name)[0] for name in names]
+        # a x a = 0
         is_zero = names[0] == names[1] and re.search(r"=\s*0\b|\b0\s*=", self.source) is not None
+        # a x b and b x a
         is_turned = names[0] != names[1] and all(
             re.search(rf"{re.escape(first)}\s*\\times\s*\\?{re.escape(second)}(?![A-Za-z])", self.source)
             for first, second in (names, names[::-1])
         )
+        # r as the first letter, an angular velocity or acceleration, both signs, or a triple product; W = F x d may be
+        # a product of numbers
         is_certain = letters[0] == "r" or bool({"omega", "Omega", "alpha"} & {*letters}) or is_turned
         is_certain = is_certain or "\\cdot" in self.source or TRIPLE_PRODUCT.search(self.source) is not None
         return sign == "\\times" and (is_certain or is_zero)
@@ -144,19 +143,17 @@ class SumsPart(Cursor):
         return self.at("\\times") and self.peek(1).text == "]"
 
     def note_vector(self, node: Node) -> None:
-        """Record that a name without an arrow or bold type is a vector, since it is a factor of a cross product.
-
-        ``node`` is the name, such as r, or its rate. The text is then parsed once more, with this name as a vector.
-        """
+        """Record that a name, or the name of a rate, is a vector, since it is a factor of a cross product."""
         name = name_of(node)
         is_name = node.kind in ("name", "call") and name not in BUILT_IN and not str(name).endswith(MARK)
         if is_name and self.names.implied and str(name) not in self.names:
+            # the text is then parsed once more, with this name as a vector
             self.crossed.add(str(name))
 
     def scalar_product(self, left: Node, right: Node) -> Node:
-        """Return the product that a dot means between vectors or tensors: ``dot(a, b)`` for two vectors.
+        """Return the product that a dot means between vectors or tensors.
 
-        For a tensor I it is the matrix product: I*b, or a.T*I.
+        Two vectors give ``dot(a, b)``, a tensor I gives ``I*b`` or ``a.T*I``.
         """
         if self.is_row(left):
             return Node("call", "dot", (Node("transpose", None, (left,)), right))
@@ -165,11 +162,8 @@ class SumsPart(Cursor):
         return product([left if self.is_tensor(left) else Node("transpose", None, (left,)), right])
 
     def is_tensor(self, node: Node) -> bool:
-        """Return whether a tree is the name of a tensor in bold, such as I for inertia.
-
-        A bold name is a vector if the claim lists it among its columns, which are vectors; every other bold name is a
-        tensor.
-        """
+        """Return whether a tree is the name of a tensor in bold, such as I for inertia."""
+        # bold names that the claim does not list among its columns are tensors
         return node.kind == "name" and str(node.value).endswith(MARK) and not self.names.is_column(node)
 
     def is_row(self, node: Node) -> bool:
@@ -200,14 +194,11 @@ class SumsPart(Cursor):
                 factors.append(self.factor())
 
     def divisor(self, factors: list[Node], slash: tree.Node) -> tuple[Node, bool]:
-        """Parse the divisor after a slash: one factor, or a product such as ``2m`` in ``p^2/2m``.
-
-        Return its tree, and whether the factors after it certainly do not belong to it, as m in ``1/2 m``. ``factors``
-        are those before the slash.
-        """
+        """Parse the divisor after a slash, such as ``2m`` in ``p^2/2m``; return it, and whether it surely ends here."""
         first = self.peek()
         below = [self.factor()]
         if len(factors) == 1 and factors[0].kind == below[0].kind == "number":
+            # in 1/2 m, m does not belong to the divisor
             return below[0], True
         whole = first.kind == "number" and factors[-1].kind != "number"
         while self.starts_factor() and self.peek().kind != "number":
@@ -292,10 +283,7 @@ class SumsPart(Cursor):
         raise self.fail("a letter, a digit, or a formula in braces", node)
 
     def is_cut(self, digit: tree.Node) -> bool:
-        """Return whether a digit without braces belongs to a longer number, of which LaTeX raises only the first digit.
-
-        LaTeX reads ``x^12`` as ``x^1 2``, which is hardly meant.
-        """
+        """Return whether a digit without braces belongs to a longer number: LaTeX reads ``x^12`` as ``x^1 2``."""
         return len(digit.text) > 1 or self.source[digit.start + 1 : digit.start + 2].isdigit()
 
     def base(self, item: tree.Node) -> Node:
@@ -354,14 +342,12 @@ class SumsPart(Cursor):
         return Node("call", "skew", (inner,))
 
     def paired(self, first: Node, sign: str) -> Node:
-        r"""Parse ``, B`` after A in ``[A, B]`` or ``\{A, B\}``; return ``A B - B A`` or ``A B + B A``, by ``sign``.
-
-        A and B must contain Pauli's matrices. Without a comma at the cursor, return ``first``, the tree of A.
-        """
+        """Parse ``, B`` after A, which is ``first``, in ``[A, B]``; return A B - B A, or A B + B A by ``sign``."""
         if not self.at(","):
             return first
         comma = self.next()
         pair = commutator(first, self.expression(), sign)
+        # without Pauli's matrices, [A, B] is no commutator
         if pair is None:
             raise self.fail(
                 "a closing bracket (write a commutator as A B - B A, unless A and B have Pauli matrices)", comma
@@ -369,16 +355,13 @@ class SumsPart(Cursor):
         return pair
 
     def framed(self, mark: tree.Script) -> Node:
-        r"""Parse a name with the mark of its frame before it, as ``{}^A R_B``, and return the node of the name.
-
-        ``mark`` is the script ``^A``. If the text has this frame only, the mark is dropped: the name is R_B. If it has
-        several frames, the mark becomes part of the name, R_B_A, so that ``{}^A v`` and ``{}^B v`` differ.
-        """
+        """Parse a name after the ``mark`` of its frame, as in ``{}^A R_B``, and return the node of the name."""
         frame = tree.alone(mark.inside)
         while isinstance(frame, tree.Font):
             frame = tree.alone(frame.inside)
         letter = frame.text.removeprefix("\\")
         name = self.base(self.next())
+        # the only frame of the text is left out; with several, it becomes part of the name, R_B_A
         if len(self.frames) == 1:
             self.notes.append(f"the mark {letter} before a name is read as its frame, and left out")
             return name

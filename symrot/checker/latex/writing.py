@@ -37,18 +37,15 @@ SUM, PRODUCT, SIGN, ATOM = 10, 20, 30, 50
 
 @dataclass(frozen=True)
 class LatexNotation:
-    """LaTeX as the notation for answers, with the names of the text's functions of time and vectors.
-
-    The value of a name in ``vectors`` is True if the vector has a hat. A formula is written in SymPy syntax if
-    parsing its LaTeX would not give the same formula.
-    """
+    """LaTeX as the notation for answers, with the names of the text's functions of time and vectors."""
 
     functions: Collection[str] = ()
-    vectors: Mapping[str, bool] = field(default_factory=dict)
+    vectors: Mapping[str, bool] = field(default_factory=dict)  # name -> whether the vector has a hat
 
     def formula(self, node: Node) -> str:
         """Return the LaTeX of a formula."""
         written = latex_of(("==", node, number(0)), self.functions, self.vectors)
+        # SymPy syntax, if parsing the LaTeX would not give the same formula
         return text(node) if written is None else written.removesuffix(" = 0")
 
     def relation(self, relation: Relation) -> str:
@@ -200,14 +197,12 @@ class Writer:
         return "-" + self.formula(node.args[0], PRODUCT)
 
     def product(self, node: Node) -> str:
-        """Return the LaTeX of a product: its factors side by side, each divisor below the factor before it.
-
-        ``a/b*c`` becomes a fraction of a and b, and c after it.
-        """
+        """Return the LaTeX of a product: ``a/b*c`` becomes a fraction of a and b, and c after it."""
         pieces: list[str] = []
         last = None
         for factor in node.args:
             if factor.kind == "inv":
+                # each divisor is below the factor before it
                 above = "1" if last is None else self.formula(last)
                 if last is not None:
                     pieces.pop()

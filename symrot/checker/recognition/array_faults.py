@@ -1,7 +1,7 @@
 """Usual faults in formulas of vectors, matrices and quaternions, each undone in turn, with values at some points.
 
-A wrong order of factors, a transpose or a missing square of a matrix changes all entries at once. The search for one
-wrong part of a formula does not see such faults; so whole edited formulas are compared here.
+A wrong order of factors or a missing transpose changes all entries at once. The search for one wrong part of a formula
+does not see such faults; so whole edited formulas are compared here.
 """
 
 from bisect import bisect_left
@@ -30,11 +30,9 @@ LEFT_OUT = ("extra_term", "two_faults", "overall_sign")
 
 
 class ArrayFault(NamedTuple):
-    """A possible fault of a formula: the edit that undoes it, and the edited formula's values at the test points.
+    """A possible fault of a formula: the edit that undoes it, and the values after the edit at the test points."""
 
-    ``total`` is the sum of the entries of the first of these values; lists of faults are sorted by it for look-ups.
-    """
-
+    # the sum of the entries of values[0], by which faults are sorted and looked up
     total: float
     edit: Edit
     values: Values
@@ -49,20 +47,15 @@ def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
 
 
 def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> list[ArrayFault]:
-    """Return formulas that are one edit away from ``formula``, each with its values at the test points.
-
-    A fault in a claim is later looked up by value, so the list is sorted by a number: the sum of the entries of the
-    value at the first test point. There are at most MOST_EDITS edits. If ``formula`` has no vectors or matrices, the
-    only edits are added brackets: other faults of scalar formulas are found part by part
-    (:mod:`symrot.checker.recognition.parts`).
-    """
+    """Return the edits that undo a usual fault of a formula, each with the values of the edited formula."""
+    # other faults of scalar formulas are sought part by part, in the module `parts`
     edits = _edits(formula, numeric, letters) if has_arrays(formula, numeric) else _brackets(formula)
     faults = []
     for edit in islice(edits, MOST_EDITS):
         values = values_of(edit.tree, letters.points)
         if values is not None:
             faults.append(ArrayFault(_total(values), edit, values))
-    return sorted(faults, key=lambda fault: fault.total)
+    return sorted(faults, key=lambda fault: fault.total)  # for a look-up by value
 
 
 def matching(faults: Sequence[ArrayFault], needed: Values) -> Iterator[Edit]:
@@ -109,7 +102,7 @@ def _brackets(formula: Node) -> Iterator[Edit]:
 
 
 def _always(node: Node) -> Callable[[Node], Node]:
-    """Return a constant function of trees, whose value is always ``node``."""
+    """Return a function that returns ``node`` for every argument."""
     return lambda _: node
 
 
@@ -137,10 +130,7 @@ def _conjugates(formula: Node) -> Iterator[Edit]:
 
 
 def _factors(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[Edit]:
-    """Yield edits that multiply a vector or matrix term by one more scalar: ``sin(phi)*a`` for a.
-
-    The scalars are those of :func:`_scalars`.
-    """
+    """Yield edits that multiply a vector or matrix term by one more scalar: ``sin(phi)*a`` for ``a``."""
     scalars = [*_scalars(formula, numeric, letters)]
     kinds = {path: node.kind for path, node in walk(formula)}
     for path, node in walk(formula):
@@ -154,10 +144,7 @@ def _factors(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterato
 
 
 def _products(formula: Node, numeric: NumericFilter) -> Iterator[Edit]:
-    """Yield edits that put one more factor before a vector v: ``R*v`` for a matrix R, or ``cross(a, v)``.
-
-    R and a are the names of matrices and vectors in the claim.
-    """
+    """Yield edits that put one more factor before a vector v: ``R*v`` for a matrix R, or ``cross(a, v)``."""
     shapes = {node: _shape(node, numeric) for _, node in walk(formula) if numeric.is_matrix(node)}
     names = sorted({*numeric.matrix_names})
     named = {name: _shape(Node("name", name), numeric) for name in names}
@@ -185,10 +172,7 @@ def _shape(node: Node, numeric: NumericFilter) -> tuple[int, int] | None:
 
 
 def _scalars(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[Node]:
-    """Yield the scalars that may be missing as a factor: letters, brackets, and sin, cos, 1 - cos of angles.
-
-    Each comes also as a square and as a divisor.
-    """
+    """Yield the scalars that may be missing as a factor, such as sin(phi), with their squares and reciprocals."""
     made: dict[Node, None] = dict.fromkeys([LACKING] if LACKING in letters.atoms else [])
     for angle in letters.angles:
         for function in ("sin", "cos", "tan"):

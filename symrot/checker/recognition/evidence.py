@@ -151,11 +151,8 @@ USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 
 
 def says_too_little(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether a claim ``I = ..`` or ``J = ..`` may be right, although the nearest known formula differs.
-
-    It may be if the letter has no index for an axis, the context states no body, and a number or term differs: the
-    formula may be for a body that symrot has no formula for.
-    """
+    """Return whether a claim ``I = ..`` or ``J = ..`` may be right for a body that symrot has no formula for."""
+    # a letter without an axis, and no body in the context: the claim may be for any body
     is_bare = re.fullmatch("[IJ]", named.name) is not None
     return is_bare and claim.context.body is None and is_of_body(near.code, near.known.name)
 
@@ -166,37 +163,27 @@ def has_diameter(known: Identification) -> bool:
 
 
 def is_of_body(code: str, known: str) -> bool:
-    """Return whether a claim with the fault ``code`` may be a right moment of inertia, but of another body or axis.
-
-    It may be if ``known`` is the name of a formula for a body's moment of inertia, and the fault is a wrong factor, or
-    a missing or additional term ("factor", "missing_term", "extra_term").
-    """
+    """Return whether a fault such as a wrong factor may only mean that a moment of inertia is for another body."""
     return code in ("factor", "missing_term", "extra_term") and known.startswith("moment of inertia of")
 
 
 def misfit_of(name: str, known: str) -> float:
-    """Return a number by which known formulas are sorted: the larger, the less a formula fits the name of a quantity.
-
-    It is larger if ``known``, the formula's name, contradicts ``name``, as "first component" does for omega_3, and for
-    formulas that books rarely mean.
-    """
+    """Return a number that is larger the worse a known formula's name fits the name of a quantity."""
     sequence = _rank_of_sequence(known) / (2 * len(USUAL_SEQUENCES))
+    # "first component .." does not fit to omega_3
     return _misplaced(name, known) + any(body in known for body in RARE) + sequence
 
 
 def has_word(known: str, words: Sequence[str] | None) -> bool:
-    """Return whether ``known``, the name of a known formula, has one of several words.
-
-    "velocity" in "angular velocity" does not count. If ``words`` is None, any name will do.
-    """
+    """Return whether ``known``, the name of a known formula, has one of several words. True if ``words`` is None."""
+    # "velocity" does not stand for "angular velocity"
     return words is None or any(re.search(f"(?<!angular ){re.escape(word)}", known) for word in words)
 
 
 def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     """Return whether a claim's formula is more likely a known formula with a fault than another formula that is right.
 
-    ``near`` is the known formula one change away, with this fault. The verdict is "doubtful" only if the result is
-    True.
+    Only then is it "doubtful".
     """
     letters, words = names_in(named.formula), words_of(named)
     quantities = len(quantities_in(named.formula))
@@ -251,7 +238,7 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
 
 
 def _is_stated(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether the context of a claim says that its quantity is the one of the known formula ``near``."""
+    """Return whether the context of a claim says that its quantity is the one for which ``near`` is a formula."""
     meaning = claim.context.meaning_of(quantity_name(named))
     return meaning is not None and any(phrase in near.known.name for phrase in meaning.quantity.formulas)
 
@@ -296,10 +283,8 @@ def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
 
 
 def _is_entry_of_matrix(named: NamedFormula, near: Near) -> bool:
-    """Return whether a quantity, such as R_12, is named as an entry, and ``near`` is this entry of a rotation matrix.
-
-    The entry must have several terms: a single product may be that of another matrix.
-    """
+    """Return whether the name of a quantity, such as R_12, is that matrix entry for which ``near`` is the formula."""
+    # a single product may be an entry of another matrix
     own, entry = re.fullmatch(ENTRY, named.name), re.match(r"entry ([1-3]{2}) of the rotation matrix", near.known.name)
     return own is not None and entry is not None and own[1] == entry[1] and has_terms(named.formula)
 
@@ -338,12 +323,7 @@ def names_in(formula: Node) -> set[str]:
 
 
 def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> bool:
-    """Return whether a claim may mean a known formula, judged by the quantity's name and the units of the symbols.
-
-    ``known.how`` says how the claim's formula differs from the known one. A scalar must be equal to it as it is. A
-    vector or matrix (``matrix`` is True) may also be its transpose or inverse, for example, but not the same with
-    another sign; a multiple is excluded only if the quantity's name has a known meaning.
-    """
+    """Return whether a claim may mean a known formula, judged by its quantity's name and the units of its symbols."""
     words = words_of(named)
     if words is None and "inertia" in known.name and named.name[:1].islower():
         return False  # books call moments of inertia by capital letters
@@ -352,6 +332,7 @@ def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> b
     is_torque = not matrix and "torque" in known.name and re.fullmatch(r"L(_\w+)?", named.name) is not None
     if is_torque and not any(map(OF_ROLL.fullmatch, names_in(named.formula))):
         return False
+    # a matrix may be the transpose of the known one; the other sign or, for a known quantity, a multiple is a fault
     is_multiple = "times" in known.how and words is not None
     if known.how and (not matrix or "sign" in known.how or is_multiple):
         return False
@@ -376,10 +357,8 @@ def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
 
 
 def is_unusual(known: Identification) -> bool:
-    """Return whether a claim is a known formula only if components such as omega_1 or p are in the space frame.
-
-    Books number the components in the body, or call them p, q and r there.
-    """
+    """Return whether a claim is a known formula only if its omega_1 or p is a component in the space frame."""
+    # books use omega_1, and p, q, r, for components in the body frame
     components = [new for old, new in known.mapping.items() if old in COMPONENTS_OF_OMEGA]
     return "space frame" in known.name and any(
         re.fullmatch(r"(omega|w)_?[1-3]|[pqr]", plain_name(new)) for new in components
@@ -387,17 +366,12 @@ def is_unusual(known: Identification) -> bool:
 
 
 def keeps_places(named: NamedFormula, known: Identification) -> bool:
-    """Return whether the names in a claim do not contradict the known formula to which the claim is compared.
-
-    ``named`` has the claim's formula and the name of its quantity. Examples of contradictions: the claim is for R_12,
-    but the known formula for entry 13 of a rotation matrix; I_G stands for the moment about another point than the
-    centre of mass in the parallel-axis theorem; p_phi is not the momentum along z; a letter for a moment of inertia
-    stands for a momentum.
-    """
+    """Return whether a claim's names agree with a known formula in axis, matrix entry, angle and reference point."""
     momentum = re.match(r"momentum of (\w+)", known.name)
     angle = re.fullmatch(r"[pP]_?(?:var)?(phi|theta|psi)", named.name)
     if momentum and angle and MOMENTA[angle[1]] != momentum[1]:
         return False
+    # R_12 contradicts entry 13
     entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(ENTRY, named.name)
     if entry and own and own[1] not in (entry[1], entry[1][::-1]):
         return False
@@ -407,6 +381,7 @@ def keeps_places(named: NamedFormula, known: Identification) -> bool:
     letters = [*known.mapping.values()] or [*names_in(named.formula)]
     is_parallel = re.search("parallel.ax", known.name) is not None
     about_other = [letter for letter in letters if MOMENT.fullmatch(letter) and not CENTRE.fullmatch(letter)]
+    # the theorem of parallel axes gives the moment about a point from the one about the centre of mass
     if is_parallel and CENTRE.fullmatch(named.name) and (about_other or any(map(POINT.fullmatch, letters))):
         return False
     of_aircraft = [
@@ -429,13 +404,14 @@ def keeps_places(named: NamedFormula, known: Identification) -> bool:
     momenta = [known.mapping.get(momentum, "") for momentum in ("p_phi", "p_psi")]
     if momenta[0].endswith(("3", "psi")) or momenta[1].endswith(("z", "phi")):
         return False
+    # a letter of a moment of inertia stands for nothing else
     return not any(MOMENT.fullmatch(new) and not KNOWN_MOMENT.fullmatch(old) for old, new in known.mapping.items())
 
 
 def _is_reversed(name: str, known: Identification) -> bool:
     """Return whether a claim says v = r x omega, although velocities are omega x r.
 
-    ``name`` is the claim's quantity, v here, and ``known`` the cross product as a known formula.
+    ``name`` is the name of v.
     """
     second = {new.rpartition("_")[0] for old, new in known.mapping.items() if old.startswith("n")}
     return re.fullmatch(r"v(_?[a-zA-Z0-9]+)?", name) is not None and bool(second & {"omega", "w", "Omega"})
@@ -450,9 +426,9 @@ def _is_component_of_rate(named: NamedFormula) -> bool:
 
 
 def fits_context(context: Context, named: NamedFormula, known: Identification, letters: set[str]) -> bool:
-    """Return whether a known formula fits what the context of a claim says about its quantity and its letters.
+    """Return whether a known formula agrees with what the context of a claim states about its quantity and ``letters``.
 
-    ``letters`` are those of the claim's formula. Without a context, every known formula fits.
+    Without a context, it always does.
     """
     if not context:
         return True
@@ -462,9 +438,9 @@ def fits_context(context: Context, named: NamedFormula, known: Identification, l
 
 
 def words_of(named: NamedFormula) -> tuple[str, ...] | None:
-    """Return words for a quantity, one of which a known formula's name must have: "moment of inertia" for I_zz.
+    """Return words such as "moment of inertia" for I_zz, one of which names of known formulas for it contain.
 
-    Return None if any name will do, because books use the letter for different quantities.
+    None if any will do.
     """
     words = next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, quantity_name(named))), None)
     if words and any(node.kind == "call" and node.value == "cross" for _, node in walk(named.formula)):
@@ -480,36 +456,32 @@ def quantity_name(named: NamedFormula) -> str:
 
 
 def _misplaced(name: str, known: str) -> int:
-    """Return how many of two contradictions there are between the name of a quantity and that of a known formula.
+    """Return how often the name of a quantity contradicts that of a known formula.
 
-    First, the components differ: "first component of .." for omega_3. Second, ``known`` is in the space frame, but
-    ``name`` is one that books use for body components: p, q, r, or omega with a number.
+    omega_3 contradicts "first component in the space frame" twice.
     """
     words = known.replace(",", "").split()
     places = [COMPONENTS[word] for word, after in pairwise([*words, ""]) if word in COMPONENTS and
               (after in ("component", "axis"))]  # fmt: skip
+    # another component or axis
     misnamed = any(name[-1] in "".join(COMPONENTS.values()) and name[-1] not in letters for letters in places)
+    # the space frame, for letters that books use in the body frame
     turned = re.fullmatch(r"[pqr]|(omega|w)_?[1-3]", name) is not None and "space frame" in known
     return int(misnamed) + int(turned)
 
 
 def strangeness_of(named: NamedFormula, known: Identification) -> tuple[int, int, int]:
-    """Return a sort key of a known formula: larger if the formula is a less plausible meaning of a claim.
-
-    The key counts a wrong component or frame, symbols with another axis, and renamed symbols.
-    """
+    """Return a sort key of a known formula, larger if a claim less probably means it."""
     axes = [[next((n for n, axis in enumerate(AXES) if name[-1] in axis), None) for name in pair]
             for pair in known.mapping.items()]  # fmt: skip
     moved = sum(None not in pair and pair[0] != pair[1] for pair in axes)
+    # wrong components and frames, symbols of another axis, renamed symbols
     return _misplaced(quantity_name(named), known.name), moved, len(known.mapping)
 
 
 def rarity_of(known: Identification) -> tuple[bool, int]:
-    """Return a sort key of a known formula, smaller for those that a claim more probably means.
-
-    Formulas that are equal to the claim's come first, before those that have to be transposed or multiplied to match.
-    Among each of these, the formulas in Euler sequences that many books use come first.
-    """
+    """Return a sort key of a known formula, smaller if a claim more probably means it."""
+    # equal formulas before transposed ones or multiples; usual Euler sequences before others
     return bool(known.how), _rank_of_sequence(known.name)
 
 

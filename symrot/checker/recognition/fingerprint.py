@@ -1,9 +1,8 @@
 """Fingerprints of formulas: hashes that do not depend on the names of symbols.
 
-Formulas are evaluated in the field of 2^61 - 1 elements. Its arithmetic is exact: equal functions have equal values,
-and different ones agree with a probability of 1e-18. An angle becomes a rational point of the circle. The signature of
-a symbol is the value of the formula at a point where that symbol has one value and all others have another. The sorted
-signatures are the fingerprint; symbols of two formulas with equal signatures are paired.
+Formulas are evaluated modulo the prime 2^61 - 1, where equal functions have equal values. The signature of an atom
+(a symbol, function or derivative) is the formula's value where this atom has one number and all others have another.
+The sorted signatures are the fingerprint.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,7 +16,7 @@ from symrot.checker.claim.atoms import atoms_of
 
 __all__ = ["PRIME", "Fingerprint", "NotInField", "fingerprint", "values_at"]
 
-PRIME = 2**61 - 1
+PRIME = 2**61 - 1  # different functions agree at a random point with a probability of 1e-18
 """A prime that is 3 modulo 4: the circle then has no points at infinity, and one power gives a square root."""
 DRAWS = tuple((pow(3, 101 + 2 * n, PRIME), pow(3, 102 + 2 * n, PRIME)) for n in range(48))
 """(value of one symbol, value of all others), tried in turn until the formula is defined."""
@@ -91,11 +90,8 @@ def _inverse(value: int) -> int:
 
 
 def _root(value: int) -> int:
-    """Return a square root of a field element, always the smaller one of the two as an integer.
-
-    If the element is no square in the field, its negative is a square, and a root of the negative is returned. So equal
-    formulas under roots have equal values.
-    """
+    """Return the smaller square root of ``value`` modulo ``PRIME``, or of its negative if ``value`` is no square."""
+    # always the same one of two roots, so that equal formulas under roots have equal values
     root = pow(value % PRIME, (PRIME + 1) // 4, PRIME)
     return min(root, PRIME - root)
 
@@ -109,20 +105,13 @@ def _power(base: int, exponent: Rational) -> int:
 
 
 def _pseudorandom(value: int) -> int:
-    """Return a pseudorandom field element computed from ``value``.
-
-    If a symbol t has this value, cos(t/4) and sin(t/4) become (1 - u^2)/(1 + u^2) and 2u/(1 + u^2), with u the element
-    returned. So they have no algebraic relation to t itself, which may also occur outside of sines and cosines.
-    """
+    """Return a pseudorandom field element computed from ``value``."""
     return pow(value + 1_000_003, 65_537, PRIME)
 
 
 def _circle_point(argument: Expr, known: dict[Expr, int]) -> tuple[int, int]:
-    """Return (cosine, sine) of an angle as two field elements c and s with c^2 + s^2 = 1 modulo ``PRIME``.
-
-    The angle is a sum of multiples of symbols; ``known`` has the field element for each symbol. The usual theorems for
-    sums and multiples of angles hold.
-    """
+    """Return numbers (c, s) modulo ``PRIME``, with c^2 + s^2 = 1, as cosine and sine of an angle."""
+    # the angle is a sum of multiples of symbols; the theorems for sums and multiples of angles hold
     total = (1, 0)
     for term in sympy.Add.make_args(sympy.expand(argument)):
         coefficient, angle = term.as_coeff_Mul()
@@ -134,6 +123,7 @@ def _circle_point(argument: Expr, known: dict[Expr, int]) -> tuple[int, int]:
         if angle is S.Pi:
             point = (0, 1)
         else:
+            # hashed, so that cos and sin of an angle have no algebraic relation to the value of the angle itself
             u = _pseudorandom(_value(angle, known))
             below = _inverse(1 + u * u)
             point = ((1 - u * u) * below % PRIME, 2 * u * below % PRIME)
@@ -151,42 +141,26 @@ def _added(first: tuple[int, int], second: tuple[int, int]) -> tuple[int, int]:
 
 @dataclass(frozen=True)
 class Fingerprint:
-    """The atoms (symbols, functions, derivatives) of a formula, each with its signature.
-
-    The signature of an atom holds the values of the formula's entries at the point where this atom has one number as
-    its value, and all other atoms have a second number. So it does not depend on names.
-    """
+    """The atoms (symbols, functions, derivatives) of a formula, each with its signature (see the module)."""
 
     atoms: tuple[Expr, ...]
     signatures: tuple[Values, ...]
     idle: tuple[Expr, ...] = ()  # atoms in the formula that do not change its value
 
     def rows(self, order: Sequence[int]) -> list[Values]:
-        """Return the signature of each atom as a row that is the same for the formula and all its multiples.
-
-        ``order`` lists the numbers of the formula's entries; the values in each signature (see the class) are put in
-        this order. All are divided by the sum of the signatures' values for one entry: the first in ``order`` with a
-        nonzero sum. A constant factor of the formula cancels in this quotient.
-        """
+        """Return the signatures with values in the given order, scaled: multiples of a formula have the same ones."""
         total = [sum(column) % PRIME for column in zip(*self.signatures, strict=True)]
+        # the first entry whose values have a nonzero sum
         below = _inverse(next((total[n] for n in order if total[n]), 1))
         return [tuple(values[n] * below % PRIME for n in order) for values in self.signatures]
 
     def key(self, shape: tuple[int, int] | None, order: Sequence[int]) -> str:
-        """Return the hash under which a formula is looked up, for its shape and the given order of its entries.
-
-        It does not depend on names or on a constant factor.
-        """
+        """Return the hash under which a formula is looked up; it does not depend on names or on a constant factor."""
         return sha256(repr((shape, sorted(self.rows(order)))).encode()).hexdigest()[:16]
 
 
 def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
-    """Return the fingerprint of a formula: its atoms (symbols, functions, derivatives), each with its signature.
-
-    The signature of an atom x holds the values of ``entries`` where x has one number as its value and all other atoms
-    have a second number. ``DRAWS`` lists pairs of such numbers; the first pair at which the formula has a value for
-    each x is used. For a formula such as x/(A - B) there is none: its signatures are sums over several points. Values
-    are taken modulo ``PRIME``.
+    """Return the fingerprint of a formula with these ``entries`` (see the module).
 
     Raises
     ------
@@ -211,53 +185,42 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
     cancelled = [cancel(entry) for entry in entries]
     if cancelled != list(entries):
         return fingerprint(cancelled)
+    # x/(A - B) has no value where two atoms are equal
     rows = [_sum_over_pairs(entries, atom, atoms, written) for atom in atoms]
     return Fingerprint(tuple(atoms), tuple(rows), tuple(atom for atom in written if atom not in atoms))
 
 
 def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | None:
-    """Return the fingerprint of a formula if it is defined at all points of the first pair in DRAWS; otherwise None.
-
-    ``entries`` are the entries of the formula, ``written`` its atoms (symbols, functions, derivatives). There is one
-    point for each atom: this atom has the first number of the pair as its value, all others have the second. The
-    formula must also have a value where all atoms have the second number, which ``1/(x - y)`` lacks. The result is also
-    None if the value at one of the points is the same as there.
-    """
+    """Return the fingerprint of a formula for the first two numbers in ``DRAWS``, or None if a value is undefined."""
     raised, others = DRAWS[0]
     point = dict.fromkeys(written, others)
-    here = _defined(entries, point)
+    here = _defined(entries, point)  # 1/(x - y) has no value here
     if here is None or not written:
         return None
     rows = []
     for atom in written:
         row = _defined(entries, {**point, atom: raised})
         if row is None or row == here:
-            return None
+            return None  # here the atom may be idle: the caller finds out
         rows.append(row)
     return Fingerprint(tuple(written), tuple(rows))
 
 
 def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], written: Sequence[Expr]) -> Values:
-    """Return the signature of ``atom`` in a formula such as x/(A - B), which has no value where two symbols are equal.
-
-    The formula is evaluated at one point for each other atom b in ``atoms``: ``atom`` has a first number as its value,
-    b a second, and all other symbols of the formula (``written``) a third. The signature is the sum of these values.
-    Points where the formula has no value are left out. ``atoms`` are the symbols that change the formula's value.
-    """
+    """Return the signature of ``atom`` in a formula such as x/(A - B), undefined where two atoms are equal."""
     raised, others = DRAWS[0]
     second, _ = DRAWS[1]
+    # one point for each other atom: it has the second number, all the rest the third
     points = (dict.fromkeys(written, others) | {atom: raised, other: second} for other in atoms if other != atom)
     defined = [values for point in points if (values := _defined(entries, point)) is not None]
     if not defined:
         raise NotInField
+    # a sum does not depend on the order of the atoms
     return tuple(sum(column) % PRIME for column in zip(*defined, strict=True))
 
 
 def _active(entries: Sequence[Expr], atoms: Sequence[Expr]) -> list[Expr]:
-    """Return those of ``atoms`` on which the value of a formula depends: not y in ``x*y/y``.
-
-    Atoms are symbols, functions and derivatives.
-    """
+    """Return those of ``atoms`` on which the value of a formula depends: x, but not y, in ``x*y/y``."""
     for first, _ in DRAWS:
         point = {atom: pow(first, n * n + 2, PRIME) for n, atom in enumerate(atoms)}  # no cross product is zero
         here = _defined(entries, point)

@@ -1,7 +1,7 @@
 """Identification of a formula: a look-up by fingerprint among the formulas that symrot derives, then a proof.
 
-A formula is recognised whatever its symbols are called, transposed or not (active or passive), with either sign, and
-for either order of a quaternion's components. Every name that is returned has been proven by the exact engine.
+A formula is recognised whatever its symbols are called, transposed or not, with either sign, and for either order of a
+quaternion's components. Every match has been proven by the exact engine.
 """
 
 import re
@@ -76,15 +76,11 @@ LETTERS = {
 
 @dataclass(frozen=True)
 class View:
-    """One arrangement of a formula's entries, such as the transpose.
+    """One arrangement of a formula's entries, such as the transpose."""
 
-    ``how`` says in words how it differs from the formula. Entry i of the arrangement is entry ``order[i]`` of the
-    formula, both counted row by row.
-    """
-
-    how: str
+    how: str  # the difference from the formula in words, such as "transposed"
     shape: tuple[int, int] | None
-    order: tuple[int, ...]
+    order: tuple[int, ...]  # entry i of the arrangement is entry order[i] of the formula, both counted row by row
 
 
 def identify(
@@ -147,12 +143,8 @@ def _value(formula: Any) -> Any:
 
 
 def _in_new_names(tree: Node, source: str, define: Sequence[tuple[str, Node]] = ()) -> Any:
-    """Return the SymPy value of a tree: each name is a symbol, a function of time, or the value of its definition.
-
-    Names without a definition become real symbols, or functions of time if the tree has their rates. ``define`` has
-    (name, formula) for the others, such as a vector with its components; they are replaced by the values of these
-    formulas. ``source`` is the text of the tree, for messages.
-    """
+    """Return the SymPy value of a tree: names become symbols, functions of time, or their values in ``define``."""
+    # a name becomes a function of time if its rate occurs; define has names with their formulas, such as vectors
     tree = with_natural_base(tree) if has_natural_base([tree]) else tree
     quantities: dict[str, Any] = {letter: Symbol(letter, real=True) for letter in letters_of_quantities([tree])}
     for name, definition in define:
@@ -161,10 +153,7 @@ def _in_new_names(tree: Node, source: str, define: Sequence[tuple[str, Node]] = 
 
 
 def named_parts(claim: Claim) -> tuple[str, ...]:
-    """Return notes such as "R is the rotation matrix .." on the known matrices in a claim.
-
-    They may be its sides, or definitions that it uses.
-    """
+    """Return notes such as "R is the rotation matrix .." on the known matrices in a claim and its definitions."""
     return tuple(
         f"{place} is the {identification}"
         for place, value in _parts(claim)
@@ -241,10 +230,7 @@ def identified(
 
 
 def _changes(match: Identification) -> tuple[int, int, int]:
-    """Return a sort key of a match: (changes of the arrangement, renamed symbols, symbols with another first letter).
-
-    All three are counts. Changes of the arrangement are a transpose, the opposite sign and so on.
-    """
+    """Return the sort key of a match: numbers of rearrangements, renamed symbols, symbols with another first letter."""
     others = sum(mine.lstrip("d")[0].lower() != new[0].lower() for mine, new in match.mapping.items())
     return bool(match.how) + match.how.count(" and "), len(match.mapping), others
 
@@ -308,7 +294,7 @@ def _matched(
     quantity: str | None,
     fits: Callable[[Identification], bool],
 ) -> Identification | None:
-    """Return the identification of a formula as the formula ``known``, if the equality is proven; otherwise None.
+    """Return the identification of a formula with ``known`` if the two are proven equal; otherwise None.
 
     Parameters
     ----------
@@ -364,20 +350,17 @@ def _name(atom: Expr) -> str:
 
 
 def _keeps_names(pairs: Sequence[tuple[str, str]]) -> bool:
-    """Return whether names that both a known formula and a claim have mean the same quantity in both.
-
-    ``pairs`` are (known name, name in the claim): (I, J) and (J, I) exchange two names, so that the result is False.
-    """
+    """Return whether names that a known formula shares with a claim mean the same quantity in both."""
+    # pairs (I, J) and (J, I) exchange two names
     names = [(plain_name(mine), plain_name(other)) for mine, other in pairs]
     new = {other for _, other in names}
     return all(mine == other or mine not in new for mine, other in names)
 
 
 def _keeps_rates(pairs: Sequence[tuple[str, str]]) -> bool:
-    """Return whether a renaming maps the rate of each symbol to the derivative of what the symbol is mapped to.
+    """Return whether a renaming of L_1 to L(t) also renames dL_1 to ``diff(L(t), t)``.
 
-    ``pairs`` are (known name, name in the claim). If the known symbol L_1 becomes L(t), its rate dL_1 must become
-    ``diff(L(t), t)``.
+    ``pairs`` are (known name, name in the claim).
     """
     renamed = dict(pairs)
     functions = {mine: renamed[mine] for mine in renamed if renamed[mine].endswith("(t)") and f"d{mine}" in renamed}
@@ -385,12 +368,8 @@ def _keeps_rates(pairs: Sequence[tuple[str, str]]) -> bool:
 
 
 def _keeps_units(pairs: Sequence[tuple[str, str]]) -> bool:
-    """Return whether each letter in a claim's formula for a vector may have the unit of what it stands for.
-
-    ``pairs`` are (known name, name in the claim). Neither omega nor M can stand for a velocity. A known symbol without
-    unit, such as a component of a quaternion, may have any letter in the claim; the coordinates x, y and z of a point
-    may be the components of any vector.
-    """
+    """Return whether books use each letter of a claim for quantities with the unit of its known symbol."""
+    # a symbol without unit may have any letter; x, y, z may be the components of any vector
     with_unit = [(mine, other) for mine, other in pairs if UNIT_OF_NAME.get(mine) != "1"]
     return all(agree_in_unit(mine, other) for mine, other in with_unit) and all(
         _has_usual_letter(mine, other) for mine, other in with_unit if mine not in ("x", "y", "z")
@@ -426,10 +405,9 @@ def _factor_text(factor: Rational) -> str:
 
 
 def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Iterator[dict[Expr, Expr]]:
-    """Yield the ways to pair the symbols of two formulas by equal signatures; equal names are paired first.
+    """Yield dictionaries from the symbols of the known formula ``theirs`` to those of ``own`` with equal signatures.
 
-    Each is a dictionary, from symbols of the known formula ``theirs`` to those of the other one, ``own``, whose entries
-    are taken in the given order.
+    Pairs with equal names come first.
     """
     mine: dict[Values, list[Expr]] = {}
     for atom, row in zip(own.atoms, own.rows(order), strict=True):
@@ -452,16 +430,13 @@ def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Ite
 
 
 def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, ...]]:
-    """Return orders of the symbols ``others`` in which to pair them with ``atoms``, the most plausible orders first.
-
-    An order is plausible if few units contradict each other and many names are equal.
-    """
+    """Return orders of the symbols ``others`` in which to pair them with ``atoms``, the most plausible orders first."""
     known = {atom: (as_text(atom), unit_of(as_text(atom))) for atom in (*atoms, *others)}
 
     def differences(order: tuple[Expr, ...]) -> tuple[int, int, int]:
         pairs = [(known[atom], known[other]) for atom, other in zip(atoms, order, strict=True)]
         return (
-            sum(None not in (mine, own) and mine != own for (_, mine), (_, own) in pairs),
+            sum(None not in (mine, own) and mine != own for (_, mine), (_, own) in pairs),  # contradicting units
             sum(name != other for (name, _), (other, _) in pairs),
             sum(name[0].lower() != other[0].lower() for (name, _), (other, _) in pairs),
         )
@@ -472,12 +447,8 @@ def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, 
 def _likeliest(
     atoms: Sequence[Expr], others: Sequence[Expr], known: Mapping[Expr, tuple[str, str | None]]
 ) -> list[Expr]:
-    """Return ``others`` reordered so that each symbol fits the one at the same position in ``atoms``.
-
-    For each atom in turn, the best of the remaining symbols is chosen: with the same unit, the same name, the same
-    first letter, the same axis. ``known`` has the text and the unit of each symbol. The caller compares the two lists
-    in this order first, since for many symbols it cannot try all orders.
-    """
+    """Return ``others`` reordered so that each symbol fits the one at the same position in ``atoms``."""
+    # for many symbols the caller cannot try all orders, and begins with this one
     rest, ordered = list(others), []
     names = {plain_name(known[atom][0]) for atom in atoms}
     for atom in atoms:
@@ -503,27 +474,20 @@ def unit_of(name: str) -> str | None:
 
 
 def agree_in_unit(known: str, own: str) -> bool:
-    """Return whether the symbol ``own`` of a claim may have the unit of the ``known`` symbol of a formula.
-
-    It may if books use the symbol for different quantities, or if no table states the unit of the known symbol.
-    """
+    """Return whether the symbol ``own`` of a claim may have the unit of the symbol ``known`` of a formula."""
     unit, conventional = UNIT_OF_NAME.get(known), unit_of(own)
+    # books use some letters for different quantities
     return unit is None or conventional is None or conventional == unit
 
 
 def _factor(
     theirs: Sequence[Expr],
     own: Sequence[Expr],
-    pairing: dict[Expr, Expr],
-    idle: Sequence[Expr],
+    pairing: dict[Expr, Expr],  # known symbol -> symbol of the claim
+    idle: Sequence[Expr],  # symbols in own that do not change its value
     factors: Sequence[Rational],
 ) -> Rational | None:
-    """Return the constant factor k with own = k * theirs, or None if there is none among ``factors``.
-
-    ``theirs`` is a known formula, ``own`` that of the claim. The factor is determined from values at a random point.
-    ``pairing`` gives the claim's symbol for each known symbol; ``idle`` are symbols in ``own`` that do not change its
-    value.
-    """
+    """Return the factor k with own = k * theirs at a random point, or None if there is none among ``factors``."""
     for draw in range(MOST_DRAWS):
         point = {mine: pow(7 + 2 * draw, 40 + n * n, PRIME) for n, mine in enumerate(pairing)}
         try:

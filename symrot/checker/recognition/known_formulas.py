@@ -1,7 +1,4 @@
-"""The formulas that symrot derives, with names and fingerprints: the program that prints ``known_formulas.toml``.
-
-``python -m symrot.checker.recognition.known_formulas`` prints the file again; none of its formulas is typed by hand.
-"""
+"""The formulas that symrot derives, with names and fingerprints; running this module prints ``known_formulas.toml``."""
 
 import json
 import re
@@ -49,20 +46,14 @@ FRAMES = ("body", "space")
 
 @dataclass(frozen=True)
 class Known:
-    """A formula that symrot derives: ``name`` says for what, ``source`` is its derivation page, ``text`` the formula.
-
-    ``scaled``: a claim with a multiple of the formula gets the same name. ``only_named``: the formula says too little
-    by itself, as the product C*omega_3 or the scalar product a . b of two vectors; it is recognised only in a claim
-    that names the quantity and uses the letters of books. ``is_relation``: the formula is the left minus the right side
-    of an equation.
-    """
+    """A formula that symrot derives: its name, its derivation page and its text."""
 
     name: str
     source: str
     text: str
-    scaled: bool = False
-    only_named: bool = False
-    is_relation: bool = False
+    scaled: bool = False  # multiples of the formula have the same name
+    only_named: bool = False  # such as C*omega_3: only for a named quantity, in the letters of books
+    is_relation: bool = False  # the left side of an equation minus the right side
 
     @property
     def is_placed(self) -> bool:
@@ -251,15 +242,13 @@ def _torques() -> Iterator[Named]:
 
 
 def _letters_of_books(torque: Matrix) -> list[dict[Symbol, Symbol]]:
-    """Return the letters that books use for symbols of the torque of the gravity gradient; [{}] for other torques.
-
-    The direction to the planet's centre is the third column of a rotation matrix, or a unit vector.
-    """
+    """Return the letters of books for the torque of the gravity gradient, as substitutions; [{}] for other torques."""
     named = {symbol.name: symbol for symbol in torque.free_symbols}
     if "mean_motion" not in named:
         return [{}]
     direction = [named[f"radius_{axis}"] for axis in (1, 2, 3)]
     rate = {named["mean_motion"]: symbols.n}
+    # the direction to the planet's centre: a column of a rotation matrix, or a unit vector
     columns = [symbols.rotation_entries[2::3], symbols.axis]
     return [rate | dict(zip(direction, column, strict=True)) for column in columns]
 
@@ -321,7 +310,7 @@ def _solved() -> Iterator[Named]:
 
 
 def _related() -> Iterator[Named]:
-    """Yield the relations of mechanics, each with its name and source, as a difference that is zero."""
+    """Yield the relations of mechanics, each with its name and source, as a difference that must be zero."""
     for relation in relations():
         yield f"relation for {relation.title}", relation.source, primitive(relation.difference)
 
@@ -331,12 +320,14 @@ SCALAR_PRODUCTS = ("power of a torque", "kinetic energy from the angular momentu
 
 
 def _selected(
-    formulas: Iterator[Named], least: int, longest: int, is_relation: bool = False
+    formulas: Iterator[Named],
+    least: int,
+    longest: int,
+    is_relation: bool = False,  # stored too: relations are looked up for equations only
 ) -> Iterator[tuple[str, Known]]:
     """Yield (fingerprint key, formula) for the formulas that ``known_formulas.toml`` is to contain.
 
-    They have at least ``least`` symbols, so that they can be recognised, and at most ``longest`` characters. The flag
-    ``is_relation`` is stored with them: they are then differences that are zero, and are looked up for equations only.
+    They have ``least`` symbols or more, and at most ``longest`` characters.
     """
     of_letters = {*(name for name, *_ in along_axes()), GYROSCOPE, *SCALAR_PRODUCTS, *ANY_VECTORS, *GENERAL}
     seen, few = set(), {name for name, *_ in (*tops(), *one_axis(), *_solved(), *rotations(), *bodies(), *points())}
@@ -360,12 +351,8 @@ def _selected(
 
 
 def ending_of(name: str) -> str:
-    """Return ", squared" or ", acos" at the end of a known formula's name; "" if the name has no such end.
-
-    The formula then gives a function of the quantity instead of the quantity: "spin .., squared" the square of the
-    spin, "nutation .., acos" the cosine of the angle, and ".., 2 acos" the cosine of half the angle. With ", asin" it
-    gives the sine, with ", atan2" the two arguments of atan2.
-    """
+    """Return the end of a known formula's name that names a function, such as ", squared" or ", acos"; otherwise ""."""
+    # the formula then is a function of the quantity: its square, cosine, or half angle's cosine
     ending = re.search(r", (squared|(\S+ )?(acos|asin|atan2))$", name)
     return ending[0] if ending else ""
 
@@ -382,11 +369,8 @@ def _is_monomial(entry: Expr) -> bool:
 
 
 def _is_general(entries: Sequence[Expr]) -> bool:
-    """Return whether the nonzero entries of a formula are symbols, all different, as in ``diag(A, B, C)``.
-
-    Every other such vector or matrix has the same fingerprint, so that nothing can be recognised by it.
-    """
-    nonzero = [entry for entry in entries if entry != 0]
+    """Return whether the nonzero entries of a formula are different symbols, as in ``diag(A, B, C)``."""
+    nonzero = [entry for entry in entries if entry != 0]  # all such matrices have the same fingerprint
     return all(entry.is_Symbol for entry in nonzero) and len(set(nonzero)) == len(nonzero)
 
 
@@ -418,10 +402,8 @@ def _quoted(text: str) -> str:
 
 @cache
 def by_fingerprint() -> dict[str, list[Known]]:
-    """Return the known formulas by their key, a hash that does not depend on the names of symbols.
-
-    The values in the file as :func:`page` prints it are also JSON, which is read in a fraction of the time of TOML.
-    """
+    """Return the known formulas by their key, a hash that does not depend on the names of symbols."""
+    # values that `page` prints are JSON too, which is read in a fraction of the time of TOML
     formulas: dict[str, list[Known]] = {}
     _, *entries = FILE.read_text(encoding="utf-8").split("\n[[formula]]\n")
     for entry in entries:

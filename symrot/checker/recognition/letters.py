@@ -1,7 +1,6 @@
 """The letters of a formula that may have a fault: symbols, rates and angles, with random values at some points.
 
-The values obey the hypotheses of the claim. Names that stand for another formula, such as c1 for cos(alpha), have the
-values of that formula.
+The values obey the claim's hypotheses. A name that stands for a formula, such as c1 for cos(alpha), has its value.
 """
 
 from collections.abc import Mapping
@@ -29,9 +28,9 @@ MANY = 9
 
 
 def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:
-    """Return the symbols, rates and angles of a claim's formula, with random values that obey its hypotheses.
+    """Return the letters of a claim's formula, with random values that obey the claim's hypotheses.
 
-    Return None if too few points are found at which the formula has a value.
+    Return None if the formula has too few values.
     """
     numeric = NumericFilter(claim)
     short = claim.defining  # such as c1 = cos(alpha)
@@ -80,19 +79,15 @@ def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:
 
 
 def _symbols_of(definitions: Mapping[str, Node], numeric: NumericFilter) -> set[str]:
-    """Return the names in ``definitions`` that are neither functions of time nor themselves defined by the claim.
-
-    ``numeric`` has the names of the claim.
-    """
+    """Return the names in ``definitions`` that are neither functions of time nor themselves defined by the claim."""
     names = {str(node.value) for tree in definitions.values() for _, node in walk(tree) if node.kind == "name"}
     return names - {"pi", *numeric.functions, *numeric.definitions}
 
 
 def _active(formula: Node, atoms: dict[Node, Values], places: list[PointOfLetters]) -> dict[Node, Values]:
-    """Return those letters of a formula, among ``atoms``, whose change changes its value, with their values.
+    """Return those of ``atoms`` on which the value of a formula depends, with their values.
 
-    A formula may contain letters that do not matter: the trace of a matrix depends on its diagonal only. ``places`` are
-    the test points.
+    The trace of a matrix depends on its diagonal only.
     """
     if len(atoms) < MANY:
         return atoms
@@ -110,10 +105,7 @@ def _active(formula: Node, atoms: dict[Node, Values], places: list[PointOfLetter
 
 
 def pieces_of(tree: Node) -> frozenset[int]:
-    """Return the identities (``id``) of all nodes in a tree.
-
-    A test point gets this set, and then stores the value of each of these nodes, so that it is computed only once.
-    """
+    """Return the identities (``id``) of all nodes in a tree; a test point remembers the values of these nodes."""
     return frozenset(id(node) for _, node in walk(tree))
 
 

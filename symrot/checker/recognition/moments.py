@@ -1,7 +1,4 @@
-"""Formulas that differ from a known one because they are for another body or axis, and not because of a fault.
-
-A body with equal moments of inertia has one letter for them; a moment about a parallel axis is larger by m d^2.
-"""
+"""Formulas that differ from a known one not by a fault, but because they are for another body or axis."""
 
 import math
 from collections.abc import Sequence
@@ -20,29 +17,21 @@ FIRST_EQUAL = (("A", "B"), ("I_xx", "I_yy"))
 
 
 def is_symmetric_body(absent: str, letter: str, renaming: dict[str, str | None], times: int) -> bool:
-    """Return whether a claim may mean a body with two equal moments of inertia, and have one letter for both.
-
-    ``absent`` is the moment of the known formula that the claim lacks, ``letter`` the claim's letter that may stand for
-    it too, and ``times`` counts how often this letter occurs. ``renaming`` maps known moments to letters of the claim.
-    If A = B, books write A for both. If B = C, they write B: this is allowed only if the letter occurs once, as in ``A
-    p^2 + B (q^2 + r^2)``, which clearly means B = C. Otherwise the third axis is that of symmetry.
-    """
+    """Return whether ``letter`` in a claim may stand for two equal moments of inertia, its own and ``absent``."""
+    # books write A for A = B; B stands for B = C only if it occurs once, as in A p^2 + B (q^2 + r^2)
     equal = EQUAL_MOMENTS if times == 1 else FIRST_EQUAL
     return any(absent == later and renaming.get(earlier) == letter for earlier, later in equal)
 
 
 def is_shifted_moment(actual: Values, known: Values, letters: Letters) -> bool:
-    """Return whether the values ``actual`` are those of a known moment of inertia plus m d^2, for a parallel axis.
-
-    The distance d is a simple fraction of one length in the claim, or has two such components. Values that are
-    multiples of the known ones are not shifted.
-    """
+    """Return whether ``actual`` are the values of the moment of inertia ``known`` plus m d^2, for a parallel axis."""
     if any(map(is_matrix, (*actual, *known))) or not all(known):
         return False
     ratios = [value / other for value, other in zip(actual, known, strict=True)]
     if min(ratios) <= 1 or all(near(ratio, ratios[0]) for ratio in ratios):
         return False
     added = [value - other for value, other in zip(actual, known, strict=True)]
+    # d is a simple fraction of one length of the claim, or has two such components
     for mass, *lengths in permutations(letters.atoms.values(), 2):
         if _are_squares([_share(added, mass, *lengths)]):
             return True
@@ -54,30 +43,23 @@ def is_shifted_moment(actual: Values, known: Values, letters: Letters) -> bool:
 
 
 def _share(added: Sequence[float], mass: Values, length: Values) -> Fraction | None:
-    """Return the rational number k for which the values ``added`` to a moment are k m d^2; None if there is none.
-
-    ``mass`` and ``length`` are the values of m and d at the same test points.
-    """
+    """Return the rational number k for which the values ``added`` to a moment are k m d^2; None if there is none."""
     return rational([value / (m * d * d) for value, m, d in zip(added, mass, length, strict=True)])
 
 
 def _shares(added: Sequence[float], mass: Values, lengths: Sequence[Values]) -> list[Fraction | None]:
-    """Return simple fractions [k, l] for which m (k a^2 + l b^2) was ``added`` to a moment of inertia.
-
-    ``added``, ``mass`` (m) and ``lengths`` (a and b) are values at the test points. [None] is returned if no numbers k
-    and l fit the values at all points. If numbers fit and one of them is no simple fraction, None stands in its place:
-    [1/4, None].
-    """
+    """Return the simple fractions [k, l] for which m (k a^2 + l b^2) was ``added`` to a moment of inertia."""
     (first, second, *_), rows = [value / m for value, m in zip(added, mass, strict=True)], [
         (a * a, b * b) for a, b in zip(*lengths, strict=True)
     ]  # fmt: skip
     (a, b), (c, d), *_ = rows
     below = a * d - b * c
     if not below:
-        return [None]
+        return [None]  # no such numbers
     shares = ((first * d - b * second) / below, (a * second - first * c) / below)
     fits = all(near(value / m, shares[0] * p + shares[1] * q)
                for value, m, (p, q) in zip(added, mass, rows, strict=True))  # fmt: skip
+    # None in place of a number that is no simple fraction
     return [rational([share]) for share in shares] if fits else [None]
 
 

@@ -1,9 +1,7 @@
 """Verdicts on claims such as ``I_zz == m/12*(a**2 + b**2)``, which only give a formula for a named quantity.
 
-Nothing in such a claim defines the left side, so that nothing can be proven about it; but most formulas of books and
-papers look like this. The right side is compared with the formulas that symrot derives, each with its symbols renamed
-to the names in the claim. The verdict is "recognised" if it is equal to one of them, "doubtful" if a single edit makes
-it equal to one, and "definition" otherwise.
+Nothing in such a claim defines the left side; so the right side is compared with the formulas that symrot derives. The
+verdict is "recognised" if the two are equal, "doubtful" if a single edit makes them equal, and "definition" otherwise.
 """
 
 import re
@@ -116,10 +114,9 @@ SQUARED = ", squared"
 
 
 def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
-    """Return the verdict "recognised", "doubtful" or "definition" on a claim that gives a formula for a named quantity.
+    """Return the verdict on a claim that only gives a formula for a named quantity.
 
-    ``named`` is the quantity with its formula. With ``repair``, known formulas near this one are searched too: without
-    it, the verdict is never "doubtful".
+    Without ``repair``, the verdict is never "doubtful".
 
     Raises
     ------
@@ -155,14 +152,11 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
 
 
 def _near_usual(claim: Claim, named: NamedFormula, readings: Sequence[Identification]) -> Verdict | None:
-    """Return the verdict "doubtful" on a claim that is known in an unusual convention and nearly known in a usual one.
-
-    ``readings`` are the known formulas that the claim is equal to. For ``psi' = (omega_2 sin phi + omega_1 cos
-    phi)/cos theta`` these are in the space frame, while omega_1 and omega_2 usually are components in the body: there
-    omega_1 should be omega_3. Return None if the convention is usual, or if the context of the claim states one.
-    """
+    """Return the verdict "doubtful" on a claim known in an unusual convention and nearly known in a usual one."""
     if claim.context or claim.hypotheses or not all(is_unusual(known) for known in readings):
         return None
+    # such as psi' = (omega_2 sin phi + omega_1 cos phi)/cos theta: true for components in the space frame;
+    # for the usual ones in the body frame, omega_1 should be omega_3
     exchanged = (near for near in _nearby(claim, named)
                  if near.code in EXCHANGES and is_in_usual_sequence(near.known.name))  # fmt: skip
     for near in islice(exchanged, MOST_PROOFS):
@@ -174,11 +168,7 @@ def _near_usual(claim: Claim, named: NamedFormula, readings: Sequence[Identifica
 
 
 def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | None:
-    """Return the verdict on ``omega = [matrix] q_dot`` by its matrix alone, if q_dot is a single name.
-
-    Return None for other claims, and if the matrix is no known rate matrix. If ``repair`` and the verdict is "doubtful"
-    (the matrix becomes a known one by a change), the verdict also has the corrected equations as repairs.
-    """
+    """Return the verdict on a claim ``omega = [matrix] q_dot`` by its matrix alone, or None for other claims."""
     factors = named.formula.args if named.formula.kind == "product" else ()
     is_map = len(factors) == 2 and factors[0].value == "Matrix" and (is_atom(factors[1]) or is_derivative(factors[1]))
     if not is_map or len(matrix_entries(factors[0])) <= MOST_COMPONENTS:
@@ -187,6 +177,7 @@ def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | Non
     if not any(re.search("rate Jacobian|rate matrix", known.name) for known in verdict.recognised_as):
         return None
     repairs = []
+    # a repair of the matrix becomes one of the whole equation
     for edited in verdict.repairs:
         side = product([read_relation(edited.text)[2], factors[1]])
         repairs.append(replace(edited, text=f"{text(named.side)} == {text(side)}"))
@@ -203,12 +194,10 @@ def verdict_on_relation(claim: Claim) -> Verdict | None:
 
 
 def _least_symbols_related(left: Node, right: Node) -> int:
-    """Return the fewest symbols that the equation ``left == right`` needs to be compared with known relations.
-
-    An equation of motion such as ``L theta'' = -g sin theta`` needs fewer than another equation.
-    """
+    """Return the fewest symbols with which the equation ``left == right`` is compared with known relations."""
     nodes = [node for side in (left, right) for _, node in walk(side)]
     accelerated = {node.args[0] for node in nodes if is_derivative(node) and len(node.args) > 2}
+    # an equation of motion, such as L theta'' = -g sin theta, needs fewer than another equation
     of_motion = any(
         node.kind == "call" and node.value in ("sin", "cos") and accelerated & {*node.args} for node in nodes
     )
@@ -216,10 +205,7 @@ def _least_symbols_related(left: Node, right: Node) -> int:
 
 
 def _with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tuple[Identification, ...]:
-    """Return the known formulas that equal ``formula`` after changing the sign of all products of inertia in it.
-
-    Some authors define products of inertia as integrals without the minus sign.
-    """
+    """Return the known formulas that equal ``formula`` if products of inertia are defined without the minus sign."""
     if claim.context.sign_of_products == "minus":
         return ()
     if not any(PRODUCT_OF_INERTIA.fullmatch(name) for name in names_in(formula)):
@@ -232,10 +218,7 @@ def _with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tu
 
 
 def _on_signs_of_products(claim: Claim, named: NamedFormula, readings: Collection[Identification]) -> tuple[str, ...]:
-    """Return, in a tuple, a note on the convention for products of inertia; () if it does not matter or is stated.
-
-    ``readings`` are the known formulas that the claim is equal to.
-    """
+    """Return a tuple with a note on the sign of products of inertia, or () if the sign does not matter or is stated."""
     names = [name for name in names_in(named.formula) if PRODUCT_OF_INERTIA.fullmatch(name)]
     if not names or claim.context.sign_of_products or any("minus sign" in f"{k.name} {k.how}" for k in readings):
         return ()
@@ -258,10 +241,9 @@ def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 
 def _near_by_quantity(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if a change on the side of the quantity gives a known formula; otherwise None.
+    """Return the verdict "doubtful" if a change on the quantity's side, such as k to k^2, gives a known formula.
 
-    So ``cos(gamma)`` should be ``cos(gamma/2)`` in the formula for the angle of two rotations, and ``k`` should be
-    ``k^2`` in ``k = I/m``.
+    Otherwise return None.
     """
     for changed in quantity_variants(named):
         if not is_evident_by_quantity(claim, named, changed):
@@ -284,15 +266,12 @@ def verdict_near_relation(claim: Claim) -> Verdict | None:
 
 
 def _near_relation(claim: Claim, left: Node, right: Node) -> Verdict | None:
-    """Return the verdict "doubtful" if one change makes ``left == right`` a known relation; otherwise None.
-
-    The search for faults needs an equation with a single quantity on the left. So the equation is solved for each of
-    its letters in turn (rates first), and each result, such as ``T == I*alpha``, is searched until one gives a verdict.
-    """
+    """Return the verdict "doubtful" if one change makes ``left == right`` a known relation; otherwise None."""
     if len(names_in(left) | names_in(right)) < _least_symbols_related(left, right):
         return None
     atoms = dict.fromkeys(node for side in (left, right) for _, node in walk(side) if is_atom(node))
     order = sorted(atoms, key=lambda atom: atom.value != "diff")  # rates first
+    # the search for faults needs a single quantity on the left, such as T == I*alpha
     for named in islice(solved_claims(left, right, order), MOST_SOLVED):
         verdict = _near(claim, named)
         if verdict is not None:
@@ -302,21 +281,14 @@ def _near_relation(claim: Claim, left: Node, right: Node) -> Verdict | None:
 
 
 def _in_claim(repair: Repair, left: Node, right: Node, named: NamedFormula) -> Repair:
-    """Return a repair with its terms on the same sides as in the claim, ``left == right``.
-
-    The repair was made for ``named``, the claim solved for one of its letters.
-    """
+    """Return a repair of a solved equation ``named`` with its terms on the same sides as in ``left == right``."""
     sides = put_back(left, right, named, read_relation(repair.text)[2])
     return repair if sides is None else replace(repair, text=f"{text(sides[0])} == {text(sides[1])}")
 
 
 def _are_usable(claim: Claim) -> bool:
-    """Return whether the claim's hypotheses allow a search for faults: a comparison with known formulas at test points.
-
-    They do if each one gives a name to a formula, or says that a vector or quaternion has length one. Under another
-    hypothesis, such as A = B for two moments, a right formula may be shorter than the known one: the search would then
-    report that a term is missing.
-    """
+    """Return whether the claim's hypotheses only name formulas and state unit lengths, so that faults can be sought."""
+    # under A = B, a right formula may be shorter than the known one, and a term would seem to be missing
     short = claim.defining
     return all(
         sign == "==" and (short.get(str(left.value)) == right or _is_norm(left, right) or _is_norm(right, left))
@@ -344,23 +316,20 @@ def _nearby(claim: Claim, named: NamedFormula) -> list[Near]:
 def _doubtful(
     repairs: tuple[Repair, ...], readings: tuple[Identification, ...], notes: tuple[str, ...] = ()
 ) -> Verdict:
-    """Return the verdict "doubtful" with the fault of the first repair; ``readings`` are what that repair gives."""
+    """Return the verdict "doubtful" with repairs, and the known formulas ``readings`` that the first of them gives."""
     code = repairs[0].code
     diagnosis = Diagnosis(code, FAULT_DESCRIPTIONS[code])
     return Verdict("doubtful", diagnosis=diagnosis, repairs=repairs, recognised_as=readings, notes=notes)
 
 
 def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if changes of one part make the formula a known one; None if there are none.
-
-    The verdict is "recognised" instead if the formula equals a known one without a change, but only for letters of
-    certain signs, as ``a*sqrt(1 - x/a^2)`` equals ``sqrt(a^2 - x)`` for a > 0.
-    """
+    """Return the verdict "doubtful" if changes of one part make the formula a known one; None if there are none."""
     nearby = _nearby(claim, named)
     of_bodies = [near for near in nearby if is_of_body(near.code, near.known.name)]
     shifted = any(near.is_shifted for near in of_bodies if near.cost <= of_bodies[0].cost + AS_NEAR)
     repairs: dict[Node, tuple[Repair, tuple[Identification, ...]]] = {}
     tried: set[Node] = set()
+    # equal without a change for letters of certain signs: a*sqrt(1 - x/a^2) and sqrt(a^2 - x) for a > 0
     if nearby and nearby[0].code == "none":
         readings = _with_root(claim, named, nearby[0])
         return Verdict("recognised", recognised_as=readings) if readings else None
@@ -383,12 +352,8 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 
 def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identification, ...]:
-    """Return (known formula,) if the formula of ``near`` equals its known formula for some signs of the letters.
-
-    ``near.tree`` is the claim's formula, or the claim's after one correction; ``near.known`` is the known formula with
-    the letters in ``near.renaming``. ``a*sqrt(1 - x/a^2)`` equals ``sqrt(a^2 - x)`` for positive a only: the look-up of
-    known formulas, which compares for all values, misses it. The result is () if the two are not equal so.
-    """
+    """Return (known formula,) if ``near.tree`` equals it for some signs of the letters; otherwise ()."""
+    # a*sqrt(1 - x/a^2) equals sqrt(a^2 - x) for a > 0
     ending = ending_of(near.known.name)
     if named.solve is None or ending not in ("", SQUARED):
         return ()
@@ -432,10 +397,8 @@ def _loses_letter(claim: Claim, tree: Node) -> bool:
 
 
 def _is_known_for_exchanged_masses(claim: Claim, named: NamedFormula) -> bool:
-    """Return whether exchanging m_1 and m_2 makes a formula a known one.
-
-    Then the formula has no fault: its author only takes the other mass for the heavier one.
-    """
+    """Return whether exchanging m_1 and m_2 makes a formula a known one."""
+    # no fault: the author takes the other mass for the heavier one
     tree = with_names(named.formula, {"m_1": "m_2", "m_2": "m_1", "m1": "m2", "m2": "m1"})
     return tree != named.formula and bool(_readings(claim, named, tree, 1))
 
@@ -448,13 +411,10 @@ def _has_equal(claim: Claim, tree: Node, others: Collection[Node]) -> bool:
 
 
 def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if undoing a usual fault makes the formula a known one; otherwise None.
-
-    Unlike :func:`_near`, this tries edits of whole formulas, one by one. If a number stands alone on the right side,
-    the left side is edited.
-    """
+    """Return the verdict "doubtful" if undoing a usual fault makes the formula a known one; otherwise None."""
     nearest: tuple[tuple[int, int, int], Verdict] | None = None
     if named.solve is None and named.formula.kind == "number" and named.formula.value:
+        # a number alone on the right: the left side is edited
         exchanged = _edited(claim, named._replace(side=named.formula, formula=named.side))
         if exchanged is None:
             return None
@@ -487,14 +447,11 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
 def recognised_edits(
     claim: Claim, named: NamedFormula, letters: Collection[str], most: int
 ) -> Iterator[tuple[Repair, Verdict]]:
-    """Yield single edits of a claim's formula that make it a known one, each as a repair and with its verdict.
-
-    They are for a formula that is known but does not fit to the other lines of its text, which have the ``letters``. An
-    exchange of two letters counts as one edit. At most ``most`` edits are tried, the cheapest ones.
-    """
+    """Yield single edits of a claim's formula that make it a known one, each as (repair, new verdict)."""
     numeric = NumericFilter(claim)
     names = sorted({*numeric.names, *letters} - {*numeric.functions})
     edits = [*single_edits(named.formula, names, numeric.functions, numeric.is_matrix, numeric.moving)]
+    # an exchange of two letters counts as one edit
     own = sorted(names_in(named.formula))
     for first, second in combinations(own, 2):
         exchanged = _exchanged(named.formula, {first: second, second: first})
@@ -514,7 +471,7 @@ def _exchanged(tree: Node, names: Mapping[str, str]) -> Node:
 
 
 def _with_all_terms_added(named: NamedFormula) -> Iterator[Edit]:
-    """Yield the formula a + b + c for ``a - b - c``, if it should be a number, as the square of a length should be."""
+    """Yield the edit of ``a - b - c`` to a + b + c, for a formula that should be a positive number."""
     negative = [term for term in named.formula.args if term.kind == "neg"]
     if named.solve is None and named.side.kind == "number" and named.formula.kind == "sum" and len(negative) > 1:
         added = sum_of([term.args[0] if term.kind == "neg" else term for term in named.formula.args])
@@ -531,11 +488,9 @@ def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:
 
 
 def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int) -> tuple[Identification, ...]:
-    """Return the known formulas that are equal to ``tree`` and whose symbols fit the names in the claim.
+    """Return the known formulas that are equal to ``tree`` and fit the names in the claim, the likeliest first.
 
-    The likeliest comes first. Formulas with fewer than ``least_symbols`` symbols are not looked up. Only if
-    ``least_symbols`` is LEAST_SYMBOLS and books use the quantity's name for one thing, as I_zz for a moment of inertia,
-    one symbol suffices.
+    ``tree`` needs ``least_symbols`` symbols or more.
     """
     solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
     is_open = (words_of(named) is None or _is_stated(claim, named)) and least_symbols == LEAST_SYMBOLS
@@ -552,10 +507,9 @@ def _is_stated(claim: Claim, named: NamedFormula) -> bool:
 def _readings_of_relation(
     claim: Claim, named: NamedFormula, tree: Node, least_symbols: int
 ) -> tuple[Identification, ...]:
-    """Return the known relations that say the same as the equation ``named.side == tree``.
+    """Return the known relations that are equivalent to the equation ``named.side == tree``.
 
-    ``named.side`` is the side of the claim with the quantity. Equations with fewer than ``least_symbols`` symbols are
-    not looked up; the result is then empty.
+    The equation needs ``least_symbols`` symbols or more.
     """
     difference = sum_of([named.side, negated(tree)])
     try:
@@ -586,10 +540,7 @@ def _readings_of_formula(
 ) -> tuple[Identification, ...]:
     """Return the known formulas for the claim's quantity that are equal to ``formula``, the likeliest first.
 
-    Formulas with fewer than ``least_symbols`` symbols are not looked up, and the result is (). For the claim's own
-    formula, callers give LEAST_SYMBOLS; one symbol suffices then if books use ``named.name`` for one thing, as I_zz for
-    a moment of inertia. For edited formulas they give larger numbers, without this exception, since a short edited
-    formula may be equal to a known one by chance.
+    ``formula`` needs ``least_symbols`` symbols or more.
     """
     try:
         value = claim.with_definitions(claim.interpreter().read(formula))
@@ -597,6 +548,8 @@ def _readings_of_formula(
         return ()
     if is_matrix(value) and value.shape == (1, 1):
         value = value[0]
+    # one symbol suffices in the claim's own formula if books use the name for one thing, as I_zz;
+    # a short edited formula may equal a known one by chance
     fewest = 1 if words_of(named) is not None and least_symbols == LEAST_SYMBOLS else least_symbols
     if not is_matrix(value) and len(value.atoms(Function, Symbol) - {time}) < fewest:
         return ()
@@ -622,14 +575,10 @@ def _readings_of_formula(
 
 
 def _without_function(value: Any) -> tuple[Any, str]:
-    """Return the argument of the outer function of a value, and the end of a known formula's name for this function.
-
-    Known formulas with roots and inverse functions are stored without them. So sqrt(x) gives (x, ", squared"), acos(u)
-    gives (u, ", acos"), and atan2(y, x) gives (Matrix([y, x]), ", atan2"). Any other value is returned with an empty
-    text.
-    """
+    """Return the argument and the name of a value's outer function: (u, ", acos") for acos(u)."""
     if is_matrix(value):
         return value, ""
+    # known formulas with roots and inverse functions are stored without them
     if any(power.exp == Rational(1, 2) for power in Mul.make_args(value) if power.is_Pow):
         return value**2, SQUARED
     factor, function = value.as_coeff_Mul()

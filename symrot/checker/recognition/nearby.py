@@ -1,8 +1,7 @@
 """Known formulas that differ from a claim by one fault: a numeric search, whose results remain to be proven.
 
-It compares a claim with all known formulas for the quantity that the claim names. For each, it computes the values that
-the claim's formula would have if it were right. :mod:`symrot.checker.recognition.parts` then looks for a single part
-whose change gives the formula these values.
+For each known formula for the claim's quantity, the search computes the values that the claim's formula should have. It
+then looks for a single part whose change gives these values.
 """
 
 import math
@@ -60,35 +59,25 @@ SQUARED = ", squared"
 
 
 class Near(NamedTuple):
-    """A candidate for a repair: ``tree``, the claim's formula after one change, has the values of ``known``.
-
-    The values agree at the test points; equality is not yet proven. ``code`` and ``cost`` are those of the fault that
-    the change corrects. ``renaming`` gives the claim's letter for each symbol of ``known``, and ``renamed`` counts the
-    symbols of ``known`` whose letter in the claim is another one. ``has_other_unit``: the claim's formula has another
-    unit than ``known``. ``is_shifted``: the claim's formula is the known moment of inertia plus m d^2, like one about a
-    parallel axis. ``is_symmetric``: the claim's formula is ``known`` for a body with two equal moments of inertia.
-    ``letter`` is the changed part of the claim, if that is a symbol. ``array_letters`` counts the letters of a formula
-    with vectors or matrices, each component as one letter; it is 0 for other formulas.
-    """
+    """A candidate for a repair: the claim's formula after one change has the values of a known formula."""
 
     cost: float
-    code: str
-    tree: Node
+    code: str  # of the fault that the change corrects
+    tree: Node  # the claim's formula after the change
     known: Known
-    renamed: int
-    has_other_unit: bool
-    is_shifted: bool
-    is_symmetric: bool
-    letter: str
-    array_letters: int = 0
-    renaming: tuple[tuple[str, str], ...] = ()
+    renamed: int  # the number of symbols of ``known`` that have another letter in the claim
+    has_other_unit: bool  # the claim's formula has another unit than ``known``
+    is_shifted: bool  # the claim's formula is ``known`` plus m d^2, for a parallel axis
+    is_symmetric: bool  # the claim's formula is ``known`` for a body with two equal moments of inertia
+    letter: str  # the changed part, if it is a symbol
+    array_letters: int = 0  # letters of a formula with vectors, each component as one letter; 0 for other formulas
+    renaming: tuple[tuple[str, str], ...] = ()  # (symbol of ``known``, letter of the claim)
 
 
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
-    """Return formulas that follow from a claim's formula by one change and may be known ones, the nearest first.
+    """Return changes of a claim's formula after which it may be a known formula, the cheapest first.
 
-    ``fits`` tells which known formulas may be meant. The list is empty if the claim has hypotheses under which its own
-    formula already equals a known one at the test points, since then no change is needed.
+    ``fits`` selects the known formulas.
     """
     if sum(1 for _ in walk(named.formula)) > MOST_NODES:
         return []
@@ -124,6 +113,7 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
             if pairs > MOST_PAIRS:
                 break
             compared = _compared(search, known, renaming)
+            # under the hypotheses the claim's formula equals a known one: no change is needed
             if compared is None and claim.hypotheses:
                 return []
             if compared is None and has_root_of_sum(named.formula):
@@ -140,7 +130,8 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
 
 
 def has_root_of_sum(formula: Node) -> bool:
-    """Return whether a formula has the root of a sum: its fingerprint may differ from an equal formula's by a sign."""
+    """Return whether a formula has the root of a sum."""
+    # fingerprints of equal formulas with such roots may differ by a sign
     roots = (node.args[0] for _, node in walk(formula) if node.kind == "call" and node.value == "sqrt")
     return any(node.kind == "sum" for root in roots for _, node in walk(root))
 
@@ -195,25 +186,17 @@ def _tree(known: Known) -> Node:
 
 
 class Search(NamedTuple):
-    """A claim's formula with all changes that usual faults suggest, sorted for a look-up by value.
-
-    ``variants`` has, for each part, (value at the first test point, variant), in the order of the values. A variant is
-    a change of this part, with its values at all test points. ``arrays`` has the edits of the whole formula, which undo
-    faults of vectors and matrices. ``values`` are the formula's own values.
-    """
+    """A claim's formula with its values and all changes that usual faults suggest, sorted for a look-up by value."""
 
     named: NamedFormula
     letters: Letters
-    variants: dict[Path, list[tuple[float, Variant]]]
-    arrays: list[ArrayFault]
+    variants: dict[Path, list[tuple[float, Variant]]]  # for each part: (value at the first test point, change)
+    arrays: list[ArrayFault]  # edits of the whole formula
     has_arrays: bool
     values: Values
 
     def matching(self, part: Part) -> Iterator[Variant]:
-        """Yield the variants of a part whose values at all test points are ``part.needed``.
-
-        These are the values that the part must have for the whole formula to equal the known one.
-        """
+        """Yield the changes of a part that give it the values ``part.needed``, which make the whole formula right."""
         values = self.variants.get(part.path, [])
         (first, *_) = part.needed
         if is_matrix(first) or not values:
@@ -248,13 +231,12 @@ def _search(claim: Claim, named: NamedFormula, letters: Letters, values: Values)
 
 
 def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near] | None:
-    """Return the candidates for a repair: the claim's formula after one change, if it then has the values of ``known``.
+    """Return the single changes of the claim's formula that give it the values of ``known``.
 
-    ``renaming`` gives the claim's name for each symbol of ``known``, or None for a symbol that the claim lacks. The
-    list is empty if no single change gives these values. None is returned if the claim's formula has these values as it
-    is: then it needs no repair.
+    Return None if it has these values already.
     """
     named, letters = search.named, search.letters
+    # renaming: known symbol -> name in the claim, or None for a symbol that the claim lacks
     atoms = {text_of(atom): atom for atom in letters.atoms}
     values = {mine: RANDOM if other is None else letters.atoms[atoms[other]] for mine, other in renaming.items()}
     own = [
@@ -326,13 +308,12 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
 
 
 def _lacking_letter(absent: str, name: str, letters: Letters) -> Node:
-    """Return the tree of the quantity ``absent`` that a claim lacks, under the name ``name``.
+    """Return the tree of the quantity ``absent`` that a claim lacks: a symbol, a function of time, or a derivative.
 
-    It is a function of time if its rate occurs in the claim, and a derivative if it is the rate of an angle in a claim
-    with rates.
+    Its name is ``name``.
     """
     moving = {node.args[0] for atom in letters.atoms if atom.kind == "call" for node in nodes_of(atom) if node.args}
-    timed = Node("call", name, (TIME,))
+    timed = Node("call", name, (TIME,))  # if its rate occurs in the claim
     if absent.startswith("d") and name.startswith("d") and any(atom.value == "diff" for atom in letters.atoms):
         return Node("call", "diff", (Node("call", name[1:], (TIME,)), TIME))
     return timed if timed in moving else Node("name", name)
@@ -360,20 +341,14 @@ def _changes(search: Search, part: Part) -> Iterator[Change]:
 
 
 def _repaired(formula: Node, path: Path, change: Change) -> Node:
-    """Return ``formula`` with the part at ``path`` changed.
-
-    If a numeric factor was changed, factors 1 and fractions inside fractions are removed from the result. Otherwise all
-    other numbers are left as typed.
-    """
+    """Return ``formula`` with the part at ``path`` changed."""
     tree = flattened(replaced(formula, path, lambda _: change.made))
+    # a new factor may leave factors 1 and fractions in fractions; other numbers stay as typed
     return normalise_factors(tree) if change.code == "factor" else tree
 
 
 def _with_other_products(known: Known, own: Sequence[PointOfLetters]) -> Iterator[Values]:
-    """Yield the values of a known formula at the points ``own`` with the other sign of its products of inertia.
-
-    Nothing is yielded for a formula without products of inertia.
-    """
+    """Yield the values of a formula at the points ``own`` with the other sign of its products of inertia."""
     names = [name for name in _names(known) if PRODUCT_OF_INERTIA.fullmatch(name)]
     if names:
         changed = [{**point.symbols, **{name: -point.symbols[name] for name in names}} for point in own]
@@ -383,11 +358,7 @@ def _with_other_products(known: Known, own: Sequence[PointOfLetters]) -> Iterato
 
 
 def _views(known: Known, values: Values) -> Iterator[Values]:
-    """Yield the values that a claim's formula may have if it is ``known`` in another form.
-
-    These are ``values`` as they are and, for a matrix, also transposed, doubled, and with a quaternion's scalar part
-    last.
-    """
+    """Yield ``values`` of a known formula as they are and, for a matrix, transposed, doubled, with permuted rows."""
     yield values
     if not is_matrix(values[0]):
         return
@@ -396,6 +367,7 @@ def _views(known: Known, values: Values) -> Iterator[Values]:
         yield tuple(map(transposed, values))
     doubled = [tuple(times(2.0, value) for value in values)] if known.scaled else []
     yield from doubled
+    # a quaternion with its scalar part last
     if rows == len(LAST):
         for view in (values, *doubled):
             yield tuple(tuple(value[row] for row in LAST) for value in view)
@@ -412,11 +384,8 @@ UNITS = {"[kg]": 1.37, "[m]": 1.61, "[s]": 0.83}
 
 
 def _has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], letters: Letters) -> bool:
-    """Return whether a claim's formula has another unit than ``known``, if its letters have the known symbols' units.
-
-    ``nodes`` gives the letter for each known symbol. The claim's formula and ``known`` are evaluated in SI units and in
-    other base units, as listed in ``UNITS``. If the ratio of their values changes, their units differ.
-    """
+    """Return whether a claim's formula has another unit than ``known`` when its letters have their usual units."""
+    # nodes: known symbol -> letter of the claim
     scales = {node: _scale(UNIT_OF_NAME.get(mine)) for mine, node in nodes.items()}
     if None in scales.values() or any(atom not in scales for atom in letters.atoms):
         return False
@@ -433,6 +402,7 @@ def _has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], l
             for n, point in enumerate(letters.points)
         ],
     )  # fmt: skip
+    # if the ratio of the values changes from SI units to those of UNITS, the units differ
     ratios = []
     for n in range(POINTS):
         plain = {mine: letters.atoms.get(node, RANDOM)[n] for mine, node in nodes.items()}
@@ -450,12 +420,10 @@ def _has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], l
 
 
 def _scale(unit: str | None) -> float | None:
-    """Return the factor by which the number of a quantity changes in other base units; None for an unknown unit.
-
-    ``UNITS`` has the factor of each base unit: with factors f for m and g for s, the factor for m/s^2 is f/g^2.
-    """
+    """Return the factor from a quantity's number in SI units to that in ``UNITS``; None for an unknown unit."""
     if unit is None:
         return None
+    # with factors f for m and g for s, the factor for m/s^2 is f/g^2
     powers = read_unit(unit.partition(",")[0])
     return math.prod((UNITS.get(base, 1.0) ** float(power) for base, power in powers.items()), start=1.0)
 
@@ -467,12 +435,9 @@ def _renamed(tree: Node, nodes: dict[str, Node]) -> Node:
 
 
 def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters) -> Values | None:
-    """Return the values that the claim's formula should have if its quantity is the one of the formula ``known``.
+    """Return the values that the claim's formula should have if its quantity has the values ``target``.
 
-    ``target`` are the values of ``known`` at the test points. From each, the value of the quantity follows: the root
-    for a known square, the angle for a known cosine. It is inserted into ``named.side``, the side that the claim
-    equates to its formula: for the side 2*omega, twice the value is returned. None is returned if a value does not
-    exist, as the root of a negative number.
+    Return None if a value does not exist.
     """
     function = _FUNCTIONS_OF_ENDINGS.get(ending_of(known.name))
     if function is None:
@@ -482,6 +447,7 @@ def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters)
     if ending_of(known.name) == SQUARED and named.side == Node("power", None, (_quantity(named), number(2))):
         return target
     try:
+        # the root for a known square, the angle for a known cosine
         target = tuple(map(function, target))
     except (ValueError, TypeError):
         return None
@@ -496,6 +462,7 @@ def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters)
         rates = {node: value for _, node in walk(named.side) if is_atom(node) and node.kind == "call"}
         whole = PointOfLetters({**point.symbols, name: value}, {}, point.definitions, rates=rates)
         try:
+            # for the side 2*omega, twice the value
             values.append(whole.value(named.side))
         except UndefinedValue:
             return None

@@ -1,7 +1,7 @@
 """Renamings of a known formula's symbols to the symbols of a claim that may have a fault.
 
-A fault can take one symbol out of a formula, or bring one in. So a renaming may leave out one symbol on each side. The
-letters, units, axes and angles of the names say which symbols may be the same quantity.
+A fault can remove one symbol from a formula or add one; so a renaming may leave out one symbol. The letters, units,
+axes and angles of the names tell which symbols may be the same quantity.
 """
 
 import re
@@ -47,13 +47,13 @@ MOST = 6
 
 
 def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] = ()) -> list[dict[str, str | None]]:
-    """Return renamings of a known formula's names ``known`` to names ``own`` of a claim, the most similar ones first.
+    """Return the most plausible renamings of the names ``known`` of a known formula to the names ``own`` of a claim.
 
-    ``angles`` are those names of the claim that occur in sines and cosines. A renaming maps each known name to a name
-    of the claim; if the claim has one name fewer, it maps one known name to None.
+    One name may become None.
     """
     if abs(len(known) - len(own)) > 1:
         return []
+    # angles: the names of the claim in sines and cosines
     fitting = {name: [other for other in own if is_fitting(name, other, other in angles)] for name in known}
     order = sorted(known, key=lambda name: (len(fitting[name]), name))
     complete = []
@@ -66,39 +66,29 @@ def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] 
 
 
 def _rank(renaming: dict[str, str | None]) -> tuple[int, int, bool, int]:
-    """Return the sort key of a renaming, smallest for names that are most similar to the known ones.
-
-    It consists of the number of symbols with another axis, the number of changed names, whether a symbol has no name in
-    the claim (the value None), and the number of names with another letter.
-    """
+    """Return the sort key of a renaming, smallest for the names most similar to the known ones."""
+    # symbols with another axis, changed names, a symbol without a name, names with another letter
     return _moved(renaming), strangeness(renaming), None in renaming.values(), _unlike(renaming)
 
 
 def renaming_of_product(own: Sequence[str]) -> dict[str, str | None] | None:
-    """Return the claim's name for each component q0, .., q3, p0, .., p3 of a product q p of two numbered quaternions.
+    """Return the claim's names for the components of a quaternion product: a1 for q0, a2 for p0.
 
-    ``own`` are the names in the claim: a1, b1, c1, d1 for the first factor q, and a2, b2, c2, d2 for the second factor
-    p. So q0 is mapped to a1 and p0 to a2. If the claim lacks one of the eight names, its component is mapped to None.
-    The whole result is None if the names do not have this form.
+    Return None for names of another form.
     """
     places = {(match[1], match[2]): name for name in own if (match := NUMBERED.fullmatch(name))}
     letters, numbers = sorted({letter for letter, _ in places}), sorted({number for _, number in places})
     if len(places) != len(own) or (len(letters), len(numbers)) != (4, 2) or len(own) < 2 * len(letters) - 1:
         return None
     return {
-        f"{factor}{n}": places.get((letter, number))
+        f"{factor}{n}": places.get((letter, number))  # None for a name that the claim lacks
         for factor, number in zip("qp", numbers, strict=True)
         for n, letter in enumerate(letters)
     }
 
 
 def _absent_of_product(known: str, renaming: dict[str, str | None]) -> str | None:
-    """Return the name that a component of a quaternion product would have in the claim, which does not contain it.
-
-    ``known`` is the component, such as p2, and ``renaming`` maps the others to names of the claim. If these are a1, b1,
-    c1, d1 for q and a2, b2, d2 for p, the result for p2 is c2: the letter of q2 with the number of the other names of
-    p. Return None if ``known`` is no such component, or the claim's names are not letters with a number.
-    """
+    """Return the name of a component of a quaternion product that the claim lacks: c2 if it has c1 and a2."""
     if re.fullmatch("[qp][0-3]", known) is None:
         return None
     beside = renaming.get(("p" if known[0] == "q" else "q") + known[1])
@@ -113,17 +103,14 @@ NUMBERED = re.compile("([a-z])_?([1-9])")
 
 
 def _without_mark(name: str) -> tuple[str, str]:
-    """Return a name without the bar or prime over it, and this mark: z and _bar for ``z_bar``."""
+    """Return a name and the mark over it: ("z", "_bar") for ``z_bar``."""
     mark = re.search("(_bar|_prime)*$", name)
     assert mark is not None
     return name[: mark.start()], mark[0]
 
 
 def _numbered_angle(known: str, mine: str, other: str) -> str:
-    """Return the name of an angle or rate ``known`` if the angle or rate ``mine`` is called ``other``, as theta_1 is.
-
-    The angles are numbered from the first rotation to the last one or, as those of an aircraft often are, the other way
-    round. The text is empty if ``other`` has another number, or if one of the names is no angle and no rate of one.
+    """Return the name of the angle ``known`` if the angle ``mine`` is called ``other``, or "" for other names.
 
     Examples
     --------
@@ -134,6 +121,7 @@ def _numbered_angle(known: str, mine: str, other: str) -> str:
     """
     place, own = ORDER.get(known.removeprefix("d")), ORDER.get(mine.removeprefix("d"))
     stem, number = other.removeprefix("d" if mine.startswith("d") else "")[:-1], other[-1:]
+    # numbered from the first rotation to the last or, as for aircraft, the other way round
     if place is None or own is None or number not in (own, str(4 - int(own))):
         return ""
     return ("d" if known.startswith("d") else "") + stem + (place if number == own else str(4 - int(place)))
@@ -146,10 +134,7 @@ def _moved(renaming: dict[str, str | None]) -> int:
 
 
 def _unlike(renaming: dict[str, str | None]) -> int:
-    """Return how many symbols have a name in the claim that does not begin with their own letter.
-
-    Symbols without a name in the claim (value None) do not count.
-    """
+    """Return how many symbols have a name in the claim that does not begin with their own letter."""
     return sum(other is not None and not _has_letter_of(name, other) for name, other in renaming.items())
 
 
@@ -159,10 +144,7 @@ def _has_letter_of(name: str, other: str) -> bool:
 
 
 def strangeness(renaming: dict[str, str | None]) -> int:
-    """Return how many names a renaming changes; a name that the claim lacks counts too.
-
-    A letter for radii in place of another length, or the other way round, counts more.
-    """
+    """Return how many names a renaming changes; a radius renamed to another length, or back, counts more."""
     changed = [name for name, other in renaming.items() if other is None or plain_name(other) != name]
     lengths = [name for name in changed if UNIT_OF_NAME.get(name) == "m" and name not in COORDINATES]
     unusual = [name for name in lengths if (other := renaming[name]) is not None
@@ -173,12 +155,11 @@ def strangeness(renaming: dict[str, str | None]) -> int:
 def _extended(
     renaming: dict[str, str | None], order: Sequence[str], fitting: dict[str, list[str]], count: int
 ) -> Iterator[dict[str, str | None] | None]:
-    """Yield the complete renamings that extend a partial one; also yield None at each step of the search.
+    """Yield the complete renamings that extend a partial one, and None at each step of the search.
 
-    By the Nones the caller counts the steps, to give up after too many. ``order`` are the known names that still have
-    no new name, ``fitting`` the possible new names for each, and ``count`` the number of the claim's names.
+    ``order`` are the known names to rename.
     """
-    yield None
+    yield None  # the caller counts these, to give up after too many steps
     if not order:
         used = sum(other is not None for other in renaming.values())
         if count - used <= 1:
@@ -196,11 +177,8 @@ def _extended(
 
 @lru_cache(maxsize=20_000)
 def is_fitting(known: str, own: str, is_angle: bool) -> bool:
-    """Return whether the name ``known`` in a known formula and ``own`` in a claim may mean the same quantity.
-
-    Their letters, units and kinds must agree. ``is_angle``: the claim's name occurs in sines and cosines.
-    """
-    name = plain_name(own)
+    """Return whether ``known`` in a known formula and ``own`` in a claim may name the same quantity."""
+    name = plain_name(own)  # is_angle: the claim has it in sines or cosines
     if known == name:
         return True
     unit = UNIT_OF_NAME.get(known)
@@ -221,11 +199,7 @@ def is_fitting(known: str, own: str, is_angle: bool) -> bool:
 
 
 def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]:
-    """Return a name for the known symbol ``known``, which the claim lacks, and whether it continues names of the claim.
-
-    If ``renaming`` (known name -> name in the claim) has Omega_1 and Omega_2, the name is Omega_3 and continues them.
-    Otherwise it is the usual name of the quantity.
-    """
+    """Return a name for a symbol that the claim lacks, and whether it continues a series, as Omega_3 does."""
     for mine, other in renaming.items():
         if other is not None and (numbered := _numbered_angle(known, mine, plain_name(other))):
             return numbered, True

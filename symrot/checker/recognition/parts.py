@@ -1,8 +1,7 @@
 """Faults of single parts of a formula: the value that a part should have, and the short change that gives it.
 
-The value that the whole formula should have is known at some points, in double precision. It is carried from a sum to
-its terms, from a product to its factors, and so on; each part is then compared with what it should be. Whatever this
-search finds has to be proven.
+The needed values of the whole formula at test points are known. They determine those of the terms of a sum, the factors
+of a product, and so on. A change that gives a part these values remains to be proven.
 """
 
 import math
@@ -59,42 +58,31 @@ Values = tuple[Any, ...]
 
 
 class Part(NamedTuple):
-    """A part of a claim's formula, with its actual and its needed values at the test points.
-
-    ``path`` is its place in the formula and ``node`` its tree; ``parent`` is the kind of the node above it, such as
-    "sum". ``needed`` are the values with which the whole formula would get its intended values, such as those of a
-    known formula, if only this part is wrong.
-    """
+    """A part of a claim's formula, with its values and its needed values at the test points."""
 
     path: Path
     node: Node
     values: Values
-    needed: Values
-    parent: str
+    needed: Values  # the whole formula has its right values with these, if only this part is wrong
+    parent: str  # the kind of the node above, such as "sum"
 
 
 class Change(NamedTuple):
-    """The tree ``made`` that replaces a part, and the ``code`` and ``cost`` of the fault that this corrects.
-
-    The cost is larger for faults that are less usual.
-    """
+    """The tree ``made`` that replaces a part, with the code and cost of the fault that this corrects."""
 
     made: Node
     code: str
-    cost: float
+    cost: float  # larger for less usual faults
 
 
 @dataclass(frozen=True)
 class Letters:
-    """The symbols and rates of a formula, and the angles in its circular functions, with their values at test points.
-
-    ``aliases`` are names that stand for a formula of the letters, such as c1 for cos(alpha).
-    """
+    """The symbols and rates of a formula, and the angles in its sines and cosines, with values at test points."""
 
     atoms: Mapping[Node, Values]
     angles: Mapping[Node, Values]
     points: Sequence[Point]
-    aliases: Mapping[Node, Values] = field(default_factory=dict)
+    aliases: Mapping[Node, Values] = field(default_factory=dict)  # names of formulas, such as c1 for cos(alpha)
 
     @property
     def names(self) -> list[str]:
@@ -131,15 +119,11 @@ def values_of(node: Node, points: Sequence[Point]) -> Values | None:
 
 
 def parts(tree: Node, points: Sequence[Point], needed: Values, path: Path = (), parent: str = "") -> Iterator[Part]:
-    """Yield the parts of a formula whose right values follow from those of the whole formula, outer parts first.
-
-    ``needed`` are the right values of the whole. For the sum a + b, the right value of a is that of the whole minus b.
-    ``path`` and ``parent`` are the place of the formula in a larger one, and the kind of the node around it.
-    """
+    """Yield the parts of a formula with their right values, which follow from those ``needed`` of the whole formula."""
     values = values_of(tree, points)
     if values is None or [*map(shape_of, values)] != [*map(shape_of, needed)]:
         return
-    yield Part(path, tree, values, needed, parent)
+    yield Part(path, tree, values, needed, parent)  # in the sum a + b, the right value of a is the whole minus b
     for own, child, inner in _children(tree, points, values, needed):
         if inner is not None:
             yield from parts(child, points, inner, (*path, *own), tree.kind if len(own) == 1 else "list")
@@ -150,8 +134,7 @@ def _children(
 ) -> Iterator[tuple[Path, Node, Values | None]]:
     """Yield the children of a part, each with its path and the values that it should have.
 
-    ``values`` are those of the part, and ``needed`` those that it should have. A child comes with None in place of
-    values if nothing determines them.
+    They are None if nothing determines them.
     """
     cells = matrix_entries(tree) or ({n: (n,) for n in range(len(tree.args))} if tree.kind == "list" else {})
     if cells:
@@ -179,11 +162,7 @@ def _children(
 
 
 def _wrong_row(values: Values, needed: Values) -> int | None:
-    """Return the index of the row in which a column differs from the needed one; None unless exactly one row differs.
-
-    ``values`` are the values of the column at the test points, ``needed`` the values that it should have there. For a
-    matrix with several columns, the result is None.
-    """
+    """Return the index of the only row in which a column differs from the needed one; None in all other cases."""
     pairs = [(entries_of(value), entries_of(other)) for value, other in zip(values, needed, strict=True)]
     wrong = [n for n in range(len(pairs[0][0])) if not all(near(a[n], b[n]) for a, b in pairs)]
     return wrong[0] if len(wrong) == 1 and (shape_of(values[0]) or (0, 0))[1] == 1 else None
@@ -192,12 +171,8 @@ def _wrong_row(values: Values, needed: Values) -> int | None:
 def _row_of_matrix(
     tree: Node, points: Sequence[Point], values: Values, needed: Values, row: int
 ) -> Iterator[tuple[Path, Node, Values | None]]:
-    """Yield (path in ``tree``, entry, needed values) for each entry of a row in a matrix that multiplies a column.
-
-    ``tree`` is the product. Its entry ``row`` is wrong: at the test points, the product has ``values`` and should have
-    ``needed``. A wrong entry of the matrix in this row explains that. The yielded values are those with which the
-    product is right, if only this entry changes.
-    """
+    """Yield (path, entry, needed values) for each entry in a row of the matrix that multiplies a column."""
+    # tree is the product of the matrix and the column
     place, matrix = next(((n, part) for n, part in enumerate(tree.args) if matrix_entries(part)), (0, tree))
     others = [part for n, part in enumerate(tree.args) if n != place]
     columns = values_of(product(others), points) if place < len(tree.args) - 1 else None
@@ -210,6 +185,7 @@ def _row_of_matrix(
         factors = [column[n][0] for column in columns]
         cell = at(matrix, cells[row * len(rows[0][0]) + n])
         if cell is not None and all(factors):
+            # the values that make the product right, if only this entry changes
             lacking = [other[row][0] - value[row][0] for value, other in zip(values, needed, strict=True)]
             entries = [own[row][n] + less / factor for own, less, factor in zip(rows, lacking, factors, strict=True)]
             yield (place, *cells[row * len(rows[0][0]) + n]), cell, tuple(entries)
@@ -270,12 +246,7 @@ _INWARD: dict[tuple[str, str | None], Callable[[Sequence[Any], int, Any], Any]] 
 
 
 def is_superfluous(part: Part) -> bool:
-    """Return whether a formula has its needed values without a part: a term to be 0, or a factor to be 1.
-
-    ``part.needed`` are the values of the part, at the test points, with which the whole formula has its needed values.
-    In a claim's formula, such a part is one too many; in a known formula, it is one that the claim lacks. Numbers, and
-    parts whose needed values are matrices, never count.
-    """
+    """Return whether a formula has its needed values without a part: a term that should be 0, or a factor 1."""
     neutral = {"sum": 0.0, "product": 1.0}.get(part.parent)
     if neutral is None or any(map(is_matrix, part.needed)) or part.node.kind == "number":
         return False
@@ -284,17 +255,14 @@ def is_superfluous(part: Part) -> bool:
 
 
 def is_multiple(part: Part) -> bool:
-    """Return whether one number, other than 1, times the values of a part gives the values that it should have.
-
-    It must be the same number at all points and for all entries of a matrix.
-    """
+    """Return whether a part has its needed values after multiplication by one number, the same at all points."""
     ratios = [_ratio(needed, value) for value, needed in zip(part.values, part.needed, strict=True)]
     first = ratios[0]
     return first is not None and abs(first - 1) > CLOSE and all(r is not None and near(r, first) for r in ratios)
 
 
 def multiples(part: Part) -> Iterator[Change]:
-    """Yield the change of a part's sign or numeric factor, if there is one, that gives the part its right values."""
+    """Yield the change of a part's sign or numeric factor that gives the part its needed values, if there is one."""
     ratio = rational(tuple(_ratio(b, a) or 0.0 for a, b in zip(part.values, part.needed, strict=True)))
     if ratio is None or ratio == 1 or (ratio < 0 and ratio != -1) or part.node.kind == "neg":
         return
@@ -321,10 +289,7 @@ class Variant(NamedTuple):
 
 
 def variants(node: Node, parent: str, letters: Letters) -> list[Variant]:
-    """Return the changes of a part that undo usual faults, each with the values of the changed part.
-
-    ``parent`` is the kind of the node around the part, such as "sum"; ``letters`` are those of the formula.
-    """
+    """Return the changes of a part that undo usual faults, each with the values of the changed part."""
     values = values_of(node, letters.points)
     if values is None or not all(isinstance(value, float) and value for value in values):
         return []
@@ -335,11 +300,8 @@ def variants(node: Node, parent: str, letters: Letters) -> list[Variant]:
 
 
 def _of_letter(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield all other symbols in ``letters`` as replacements of ``node``, if it is a symbol.
-
-    This function and the following ones have the same arguments: ``parent`` is the kind of the node around ``node``,
-    ``values`` are the values of ``node`` at the test points, and ``letters`` the symbols and angles of the formula.
-    """
+    """Yield all other symbols in ``letters`` as replacements of ``node``, if it is a symbol."""
+    # as below, parent is the kind of the node around, values are those of node at the test points
     written = {**letters.atoms, **letters.aliases}
     if node not in written:
         return
@@ -373,10 +335,7 @@ def _of_exponent(node: Node, parent: str, values: Values, letters: Letters) -> I
 
 
 def _with_other_factor(base: Node, bases: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield the products of a symbol ``base`` and each other symbol, in place of its square: x*y for x^2.
-
-    ``bases`` are the values of the symbol.
-    """
+    """Yield the products of a symbol ``base`` and each other symbol, in place of its square: x*y for x^2."""
     alike = neighbours(base.value, letters.names) if base.kind == "name" else ()
     for other, others in letters.atoms.items():
         if other != base:
@@ -407,10 +366,7 @@ def _square_of(tree: Node) -> Node:
 
 
 def _of_function(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield replacements of sin(u): other functions of u, sin(2u) and the like, and the sine of other angles.
-
-    Every circular function of an angle is treated so. The arguments are those of :func:`_of_letter`.
-    """
+    """Yield replacements of sin(u), such as cos(u), sin(2u) and sin(v); other circular functions likewise."""
     if node.kind != "call" or node.value not in FUNCTIONS:
         return
     (angle,) = node.args
@@ -459,10 +415,7 @@ def _factors(letters: Letters) -> Iterator[tuple[Node, Values]]:
 
 
 def _of_terms(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield replacements of a sum: another exponent in all terms, or sine and cosine of one angle exchanged.
-
-    For a + b, the former gives a^2 + b^2.
-    """
+    """Yield replacements of a sum: another exponent of all terms, as a^2 + b^2, or sine and cosine exchanged."""
     trees: list[tuple[Node, str]] = []
     if node.kind == "sum":
         bases = [_base(term) for term in node.args]

@@ -25,11 +25,7 @@ class QuantityVariant(NamedTuple):
 
 
 def quantity_variants(named: NamedFormula) -> Iterator[QuantityVariant]:
-    """Yield the claim ``named`` with usual faults undone on the side of its quantity.
-
-    Another function or another multiple of its angle, the square of a quantity or its root, and the squares of all
-    terms of the equation are tried.
-    """
+    """Yield the claim ``named`` with a usual fault undone on the side of its quantity, such as ``k^2`` for ``k``."""
     side, formula = named.side, named.formula
     if side.kind == "call" and side.value in OPPOSITE and is_name_or_rate(side.args[0]):
         (angle,) = side.args
@@ -53,13 +49,10 @@ def _square_of(tree: Node) -> Node:
 
 
 def is_evident_by_quantity(claim: Claim, named: NamedFormula, changed: QuantityVariant) -> bool:
-    """Return whether a claim whose side with the quantity may be ``changed`` more likely has this fault than none.
-
-    It has enough letters, the context says what the quantity is, or the formula has the letter of the quantity with
-    another mark, as ``k = k_bar + d`` has.
-    """
+    """Return whether a claim more likely has the fault that ``changed`` undoes than is right as it stands."""
     letters = names_in(named.formula)
     stem = named.name.partition("_")[0]
+    # such as k = k_bar + d
     if any(letter.partition("_")[0] == stem for letter in letters) and changed.formula != named.formula:
         return True
     is_stated = claim.context.meaning_of(quantity_name(named)) is not None

@@ -1,7 +1,6 @@
 """Relations between quantities that books solve for one quantity or another, each derived from the laws of motion.
 
-A relation says that a difference is zero. It is recognised as it is, and solved for each quantity for which that gives
-a single formula: the condition of steady precession gives the spin, the torque and the moments of inertia.
+The condition of steady precession, for example, is solved for the spin, the torque and the moments of inertia.
 """
 
 from collections.abc import Iterator
@@ -86,25 +85,16 @@ WORK = new_symbol("W_k", "J")
 
 
 class Relation(NamedTuple):
-    """A relation of mechanics: ``difference``, left minus right side, is zero; ``source`` is its derivation page.
-
-    ``words`` maps each symbol for which the relation can be solved to the beginning of the solved formula's name;
-    ``title`` is the rest. With the words "energy of" for E and the title "a heavy top", the formula for E is called
-    "energy of a heavy top".
-    """
+    """A relation of mechanics: the left side minus the right side, and the symbols for which it can be solved."""
 
     title: str
-    source: str
+    source: str  # the derivation page
     difference: Expr
-    words: dict[Symbol, str]
+    words: dict[Symbol, str]  # {E: "energy of"} names the formula for E "energy of" and the title
 
 
 def solved(relation: Relation) -> Iterator[tuple[str, str, Any]]:
-    """Yield (name, source, formula) for each symbol in ``relation.words`` for which the relation can be solved.
-
-    It is solved if the symbol occurs only linearly, or only as a square. The formula is then for the square, and its
-    name ends with ", squared".
-    """
+    """Yield (name, source, formula) for each symbol in ``relation.words`` that occurs linearly, or only as a square."""
     numerator = fraction(together(relation.difference))[0]
     for symbol, words in relation.words.items():
         coefficients = Poly(numerator, symbol).all_coeffs()
@@ -132,11 +122,8 @@ def terms_expanded(formula: Expr) -> int:
 
 
 def primitive(difference: Expr) -> Expr:
-    """Return the numerator of a difference without common factors: a - b for ``2*c*a/d - 2*c*b/d``.
-
-    A common factor is a number or a power of a symbol or function. Equations that differ by such a factor on both
-    sides, or by a denominator, have the same primitive difference, perhaps with another sign.
-    """
+    """Return the numerator of a difference without common factors: a - b for ``2*c*a/d - 2*c*b/d``."""
+    # equations that differ by a factor or denominator get the same result, perhaps with another sign
     numerator = fraction(cancel(together(difference)) if difference.count_ops() < LONGEST else together(difference))[0]
     try:
         return Poly(numerator).terms_gcd()[1].primitive()[1].as_expr()
@@ -145,10 +132,8 @@ def primitive(difference: Expr) -> Expr:
 
 
 def without_common_powers(difference: Expr) -> Expr:
-    """Return a difference without symbols or functions that are a factor or divisor of all its terms.
-
-    Up to a constant factor it is what :func:`primitive` returns, which is slower, because it multiplies out.
-    """
+    """Return a difference without symbols or functions that are a factor or divisor of all its terms."""
+    # up to a constant factor the same as `primitive`, which is slower because it multiplies out
     common = _common_powers(difference)
     if common is None:
         return primitive(difference)
@@ -158,10 +143,9 @@ def without_common_powers(difference: Expr) -> Expr:
 
 
 def _common_powers(formula: Expr) -> dict[Expr, int] | None:
-    """Return the powers of symbols and functions that all terms of a formula have as a factor; negative for divisors.
+    """Return the powers of symbols that divide all terms of a formula: {a: 1, b: -1} for ``a*c/b + a/b``.
 
-    They are {a: 1, b: -1} for ``a*c/b + a/b``. The result is None for a formula with roots, or with another divisor
-    than a product of such powers.
+    Return None for roots.
     """
     if isinstance(formula, Add):
         terms = [_common_powers(term) for term in formula.args]
@@ -182,7 +166,7 @@ def _common_powers(formula: Expr) -> dict[Expr, int] | None:
     if isinstance(formula, Pow):
         inner = _common_powers(formula.base)
         if inner is None or not formula.exp.is_Integer or (formula.exp < 0 and formula.base.is_Add):
-            return None
+            return None  # a root, or a sum as a divisor
         return {part: power * int(formula.exp) for part, power in inner.items()}
     return {} if formula.is_number else {formula: 1}
 
@@ -282,11 +266,7 @@ def _rolling() -> Iterator[Relation]:
 
 
 def _pendulum() -> Iterator[Relation]:
-    """Yield the Lagrangian, the energy, the equation of motion and the period of pendulums.
-
-    They are bodies of any moment or radius of gyration, the simple pendulum (a point mass), and solids that hang from
-    their ends or rims.
-    """
+    """Yield the Lagrangian, the energy, the equation of motion and the period of pendulums."""
     bodies = [("a physical pendulum", A, ARM), ("a physical pendulum", MASS * GYRATION**2, ARM),
               ("a simple pendulum (a point mass)", MASS * ARM**2, ARM)]  # fmt: skip
     along_x, along_z = Matrix([1, 0, 0]), Matrix([0, 0, 1])
@@ -381,11 +361,9 @@ def _by_spin(formula: Expr) -> Expr:
 
 
 def _heavy() -> Iterator[Relation]:
-    """Yield relations of heavy and free tops: energies, the equation of nutation, angular momenta, the length of omega.
-
-    Energy and nutation are also given with the spin in place of the rate of the third Euler angle.
-    """
+    """Yield relations of heavy and free tops: energies, nutation, angular momenta, the length of omega."""
     omega, kinetic = _top()
+    # the spin in place of the rate of the third Euler angle
     turned = kinetic.subs(DPSI, SPIN - DPHI * cos(THETA))
     yield Relation("a symmetric top", HEAVY, ENERGY - expand(turned), {ENERGY: "kinetic energy of"})
     for load in (symbols.W, MASS * G):

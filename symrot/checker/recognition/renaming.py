@@ -35,11 +35,9 @@ MIDDLE, OUTER = ("theta",), ("phi", "psi", "varphi")
 
 
 def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> bool:
-    """Return whether pairs (known name, new name) make one sensible renaming.
+    """Return whether pairs (known name, new name) rename axes and angles in one way.
 
-    It must rename axes in one way: if omega_1 becomes omega_x, then I_1 must not become I_y. An angle and its rate must
-    get the letters of one angle and its rate. If ``fixed``, axis 1 must become axis 1 or x, and so for 2 and 3;
-    otherwise the axes may be exchanged in a cycle, 1 to y, 2 to z and 3 to x.
+    If omega_1 becomes omega_x, I_1 must not become I_y.
     """
     rates = [(quantity_of(known), quantity_of(new)) for known, new in renaming]
     pairs = [pair if pair[1] != own[1] else own for pair, own in zip(rates, renaming, strict=True)]
@@ -53,14 +51,12 @@ def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> b
     axes = [(axes_of(known), axes_of(new)) for known, new in pairs]
     entries = [(ENTRY.fullmatch(known), ENTRY.fullmatch(new)) for known, new in pairs]
     places = [(known.groups(), new.groups()) for known, new in entries if known and new]
+    # if fixed, 1 becomes 1 or x; otherwise axes may be exchanged in a cycle, 1 to y, 2 to z, 3 to x
     return any(_keeps(axes, order) and _keeps_entries(places, order) for order in CYCLIC[: 1 if fixed else None])
 
 
 def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
-    """Return whether numbered names for initial and final values are in order: w_1 for omega_i, w_2 for omega_f.
-
-    Names without a number at the end are in order too.
-    """
+    """Return whether numbered names for initial and final values are in order: w_1 for omega_i, w_2 for omega_f."""
     for earlier, later in EARLIER_AND_LATER:
         numbers = [re.search(r"[0-9]$", renaming.get(name, "")) for name in (earlier, later)]
         if all(numbers) and [n[0] for n in numbers if n] != sorted(n[0] for n in numbers if n):
@@ -69,15 +65,11 @@ def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
 
 
 def component(known: str, quantity: str) -> list[tuple[str, str]]:
-    """Return [("component_1", quantity)] if a known formula is for the first component of a vector, and so on; else [].
-
-    ``known`` is the name of the formula, "first component of ..", and ``quantity`` the claim's left side, such as
-    omega_x. The caller adds the pair to a renaming of symbols. :func:`is_consistent` then demands that axis 1 becomes x
-    in the other pairs too. The list is also empty if ``quantity`` has no axis.
-    """
+    """Return [("component_1", quantity)] if a formula ``known`` is for a first component, and so on; otherwise []."""
     parallel = re.search(r"\(parallel-axis theorem\), ([xyz]) axis", known)
     if parallel and axes_of(quantity):
         return [(f"component_{parallel[1]}", quantity)]
+    # with this pair, is_consistent demands that axis 1 becomes x in the other pairs too
     word, _, rest = known.partition(" ")
     if word not in COMPONENTS or not rest.startswith("component") or not axes_of(quantity):
         return []
@@ -94,33 +86,26 @@ def quantity_of(name: str) -> str:
 
 @cache
 def axes_of(name: str) -> frozenset[int]:
-    """Return the axes that a name states: {1, 2} for I_xy, {3} for omega_3, and empty for omega.
-
-    Letters that are usual for one axis, such as the moment of inertia C, have this axis: {3}.
-    """
+    """Return the axes that a name states: {1, 2} for I_xy, {3} for omega_3, empty for omega."""
     name = re.sub("(_bar|_prime)+$", "", name)
     if re.fullmatch(r"[IJk]_?0|(omega|theta|v)_?0", name):
         return frozenset()  # a moment about a point O, or a value at the start
     if name in LETTERS:
+        # such as C, usual for the moment about axis 3
         return frozenset({LETTERS[name]})
     index = re.fullmatch(r"(?:[A-Za-z]+?_?|\w+_)([0-3]|[xyz]|11|22|33|12|13|23|21|31|32|[xyz]{2})", name)
     return frozenset(AXIS[letter] for letter in index[1]) if index else frozenset()
 
 
 def _keeps_entries(places: Sequence[tuple[tuple[str, ...], tuple[str, ...]]], order: Sequence[int]) -> bool:
-    """Return whether all entries of a rotation matrix keep their places, or all move as in the transpose.
-
-    ``places`` are pairs of (row, column), known and new; ``order`` is the permutation of the axes.
-    """
+    """Return whether all entries of a rotation matrix keep their rows and columns, or all move as in the transpose."""
+    # places: pairs of (row, column), known and new; order: the permutation of the axes
     moved = [(tuple(str(order[int(place) - 1]) for place in known), new) for known, new in places]
     return all(old == new for old, new in moved) or all(old[::-1] == new for old, new in moved)
 
 
 def _keeps(axes: Sequence[tuple[frozenset[int], frozenset[int]]], order: Sequence[int]) -> bool:
-    """Return whether a permutation of the axes maps the axes in each known name to those in its new name.
-
-    ``axes`` has a pair for each renamed symbol: (axes in the known name, axes in the new name). ``order`` has the
-    images of the axes 1, 2 and 3. A symbol without axes in one of its names does not matter.
-    """
+    """Return whether a permutation of the axes maps the axes in each known name to those in its new name."""
+    # a name without an axis does not matter
     places = {0: 0, **dict(zip((1, 2, 3), order, strict=True))}
     return all(not known or not new or {places[axis] for axis in known} == new for known, new in axes)

@@ -1,7 +1,6 @@
-"""Equations solved for one of their letters, as trees: known relations, and claims.
+"""Equations solved for one of their letters, as trees.
 
-The search for faults compares formulas for one quantity. A relation such as ``I w1 + M t = I w2`` has such a formula
-for each letter in which it is linear, or which it has only as a square.
+The search for faults compares formulas for one quantity; ``I w1 + M t = I w2`` has one for each of its letters.
 """
 
 from collections.abc import Iterator, Sequence
@@ -50,12 +49,9 @@ def solved_relations() -> tuple[SolvedRelation, ...]:
 
 
 def solved_claims(left: Node, right: Node, atoms: Sequence[Node]) -> Iterator[NamedFormula]:
-    """Yield the equation ``left == right`` solved for each of ``atoms`` (letters and rates) for which that is possible.
-
-    The letter must occur in one power only, 1 or 2. It is isolated with its factor, not divided by it:
-    ``I*w1 + M*t = I*w2`` becomes ``I*w2 == I*w1 + M*t``.
-    """
+    """Yield ``left == right`` solved for each of ``atoms`` (letters and rates): ``I*w2 == I*w1 + M*t`` for w2."""
     terms = [*_terms(left), *map(negated, _terms(right))]
+    # possible if the letter occurs in one power only, 1 or 2; its factor stays on the left
     for atom in atoms:
         solution = _solution(terms, atom)
         if solution is None:
@@ -70,12 +66,11 @@ def solved_claims(left: Node, right: Node, atoms: Sequence[Node]) -> Iterator[Na
 
 
 def put_back(left: Node, right: Node, named: NamedFormula, tree: Node) -> tuple[Node, Node] | None:
-    """Return the sides of the claim ``left == right`` with the repair that was found in the claim solved for a letter.
+    """Return ``left`` and ``right`` with the one changed term that turned the solved equation ``named`` into ``tree``.
 
-    ``named`` is the solved claim, from :func:`solved_claims`, and ``tree`` its repaired formula. The term in which
-    ``tree`` differs from ``named.formula`` is replaced in ``left`` and ``right`` too. The result is None unless the two
-    differ in exactly one term.
+    None for other changes.
     """
+    # tree is the repaired formula of the solved equation
     before, after = _terms(named.formula), _terms(tree)
     changed = [(old, new) for old, new in zip(before, after, strict=False) if old != new]
     if len(before) != len(after) or len(changed) != 1:
@@ -87,10 +82,7 @@ def put_back(left: Node, right: Node, named: NamedFormula, tree: Node) -> tuple[
 
 
 def _solve(coefficient: Node, exponent: int) -> Solve:
-    """Return a function that divides a formula by ``coefficient`` and, for the exponent 2, takes the root.
-
-    So it maps a formula for ``coefficient * letter**exponent`` to one for the letter.
-    """
+    """Return a function from a formula for ``coefficient * letter**exponent`` to one for the letter."""
 
     def solved(formula: Node) -> Node:
         quotient = product([formula, Node("inv", None, (coefficient,))]) if coefficient != number(1) else formula
@@ -104,24 +96,19 @@ def _terms(tree: Node) -> list[Node]:
 
 
 def _solution(terms: Sequence[Node], letter: Node) -> Solution | None:
-    """Solve ``sum of terms == 0`` for a letter.
-
-    Return None unless the letter is a factor of the terms that contain it, in all of them in the same power, 1 or 2.
-    """
+    """Return the solution of ``sum of terms == 0`` for a letter, or None if it occurs in different powers."""
     with_letter = [term for term in terms if letter in (node for _, node in walk(term))]
     rest = [negated(term) for term in terms if term not in with_letter]
     coefficients = [_without(term, letter) for term in with_letter]
     exponents = {exponent for _, exponent in filter(None, coefficients)}
+    # the letter must be a factor of each term that contains it, always in the same power, 1 or 2
     if not rest or None in coefficients or len(exponents) != 1:
         return None
     return Solution(letter, sum_of([made for made, _ in filter(None, coefficients)]), sum_of(rest), exponents.pop())
 
 
 def _without(term: Node, letter: Node) -> tuple[Node, int] | None:
-    """Return (a term without its factor w or w^2, the exponent 1 or 2), where w is ``letter``.
-
-    Return None if the term has no such factor, or has the letter in another factor too.
-    """
+    """Return (a term without its factor w or w^2, the exponent 1 or 2), where w is ``letter``; None for other terms."""
     if term.kind == "neg":
         inner = _without(term.args[0], letter)
         return None if inner is None else (negated(inner[0]), inner[1])

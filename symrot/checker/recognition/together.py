@@ -14,12 +14,9 @@ PLACE = re.compile(r"(first|second|third|scalar) component of the |, ([xyz]) axi
 
 
 def fit_together(lines: Sequence[tuple[str, Collection[str], Verdict]]) -> bool:
-    """Return whether several recognised lines can be the components of one quantity.
+    """Return whether several recognised equations can be the components of one quantity.
 
-    A line consists of the name of its left side, the names in its formula, and its verdict. Lines for omega_x, omega_y,
-    .. fit together under three conditions. Their verdicts name formulas such as "first component of .." and "second
-    component of ..", with the same words otherwise. No two lines name the same component. Each letter stands for the
-    same quantity on all lines.
+    Each is (name of its left side, names in its formula, verdict).
     """
     groups: dict[str, list[list[tuple[Identification, dict[str, str]]]]] = {}
     for name, letters, verdict in lines:
@@ -31,34 +28,26 @@ def fit_together(lines: Sequence[tuple[str, Collection[str], Verdict]]) -> bool:
 
 
 def _meanings(known: Identification, letters: Collection[str]) -> dict[str, str]:
-    """Return, for each of ``letters`` of a formula, the letter of the known formula that it stands for.
-
-    A rate stands for the same angle as the angle itself: if psi' is renamed to phi', then psi is phi.
-    """
+    """Return, for each of ``letters`` of a formula, the letter of the known formula that it stands for."""
+    # if psi' stands for phi', then psi stands for phi
     renamed = {quantity_of(new): quantity_of(mine) for mine, new in known.mapping.items()}
     return {letter: letter for letter in letters} | renamed
 
 
 def _fit(choice: Sequence[tuple[Identification, dict[str, str]]]) -> bool:
-    """Return whether known formulas, one for each line, can be different components of one quantity.
-
-    Each formula comes with the meanings of the claim's letters (letter -> known symbol), which must agree on all lines.
-    If some formula is not for a component, nothing is compared and the result is True.
-    """
+    """Return whether known formulas, one for each equation, can be different components of one quantity."""
     places = [tuple(_places(known.name)) for known, _ in choice]
     if not all(places):
-        return True
+        return True  # a formula that is not for a component: nothing is compared
     wholes = {PLACE.sub("", known.name) for known, _ in choice}
     meanings: dict[str, str] = {}
+    # each letter of the claim must stand for the same symbol everywhere
     same = all(meanings.setdefault(new, mine) == mine for _, own in choice for new, mine in own.items())
     return same and len(wholes) == 1 and len({*places}) == len(places)
 
 
 def misplaced(lines: Sequence[tuple[str, Collection[str], Verdict]]) -> int:
-    """Return the number of lines whose known formulas are all for other components than the name of the line says.
-
-    A line ``I_2 = ..`` is one of them if its formula is known for the x axis only.
-    """
+    """Return how many equations have the name of one component and the formula of another: I_2 with that of I_1."""
     return sum(
         name[-1:] in AXIS_OF and bool(verdict.recognised_as)
         and not any(AXIS_OF[name[-1]] == AXIS_OF[place] for k in verdict.recognised_as for place in _places(k.name))

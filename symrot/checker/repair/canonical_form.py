@@ -10,9 +10,7 @@ __all__ = ["canonical", "terms_of_equation", "with_ordered_products"]
 
 
 def canonical(node: Node, is_matrix: Callable[[Node], bool]) -> Node:
-    """Return a tree with sorted terms and scalar factors; a number with its sign comes first in a product.
-
-    So ``b*a*2`` and ``2*a*b`` have the same canonical form.
+    """Return a tree with sorted terms and scalar factors, so that ``b*a*2`` and ``2*a*b`` are equal.
 
     Parameters
     ----------
@@ -36,10 +34,7 @@ def canonical(node: Node, is_matrix: Callable[[Node], bool]) -> Node:
 
 
 def _base_and_exponent(factor: Node) -> tuple[Node, Fraction]:
-    """Return the base of a factor and its numeric exponent: (x, -1/2) for ``1/sqrt(x)``.
-
-    An exponent with letters remains a part of the base: (x**n, 1) for ``x**n``.
-    """
+    """Return the base of a factor and its numeric exponent: (x, -1/2) for ``1/sqrt(x)``, (x**n, 1) for ``x**n``."""
     if factor == Node("call", "sqrt", factor.args):
         base, exponent = _base_and_exponent(factor.args[0])
         return base, exponent / 2
@@ -53,9 +48,9 @@ def _base_and_exponent(factor: Node) -> tuple[Node, Fraction]:
 
 
 def with_ordered_products(tree: Node, is_matrix: Callable[[Node], bool]) -> Node:
-    """Return a tree in which scalars are taken out of dot and cross products, and the vectors there are sorted by name.
+    """Return a tree with sorted vectors and no scalars in dot and cross products.
 
-    So ``cross(m*v, a)`` becomes ``-m*cross(a, v)``. ``is_matrix`` tells whether a node is a vector or matrix.
+    ``cross(m*v, a)`` becomes ``-m*cross(a, v)``.
     """
     args = tuple(with_ordered_products(child, is_matrix) for child in tree.args)
     made = replace(tree, args=args)
@@ -77,12 +72,7 @@ def with_ordered_products(tree: Node, is_matrix: Callable[[Node], bool]) -> Node
 
 
 def terms_of_equation(left: Node, right: Node, is_matrix: Callable[[Node], bool]) -> frozenset[tuple[Node, Fraction]]:
-    """Return the terms of ``left - right``, each with its coefficient; equal terms are collected.
-
-    All coefficients are divided by that of the first term in alphabetical order. So ``a == 2*b`` and ``4*b - 2*a == 0``
-    give the same pairs (a, 1), (b, -2). The result is empty if both sides are the same formula. ``is_matrix`` tells
-    whether a node is a matrix: matrices in a product stay in their order.
-    """
+    """Return the terms of ``left - right`` with coefficients that begin with 1: (a, 1), (b, -2) for ``2*a == 4*b``."""
     totals: dict[Node, Fraction] = {}
     for side, sign in ((left, 1), (right, -1)):
         whole = canonical(side, is_matrix)
@@ -90,6 +80,7 @@ def terms_of_equation(left: Node, right: Node, is_matrix: Callable[[Node], bool]
             core, size = _without_number(term)
             totals[core] = totals.get(core, Fraction(0)) + sign * size
     terms = sorted(((core, size) for core, size in totals.items() if size), key=lambda pair: text(pair[0]))
+    # empty for equal sides; divided by the first coefficient, so that multiples of an equation give the same terms
     return frozenset((core, size / terms[0][1]) for core, size in terms)
 
 

@@ -1,7 +1,4 @@
-"""The correction of a claim's matrix, derived from the rest of the claim: the only matrix with which the claim holds.
-
-A search near the printed formula does not reach a matrix with many wrong entries; the equation determines it anyway.
-"""
+"""The correction of a claim's matrix, derived from the rest of the claim: the only matrix that makes it true."""
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
@@ -29,9 +26,7 @@ EVALUATED = ("diff", "integrate")
 def derived_part(claim: Claim, place: str) -> Node | None:
     """Return the formula that the claim must have at ``place``, "left" or the name of a definition, to be true.
 
-    At ``place`` is a written-out matrix, or a product with one: its entries are replaced by those that the rest of the
-    claim determines. For any other left side the result is the right side, if this has no derivatives and integrals.
-    It is None if the claim does not determine the formula, or if a diagonal matrix would need other entries.
+    Return None if the claim does not determine it.
 
     Examples
     --------
@@ -50,14 +45,15 @@ def derived_part(claim: Claim, place: str) -> Node | None:
     matrices = [factor for factor in factors if matrix_entries(factor)]
     if len(matrices) == 1:
         return _scaled(claim, factors, matrices[0])
+    # any other left side becomes the right side, if that has no derivatives and integrals
     calls = {node.value for _, node in walk(right) if node.kind == "call"}
     return None if calls & {*EVALUATED} else right
 
 
 def _scaled(claim: Claim, factors: Sequence[Node], matrix: Node) -> Node | None:
-    """Return the product ``factors``, scalars and one written-out matrix, with the entries of the claim's right side.
+    """Return ``factors``, scalars and a matrix, with the entries that make their product equal to the right side.
 
-    A rational number among the factors changes so that the entries have integers without a common divisor.
+    None if there are none.
     """
     values, shape = flatten(claim.equation.right)
     if shape != flatten(claim.interpreter().read(matrix))[1]:
@@ -66,6 +62,7 @@ def _scaled(claim: Claim, factors: Sequence[Node], matrix: Node) -> Node | None:
     scalars = [factor for factor in factors if factor is not matrix and factor not in numbers]
     scale = claim.interpreter().read(product(scalars)) if scalars else Rational(1)
     entries = [normal_form(value / scale) for value in values]
+    # a number among the factors changes, so that the entries have integers without a common divisor
     ratio = _largest_factor(entries) if numbers else Rational(1)
     made = _with_entries(claim, matrix, [entry / ratio for entry in entries])
     if made is None:
@@ -76,9 +73,9 @@ def _scaled(claim: Claim, factors: Sequence[Node], matrix: Node) -> Node | None:
 
 
 def _largest_factor(entries: Sequence[Expr]) -> Any:
-    """Return the largest rational number by which all entries can be divided so that their coefficients are integers.
+    """Return the largest rational number that leaves integer coefficients when all entries are divided by it.
 
-    It is 1 if a coefficient is not rational.
+    It is 1 for irrational coefficients.
     """
     numbers = [entry.as_coeff_Mul()[0] for entry in entries if entry != 0]
     if not numbers or not all(value.is_Rational for value in numbers):
@@ -87,7 +84,7 @@ def _largest_factor(entries: Sequence[Expr]) -> Any:
 
 
 def _with_entries(claim: Claim, matrix: Node, entries: Sequence[Expr]) -> Node | None:
-    """Return the written-out matrix ``matrix`` with other entries; None if it has no place for one that is not zero."""
+    """Return the written-out matrix ``matrix`` with other entries; None if ``diag`` would need one off the diagonal."""
     cells = matrix_entries(matrix)
     if any(entry != 0 and place not in cells for place, entry in enumerate(entries)):
         return None
@@ -121,10 +118,9 @@ def _with_cosecants(entry: Expr) -> Expr:
 
 
 def _solved(claim: Claim, name: str) -> Node | None:
-    """Return the written-out matrix ``name``, a definition of the claim, with the entries that make the claim true.
+    """Return the matrix ``name``, a definition of the claim, with the entries that make the claim true.
 
-    They follow from the linear equations for the entries that hold for all rates in the claim, the derivatives of
-    functions of time. The result is None if these equations do not determine each entry.
+    Return None if they are not determined.
     """
     assert claim.relation is not None
     tree = dict(claim.define)[name]
@@ -135,6 +131,7 @@ def _solved(claim: Claim, name: str) -> Node | None:
     interpreter = claim.interpreter()
     interpreter.values[name] = ImmutableMatrix(*value.shape, unknown)
     left, right = (flatten(interpreter.read(side))[0] for side in claim.relation[1:])
+    # linear equations for the entries, which must hold for all rates in the claim
     equations = list(_coefficients_of_rates([a - b for a, b in zip(left, right, strict=True)]))
     solution: dict[Symbol, Expr] = {}
     for system in _independent_systems(equations, unknown):

@@ -1,8 +1,7 @@
 """The diagnosis of a claim that is not true: a search for true formulas near it, by a numeric test and a proof.
 
-Candidates are formulas with one or two edits, and formulas with one part replaced by the value that makes the claim
-true. A candidate must be true at two points in double precision; then the exact engine decides it, and only proven
-candidates are offered as repairs. The work is bounded by counts, not by time, so that every run gives the same repairs.
+A candidate with one or two edits must be true at two points in double precision; then the exact engine decides it. The
+work is bounded by counts, not by time: every run gives the same repairs.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -127,15 +126,12 @@ class _Search:
         return tuple(sorted(repairs, key=lambda repair: repair.cost))
 
     def others(self, repairs: Sequence[Repair]) -> list[Repair]:
-        """Return further proven repairs, with the same values as one in ``repairs`` but written in another way.
-
-        The cost of a repair measures how unlikely its fault is. Repairs that cost more than the first of ``repairs``
-        plus ``AS_NEAR`` are left out.
-        """
+        """Return further proven repairs, with the same values as one in ``repairs`` but written in another way."""
         forms = {self.canonical_form(candidate.changes) for candidate in self.accepted}
         others: list[Repair] = []
         for candidate in self.alike:
             form = self.canonical_form(candidate.changes)
+            # a repair that costs much more than the first corrects an unlikely fault
             if form in forms or candidate.cost > repairs[0].cost + AS_NEAR:
                 continue
             forms.add(form)
@@ -146,22 +142,15 @@ class _Search:
         return others
 
     def canonical_form(self, changes: Sequence[Change]) -> tuple[Node, ...]:
-        """Return the sides and definitions of the claim after ``changes``, each as a tree in canonical form.
-
-        Repairs that differ only in the order of terms and factors have the same result.
-        """
+        """Return the sides and definitions of the claim after ``changes``, with sorted terms and factors."""
         return tuple(canonical(tree, self.numeric.is_matrix) for tree in self.trees(changes))
 
     def equation_form(self, changes: Sequence[Change]) -> Any:
-        """Return a key of the equation after ``changes``, which is equal for repairs that mean the same equation.
-
-        The key has the terms of left - right with equal terms added up, and the definitions in a fixed order of factors
-        and terms. So moving a term to the other side, as ``a == b`` to ``a - b == 0``, does not change it. The search
-        leaves out repairs whose key it has had before.
-        """
+        """Return a key of the claim after ``changes``, equal for ``a == b`` and ``a - b == 0``."""
         left, right, *definitions = self.trees(changes)
         canonical_definitions = tuple(canonical(tree, self.numeric.is_matrix) for tree in definitions)
         left, right = (with_ordered_products(side, self.numeric.is_matrix) for side in (left, right))
+        # repairs whose key has occurred before are left out
         return terms_of_equation(left, right, self.numeric.is_matrix), canonical_definitions
 
     def trees(self, changes: Sequence[Change]) -> tuple[Node, ...]:
@@ -182,11 +171,7 @@ class _Search:
                     yield Change(place, edit)
 
     def pairs(self, changes: Sequence[Change]) -> Iterator[Candidate]:
-        """Yield candidates with two of the edits ``changes``, in different parts of the claim.
-
-        All are true at the test points. The pairs are tried in order of their cost until the budget of the search is
-        spent.
-        """
+        """Yield pairs of the edits ``changes`` that make the claim true at the test points, the cheapest first."""
         cheap = list(changes)[:MOST_PAIRS_OF]
         ordered = sorted(combinations(cheap, 2), key=lambda pair: pair[0].cost + pair[1].cost)
         for first, second in ordered:
@@ -197,11 +182,8 @@ class _Search:
                 return
 
     def is_tautology(self, changes: Sequence[Change]) -> bool:
-        """Return whether ``changes`` make both sides the same formula, so that the edited claim says nothing.
-
-        The result is always False if repairs may edit only one side: the other side is the result that the author wants
-        to reach, and an equal formula is then a proper repair.
-        """
+        """Return whether ``changes`` make both sides the same formula, so that the edited claim says nothing."""
+        # if only one side may be edited, the other one is the author's aim, and an equal formula a proper repair
         if len(self.numeric.sides_to_edit) < len(SIDES) or self.gives_inverse(changes):
             return False
         left, right, *_ = self.trees(changes)
@@ -214,21 +196,15 @@ class _Search:
         return len(sides) == 1 and inverse_of(sides[0], self.numeric.claim.text) is not None
 
     def cancels(self, equation: Equation) -> bool:
-        """Return whether the repaired claim ``equation`` says nothing, since letters of a side cancel.
-
-        This is so if a side with letters became a nonzero number, as ``x/(x/y)/y`` does, or if both sides are nonzero
-        numbers, as in ``x/x == 1``.
-        """
+        """Return whether the repaired claim ``equation`` says nothing because letters cancel, as in ``x/x == 1``."""
         claimed = self.numeric.claim.equation
         sides = ((claimed.left, equation.left), (claimed.right, equation.right))
         bare = [(before, after) for before, after in sides if any(flatten(after)[0]) and not _symbols(after)]
+        # a side with letters became a number, or both sides are numbers
         return any(map(_symbols, dict(bare))) or (len(bare) == len(sides) and bool(equation.divisors))
 
     def proven(self, candidates: Iterable[Candidate], most: int) -> list[Repair]:
-        """Return up to ``most`` repairs: those first candidates that the exact engine proves to be true.
-
-        Of candidates with equal values, or with equal terms of left - right, only the first is tried.
-        """
+        """Return up to ``most`` repairs: the first of the candidates that the exact engine proves to be true."""
         repairs: list[Repair] = []
         attempts = 0
         bare = bool({"name", "number"} & {self.numeric.left.kind, self.numeric.right.kind})
@@ -247,6 +223,7 @@ class _Search:
                     self.tautologies.append((cost, code))
                 continue
             form = self.equation_form(candidate.changes)
+            # of candidates with equal terms or equal values, only the first is tried
             if form in self.forms:
                 continue
             if values in self.seen:
@@ -272,12 +249,9 @@ class _Search:
 
 
 def _ranges(decision: Decision) -> str:
-    """Return the condition on signs or angles under which a formula holds, such as ``"0 <= x <= pi"``.
-
-    The text is "" if ``decision`` is not "conditional". It is also "" if the condition demands that a formula is zero,
-    as ``A == B`` does, even beside a sign.
-    """
+    """Return the signs or angles for which a formula holds, such as ``"0 <= x <= pi"``, or "" if there are none."""
     needed = decision.requires[:1]
+    # a condition such as A == B, even beside a sign, is no range
     is_range = decision.verdict == "conditional" and all(need.signs and not need.zeros for need in needed)
     return needed[0].text if needed and is_range else ""
 

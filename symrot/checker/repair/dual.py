@@ -1,7 +1,4 @@
-"""Dual numbers, and elementary functions of numbers, arrays and dual numbers.
-
-Evaluating a formula at dual numbers ``x + x' e`` with ``e^2 = 0`` also differentiates it.
-"""
+"""Dual numbers ``x + x' e`` with ``e^2 = 0``: evaluating a formula at them also differentiates it."""
 
 import math
 from dataclasses import dataclass

@@ -1,7 +1,7 @@
 """The faults that occur in practice (a lost factor, a wrong sign), as edits of a tree; each has a code and a cost.
 
-An edit changes one part of a formula. It costs less if its fault is more likely. ``single_edits`` yields all edits of a
-tree; :mod:`symrot.checker.repair.diagnose` combines edits, and finds out which results are true.
+An edit changes one part of a formula; it costs less if its fault is more likely. The argument ``matrices`` of the
+functions tells whether a node is a matrix.
 """
 
 import itertools
@@ -109,23 +109,16 @@ PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)",
 
 @dataclass(frozen=True)
 class Edit:
-    """A tree after one edit, with a code that names the corrected fault, such as ``sign_of_term``, and the edit's cost.
-
-    ``path`` leads to the edited part; it is empty if the whole tree changes.
-    """
+    """A tree after one edit, with the cost of the edit and a code such as ``sign_of_term`` for the corrected fault."""
 
     code: str
     cost: float
-    path: Path
+    path: Path  # to the edited part; empty if the whole tree changes
     tree: Node
 
 
 def neighbours(name: str, names: Collection[str]) -> list[str]:
-    """Return those of ``names`` that people easily confuse with ``name``.
-
-    They have another index (``w_2`` for ``w_1``), other case (``a`` for ``A``), or are of the same family (``theta``
-    for ``phi``).
-    """
+    """Return those of ``names`` that are easily confused with ``name``: ``w_2`` and ``w_1``, ``theta`` and ``phi``."""
     family = next((set(members) for members in FAMILIES if name in members), set())
     match = _STEM.fullmatch(name)
     stem = match and match[1]
@@ -184,30 +177,20 @@ def single_edits(
 
 
 def _admits_squares(node: Node) -> bool:
-    """Return whether a square may be missing on an argument of a call: True for ``Matrix``, ``diag`` and ``sqrt``.
-
-    The arguments of other calls are not searched for missing squares.
-    """
+    """Return whether a square may be missing on an argument of a call: True for ``Matrix``, ``diag`` and ``sqrt``."""
     return node.kind == "call" and node.value in ("Matrix", "sqrt", "diag")
 
 
 def _is_scalar(node: Node, matrices: Callable[[Node], bool]) -> bool:
-    """Return whether a part is a single scalar name or call, such as r or sin(x), that may have lost a square.
-
-    Then r^2 is tried for r. The name pi, sums such as a + b, derivatives and integrals do not count; of the calls with
-    vectors or matrices, only dot, det and trace do. ``matrices`` tells whether a node is a matrix.
-    """
+    """Return whether a part is a scalar name or call, such as r or sin(x), that may have lost a square."""
     if node.kind not in ("name", "call") or node == Node("name", "pi") or node.value in ("Matrix", "diff", "integrate"):
         return False
+    # calls with scalar values and matrices as arguments
     return not matrices(node) or node.value in ("dot", "det", "trace")
 
 
 def _put(tree: Node, path: Path, made: Node) -> Node:
-    """Return a tree with the node ``made`` in place of the part at ``path``.
-
-    If ``made`` is a sum inside a sum, or a product inside a product, the two are merged; signs of factors move to the
-    front.
-    """
+    """Return a tree with the node ``made`` at ``path``; a sum in a sum, or a product in a product, is merged."""
     if path and made.kind in ("neg", "sum", "product"):
         *above, place = path
         return replaced(tree, tuple(above), lambda node: _regrouped(node, place, made))
@@ -289,11 +272,8 @@ def _of_rows(node: Node) -> Iterator[Change]:
 
 
 def _is_own_transpose(node: Node) -> bool:
-    """Return whether a node is a call whose transpose is no useful edit.
-
-    The transpose of ``diag(..)`` is the same matrix, that of ``cross(..)`` only another shape, and that of a rotation
-    matrix has the angle with the other sign, which another edit gives.
-    """
+    """Return whether a node is a call whose transpose is no useful edit, such as ``diag(..)``."""
+    # a transposed rotation matrix has the angle with the other sign, which another edit gives
     return node.kind == "call" and node.value in ("vee", "qmul", "Matrix", "eye", "diag", "cross", *ROTATIONS)
 
 
@@ -360,10 +340,7 @@ def _of_product(node: Node, matrices: Callable[[Node], bool], order: str) -> Ite
 
 
 def _with_roots(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
-    """Yield the edits that put a square root over the numbers of a product, or over its other factors.
-
-    For ``2*g*h`` these are ``g*h*sqrt(2)`` and ``2*sqrt(g*h)``; a product with a matrix has none.
-    """
+    """Yield the edits of a product with a root over its numbers or its other factors: ``2*sqrt(g*h)`` for ``2*g*h``."""
     if any(map(matrices, node.args)):
         return
     kinds = [any(part.kind in ("name", "call") and part.value != "pi" for _, part in walk(f)) for f in node.args]
@@ -382,10 +359,7 @@ def _is_square(node: Node) -> bool:
 
 
 def _with_exchanged_names(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
-    """Yield the edits of a product that exchange two vectors, or two letters that people easily confuse.
-
-    In ``m*sin(phi)*cos(theta)`` the angles phi and theta exchange their places.
-    """
+    """Yield the edits of a product that exchange two vectors or easily confused letters, such as phi and theta."""
     names = list(dict.fromkeys(part for _, part in walk(node) if part.kind == "name" and part.value != "pi"))
     if len(names) > MOST_NAMES_EXCHANGED or all(part.kind == "name" for part in node.args):
         return
@@ -409,10 +383,7 @@ def _of_quotients(factors: list[Node]) -> Iterator[Change]:
 
 
 def _of_sequence(factors: list[Node]) -> Iterator[Change]:
-    """Yield edits of a product of elementary rotations: its factors in reverse order, and rotations about other axes.
-
-    For ``Rz(a)*Rx(b)`` these are ``Rx(b)*Rz(a)``, ``Ry(a)*Rx(b)`` and so on.
-    """
+    """Yield edits of a product of elementary rotations: ``Rx(b)*Rz(a)`` and ``Ry(a)*Rx(b)`` for ``Rz(a)*Rx(b)``."""
     yield "wrong_sequence_type", product(factors[::-1]), COST["sequence_reversed"]
     angles = [factor.args for factor in factors]
     for place, factor in enumerate(factors):
@@ -471,10 +442,7 @@ def _of_call(node: Node, path: Path, functions: Collection[str], matrices: Calla
 
 
 def _of_quaternion(node: Node) -> Iterator[Change]:
-    """Yield edits of a quaternion that is written as four components.
-
-    They move its first component to the end, or its last one to the front (two orders of storage), or conjugate it.
-    """
+    """Yield edits of four components of a quaternion: another order of storage, or the conjugate."""
     first, *vector = node.args
     yield "quaternion_storage_order", replace(node, args=(*vector, first)), 0.0
     yield "quaternion_storage_order", replace(node, args=(node.args[3], *node.args[:3])), 0.0
@@ -486,11 +454,7 @@ def _of_quaternion(node: Node) -> Iterator[Change]:
 
 
 def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
-    """Yield edits that change something wherever it occurs in a tree.
-
-    They halve or double an angle that occurs several times, exchange its sines and cosines, transpose a matrix that
-    occurs several times, or change the signs of all products of inertia.
-    """
+    """Yield edits that change something wherever it occurs in a tree, such as an angle to its half."""
     nodes = [node for _, node in walk(tree)]
     angles = {node.args[0] for node in nodes if node.kind == "call" and node.value in OPPOSITE}
     arguments = [node.args[0] for node in nodes if node.kind == "call" and node.value in OPPOSITE]
@@ -504,6 +468,7 @@ def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
             yield Edit(code, cost, (), _substituted(tree, angle, made, inside=OPPOSITE))
         swapped = _swapped_functions(tree, angle)
         yield Edit("sin_cos_swap", COST["sin_cos_swap_everywhere"], (), swapped)
+    # a matrix that occurs several times is transposed
     names = sorted({node.value for node in nodes if node.kind == "name"})
     for name in names:
         node = Node("name", name)
@@ -519,10 +484,7 @@ def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
 
 
 def _substituted(tree: Node, old: Node, new: Node, inside: Collection[str] | None = None) -> Node:
-    """Return a tree with ``new`` in place of each ``old``.
-
-    With ``inside``, names of functions such as sin, only the arguments of these functions are replaced.
-    """
+    """Return a tree with ``new`` in place of each ``old``; with ``inside``, only as an argument of these functions."""
     if tree == old and inside is None:
         return new
     direct = inside is not None and tree.kind == "call" and tree.value in inside and tree.args[0] == old

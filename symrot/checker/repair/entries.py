@@ -15,12 +15,9 @@ MOST_PAIRS_OF = 60
 
 
 def by_entries(numeric: NumericFilter) -> list[Candidate]:
-    """Return repairs of a side of the claim that is a written-out matrix: each wrong entry is edited by itself.
-
-    The other side has the values that the entries should have. The list is empty if no side is such a matrix, or if
-    some wrong entry has no edit that corrects it.
-    """
+    """Return repairs of a written-out matrix that is a side of the claim: each wrong entry is edited by itself."""
     candidates: list[Candidate] = []
+    # the other side has the values that the entries should have
     references = {"right": numeric.left, "left": numeric.right}
     for place in numeric.sides_to_edit:
         tree, other = numeric.tree_at(place), references[place]
@@ -37,7 +34,7 @@ def by_entries(numeric: NumericFilter) -> list[Candidate]:
             cell = at(tree, path)
             edit = None if cell is None else _entry_edit(numeric, cell, targets)
             if edit is None:
-                break
+                break  # no edit corrects this entry
             if edit.code != "none":
                 edits.append((path, edit))
         else:
@@ -53,9 +50,9 @@ def by_entries(numeric: NumericFilter) -> list[Candidate]:
 
 
 def _entry_edit(numeric: NumericFilter, cell: Node, targets: Sequence[float]) -> Edit | None:
-    """Return the cheapest edit that gives the formula ``cell`` the values ``targets`` at the test points, or None.
+    """Return the cheapest edit that gives ``cell`` the values ``targets`` at the test points, or None.
 
-    ``cell`` is an entry of a matrix. The code of the edit is ``none`` if the entry has these values already.
+    Its code is ``none`` for unchanged entries.
     """
 
     def fits(tree: Node) -> bool:
@@ -95,10 +92,7 @@ def merged(tree: Node, first: Edit, second: Edit) -> Node | None:
 
 
 def _same_shape(tree: Node, edited: Node, path: Path) -> bool:
-    """Return whether ``edited``, which is ``tree`` after an edit, still has the same part at ``path``.
-
-    Then an edit of that part can be made in ``edited`` too.
-    """
+    """Return whether ``edited``, which is ``tree`` after an edit, still has the same part at ``path``."""
     for place in path:
         if place >= len(edited.args) or edited.kind != tree.kind or len(edited.args) != len(tree.args):
             return False

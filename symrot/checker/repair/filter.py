@@ -1,7 +1,6 @@
 """The numeric filter: it evaluates edited claims at two points in double precision, to discard false ones quickly.
 
-Parts that an edit leaves unchanged are evaluated only once. The work is bounded by a count of evaluated parts, so that
-every run gives the same repairs.
+The work is bounded by a count of evaluated parts, so that every run gives the same repairs.
 """
 
 from collections.abc import Iterator, Sequence
@@ -46,7 +45,7 @@ class Candidate(NamedTuple):
 class NumericFilter:
     """A fast test of repairs: it evaluates the edited claim at points that obey the hypotheses.
 
-    It evaluates at most ``most_pieces`` pieces of trees; then every test fails.
+    After ``most_pieces`` evaluations, every test fails.
     """
 
     def __init__(self, claim: Claim, most_pieces: int = MOST_PIECES) -> None:
@@ -112,14 +111,11 @@ class NumericFilter:
         return node.kind not in ("index", "list", "number") and any(map(self.is_matrix, node.args))
 
     def sensible(self, place: str, tree: Node) -> bool:
-        """Return whether ``tree`` makes sense as the tree at ``place``, a side or a definition of the claim.
-
-        A side must be more than a number, and a definition must use neither its own name nor a later one.
-        """
+        """Return whether ``tree`` makes sense as the side or definition ``place`` of the claim."""
         if place in SIDES:
             return is_nontrivial(tree) or not is_nontrivial(self.tree_at(place))
         order = list(self.definitions)
-        later = set(order[order.index(place) :])
+        later = set(order[order.index(place) :])  # a definition uses neither its own name nor a later one
         return is_nontrivial(tree) and not any(node.kind == "name" and node.value in later for _, node in walk(tree))
 
     def edited(self, changes: Sequence[Change]) -> Claim:
@@ -149,12 +145,9 @@ class NumericFilter:
         return wrong
 
     def open_paths(self, place: str, tree: Node) -> "OpenEntries":
-        """Return a function that tells, for each path in a tree, whether a single edit may change the part there.
-
-        ``place`` is the side or definition with this tree. In a written-out matrix, an edit may change an entry only if
-        no other entry is wrong.
-        """
+        """Return a function that tells whether a single edit may change the part at a path of ``tree``."""
         cells = matrix_entries(tree) if place in SIDES else {}
+        # an entry of a written-out matrix may change only if no other one is wrong
         alone = [cells[number] for number in self.wrong if number in cells] if len(self.wrong) == 1 else []
         return OpenEntries(tuple(cells.values()), tuple(alone))
 
@@ -207,7 +200,7 @@ class NumericFilter:
     def holds(self, changes: Sequence[Change]) -> bool:
         """Return whether the claim after ``changes`` is true at the test points.
 
-        Return False, too, if both sides have become zero there, or if the budget of evaluations is spent.
+        It is False if the budget of evaluations is spent.
         """
         if not self.affordable():
             return False
@@ -219,6 +212,7 @@ class NumericFilter:
                 return False
             if same is None or not all(same):
                 return False
+        # False if both sides have become zero
         return any(entries_of(left)) or not (is_nontrivial(self.left) and is_nontrivial(self.right))
 
     def differences(self, point: Point, changes: Sequence[Change]) -> list[float]:
@@ -237,10 +231,8 @@ class NumericFilter:
         return [a - b for a, b in zip(left, right, strict=True)]
 
     def fingerprint(self, changes: Sequence[Change]) -> tuple[float, ...]:
-        """Return rounded values of both sides after ``changes``, at one test point.
-
-        Two repairs with equal values are most likely the same formula, written in two ways.
-        """
+        """Return rounded values of both sides after ``changes``, at one test point."""
+        # repairs with equal values are most likely the same formula, written in two ways
         left, right = self.sides(self.points[0], changes)
         return tuple(float(f"{value:.9g}") for value in (*entries_of(left), *entries_of(right)))
 
@@ -285,10 +277,7 @@ def at(tree: Node, path: Sequence[int]) -> Node | None:
 
 
 def matrix_entries(tree: Node) -> dict[int, Path]:
-    """Return the path to each entry of a written-out matrix, by the entry's number, counted row by row from 0.
-
-    The result is empty for any other tree.
-    """
+    """Return the paths of the entries of a written-out matrix by their number, row by row; empty for other trees."""
     if tree.kind == "call" and tree.value == "diag":
         return {place * (len(tree.args) + 1): (place,) for place in range(len(tree.args))}
     if tree.kind != "call" or tree.value != "Matrix" or tree.args[0].kind != "list":
@@ -300,13 +289,11 @@ def matrix_entries(tree: Node) -> dict[int, Path]:
 
 
 def pieces(tree: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
-    """Yield (path, node) for the parts of a tree that an edit may multiply or add to.
-
-    Exponents, and the variables of derivatives and integrals, are left out.
-    """
+    """Yield (path, node) for the parts of a tree that an edit may multiply or add to, such as terms and factors."""
     if tree.kind not in ("list", "inv"):
         yield path, tree
     for place, child in enumerate(tree.args):
+        # exponents, and the variables of derivatives and integrals
         fixed = tree.kind == "power" or (tree.kind == "call" and tree.value in ("diff", "integrate"))
         if not (fixed and place):
             yield from pieces(child, (*path, place))

@@ -72,9 +72,9 @@ def missing_terms(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def _short_form(formula: Expr, hypotheses: Sequence[Any]) -> Expr:
-    """Return the normal form of the difference of two sides, reduced by the hypotheses; 0 if it vanishes.
+    """Return the normal form of the difference of two sides under the hypotheses; 0 if it vanishes.
 
-    Raise TooLarge if it is far too long to be a single missing term.
+    Raise TooLarge for a long one.
     """
     ring = FormulaRing([formula], [as_zero(hypothesis) for hypothesis in hypotheses])
     residual = ring.reduce(ring.ratio(formula).numerator)
@@ -84,11 +84,8 @@ def _short_form(formula: Expr, hypotheses: Sequence[Any]) -> Expr:
 
 
 def _whole(numeric: NumericFilter, place: str, lacking: Mapping[Path, Any]) -> Iterator[Candidate]:
-    """Yield one repair of the side ``place`` of the claim: to each wrong entry it adds what this entry lacks.
-
-    ``lacking`` maps the path of each wrong entry to the exact formula that must be added there. Nothing is yielded if
-    one of these formulas is too long to be a single term, as ``a*b + c*d`` is: adding it would repair anything.
-    """
+    """Yield the repair of the side ``place`` that adds to each wrong entry what it lacks, unless this is too long."""
+    # lacking: path of a wrong entry -> formula to be added there; adding a*b + c*d would repair anything
     made = numeric.tree_at(place)
     for path, residual in lacking.items():
         piece = at(made, path)
@@ -104,11 +101,7 @@ def _whole(numeric: NumericFilter, place: str, lacking: Mapping[Path, Any]) -> I
 def _inside(
     numeric: NumericFilter, place: str, cell: Path, residual: Any, hypotheses: Sequence[Any]
 ) -> Iterator[Candidate]:
-    """Yield repairs that add one term inside a bracket of a wrong entry: ``a*(b + m)`` in place of ``a*b``.
-
-    The entry is at the path ``cell`` of the side ``place``. ``residual`` is the exact formula that must be added to the
-    entry, ``a*m`` here; divided by the factor of the bracket, it gives the term.
-    """
+    """Yield repairs that add one term inside a bracket of a wrong entry: ``a*(b + m)`` in place of ``a*b``."""
     interpreter = numeric.claim.interpreter()
     tree = numeric.tree_at(place)
     whole = at(tree, cell)
@@ -116,6 +109,7 @@ def _inside(
     most = MOST_BRACKETS if sum(1 for _ in walk(whole)) < LARGE else MOST_BRACKETS_OF_LARGE
     brackets = sorted(_linear_pieces(whole), key=lambda bracket: bracket[1].kind != "sum")
     for path, piece in [bracket for bracket in brackets if bracket[0]][:most]:
+        # residual, a*m, divided by the factor of the bracket, a, gives the term
         ends = [interpreter.read(replaced(whole, path, replacement(number(value)))) for value in (0, 1)]
         try:
             term = _term(_short_form(residual / (ends[1] - ends[0]), hypotheses), whole)
@@ -128,10 +122,7 @@ def _inside(
 
 
 def missing_matrices(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs that multiply a matrix in a side by a named matrix of the claim: ``R*J*R^T`` for ``R*J``.
-
-    The other matrix, or its transpose, is put on the left or right; the result is true at the test points.
-    """
+    """Yield repairs that multiply a matrix in a side by a named matrix of the claim: ``R*J*R^T`` for ``R*J``."""
     named = [Node("name", name) for name in sorted(numeric.matrix_names)]
     factors = [*named, *(Node("transpose", None, (by,)) for by in named)]
     for place in numeric.sides_to_edit:
@@ -149,11 +140,7 @@ def missing_matrices(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs of a side that replace the name of one definition by the name of another: ``b`` for ``a``.
-
-    ``a`` and ``b`` both have a definition in the claim. Only repairs that make the claim true at the test points are
-    yielded.
-    """
+    """Yield repairs of a side that replace the name of one definition in the claim by another one."""
     used = [name for name in numeric.definitions if name not in numeric.symbols]
     for place in numeric.sides_to_edit:
         tree = numeric.tree_at(place)
@@ -166,14 +153,11 @@ def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def _term(residual: Any, piece: Node | None) -> Node | None:
-    """Return ``residual``, the difference of two sides, as the tree of one missing term, such as ``m*r**2``; else None.
-
-    It must be short, and neither a sum nor divided by letters. If it has brackets, as ``m*(a + b)``, it must also be
-    much shorter than ``piece``, the formula to which it is added: otherwise it would repair anything.
-    """
+    """Return the difference of two sides as the tree of one missing term such as ``m*r**2``, or None."""
     above, below = residual.as_numer_denom()
     if not below.is_number or not residual.free_symbols:
         return None
+    # m*(a + b) must be much shorter than the formula to which it is added, or it would repair anything
     most = MOST_LETTERS if piece == number(0) else 0 if piece is None else len(text(piece)) // 2  # of a bracketed term
     if above.is_Add:
         if len(above.free_symbols) > most:
@@ -188,10 +172,7 @@ def _term(residual: Any, piece: Node | None) -> Node | None:
 
 
 def _linear_pieces(tree: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
-    """Yield (path, node) for the parts of a tree to which a term may be added, such as a and b in ``2*(a + b)``.
-
-    They are terms of sums and factors of products: the value of the tree depends linearly on each of them.
-    """
+    """Yield (path, node) for the parts on which a tree depends linearly, such as a and b in ``2*(a + b)``."""
     yield path, tree
     for place, child in enumerate(tree.args if tree.kind in ("sum", "product", "neg") else ()):
         if child.kind not in ("inv", "number") and (tree.kind != "product" or child.kind in ("sum", "name", "call")):

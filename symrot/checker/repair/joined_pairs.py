@@ -1,9 +1,8 @@
 """Pairs of edits that make a claim true together, by joining their numeric effects instead of trying all pairs.
 
-At a point, an edit of one term changes the difference of the sides by an amount that does not depend on edits of other
-terms. So two such edits correct the claim if their amounts sum to the whole difference. In a product, the ratios of
-edited factors multiply in the same way. Each single edit is evaluated once; a look-up of the amount that is left gives
-the edits that complete it.
+At a point, edits of different terms change the difference of the sides by independent amounts, and edits of different
+factors change the quotient of the sides by independent factors. A look-up of the missing amount gives the second
+edit.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -26,10 +25,7 @@ Values = tuple[float, ...]
 
 
 def joined_pairs(numeric: NumericFilter, changes: Sequence[Change]) -> Iterator[Candidate]:
-    """Yield candidates with two of the edits ``changes``, in different parts of a claim; the cheapest pairs come first.
-
-    Each pair makes the claim true at the test points.
-    """
+    """Yield pairs of the edits ``changes`` that make a claim true at the test points, the cheapest first."""
     try:
         sums, products = _differences(numeric, changes), _quotients(numeric, changes)
     except UndefinedValue:  # the claim itself has no value at the point
@@ -45,13 +41,10 @@ def joined_pairs(numeric: NumericFilter, changes: Sequence[Change]) -> Iterator[
 
 
 def pair_of(numeric: NumericFilter, first: Change, second: Change) -> tuple[Change, ...] | None:
-    """Return two edits of a claim as changes to apply together.
-
-    Edits of different trees are two changes; edits of one tree become one change. Return None if one edit changes the
-    part that the other one changes, or a part inside it.
-    """
+    """Return two edits of a claim as changes to apply together, or None if they change the same part."""
     if first.place != second.place:
         return first, second
+    # edits of one tree become one change
     tree = merged(numeric.tree_at(first.place), first.edit, second.edit)
     if tree is None:
         return None
@@ -63,10 +56,7 @@ Effects = tuple[Values, dict[int, Values]]
 
 
 def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
-    """Return left minus right at the first test point, and the amount by which each single edit reduces it.
-
-    The amounts are in a dictionary, by the index of the edit in ``changes``.
-    """
+    """Return left minus right at the first test point, and the amount by which each edit reduces it, by its index."""
     point = numeric.points[0]
     whole = tuple(numeric.differences(point, ()))
     effects: dict[int, Values] = {}
@@ -83,15 +73,14 @@ def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 
 
 def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
-    """Return (left/right,) at the first test point, and the factor by which each edit divides this quotient.
+    """Return (left/right,) at the first test point, and the factor by which each edit divides it, by its index.
 
-    The factors are in a dictionary, by the index of the edit in ``changes``. Both results are empty if a side is no
-    scalar, or zero.
+    Empty if a side is zero.
     """
     point = numeric.points[0]
     left, right = (entries_of(side) for side in numeric.sides(point, ()))
     if len(left) != 1 or len(right) != 1 or not left[0] or not right[0]:
-        return (), {}
+        return (), {}  # a matrix, or zero
     whole = left[0] / right[0]
     effects: dict[int, Values] = {}
     for number, change in enumerate(changes):
@@ -109,10 +98,9 @@ def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 def _completing(effects: Effects, rest: Callable[[float, float], float]) -> Iterator[tuple[int, int]]:
     """Yield pairs of indices of edits that together make both sides equal.
 
-    ``effects`` is (whole, single): the change of the sides' difference (or quotient) that would make them equal, and
-    the change that each edit gives, by its index. ``rest(w, e)`` returns what the second edit must give if the first
-    one gives e: ``w - e`` for differences, ``w / e`` for quotients.
+    ``effects`` is the result of `_differences` or `_quotients`.
     """
+    # rest(w, e): what the second edit must give if the first gives e: w - e for differences, w/e for quotients
     whole, single = effects
     scale = max(map(abs, whole), default=0.0)
     if not scale:

@@ -1,7 +1,6 @@
 """Values of trees at test points in double precision, which take milliseconds and rule out most wrong repairs.
 
-Derivatives are computed with dual numbers. A function of time is represented by its value and its first derivatives,
-which are independent numbers.
+A function of time is represented by its value and its first derivatives, which are independent numbers.
 """
 
 import math
@@ -120,18 +119,12 @@ class Point:
         return value
 
     def redefined(self, name: str, node: Node) -> "Point":
-        """Return a copy of the point that evaluates ``name`` by the formula ``node`` instead of its definition.
-
-        A point stores the claim's definitions beside the values of the symbols, to evaluate names that are defined.
-        """
+        """Return a copy of the point that evaluates ``name`` by the formula ``node`` instead of its definition."""
         return Point(self.symbols, self.functions, {**self.definitions, name: node}, spent=self.spent)
 
     def raised(self, variable: Node) -> "Point":
-        """Return a copy of the point for derivatives: ``variable`` becomes a dual number with slope 1.
-
-        The value of a tree at the copy is a dual number, whose slope is the derivative of the tree with respect to
-        ``variable``: a symbol, ``f(t)``, or ``diff(f(t), t)``.
-        """
+        """Return a copy of the point at which trees have dual numbers as values, with slopes by ``variable``."""
+        # variable: a symbol, f(t), or diff(f(t), t)
         order = 0
         inner = variable
         while is_derivative(inner):
@@ -255,12 +248,10 @@ def _differentiated(point: Point, formula: Node, variables: Sequence[Node]) -> A
 
 
 def _integrated(point: Point, integrand: Node, ranges: Sequence[Node]) -> Any:
-    """Return the integral of ``integrand`` over a box at a point, by Gauss-Legendre quadrature.
-
-    Each of ``ranges`` is (variable, low, high); those of the outer variables come first.
-    """
+    """Return the integral of ``integrand`` over a box at a point, by Gauss-Legendre quadrature."""
     import numpy as np  # for integrals and hypotheses alone, since its import takes longer than most checks
 
+    # ranges: (variable, low, high), those of the outer variables first
     nodes, weights = np.polynomial.legendre.leggauss(GAUSS[min(len(ranges), 3)])
     inner, total = point, np.ones((1,) * len(ranges))
     for axis, part in enumerate(ranges):
@@ -366,9 +357,7 @@ def points(
 ) -> list[Point]:  # fmt: skip
     """Return random test points, the same in every run, that obey the hypotheses to double precision.
 
-    Symbols lie between 0.3 and ``most`` before Newton's method moves them until the hypotheses hold; if that fails,
-    there are fewer than ``count`` points. Each point also stores the values of the trees whose ids are
-    ``remembered``.
+    There may be fewer than ``count``.
     """
     accepted = []
     for seed in range(3 * count):
@@ -388,11 +377,7 @@ def points(
 
 
 def _onto_hypotheses(point: Point, hypotheses: Sequence[tuple[Node, Node]]) -> Point | None:
-    """Return a point near ``point`` at which the hypotheses hold; None if none is found.
-
-    Each hypothesis is a pair of sides. A new point is computed by Newton's method with least-squares steps; without
-    hypotheses, ``point`` itself is returned.
-    """
+    """Return a point near ``point`` at which the hypotheses hold, by Newton's method; None if it fails."""
     if not hypotheses:
         return point
     import numpy as np

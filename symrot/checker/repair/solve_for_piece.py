@@ -1,8 +1,7 @@
 """Repairs that replace one part of a formula by the value that makes the claim true, written as a short formula.
 
-The claim is solved numerically for one part at a time (a term, a factor or a symbol), at two points. The values that
-the part must have are compared with all short products of symbols and functions of the claim. So a lost term, a lost
-factor or a wrong symbol takes one look-up, however long the formula is.
+The claim is solved numerically for one part (a term, a factor or a symbol) at two points. The result is looked up among
+the values of all short products of symbols and functions of the claim.
 """
 
 from bisect import bisect_left
@@ -56,12 +55,7 @@ class Entry:
 
 
 class Vocabulary:
-    """Short formulas made of a claim's parts, which can be looked up by their values to repair the claim.
-
-    They are products of these factors: the symbols, functions, sines and cosines of the claim, and its sums in
-    brackets. The products and powers that the claim has are in it too. The list is sorted by the value at the first
-    test point; where these are equal, by the value at the second.
-    """
+    """Short products of a claim's symbols, functions and brackets, sorted by their values for a look-up."""
 
     def __init__(self, numeric: NumericFilter) -> None:
         self.numeric = numeric
@@ -136,10 +130,7 @@ class Vocabulary:
         return values[0] / values[1]
 
     def find(self, values: Values) -> Iterator[tuple[Entry, Fraction]]:
-        """Yield (product, ratio) for each product that has ``values`` at the test points when multiplied by ``ratio``.
-
-        ``ratio`` is a rational number. Products with the fewest factors come first.
-        """
+        """Yield (product, ratio) for each product that has ``values`` if multiplied by a rational ratio."""
         if not all(values):
             return
         key = self._key(values)
@@ -150,6 +141,7 @@ class Vocabulary:
             entry = self.entries[self.order[place]]
             ratio = _rational([value / other for value, other in zip(values, entry.values, strict=True)])
             if ratio is not None:
+                # short products first
                 matches.append((len(entry.factors), self.order[place], entry, ratio))
             place += 1
         for _, _, entry, ratio in sorted(matches, key=lambda item: item[:2]):
@@ -218,15 +210,12 @@ def _is_meaningful(numeric: NumericFilter, change: Change) -> bool:
 
 
 def _pieces(tree: Node, path: Path = (), term: bool = False) -> Iterator[tuple[Path, Node, bool]]:
-    """Yield (path, part, is_term) for each part of a tree that may be replaced; ``is_term``: it is a term of a sum.
-
-    Arguments of sines, rotations and similar functions are left out. ``term`` is ``is_term`` of the tree itself, which
-    is at ``path``.
-    """
+    """Yield (path, part, is_term) for each part of a tree that may be replaced; ``is_term``: it is a term of a sum."""
     if tree.kind not in ("list", "inv"):
         yield path, tree, term
     for place, child in enumerate(tree.args):
         hidden = tree.kind in ("power", "index") and place
+        # arguments of sines, rotations and similar functions are left out
         inside = tree.kind == "call" and tree.value in (*OPPOSITE, "diff", "integrate", *ROTATIONS, "eye")
         if not hidden and not inside and child != TIME:
             yield from _pieces(child, (*path, place), tree.kind == "sum")
@@ -241,11 +230,8 @@ def _candidate(numeric: NumericFilter, place: str, path: Path, made: Node, edit:
 
 
 def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: Values) -> Values | None:
-    """Return the values that an unknown must have at the test points for the claim to be true; None if none are found.
-
-    The formula ``made``, which contains the unknown as the node ``HOLE``, replaces the part at ``path`` of a side or
-    definition, whose name is ``place``. The secant method starts from the values ``start``.
-    """
+    """Return the values at the test points of the unknown in ``made`` that make the claim true, or None."""
+    # the unknown is the node HOLE in made, which replaces the part at path of a side or definition
     tree = replaced(numeric.tree_at(place), path, lambda _: made)
     if place not in SIDES and not numeric.sensible(place, tree):
         return None
@@ -260,16 +246,14 @@ def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: V
 
 
 def _root(numeric: NumericFilter, point: Point, change: Sequence[Change], start: float) -> float | None:
-    """Return the value of the unknown ``HOLE`` with which both sides are equal at a point; None if the search fails.
-
-    ``change`` puts the unknown into the claim. The secant method begins at ``start``.
-    """
+    """Return the value of the unknown ``HOLE`` that makes both sides equal at a point; None if the search fails."""
 
     def differences(value: float) -> list[float]:
         point.symbols[HOLE.value] = value
         return numeric.differences(point, change)
 
     try:
+        # the secant method
         low, high = start, start + 0.37 * (1 + abs(start))
         before, after = differences(low), differences(high)
         slopes = [abs(b - a) for a, b in zip(before, after, strict=True)]
@@ -302,12 +286,8 @@ Reading = tuple[Node, tuple[str, float]]
 def _readings(
     numeric: NumericFilter, vocabulary: Vocabulary, piece: Node, values: Values, needed: Values, term: bool, outer: bool
 ) -> Iterator[Reading]:
-    """Yield the formulas that may replace the part ``piece``, each with (code, cost) of the fault that this corrects.
-
-    The code is a word such as "sign_of_term". ``values`` are the values of the part at the test points, and ``needed``
-    those with which the claim is true. ``term``: the part is a term of a sum. ``outer``: it is a side of the claim, or
-    directly below it in the tree.
-    """
+    """Yield the formulas that may replace the part ``piece``, each with (code, cost) of the corrected fault."""
+    # term: the part is a term of a sum; outer: it is a side of the claim, or directly below it in the tree
     if all(abs(b) <= CLOSE * abs(a) for a, b in zip(values, needed, strict=True)):
         return  # the piece would have to vanish
     ratios = tuple(b / a for a, b in zip(values, needed, strict=True))
@@ -346,13 +326,8 @@ def _readings(
 
 
 def _is_there(vocabulary: Vocabulary, piece: Node, lacking: Values) -> bool:
-    """Return whether a rational multiple of a term that ``piece`` already has would give ``piece`` its needed value.
-
-    ``lacking`` is the needed value minus the actual value of ``piece``, at the test points. If ``piece`` is ``a + 2*b``
-    and ``a + 3*b`` is needed, ``lacking`` is the value of b. Then the coefficient of b is wrong, and no term is
-    missing: the result is True, and the caller looks for no missing term. A ``piece`` that is no sum counts as its only
-    term.
-    """
+    """Return whether ``piece`` only needs another coefficient of a term that it has: ``a + 3*b`` for ``a + 2*b``."""
+    # lacking: the needed value minus the value of piece, here that of b
     for node in piece.args if piece.kind == "sum" else (piece,):
         values = vocabulary.values(node)
         if values and _rational([a / b for a, b in zip(lacking, values, strict=True)]) is not None:
@@ -368,10 +343,7 @@ def _exchanged(numeric: NumericFilter, piece: Node, other: Node) -> tuple[str, f
 
 
 def _weight(least: float, entry: Entry, ratio: Fraction) -> float:
-    """Return the cost of a repair that inserts ``ratio`` times the product ``entry``: ``least`` plus its size.
-
-    A longer product costs more, and so does a ``ratio`` other than 1 or -1.
-    """
+    """Return the cost of a repair that inserts ``ratio`` times the product ``entry``: ``least`` plus its size."""
     size = sum(1 + sum(1 for _ in walk(factor)) // 3 for factor in entry.factors)
     return least + COST["per_piece_added"] * size + (0.0 if abs(ratio) == 1 else COST["rational_in_front"])
 
@@ -392,10 +364,7 @@ def _multiplied(piece: Node, entry: Entry, ratio: Fraction, upward: bool) -> Nod
 def _of_matrix(
     numeric: NumericFilter, vocabulary: Vocabulary, place: str, path: Path, piece: Node
 ) -> Iterator[Candidate]:
-    """Yield repairs of the matrix ``piece``, which is at ``path`` of the tree ``place``.
-
-    They multiply it by a scalar, or add a scalar times another matrix of the claim to it.
-    """
+    """Yield repairs that multiply the matrix ``piece`` by a scalar, or add a scalar times another matrix to it."""
     if piece.kind == "call" and piece.value == "Matrix" and path:
         return
     unit = (1.0,) * len(numeric.points)
@@ -416,10 +385,7 @@ def _of_matrix(
 
 
 def _matrices(numeric: NumericFilter, piece: Node) -> list[Node]:
-    """Return matrices of the same shape as ``piece``, which a repair may add to it.
-
-    They are the matrices of the claim, their transposes, and products of two of them.
-    """
+    """Return matrices with the shape of ``piece``: those of the claim, their transposes, products of two of them."""
     shape = _shape(numeric, piece)
     written = [node for place in numeric.places for _, node in walk(numeric.tree_at(place)) if numeric.is_matrix(node)]
     named = [Node("name", name) for name in sorted(numeric.matrix_names)]

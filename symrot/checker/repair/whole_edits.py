@@ -1,8 +1,7 @@
-"""Two faults of which one changes a whole side or definition: the other one is searched after that one is undone.
+"""Two faults, one of which changes a whole side or definition: it is undone first, then the other is searched.
 
-A transposed rotation, a product in the wrong order or a wrong sign of a side changes all values of a claim, so that no
-part of the claim tells where a second fault is. After it is undone, the second fault is a single one: then a missing
-term and a part whose right value follows from the rest can be found too.
+A transposed rotation changes all values of a claim, so that no part tells where a second fault is. Afterwards, the
+second fault is a single one.
 """
 
 from collections.abc import Iterator, Sequence

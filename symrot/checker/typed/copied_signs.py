@@ -1,7 +1,7 @@
 """Normalising a copied text, so that the readers of claims understand it.
 
 Commas in thousands are left out; ≈ before a rounded value becomes =; braces used as brackets become brackets; and
-definitions after the word "where" are moved to the front.
+definitions after "where" are moved to the front.
 """
 
 import re
@@ -25,9 +25,6 @@ _SUBSCRIPT = re.compile(r"_\{(\w+)\}")
 def with_plain_signs(source: str) -> str:
     r"""Return a copied text in the notation that the readers of claims understand, where its meaning is beyond doubt.
 
-    The comma in 1,500 is left out, ≈ before a rounded value becomes =, braces used as brackets become brackets, and
-    definitions after "where" are moved to the front, where the readers expect them.
-
     Examples
     --------
     >>> with_plain_signs("1,500 rpm = 157.08 rad/s"), with_plain_signs("sqrt(2) ≈ 1.41")
@@ -45,9 +42,9 @@ def with_plain_signs(source: str) -> str:
 
 
 def _with_definitions_first(text: str) -> str:
-    r"""Return LaTeX with the definitions after "where" moved to the front.
+    """Return LaTeX with the definitions after ``where`` moved to the front.
 
-    ``z \bar z = x^2 + y^2 where z = x + i y`` becomes ``z = x + i y, z \bar z = x^2 + y^2``.
+    ``z^2 = -1 where z = i`` becomes ``z = i, z^2 = -1``.
     """
     match = _WHERE.search(text)
     if match is None or "=" not in text[: match.start()] or "\\begin" in text:

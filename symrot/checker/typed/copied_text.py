@@ -44,8 +44,6 @@ class Copied:
 def without_surroundings(source: str, numbers: bool = True) -> Copied:
     """Return the equations of a text without the words around them and, if ``numbers``, without their numbers.
 
-    Left out are clauses that hold no equation, such as "where m is the mass".
-
     Examples
     --------
     >>> without_surroundings("F = m a, where m is the mass  (2.1)").text.rstrip()
@@ -62,6 +60,7 @@ def without_surroundings(source: str, numbers: bool = True) -> Copied:
     where = -1
     if (match := _WHERE.search(text)) and "=" in text[: match.start()]:
         where = match.start()
+        # clauses without an equation, such as "where m is the mass", are left out
         rest, left_out = _clauses(text[match.end() :])
         rest = rest if "=" in rest else " " * len(rest)
         text = text[:where] + " " * (match.end() - where) + rest
@@ -76,10 +75,9 @@ def _blank(match: re.Match[str]) -> str:
 
 
 def _clauses(text: str) -> tuple[str, list[str]]:
-    """Return (equations, left out): ``text`` with blanks for all clauses without an equation, and a list of these.
+    """Return (equations, clauses): ``text`` with blanks for clauses without an equation, and these clauses.
 
-    ``text`` is what follows the word ``where`` in a copied formula. "m is the mass and I = m r^2" becomes blanks and "I
-    = m r^2", with ["m is the mass"] left out. Blanks keep the positions of all other characters.
+    "m is the mass" is one.
     """
     left_out: list[str] = []
 
@@ -90,6 +88,7 @@ def _clauses(text: str) -> tuple[str, list[str]]:
             return short.ljust(len(clause))
         if clause.strip() not in ("", "and"):
             left_out.append(clause.strip())
+        # blanks keep the positions of all other characters
         return ";".rjust(len(clause)) if clause.strip() == "and" else " " * len(clause)
 
     return _CLAUSE.sub(equation_or_blank, text), left_out

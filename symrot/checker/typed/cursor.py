@@ -50,15 +50,12 @@ class Doubt:
 
 @dataclass(frozen=True)
 class Vocabulary:
-    """The names that have a meaning in a text: declared symbols and functions, and names that occur without a bracket.
+    """The names that have a meaning in a text, by the way in which the text uses them."""
 
-    ``vectors`` are the names that cross products and hats, for example, show to be vectors.
-    """
-
-    symbols: frozenset[str] = frozenset()
-    functions: frozenset[str] = frozenset()
-    alone: frozenset[str] = frozenset()
-    vectors: frozenset[str] = frozenset()
+    symbols: frozenset[str] = frozenset()  # declared
+    functions: frozenset[str] = frozenset()  # declared
+    alone: frozenset[str] = frozenset()  # names that occur without a bracket after them
+    vectors: frozenset[str] = frozenset()  # names that, for example, cross products and hats show to be vectors
 
     def function(self, name: str) -> str | None:
         """Return the name of the built-in or declared function that a name means; None if it means no function."""
@@ -138,12 +135,9 @@ class Cursor(ABC):
             raise self.fail(f"at most {DEEPEST_NESTING} nested levels of brackets and arguments")
 
     def other_reading(self, kind: str, at: int, start: int, stop: int) -> bool:
-        """Record an ambiguous place of the text; return whether the parser is to give it its less usual meaning.
-
-        ``kind`` and ``at`` are the kind of the ambiguity and its position; the excerpt for messages goes from ``start``
-        to ``stop``.
-        """
+        """Record an ambiguous part of the text, at ``start``; return whether its less usual meaning applies."""
         self.plain = True
+        # flips has the keys (kind of ambiguity, position)
         doubt = Doubt((kind, at), self.source[start:stop].strip())
         if doubt.key not in [known.key for known in self.doubts]:
             self.doubts.append(doubt)
@@ -232,14 +226,13 @@ class Cursor(ABC):
         return node.kind == "list" or (node.kind in ("sum", "neg", "product") and any(map(self.is_vector, node.args)))
 
     def is_cross_letter(self) -> bool:
-        """Return whether the token at the cursor is a letter x that is the sign of a cross product, as in ``a x b``.
-
-        It has blanks around it, and is between names of vectors.
-        """
+        """Return whether the token at the cursor is a letter x that is the sign of a cross product, as in ``a x b``."""
         token, after, before = self.token(), self.token(1), self.tokens[self.index - 1]
+        # it has blanks around it
         if token.kind != "name" or token.text != "x" or not token.spaced or not after.spaced:
             return False
         after = self.token(2) if is_mass_before_vector(after, self.token(2)) else after
+        # it is between names of vectors, and no name itself
         if "x" in self.vocabulary.alone or not is_cross_letter(before, after, self.vocabulary.vectors):
             return False
         return not self.other_reading("cross", token.start, before.start, after.end)
@@ -256,10 +249,7 @@ def is_mass_before_vector(token: Token, after: Token) -> bool:
 
 
 def is_cross_letter(before: Token, after: Token, vectors: Collection[str] = ()) -> bool:
-    """Return whether a letter x between two tokens may be the sign of a cross product: if both may be vectors.
-
-    ``vectors`` are names that the text shows to be vectors, beside those that books usually give to vectors.
-    """
+    """Return whether a letter x between two tokens may be the sign of a cross product: if both may be vectors."""
     pieces = [(token.kind == "name", re.split("[_0-9]", token.text)[0], token.text) for token in (before, after)]
     usual = [name and (word in USUAL_VECTORS or own in vectors) for name, word, own in pieces]
     brackets = [text in ("(", ")", "[", "]") for _, _, text in pieces]

@@ -1,7 +1,4 @@
-"""Functions that are defined by other functions: coth, sech, csch, their inverses, and arg.
-
-The inverses of cot, sec and csc are not among them, since books disagree on their values.
-"""
+"""Functions that are defined by other functions: coth, sech, csch, their inverses, and arg."""
 
 from collections.abc import Callable, Mapping
 
@@ -47,6 +44,7 @@ DEFINED: Mapping[str, Callable[[Node], Node]] = {
 INVERSES = {name: f"a{name}" for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "coth", "sech", "csch")}
 """Function -> its inverse, which ``sin^-1 x`` usually means."""
 
+# no formulas: books disagree on the values of these inverses
 DISPUTED = {"cot": "atan(1/x) or pi/2 - atan(x)", "sec": "acos(1/x)", "csc": "asin(1/x)"}
 """Function -> what to write instead of its inverse, whose values for x < 0 differ from book to book."""
 
@@ -55,9 +53,6 @@ DISPUTED_NAMES = {f"{prefix}{name}": name for name in DISPUTED for prefix in ("a
 
 
 def instead(name: str) -> str:
-    """Return the words after "expected" in an error message: what to write for the inverse function of ``name``.
-
-    ``name`` is cot, sec or csc. The inverse functions, such as arccot, are refused: for x < 0, books define them
-    differently.
-    """
+    """Return the words of an error message that refuses the inverse function of ``name``: cot, sec or csc."""
+    # for x < 0, books define arccot differently
     return f"{DISPUTED[name]} instead of the inverse function of {name} (books differ on it for x < 0)"

@@ -1,9 +1,7 @@
 """The grammar of claims: a parser by precedence, with tables for operators, functions and methods.
 
-SymPy syntax has one meaning. A formula as people type it has products without a sign (``2x``, ``m g l``), functions
-without brackets (``sin 2x``), powers (``x^2``, ``x²``), primes and dots. It may be ambiguous: the parser then chooses
-the usual meaning and records the place as a :class:`Doubt`. If the place is among ``flips``, it chooses the other
-meaning.
+SymPy syntax has one meaning. A formula as people type it, such as ``sin 2x`` or ``a/b c``, may be ambiguous. The parser
+chooses the usual meaning, unless ``flips`` asks for the other one, and records the ambiguity as a :class:`Doubt`.
 """
 
 import re
@@ -29,11 +27,8 @@ def _is_matrix_name(node: Node) -> bool:
 
 
 def _from_matrix(factors: Sequence[Node]) -> int:
-    """Return the index in ``factors`` at which the left operand of a cross product after them starts.
-
-    Usually this is the last factor. In ``R a × b`` the factor before it is a matrix, and the index is that of R: the
-    product is (R a) × b, the rotated a times b.
-    """
+    """Return the index in ``factors`` at which the left operand of a cross product starts: that of R in ``R a × b``."""
+    # R is a matrix, and the product is (R a) × b; usually the operand is the last factor
     return len(factors) - (2 if len(factors) > 1 and _is_matrix_name(factors[-2]) else 1)
 
 
@@ -70,10 +65,7 @@ class Parser(PiecesPart):
         return signs, sides
 
     def head(self) -> Node | None:
-        """Parse a left side such as ``R(φ)`` in ``R(φ) = ..``, and return the name R; None if there is none.
-
-        ``R(φ)`` is a name with its arguments, and no product, if the right side contains φ or is a matrix.
-        """
+        """Parse a left side such as ``R(φ)`` in ``R(φ) = ..``, and return the name R; None if there is none."""
         name, texts = self.token(), [token.text for token in self.tokens]
         end = texts.index(")") if ")" in texts else 0
         inside, rest = self.tokens[2:end], texts[end + 2 :]
@@ -82,6 +74,7 @@ class Parser(PiecesPart):
             return None
         names = [token.text for token in inside if token.kind == "name"]
         plain = all(token.kind == "name" or token.text == "," for token in inside)
+        # R(φ) is a name with its arguments, and no product, if the right side contains φ or is a matrix
         if self.as_sympy or not names or names == ["t"] or not plain or not (rest[0] == "[" or {*names} <= {*rest}):
             return None
         self.plain = True
@@ -131,11 +124,7 @@ class Parser(PiecesPart):
                 return product(factors, self.span(start)) if len(factors) > 1 else factors[0]
 
     def divisor(self, above: Node, start: int, slash: int) -> Node:
-        """Parse the divisor after a slash: without brackets, it is one factor or the whole product that follows.
-
-        Usually ``1/2 m`` and ``a/b c`` are (1/2)*m and (a/b)*c, but ``p^2/2m`` and ``g/ωr``, without blanks, divide by
-        the product. ``above`` is the formula before the slash.
-        """
+        """Parse and return the divisor of ``above``: one factor, or a product as ``2m`` in ``p^2/2m``."""
         first = self.token()
         below = [self.factor()]
         while above.kind in ("neg", "inv"):
@@ -145,6 +134,7 @@ class Parser(PiecesPart):
             token = self.token()
             if coefficient and token.spaced:
                 break
+            # without blanks, as in p^2/2m and g/ωr, the whole product divides
             usual = token.tight and token.text not in ("(", "[")
             if coefficient:  # 1/2π is 1/(2π), but 4/3πr³ is (4/3)πr³
                 after = self.token(1)
@@ -164,10 +154,7 @@ class Parser(PiecesPart):
         return Node("neg", None, (made,), self.span(start)) if negative else made
 
     def crossed(self, factors: list[Node]) -> None:
-        """Parse ``×`` and the factor b after it, and add them to the ``factors`` before it.
-
-        If a vector is on either side, ``cross(a, b)`` replaces the last factor a. If not, b becomes one more factor.
-        """
+        """Parse ``×`` and the factor b after it; put ``cross(a, b)`` in place of the last factor a in ``factors``."""
         self.plain = True
         closed = self.tokens[self.index - 1].text == ")"
         sign = self.next()
@@ -176,6 +163,7 @@ class Parser(PiecesPart):
         is_factor = right.kind == "name" and not self.is_vector(right)
         if is_factor and self.token().kind == "name" and self.token().text in self.vocabulary.vectors:
             right = product([right, self.factor()])  # R a x R b and r x m v
+        # without a vector on either side, b is one more factor
         if not self.is_vector(left) and not self.is_vector(right):
             factors.append(right)
             return
@@ -186,10 +174,7 @@ class Parser(PiecesPart):
         factors[own:] = [Node("call", "cross", (left, right), self.span(left.span[0]))]
 
     def dotted(self, factors: list[Node]) -> None:
-        """Parse a dot after a vector, and the factor after it; put their scalar product into ``factors``.
-
-        It replaces the last factor, which is the vector.
-        """
+        """Parse a dot after a vector a, and the factor b after it; put ``dot(a, b)`` in place of a in ``factors``."""
         self.plain = True
         self.next()
         right = self.factor()
@@ -221,7 +206,7 @@ class Parser(PiecesPart):
         return base
 
     def raised(self, base: Node, token: Token, start: int) -> Node:
-        """Return ``base`` with the raised exponent that ``token`` is: the power ``x²``, a transpose or an inverse."""
+        """Return ``base`` with the raised exponent ``token``: the power ``x²``, a transpose or an inverse."""
         self.plain = True
         digits, transposed = token.text.removesuffix("T"), token.text.endswith("T")
         if transposed and digits in ("", "-"):

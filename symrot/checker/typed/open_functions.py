@@ -54,11 +54,7 @@ class OpenFunctionsPart(Cursor):
         return Node("neg", None, (value,), value.span) if negative else value
 
     def open_call(self, function: str, token: Token, exponent: Node | None) -> tuple[Node, Node | None]:
-        """Parse the argument in ``sin 2x`` and return the call sin(2*x), and the exponent of the call or None.
-
-        ``exponent`` is the one before the argument, 2 in ``sin^2 x``. An exponent at the end, as in ``sin x^2``, may
-        belong to x or to the sine; if the parser chooses (sin x)^2, the call sin(x) and the exponent 2 are returned.
-        """
+        """Parse the argument in ``sin 2x``; return the call sin(2*x), and its exponent, 2 for ``sin^2 x``, or None."""
         self.plain = True
         first = self.token()
         if first.kind not in ("number", "name", "fraction") and first.text not in ("√", "-", "[", "|"):
@@ -81,6 +77,7 @@ class OpenFunctionsPart(Cursor):
         defined = DEFINED.get(function)
         call = defined(argument) if defined else Node("call", function, (argument,), self.span(token.start))
         if power is not None:
+            # sin x^2 as (sin x)^2 gives the call sin(x) and the exponent 2
             exponent = power if exponent is None else product([exponent, power])
         return call, exponent
 
@@ -90,23 +87,18 @@ class OpenFunctionsPart(Cursor):
         return self.power()
 
     def power_of_call(self, token: Token, factors: list[Node]) -> Node | None:
-        """Return 2 for ``sin x^2`` if the parser chooses the less usual meaning (sin x)^2; None if it is sin(x^2).
-
-        ``factors`` are the factors of the argument so far; the exponent is removed from the last one if it is returned.
-        """
+        """Return the exponent 2 of ``sin x^2`` if the parser chooses the less usual (sin x)^2, else None."""
         last = factors[-1]
         if last.kind != "power" or last.args[0].kind not in ("name", "call"):
             return None
         if not self.other_reading("power of argument", last.span[0], token.start, last.span[1]):
             return None
+        # the exponent is removed from the argument
         factors[-1] = last.args[0]
         return last.args[1]
 
     def absorbs(self, function: Token, factors: list[Node]) -> bool:
-        """Return whether the factor at the cursor belongs to the argument of ``function``: x in ``sin 2 x`` does.
-
-        In ``sin x cos y`` cos y does not. ``factors`` are the factors of the argument so far.
-        """
+        """Return whether the factor at the cursor belongs to the argument of ``function``, as x in ``sin 2 x`` does."""
         token = self.token()
         if token.text in ("*", "·") and token.kind == "mark":
             if self.other_reading("product after argument", token.start, function.start, self.token(1).end):
@@ -126,10 +118,7 @@ class OpenFunctionsPart(Cursor):
         return self.other_reading("argument", token.start, function.start, self.end_of_run()) != usual
 
     def slash_belongs(self, function: Token, factors: list[Node]) -> bool:
-        """Return whether a slash after a function's argument divides the argument: ``sin x/2`` as sin(x/2).
-
-        If not, it divides the call: (sin x)/2. ``factors`` are the factors of the argument.
-        """
+        """Return whether the slash of ``sin x/2`` divides the argument: True for sin(x/2), False for (sin x)/2."""
         slash, below = self.token(), self.token(1)
         if below.kind == "name" and (self.vocabulary.function(below.text) or below.text in SINGLE_ARGUMENT):
             return False
@@ -179,11 +168,7 @@ class OpenFunctionsPart(Cursor):
         return self.derivative_by(token)
 
     def continues(self, ahead: int) -> bool:
-        """Return whether a power sign stands after the token ``ahead``, which is then the base of a power.
-
-        ``ahead`` counts tokens from the cursor; for 0, ``x^2`` at the cursor gives True. The power signs are ^, ** and
-        superscripts.
-        """
+        """Return whether the token ``ahead`` places after the cursor is the base of a power, as x in ``x^2`` is."""
         after = self.token(ahead + 1)
         return after.text in ("^", "**") or after.kind == "power"
 
@@ -244,10 +229,9 @@ class OpenFunctionsPart(Cursor):
         return None
 
     def derivative_of_bracket(self, token: Token, end: int) -> Node:
-        """Parse ``(x^2)/dx`` after a d, as in ``d(x^2)/dx``, and return the derivative.
+        """Parse ``(x^2)/dx`` after the d of ``d(x^2)/dx``, which is ``token``; return the derivative.
 
-        The cursor is before the bracket. ``token`` is the d, and ``end`` the number of tokens in the bracket with its
-        two signs.
+        ``end`` is the number of tokens in the bracket.
         """
         variable, after = self.differential(end + 1)
         length = after - end
@@ -261,9 +245,9 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "diff", (operand, Node("name", variable)), self.span(token.start))
 
     def order_at(self, place: int) -> tuple[int, int]:
-        """Return the order of a derivative, 2 if ``^2`` or ² is at ``place`` and 1 without a power, and the next place.
+        """Return (order, next place) of a derivative: order 2 if ``^2`` or ² is at ``place``, else 1.
 
-        Places are counted in tokens from the cursor.
+        Places count tokens from the cursor.
         """
         token, after = self.token(place), self.token(place + 1)
         if token.text in ("^", "**") and after.text.isdigit():
@@ -271,17 +255,17 @@ class OpenFunctionsPart(Cursor):
         return (int(token.text), place + 1) if token.kind == "power" and token.text.isdigit() else (1, place)
 
     def tight_name(self, place: int) -> tuple[str, int]:
-        """Return the name at ``place`` and the next place; an empty text if no name is there, or a blank is before it.
+        """Return (name, next place) for the name at ``place``; the name is empty if a blank is before it.
 
-        Places are counted in tokens from the cursor.
+        Places count tokens from the cursor.
         """
         token = self.token(place)
         return (token.text, place + 1) if token.kind == "name" and token.tight else ("", place)
 
     def differential(self, place: int) -> tuple[str, int]:
-        """Return ("x", place after it) if the differential ``dx`` is at ``place``; otherwise the text is empty.
+        """Return (``x``, next place) if the differential ``dx`` is at ``place``; otherwise the text is empty.
 
-        The second value is of no use if the text is empty. Places are counted in tokens from the cursor.
+        Places count tokens from the cursor.
         """
         token = self.token(place)
         if token.kind != "name" or not token.text.startswith("d"):

@@ -82,43 +82,34 @@ class PiecesPart(OpenFunctionsPart):
                 return node
 
     def component(self, node: Node) -> Node | None:
-        """Return the component of the cross product ``node`` that the index in ``(ω × r)_i`` means; or None.
-
-        It is None if ``node`` is no cross product, or if the index means no component. The cursor then stays before the
-        index.
-        """
+        """Return the component that the index in ``(ω × r)_i`` means, for a cross product ``node``; else None."""
         index, used = self.token(1), "".join(token.text.partition("_")[2] for token in self.tokens if "_" in token.text)
         made = component_of_cross(node.args, index.text, used) if node.value == "cross" else None
         self.plain = True
+        # without a component, the cursor stays before the index
         self.index += 2 * (made is not None)
         return made
 
     def is_star(self) -> bool:
-        """Return whether the star at the cursor marks a conjugate, as in ``q v q*``, and is no product sign.
-
-        The star marks a conjugate if no blank is before it, and no factor follows. In ``q* q'`` a factor follows, but
-        it is the same letter, after a blank: then the star marks a conjugate too.
-        """
+        """Return whether the star at the cursor marks a conjugate, as in ``q v q*``, and is no product sign."""
         after, before = self.token(1), self.tokens[self.index - 1]
+        # q* q': the same letter follows after a blank
         if not self.token().spaced and after.spaced and after.kind == "name" and after.text == before.text:
             return True
         if self.is_conjugate_before_factor():
             return True
+        # no factor follows
         ends = after.text in (*ADDING, *SIGNS, ")", "]", ",", "⊗", "∘", "/")
         return not self.token().spaced and (
             after.kind == "end" or (ends and (after.spaced or after.text not in ADDING))
         )
 
     def is_conjugate_before_factor(self) -> bool:
-        """Return whether the star at the cursor marks a conjugate, as in ``q* v q``, and is no product sign.
-
-        The star must stand directly after a name, and have a blank and another name after it. The text must also show
-        elsewhere that stars are conjugates: by the same name again, as q in ``q* v q``, or by a star with no factor
-        after it, as the first one in ``(p q)* = q* p*``.
-        """
+        """Return whether the star at the cursor marks a conjugate before another factor, as in ``q* v q``."""
         if self.token().spaced or not self.token(1).spaced or self.token(1).kind != "name":
             return False
         before = self.tokens[self.index - 1]
+        # elsewhere a star without a factor after it, as the first one in (p q)* = q* p*, or the same name again
         has_mark = any(
             star.text == "*" and star.tight and (after.kind == "end" or after.text in SIGNS)
             for star, after in pairwise(self.tokens)
@@ -167,9 +158,9 @@ class PiecesPart(OpenFunctionsPart):
         return Node("call", name, (node, *arguments), self.span(start))
 
     def rate(self, node: Node, mark: Token, start: int) -> Node:
-        """Return ``diff(x(t), t)`` for ``x'``, the time derivative that primes or dots after a name mean.
+        """Return ``diff(x(t), t)`` for ``x'``, or the name ``x_prime`` in its less usual meaning.
 
-        In its less usual reading, ``x'`` is the name ``x_prime``. ``node`` is the name, ``mark`` the primes or dots.
+        ``node`` is the name, ``mark`` the primes or dots after it.
         """
         self.plain = True
         order = int(mark.text) if mark.kind == "dots" else len(mark.text)
@@ -260,21 +251,14 @@ class PiecesPart(OpenFunctionsPart):
         return Node("name", word, (), self.span(token.start))
 
     def is_matrix_of(self, word: str, argument: str) -> bool:
-        """Return whether a name before a bracket is that of a matrix which depends on a quaternion: R in ``R(q) v``.
-
-        ``word`` is the name, ``argument`` the name in the bracket.
-        """
+        """Return whether ``word``, R in ``R(q) v``, is a matrix that depends on the quaternion ``argument``."""
         after = self.token(3)
         is_name = re.fullmatch("[A-Z]", word) is not None and argument in ("q", "Q", "p") and argument != "t"
         return is_name and not self.as_sympy and after.kind == "name" and after.spaced
 
     def is_factor(self, word: str) -> bool:
-        """Return whether the name ``word``, which is before a bracket, is a factor as in ``m(a + b)``, and no function.
-
-        It is a factor if the text uses the name without a bracket elsewhere. It is also one if it is a single letter,
-        other than f, before a bracket that contains more than one name or number: m in ``m(a + b)``, but not in
-        ``m(a)``.
-        """
+        """Return whether the name ``word`` before a bracket is a factor, as m in ``m(a + b)``, and no function."""
+        # the text uses the name without a bracket elsewhere
         if word in self.vocabulary.symbols or word in self.vocabulary.alone:
             return True
         depth = pieces = 0
@@ -285,6 +269,7 @@ class PiecesPart(OpenFunctionsPart):
             if token.text == "," and depth == 1:
                 return False
             pieces += token.text not in ("(", ")", "[", "]")
+        # a single letter, other than f, before more than one name or number: m(a + b), but not m(a)
         short = word[:1].isalpha() and (len(word.rstrip("0123456789")) == 1 or "_" in word or word in GREEK_WORDS)
         return pieces > 1 and short and word != "f"
 
@@ -387,7 +372,7 @@ class PiecesPart(OpenFunctionsPart):
     def element_ahead(self, has_limits: bool) -> str:
         """Return the element that ends the integral at the cursor: dm or dV, or with limits a name such as dx.
 
-        Return dm if there is none.
+        The default is dm.
         """
         depth = inner = 0
         for before, token in pairwise(self.tokens[self.index - 1 :]):
@@ -399,6 +384,7 @@ class PiecesPart(OpenFunctionsPart):
             if is_element and inner == 0 and (has_limits or token.text in ELEMENTS):
                 return token.text
             inner += (token.text == "∫") - is_element
+        # there is no element
         return MASS
 
     readers: ClassVar[Mapping[str, Callable[[Any, Token], Node]]] = {

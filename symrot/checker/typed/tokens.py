@@ -1,7 +1,7 @@
-"""Splitting a claim as people type it into tokens: ASCII and Unicode, each with its place in the text.
+"""Splitting a claim as people type it into tokens: ASCII and Unicode, each with its position in the text.
 
-Greek letters become their names, dots over letters and primes become derivatives, raised digits become powers. A
-character that means nothing in a formula is refused with its place.
+Greek letters become names, dots and primes derivatives, raised digits powers. A character that means nothing in a
+formula is refused.
 """
 
 import re
@@ -148,10 +148,8 @@ def _written_out(source: str) -> tuple[str, list[int]]:
 
 
 def _accents_after_letters(text: str, places: list[int]) -> tuple[str, list[int]]:
-    """Return a text in which dots and hats follow their letters, and the places of its characters in the source.
-
-    Text that was copied from a PDF has them before the letters. ``places`` are those of the characters of ``text``.
-    """
+    """Return a text in which dots and hats follow their letters, and the ``places`` of its characters in the source."""
+    # text that was copied from a PDF has them before the letters
     text, places = _without_blanks_before_dots(text, places)
     characters, places = list(text), [*places]
     for at in range(len(characters) - 1):
@@ -163,12 +161,9 @@ def _accents_after_letters(text: str, places: list[int]) -> tuple[str, list[int]
 
 
 def _without_blanks_before_dots(text: str, places: list[int]) -> tuple[str, list[int]]:
-    """Return a text with ``ω˙ =`` for ``ω ˙ =``, and the places of its characters in the source.
-
-    Some PDFs have a blank between a letter and its dot. It is removed only if no letter follows the dot. ``places`` are
-    those of the characters of ``text``.
-    """
+    """Return a text with ``ω˙ =`` for ``ω ˙ =``, and the ``places`` of its characters in the source."""
     dots = "".join(_DOTS)
+    # some PDFs have a blank between a letter and its dot; a dot before a letter may belong to that letter
     gaps = [match.start(1) for match in re.finditer(rf"(?<=[^\W\d_])( )[{dots}](?=\s|$)", text)]
     return (
         "".join(character for place, character in enumerate(text) if place not in gaps),
@@ -246,15 +241,13 @@ def _lower_limit(text: str, at: int) -> Iterator[tuple[str, str, int]]:
 
 
 def _name(text: str, at: int, name: re.Match[str]) -> Iterator[tuple[str, str, int]]:
-    """Yield (kind, text, end) of the tokens of a ``name`` of Latin letters and of the primes after it.
-
-    Dots belong to its last letter only, so that ``mẍ`` has two names.
-    """
+    """Yield (kind, text, end) of the tokens of a ``name`` of Latin letters and of the primes after it."""
     word, stop = name[0], name.end()
     if word == "d" and text[stop : stop + 1] and text[stop] in LETTERS:  # a differential, or the rate of an angle
         yield from _letter(text, stop, f"d{LETTERS[text[stop]]}")
         return
     if text[stop : stop + 1] and text[stop] in _OVER and word[-1].isalpha():
+        # dots belong to the last letter only: mẍ has two names
         if len(word) > 1:
             yield "name", word[:-1], stop - 1
         yield from _letter(text, stop - 1, word[-1])
@@ -282,10 +275,7 @@ def _written(digits: str) -> str:
 
 
 def _letter(text: str, at: int, word: str) -> Iterator[tuple[str, str, int]]:
-    """Yield (kind, text, end) of a letter such as ω with its subscript, and of the dots over it.
-
-    ``word`` is the letter in ASCII, omega.
-    """
+    """Yield (kind, text, end) of a letter such as ω, ``word`` in ASCII, with its subscript, and of its dots."""
     stop = at + 1
     dots = 0
     over = ""

@@ -1,6 +1,6 @@
 """Words that may be several names: ``mgh`` is m*g*h and ``sinx`` is sin(x), unless the whole word is a name.
 
-A word is split only into names that the text uses separately, or that nearly every book on mechanics uses.
+A word is split only into names that the text uses separately (``alone``), or that nearly every book on mechanics uses.
 """
 
 import re
@@ -85,9 +85,7 @@ WORDS_WITH_I = ("if", "in", "is")
 
 
 def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], bool]:
-    """Return the names and numbers into which a word may be split, in order, and whether splitting it is usual.
-
-    The result is empty if the word is a name. ``alone`` are the names that the text uses separately.
+    """Return (pieces, usual): the names and numbers into which a word may be split, and whether that is usual.
 
     Parameters
     ----------
@@ -105,6 +103,7 @@ def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], 
     >>> pieces_of_word("ab", ()), pieces_of_word("phi", ()), pieces_of_word("KE", ())
     ((('a', 'b'), False), ((), False), ((), False))
     """
+    # a name is not split
     if word in WHOLE_WORDS or len(word) < 2 or (word.startswith("d") and word[1:] in GREEK_WORDS):
         return (), False
     if joined := _JOINED.fullmatch(word):
@@ -145,10 +144,8 @@ class Shorthand(NamedTuple):
     angle: str
 
     def tokens(self, first: Token, last: Token) -> tuple[Token, ...]:
-        """Return the tokens ``cos ( theta )`` that replace the tokens of ``cθ``, from ``first`` to ``last``.
-
-        They get the positions of the replaced tokens, so that messages point to the right place of the text.
-        """
+        """Return the tokens ``cos ( theta )`` that replace the tokens of ``cθ``, from ``first`` to ``last``."""
+        # the positions of the replaced tokens, so that messages point to the right part of the text
         mark = Token("mark", "(", first.start, first.start)
         start = last.start if self.length == 2 else first.start + 2
         return (
@@ -168,14 +165,11 @@ OF_LETTERS = re.compile(f"[cs][{''.join(ANGLES)}]")
 
 
 def shorthands_of_letters(tokens: Sequence[Token]) -> list[Shorthand]:
-    """Return the short forms in a text of letters for angles: cos(alpha) for ``ca``, sin(beta) for ``sb``.
-
-    The list is empty unless the text has both a cosine and a sine, as ``ca`` and ``sa``, for at least two angles:
-    otherwise ca is probably c times a.
-    """
+    """Return the short forms in a text of letters for angles: cos(alpha) for ``ca``, sin(beta) for ``sb``."""
     places = [place for place, token in enumerate(tokens) if token.kind == "name" and OF_LETTERS.fullmatch(token.text)]
     forms = {tokens[place].text for place in places}
     angles = {form[1] for form in forms if {f"c{form[1]}", f"s{form[1]}"} <= forms}
+    # without cosine and sine of two angles, ca is probably c times a
     if len(angles) < FEWEST_OF_LETTERS:
         return []
     functions = {"c": "cos", "s": "sin"}
@@ -187,10 +181,8 @@ def shorthands_of_letters(tokens: Sequence[Token]) -> list[Shorthand]:
 
 
 def shorthands(tokens: Sequence[Token]) -> list[Shorthand]:
-    """Return the short forms of cosines and sines in a text, such as ``cθ`` and ``s_theta``.
-
-    Whether the text means them is decided elsewhere: c may also be a name of its own.
-    """
+    """Return the short forms of cosines and sines that a text may contain, such as ``cθ`` and ``s_theta``."""
+    # the caller decides whether the text means them: c may also be a name of its own
     short = shorthands_of_letters(tokens)
     if short:
         return short

@@ -1,8 +1,7 @@
 """The check of units: the terms of a sum, and the two sides of an equation, must have the same unit.
 
 Units are stated in the claim, or conventional (:data:`symrot.checker.units.units.CONVENTIONAL_UNITS`), or inferred;
-only a contradiction is an error. The entries of a matrix may have different units. The verdict on a claim does not
-depend on this check.
+only a contradiction is an error. The verdict on a claim does not depend on this check.
 """
 
 from collections.abc import Mapping, Sequence
@@ -72,9 +71,9 @@ def check_dimensions(
 
 
 def dimensions_of_formulas(left: Any, right: Any, units: Mapping[str, str] | None = None) -> Dimensions:
-    """Return whether the units of an equation between SymPy values fit together, as :func:`check_dimensions` does.
+    """Return whether the units of an equation between SymPy values fit together.
 
-    The symbols of :mod:`symrot.symbols` have known units; ``units`` are those of other symbols, by name.
+    ``units`` are those of symbols outside :mod:`symrot.symbols`.
     """
     symbols = {symbol for side in (left, right) for symbol in getattr(side, "free_symbols", ())}
     own = {symbol.name: UNIT[symbol] for symbol in symbols if UNIT.get(symbol)} | dict(units or {})

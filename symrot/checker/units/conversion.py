@@ -1,8 +1,7 @@
 """Exact factors from units to SI units, and texts with numbers and units such as ``1500 rpm = 157.08 rad/s``.
 
-A text has units if it consists of numbers with units, and perhaps of one name for the result. In ``T = 2 m g`` the
-letters are quantities: a letter such as m is read as a unit only if the text has a unit with several letters, or no
-other names.
+In ``T = 2 m g`` the letters are quantities: a letter such as m is read as a unit only if the text has a unit with
+several letters, or no other names.
 """
 
 import re
@@ -144,17 +143,13 @@ class UnitProduct:
 
 @dataclass(frozen=True)
 class Measured:
-    """A text whose numbers have units: ``text`` has a name in place of each product of units, and ``units`` lists them.
-
-    ``is_sure``: they are certainly units, since one of them has several letters or the text has no other name.
-    ``others`` are other readings (interpretations) of the text, each with words that say what it reads differently.
-    """
+    """A text whose numbers have units, with a name such as ``unit_1`` in place of each product of units."""
 
     source: str
     text: str
     units: dict[str, UnitProduct] = field(default_factory=dict)
-    is_sure: bool = True
-    others: tuple[tuple[str, "Measured"], ...] = ()
+    is_sure: bool = True  # certainly units: one of them has several letters, or the text has no other name
+    others: tuple[tuple[str, "Measured"], ...] = ()  # other interpretations, each with words on the difference
 
     def restored(self, text: str) -> str:
         """Return a text about the claim with its units: ``2 kg`` for ``2*unit_1``, as ``units`` says."""
@@ -164,14 +159,11 @@ class Measured:
 
 
 @dataclass(frozen=True)
-class _Way:
-    """One way to read a text with units.
+class _Interpretation:
+    """One interpretation of a text with units."""
 
-    ``meanings`` are the units that have their less usual meaning in it; if ``by_whole``, ``a/2 m`` divides by ``2 m``.
-    """
-
-    meanings: frozenset[str] = frozenset()
-    by_whole: bool = True
+    meanings: frozenset[str] = frozenset()  # the units that have their less usual meaning
+    by_whole: bool = True  # whether ``a/2 m`` divides by ``2 m``
 
 
 def measured_text(source: str) -> Measured | None:
@@ -197,14 +189,14 @@ def measured_text(source: str) -> Measured | None:
         raise InputError(f"expected units of mechanics, got {match[1]!r}; write a temperature in K")
     names = {name for match in _MEASURED.finditer(plain) for name, _ in _pieces(match[3])}
     usual = frozenset({"Hz"} & names if names & ANGULAR else ())
-    main = _read(plain, _Way(usual))
+    main = _read(plain, _Interpretation(usual))
     if main is None:
         return None
     ways = {
-        "from left to right, with units outside of the fractions before them": _Way(usual, by_whole=False),
-        ONE_PER_SECOND: _Way(usual - {"Hz"}),
-        "with lb for the force lbf": _Way(usual | ({"lb"} & names)),
-        STANDARD_GRAVITY: _Way(usual | ({"g"} & names)),
+        "from left to right, with units outside of the fractions before them": _Interpretation(usual, by_whole=False),
+        ONE_PER_SECOND: _Interpretation(usual - {"Hz"}),
+        "with lb for the force lbf": _Interpretation(usual | ({"lb"} & names)),
+        STANDARD_GRAVITY: _Interpretation(usual | ({"g"} & names)),
     }
     others = ((words, _read(plain, way)) for words, way in ways.items())
     return replace(main, others=tuple((words, other) for words, other in others if other and other != main))
@@ -234,7 +226,7 @@ def numbers_of_latex(source: str) -> str:
     return plain if {*_OTHER_NAME.findall(plain)} <= {*_FUNCTIONS} else ""
 
 
-def _read(plain: str, way: _Way) -> Measured | None:
+def _read(plain: str, way: _Interpretation) -> Measured | None:
     units: dict[str, UnitProduct] = {}
     matches = list(_MEASURED.finditer(plain))
     are_factors = any("*" in match[2] or "/" in match[2] for match in matches)
@@ -262,9 +254,7 @@ def _read(plain: str, way: _Way) -> Measured | None:
 
 
 def numeric_end(source: str) -> tuple[str, str]:
-    """Return the two parts of a chain of equations: its beginning, and its end of numbers with units.
-
-    Both are empty if fewer than two sides at the end consist only of numbers with units.
+    """Return (beginning, end) of a chain of equations that ends with several numbers with units, or two empty texts.
 
     Examples
     --------
@@ -282,10 +272,6 @@ def numeric_end(source: str) -> tuple[str, str]:
 def unit_beside_letters(source: str) -> str:
     """Return the first number with a unit, such as "3 m/s^2", in a text with other letters; "" without one.
 
-    Letters such as m may be quantities instead. They are a unit if one of the typed units has several letters (``kg
-    m^2``). They are also a unit if a side is nothing but a number with a plausible unit of several letters (``3
-    m/s^2``), and none of these letters occurs on the other sides.
-
     Examples
     --------
     >>> unit_beside_letters("m L^2/12 = 1 kg m^2"), unit_beside_letters("v^2/r = 3 m/s^2")
@@ -296,6 +282,7 @@ def unit_beside_letters(source: str) -> str:
     plain = _plain(source) or ""
     for match in _MEASURED.finditer(plain):
         typed = {piece["unit"] for piece in _PIECE.finditer(match[3])}
+        # m may be a quantity, but kg m^2 has a unit of several letters
         if match[1] and "*" not in match[2] and typed & CERTAIN:
             return match[0].strip()
     sides = re.split(r"==?", plain)
@@ -305,23 +292,18 @@ def unit_beside_letters(source: str) -> str:
             continue
         typed = {piece["unit"] for piece in _PIECE.finditer(whole[3])}
         others = {name for other in sides[:place] + sides[place + 1 :] for name in re.findall(r"[^\W\d_]", other)}
+        # a side is nothing but 3 m/s^2, and no other side has its letters
         if len(typed) > 1 and _is_plausible(_unit_product(whole[3])) and not typed & others:
             return side.strip()
     return ""
 
 
 def _only_units(text: str, names: Sequence[str], units: Mapping[str, UnitProduct], has_long: bool) -> bool:
-    """Return whether a text is a conversion such as ``1 hp = 745.7 W``: numbers with units, and at most one other name.
-
-    That name may stand alone on the left, as T in ``T = 2 N m``. ``names`` are the names in the text that are no units,
-    ``units`` the units. If ``has_long``, a unit has several letters, as rpm has: then it is surely a unit. Otherwise
-    each letter may be a quantity too, as m and N. Then, with a name, all units must be plausible ones; without a name,
-    the text must have several sides with a unit on each, and no ``m g``, which is a weight.
-    """
+    """Return whether a text is a conversion such as ``1 hp = 745.7 W``: numbers with units, and at most one name."""
     left = re.match(r"\s*([^\W\d_]\w*)\s*==?", text)
     if names and (left is None or names != [left[1]]):
         return False
-    if names:
+    if names:  # such as T in T = 2 N m; the letters N and m may be quantities, but rpm is surely a unit
         return has_long or all(_is_plausible(unit) for unit in units.values())
     if not has_long and any(re.match(r"m[ *·⋅]?g\b", unit.text) for unit in units.values()):
         return False  # the weight m g
@@ -347,9 +329,9 @@ def _pieces(text: str) -> Iterator[tuple[str, int]]:
 
 
 def _unit_product(text: str, meanings: frozenset[str] = frozenset()) -> UnitProduct:
-    """Return the product of units that ``text`` states, with its exact factor to SI units.
+    """Return the product of units in ``text``, with its exact factor to SI units.
 
-    Units in ``meanings`` have their less usual meaning: g is then the standard gravity, not the gram.
+    In ``meanings``, g is the standard gravity, not the gram.
     """
     dimension: Dimension = NOTHING
     fraction, power_of_pi = Fraction(1), 0

@@ -104,10 +104,7 @@ def _product_of_quaternions(inference: UnitInference, node: Node) -> Value:
 
 
 def _qmul(inference: UnitInference, p: list[Any], q: list[Any]) -> list[Any]:
-    """Return the dimensions of the components of a quaternion product; ``p`` and ``q`` are those of the factors.
-
-    Component n is a sum of the products p[i] q[j] with i xor j = n.
-    """
+    """Return the dimensions of the components of a product of two quaternions with dimensions ``p`` and ``q``."""
     return [
         inference.total([inference.times(p[i], q[i ^ n]) for i in range(4)], "a product of quaternions")
         for n in range(4)

@@ -85,15 +85,12 @@ class UnitInference:
     # -- definitions and equations ----------------------------------------------------------------------------------
 
     def define(self, name: str, tree: Node) -> None:
-        """Record the dimension of ``name`` from its definition, so that later formulas can use it.
-
-        The number in ``m = 3`` may lack its unit: the name then gets the unit that is usual for it, or an unknown unit
-        if none is.
-        """
+        """Record the dimension of ``name`` from its definition, so that later formulas can use it."""
         self.place = f"in the definition of {name}"
         value = self.value(tree)
         if _bare(tree):
             self.unitless |= name not in self.units and not _is_unit(tree)
+            # the number in m = 3 may lack its unit: the usual unit of the name, or an unknown one
             value = self.unit_of(name) if not isinstance(value, tuple) else self.values_of(value, tree)
         elif name in self.units and not isinstance(value, tuple):
             self.same(self.units[name], value, f"{name} was given the unit {{0}}, its definition has {{1}}")
@@ -146,38 +143,28 @@ class UnitInference:
         return dimension
 
     def physical(self) -> bool:
-        """Return whether the claim is about physical quantities, so that its m and t mean mass and time.
-
-        It is if units are stated, or if a name of several letters has a conventional unit other than rad.
-        """
+        """Return whether the claim is about physical quantities, so that its m and t mean mass and time."""
+        # units are stated, or a name of several letters has a conventional unit other than rad
         units = (conventional_unit(name) for name in self.names if len(name) > 1)
         return bool(self.units) or any(unit not in (None, "rad") for unit in units)
 
     def values_of(self, rows: Rows, node: Node) -> Rows:
-        """Return the dimensions of the entries of a matrix of numbers, whose units the author may have left out.
-
-        ``node`` is the matrix. ``rows`` are its dimensions if its numbers are pure numbers; they are returned if all
-        entries are zeros and ones, as in a unit matrix. In other matrices each nonzero entry gets a new unknown
-        dimension, since 2 may be 2 kg.
-        """
+        """Return the dimensions of the entries of a matrix of numbers, whose units the author may have left out."""
         if _is_unit(node):
-            return rows
+            return rows  # zeros and ones are pure numbers, but 2 may be 2 kg
         return tuple(tuple(ZERO if entry is ZERO else self.unknown() for entry in row) for row in rows)
 
     # -- equations --------------------------------------------------------------------------------------------------
 
     def same(self, first: Value, second: Value, words: str) -> Value:
-        """Require that two values have the same dimension, and return it.
-
-        If they differ, the contradiction is recorded and the dimension of ``first`` is returned. ``words`` is the
-        sentence for the record, in which {0} and {1} stand for the two units.
-        """
+        """Require that two values have the same dimension, and return it; else record the sentence ``words``."""
         if isinstance(first, tuple) or isinstance(second, tuple):
             return self.same_matrices(first, second, words)
         if first is ZERO or second is ZERO:
             return second if first is ZERO else first
         if not self.system.equate(first, second):
             place = f"{self.place} " if self.place else ""
+            # {0} and {1} in words stand for the two units
             self.faults.append(place + words.format(*map(self.in_words, (first, second))))
         return first
 
@@ -204,10 +191,7 @@ class UnitInference:
         )
 
     def plain(self, value: Value, words: str) -> Dimension:
-        """Require that a scalar is a pure number, and return the dimension of a pure number in any case.
-
-        If it is not, the sentence ``words`` is recorded as a contradiction; {0} stands for the scalar's unit.
-        """
+        """Require that a scalar is a pure number, and return its dimension; else record the sentence ``words``."""
         if isinstance(value, tuple):
             raise Unreadable
         self.same(value, NOTHING, words)
@@ -234,10 +218,7 @@ class UnitInference:
         return value
 
     def total(self, values: Sequence[Value], what: str) -> Value:
-        """Require that the terms of a sum have the same dimension, and return it; ``what`` names the sum in messages.
-
-        ``values`` are the dimensions of the terms.
-        """
+        """Require that the terms of a sum have the same dimension, and return it; ``what`` names the sum."""
         dimension = values[0]
         for number, value in enumerate(values[1:], start=2):
             dimension = self.same(dimension, value, f"term 1 of {what} is {{0}}, term {number} is {{1}}")

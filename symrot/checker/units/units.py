@@ -1,7 +1,7 @@
 """Units as products of powers: parsing, printing, and equations between units, solved over the rationals.
 
-A dimension maps bases (kg, m, s, A, K, mol, cd), and symbols of unknown unit, to rational exponents; an angle has no
-dimension. Scales are ignored: mm and m have the same dimension.
+A dimension maps bases (kg, m, s, ..) and symbols of unknown unit to rational exponents; an angle has none. Scales are
+ignored: mm and m have the same dimension.
 """
 
 import re
@@ -83,9 +83,9 @@ def conventional_unit(name: str) -> str | None:
 
 
 def read_unit(text: str, where: str = "") -> Dimension:
-    """Return the dimension of a unit such as ``kg m^2/s``, ``N m s/rad``, ``1/s`` or ``m^(1/2)``.
+    """Return the dimension of a unit such as ``kg m^2/s``, ``N m s/rad`` or ``m^(1/2)``.
 
-    A slash divides by the next unit only, or by all units in brackets.
+    A slash divides by the next unit or bracket.
 
     Raises
     ------

@@ -1,8 +1,7 @@
 """Double-double arithmetic on arrays: each number is an unevaluated sum ``high + low`` of two doubles.
 
 Relative errors are about 2^-104. The algorithms require that every operation is rounded separately, as NumPy does.
-Sums and products: Dekker, Numer. Math. 18 (1971) 224; Knuth, The Art of Computer Programming, vol. 2, section
-4.2.2. The exponential is 2^(j/8) from a table times a power series.
+Source: Dekker, Numer. Math. 18 (1971) 224; Knuth, The Art of Computer Programming, vol. 2, section 4.2.2.
 """
 
 from fractions import Fraction
@@ -35,20 +34,14 @@ _HEAD, _TAIL = 8, 16  # doubles suffice from term 8 on: NEAR^8/10! < 2^-53; the 
 
 
 def two_sum(a: Any, b: Any) -> Pair:
-    """Return ``a + b`` rounded to a double, and its rounding error, which is a double too.
-
-    The sum of the two results is exactly a + b (Knuth).
-    """
+    """Return ``a + b`` rounded to a double, and its rounding error; their sum is exactly a + b (Knuth)."""
     total = a + b
     part = total - a
     return total, (a - (total - part)) + (b - part)
 
 
 def two_product(a: Any, b: Any) -> Pair:
-    """Return ``a * b`` rounded to a double, and its rounding error, which is a double too.
-
-    The sum of the two results is exactly a b (Dekker).
-    """
+    """Return ``a * b`` rounded to a double, and its rounding error; their sum is exactly a b (Dekker)."""
     product = a * b
     wide_a, wide_b = _SPLITTER * np.asarray(a), _SPLITTER * np.asarray(b)
     high_a, high_b = wide_a - (wide_a - a), wide_b - (wide_b - b)
@@ -57,10 +50,7 @@ def two_product(a: Any, b: Any) -> Pair:
 
 
 def normalized(high: Any, low: Any) -> Pair:
-    """Return two doubles with the same sum as ``high + low``, of which the first is that sum rounded to a double.
-
-    A double-double number must have this form before it is used further.
-    """
+    """Return two doubles with the sum ``high + low``, of which the first is that sum rounded to a double."""
     total = high + low
     return total, low - (total - high)
 
@@ -83,11 +73,8 @@ def multiply(a: Pair, b: Pair) -> Pair:
 
 
 def divide(a: Pair, b: Pair) -> Pair:
-    """Return a/b for double-double numbers, by long division in three steps.
-
-    Each step divides the high part of the remainder by that of b, which gives the next digits of the quotient, and
-    subtracts this partial quotient times b from the remainder.
-    """
+    """Return a/b for double-double numbers, by long division in three steps."""
+    # each step divides the high part of the remainder by the high part of b
     first = a[0] / b[0]
     rest = subtract(a, multiply((first, 0.0), b))
     second = rest[0] / b[0]
@@ -120,15 +107,13 @@ def _coefficients() -> list[tuple[float, float]]:
 
 @cache
 def _octave() -> tuple[tuple[Floats, Floats], tuple[float, float, float]]:
-    """Return constants for :func:`exponential`: 2^(j/8), j = 0 to 7, as pairs of doubles, and ln 2/8 as three doubles.
-
-    The first and second of the three doubles have so few bits that their products with any j are exact.
-    """
+    """Return constants for :func:`exponential`: 2^(j/8), j = 0 to 7, as pairs of doubles, ln 2/8 as three doubles."""
     root, step = Fraction(2), _PARTS
     while step > 1:
         root, step = number.sqrt(root), step // 2
     powers = np.array([pair(root**j) for j in range(_PARTS)])
     rest, parts = ln2(number.BITS) / _PARTS, []
+    # so few bits that the products with any j are exact
     for place in (_SHORT, 2 * _SHORT):
         parts.append(Fraction(int(rest * 2 ** (place + 3)), 2 ** (place + 3)))
         rest -= parts[-1]
@@ -152,6 +137,7 @@ def second(x: Pair) -> Pair:
 
 def exponential(x: Pair) -> Pair:
     """Return exp(x) of double-double numbers x <= 709. For results near the smallest doubles the low part is zero."""
+    # 2^(j/8) from a table times a power series
     (high, low), (first, middle, last) = _octave()
     above = np.maximum(x[0], _LEAST)
     j = np.rint(above * (_PARTS / float(ln2(number.BITS))))

@@ -11,10 +11,8 @@ Rows = Sequence[Sequence[Fraction]]
 
 
 def quaternion_of(r: Rows) -> tuple[Fraction, ...]:
-    """Return the unit quaternion, scalar first, of a proper rotation matrix ``r``, given by its rows.
-
-    The formula divides by the largest component of the quaternion (Shepperd's method), so that no digits are lost.
-    """
+    """Return the unit quaternion, scalar first, of a proper rotation matrix ``r``, given by its rows."""
+    # Shepperd's method divides by the largest component of the quaternion, so that no digits are lost
     trace = r[0][0] + r[1][1] + r[2][2]
     candidates = (
         (1 + trace, r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]),
@@ -26,12 +24,9 @@ def quaternion_of(r: Rows) -> tuple[Fraction, ...]:
 
 
 def to_axis(direction: Sequence[Fraction]) -> tuple[tuple[Fraction, ...], ...]:
-    """Return a rotation matrix, to 30 digits, whose third column is the unit vector along ``direction``, of any length.
-
-    If ``direction`` lies along the third axis, the matrix contains only 0, 1 and -1.
-    """
+    """Return a rotation matrix, to 30 digits, whose third column is the unit vector along ``direction``."""
     third = unit(direction)
-    if third[0] == third[1] == 0:
+    if third[0] == third[1] == 0:  # only 0, 1 and -1
         sign = 1 if third[2] > 0 else -1
         return tuple(tuple(Fraction(x) for x in row) for row in ((1, 0, 0), (0, sign, 0), (0, 0, sign)))
     helper = min(range(3), key=lambda k: abs(third[k]))

@@ -38,11 +38,8 @@ _BITS = 600  # 2^600 and its inverse lie inside these bounds
 
 
 def quotient(numerator: int, denominator: int) -> tuple[float, float]:
-    """Return two doubles (hi, lo) whose sum approximates numerator/denominator to 31 digits.
-
-    hi is the rounded quotient, and lo the rounded remainder numerator/denominator - hi. Both are correctly rounded,
-    because Python rounds quotients of integers correctly. Example: 1 and 3 give about (0.333, 1.85e-17).
-    """
+    """Return two doubles (hi, lo) whose sum is numerator/denominator to 31 digits: about 0.333 and 1.85e-17 for 1/3."""
+    # Python rounds quotients of integers correctly, so both hi and lo are correctly rounded
     hi = numerator / denominator
     top, bottom = hi.as_integer_ratio()
     rest = numerator * bottom - top * denominator
@@ -63,12 +60,8 @@ def flatten_pairs(values: Sequence[Number]) -> list[float]:
 
 
 def attitude(values: Sequence[Number]) -> list[float]:
-    """Return a quaternion as a list of 8 doubles: hi and lo of each component, with a relative error of 2^-86.
-
-    An attitude needs no more digits. Each lo is rounded to a multiple of GRID times the last bit of hi
-    (:func:`on_grid`). Since this is coarser than the last bit of lo, the arithmetic on arrays in
-    :mod:`symrot.closed_form.batches`, which has other rounding errors, arrives at the same doubles as this function.
-    """
+    """Return a quaternion as a list of 8 doubles: hi and lo of each component, with a relative error of 2^-86."""
+    # no more digits are needed; on this grid, arithmetic on arrays (batches) arrives at the same doubles
     result: list[float] = []
     for value in values:
         result += (value + 0.0, 0.0) if isinstance(value, float) else on_grid([value.as_integer_ratio()])
@@ -76,29 +69,22 @@ def attitude(values: Sequence[Number]) -> list[float]:
 
 
 def on_grid(values: Sequence[tuple[int, int]]) -> list[float]:
-    """Return ratios of integers as one list of pairs hi, lo, hi, lo, ..
-
-    of doubles; each sum hi + lo approximates a ratio.
-
-    lo is rounded to a multiple of GRID times the last bit of hi. This is coarser than the doubles near lo, so that a
-    less exact method, double-double arithmetic for many ratios at once (:mod:`symrot.closed_form.batches`), can round
-    to the same multiple and so give the same two doubles.
-    """
+    """Return ratios of integers as a list hi, lo, hi, lo, ..; each sum hi + lo approximates a ratio."""
     result: list[float] = []
     for top, bottom in values:
         hi = top / bottom
         over, under = hi.as_integer_ratio()
         lo = (top * under - over * bottom) / (bottom * under)
+        # coarser than the doubles near lo, so that a less exact method, double-double arithmetic for many ratios at
+        # once (batches), can round to the same multiple
         step = ulp(hi) * GRID
         result += (hi, round(lo / step) * step if lo and step else lo)
     return result
 
 
 def same(a: Number, b: Number) -> bool:
-    """Return whether two numbers count as equal: they differ by less than 2^-200 of their size.
-
-    It decides, for example, whether a body is symmetric. Two floats count as equal only if they are identical.
-    """
+    """Return whether two numbers count as equal: they differ by less than 2^-200 of their size."""
+    # two floats count as equal only if they are identical
     return a == b or (not (isinstance(a, float) and isinstance(b, float)) and equal(Fraction(a), Fraction(b)))
 
 
@@ -118,9 +104,6 @@ def over_common_denominator(values: Sequence[Number]) -> tuple[list[int], int]:
 def numbers(what: str, values: Sequence[Number], length: int, least: float = -LARGEST) -> list[Number]:
     """Return ``values`` as a list after checks: they must be ``length`` real numbers of a size that motions allow.
 
-    Floats, ints and Fractions are returned unchanged; other real numbers, such as NumPy's, are converted to floats.
-    ``what`` is the name of the argument in error messages; no value may be less than ``least``.
-
     Raises
     ------
     InputError
@@ -139,7 +122,7 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
         if type(value) is Fraction and _moderate(value, least):
             continue
         if isinstance(value, bool) or not isinstance(value, float | int | Fraction):
-            entries[index] = value = _double(what, value)
+            entries[index] = value = _double(what, value)  # such as NumPy's numbers
         if not abs(value) <= LARGEST:
             raise InputError(f"{what}: expected finite numbers of a magnitude up to {LARGEST:g}, got {show(value)}")
         if value < least:
@@ -148,11 +131,8 @@ def numbers(what: str, values: Sequence[Number], length: int, least: float = -LA
 
 
 def _moderate(value: Fraction, least: float) -> bool:
-    """Return whether a fraction is certainly within the bounds ``least`` and LARGEST of :func:`numbers`.
-
-    Only the bit lengths of numerator and denominator are compared, which is fast. If the result is False, the caller
-    must compare exactly.
-    """
+    """Return whether a fraction is certainly within the bounds ``least`` and LARGEST of :func:`numbers`."""
+    # a fast comparison of bit lengths; if it fails, the caller compares exactly
     top, bottom = value.as_integer_ratio()
     size = top.bit_length() - bottom.bit_length()  # the exponent of the next power of two, or one more
     return size < _BITS and (least < 0 or (top > 0 and size > -_BITS))

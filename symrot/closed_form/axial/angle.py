@@ -1,15 +1,7 @@
 """The angle of rotation about one axis under a constant torque and linear damping, in revolutions modulo 1.
 
-The angle depends on the initial angular velocity ``rate``, on ``push``, the angular acceleration by the torque, and on
-``decay``, the decay rate by the damping. In this module rate and push are also given in revolutions/s and
-revolutions/s^2. After time t the angle is ``rate t (exp(x) - 1)/x + push t^2 (exp(x) - 1 - x)/x^2`` revolutions, with
-``x = -decay t``. Away from ``x = 0`` the equal expression ``(push/decay) t + (rate - push/decay) (1 - exp(x))/decay``
-is used.
-
-The arithmetic depends on the angle. Small angles are computed in doubles, whose relative error is 1e-16. Larger angles
-are computed in double-double numbers (sums of two doubles), with an error of 1e-20 of a revolution. Angles above 1e10
-revolutions, and angles at only a few times, are computed in integers with as many bits as the motion needs; for a few
-times this is faster than one call of NumPy. Double-double numbers and integers round to the same double.
+After time t the angle is ``rate t (exp(x) - 1)/x + push t^2 (exp(x) - 1 - x)/x^2`` with ``x = -decay t``. Here rate is
+the initial angular velocity, push the angular acceleration by the torque, and decay the decay rate by the damping.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -96,13 +88,11 @@ class Turning:
 
     @np.errstate(over="ignore")  # only upper bounds overflow; such angles are computed in integers
     def __call__(self, t: Floats) -> Floats:
-        """Return ``share`` times the angle of rotation at each time of ``t``, s, in revolutions from -1/2 to 1/2.
-
-        ``share`` is the number passed to the constructor, such as 1/2 for the half angle of a quaternion. The product
-        is reduced by whole revolutions.
-        """
+        """Return ``share`` times the angle of rotation at each time of ``t``, s, in revolutions from -1/2 to 1/2."""
         if len(t) > _BLOCK:
             return np.concatenate([self(t[k : k + _BLOCK]) for k in range(0, len(t), _BLOCK)])
+        # doubles have a relative error of 1e-16, double-double numbers an error of 1e-20 revolutions; integers serve
+        # larger angles, and few times, for which they are faster than one call of NumPy; both round to the same double
         x = self._decay[0] * t
         size, near = np.abs(t) * (abs(self._rate[0]) + abs(self._push[0] * t)), np.abs(x) <= dd.NEAR
         small = (size <= SMALL) & (np.abs(x) <= 1.0)
@@ -128,27 +118,18 @@ class Turning:
         return self._rate[0] * t * (1.0 + x * series) + self._push[0] * t * t * series
 
     def _near(self, t: Floats) -> Floats:
-        """Return the angle at the times t, modulo one revolution, for ``|decay t|`` of at most dd.NEAR.
-
-        The two terms of the angle (see the module's text) are computed in double-double numbers, with the power series
-        of ``(exp(x) - 1 - x)/x^2``, which is accurate for such times only. As everywhere in this class, the angle is
-        that of the rotation times the factor ``share``.
-        """
+        """Return ``share`` times the angle at the times t, modulo one revolution, for ``|decay t|`` up to dd.NEAR."""
         time = t, np.zeros_like(t)
         x = dd.multiply(time, self._decay)
-        series = dd.second(x) if self._decay[0] else (0.5, 0.0)
+        series = dd.second(x) if self._decay[0] else (0.5, 0.0)  # accurate for such times only
         first = dd.add((1.0, 0.0), dd.multiply(x, series)) if self._decay[0] else (1.0, 0.0)
         pushed = dd.multiply(dd.multiply(dd.multiply(time, self._push), time), series)
         return _less_whole_turns(dd.add(dd.multiply(dd.multiply(time, self._rate), first), pushed))
 
     def _far(self, t: Floats) -> Floats:
-        """Return ``share`` times the angle of rotation, modulo one revolution, for ``|decay t|`` above dd.NEAR.
-
-        ``t`` are the times, and ``share`` is the factor passed to the constructor. The angle is the sum of two parts,
-        both computed in double-double numbers: one grows steadily, at the final angular velocity; the other is
-        transient, a multiple of ``1 - exp(-decay t)``. At smaller ``|decay t|`` the two parts would cancel, and another
-        method is used (``_near``).
-        """
+        """Return ``share`` times the angle at the times t, modulo one revolution, for ``|decay t|`` above dd.NEAR."""
+        # (push/decay) t + (rate - push/decay) (1 - exp(x))/decay: a steady and a transient part, which would cancel at
+        # smaller x
         time = t, np.zeros_like(t)
         high, low = dd.exponential(dd.multiply(time, self._decay))
         left = dd.multiply(dd.add((1.0, 0.0), (-high, -low)), self._rest)
@@ -158,12 +139,7 @@ class Turning:
         return np.array([self._exactly(time) for time in t.tolist()])
 
     def _integers(self, bits: int) -> tuple[int, int, int, int]:
-        """Return the constants of :meth:`_exactly` as fixed-point integers with ``bits`` bits after the binary point.
-
-        With damping they are the final rate, in revolutions per second, the factor of the transient part of the angle,
-        in revolutions, the decay rate and ln 2. Without damping, the first two are the initial rate and the factor of
-        the quadratic part.
-        """
+        """Return the constants of :meth:`_exactly` as integers with ``bits`` bits after the binary point."""
         if bits not in self._scaled:
             from mpmath import mp
 
@@ -177,14 +153,12 @@ class Turning:
             ]
             octave = int(dd.ln2(bits + _GUARD) * (1 << bits + _GUARD))
             self._scaled[bits] = turns[0], turns[1], (decay.numerator << bits) // decay.denominator, octave
+        # with damping: final rate and factor of the transient part; without: initial rate and factor of the quadratic
+        # part; then the decay rate and ln 2
         return self._scaled[bits]
 
     def _exactly(self, t: float) -> float:
-        """Return the angle at one time t, s, in revolutions from -1/2 to 1/2, computed in integers.
-
-        It is the angle of rotation times ``share``, the factor that the constructor was called with. This path serves
-        angles above 1e10 revolutions, and calls with only a few times.
-        """
+        """Return ``share`` times the angle at one time t, s, in revolutions from -1/2 to 1/2, computed in integers."""
         top, bottom = t.as_integer_ratio()
         growth = max(0.0, self._decay[0] * t)  # each factor 2 of the exponential costs one bit of the other terms
         if growth > _GROWN:
@@ -202,12 +176,10 @@ class Turning:
 
 
 def _exponential(x: int, bits: int, octave: int) -> int:
-    """Return exp(x) of a fixed-point number: x and the result are integers with ``bits`` bits after the binary point.
-
-    ``octave`` is ln 2 in the same form; x is first reduced by multiples of it.
-    """
+    """Return exp(x) for a fixed-point number x; both are integers with ``bits`` bits after the binary point."""
     if x < -bits << bits:
         return 0
+    # octave is ln 2 in the same form
     octaves, rest = divmod(x << _GUARD, octave)
     bits += _GUARD
     rest >>= _HALVINGS

@@ -36,11 +36,7 @@ _bound: dict[str, tuple[Any, Any]] = {}
 
 
 def parts(top: int, bottom: int, count: int) -> list[float]:
-    """Return ``count`` doubles whose sum approximates the ratio top/bottom.
-
-    Each double is the rounded difference of the ratio and the sum of the previous doubles. Equal ratios give the same
-    doubles.
-    """
+    """Return ``count`` doubles whose sum approximates the ratio top/bottom."""
     sign, top = (-1, -top) if top < 0 else (1, top)
     size = top.bit_length() - bottom.bit_length()
     shift, doubles = _BITS - size, []
@@ -50,6 +46,7 @@ def parts(top: int, bottom: int, count: int) -> list[float]:
     if shift < _BITS - _LARGEST:
         return [sign * 2.0**_LARGEST, *[0.0] * (count - 1)]
     left *= sign
+    # each double is the rounded difference of the ratio and the sum of the previous doubles
     for _ in range(count):
         high = float(left)
         left -= int(high)
@@ -65,21 +62,16 @@ class Loops(NamedTuple):
     place: int
 
     def __call__(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> int:
-        """Write angular velocity and attitude at the times into ``omega`` (n, 3) and ``quaternion`` (n, 4).
+        """Write the angular velocity and the attitude at ``times`` into ``omega`` (n, 3) and ``quaternion`` (n, 4).
 
-        A quantity whose array is None is not computed. Return 0 if all samples are valid; :data:`TOO_MANY_TURNS` if
-        some samples have too many revolutions for this arithmetic (their rows are NaN); :data:`OUT_OF_RANGE` if a
-        number exceeds the range of doubles (then nothing is written).
+        Return 0, :data:`TOO_MANY_TURNS` (some rows are NaN) or :data:`OUT_OF_RANGE` (nothing is written).
         """
         status: int = self.evaluate(self.place, len(times), address(times), address(omega), address(quaternion))
         return status
 
 
 def available() -> bool:
-    """Return whether C can compute the samples: the compiled loops are loaded already, or there is a C compiler.
-
-    Otherwise NumPy and Python's integers compute them.
-    """
+    """Return whether C can compute the samples: the compiled loops are loaded already, or there is a C compiler."""
     return bool(_bound) or not codegen.missing()
 
 
@@ -139,20 +131,14 @@ class Constants:
         self._turns: dict[bool, tuple[int, int, list[float]]] = {}
 
     def head(self, turned: bool) -> list[float]:
-        """Return the first numbers of the C struct `axial`, which do not depend on the initial state.
-
-        ``turned`` says whether the body also rotates about an axis across the driven axis.
-        """
+        """Return the first numbers of the C struct `axial`, which do not depend on the initial state."""
+        # turned: whether the body also rotates about an axis across the driven axis
         return [float(bool(self._decay)), 1.0, float(turned), *self._head]
 
     def moving(self, rate: Fraction | float, turned: bool) -> list[float]:
-        """Return the values of those members of the C struct `axial` (axial.h) that depend on the initial rate, rad/s.
-
-        The first four values are the initial rate, the initial angular acceleration, the final rate and the transient
-        part of the rate. The others are the constants of one angle as a function of time. If the body also rotates
-        across the driven axis (``turned``), this angle is `lag`, by which the transverse angular velocity rotates in
-        the body. Otherwise it is `half`, half the angle of rotation, from which the attitude follows.
-        """
+        """Return the values of those members of the C struct `axial` that depend on the initial rate, rad/s."""
+        # the angle is half the angle of rotation; if turned, lag, by which the transverse angular velocity rotates in
+        # the body
         turn, bits, fixed = self._turns.get(turned) or self._turning(turned)
         top, bottom = rate.as_integer_ratio()
         if not self._decay:
@@ -160,6 +146,7 @@ class Constants:
             return [top / bottom, self._pushed, 0.0, top / bottom, *evenly, 0.0, 0.0, 0.0, *fixed]
         gain, over = self._push * bottom - self._decay * top, self._shared * bottom
         rest, below = gain * self._shared * turn, self._decay * self._decay * bottom << bits
+        # initial rate and acceleration, final rate, transient part of the rate, then the constants of the angle
         beyond = -rest % below
         return [
             top / bottom, _nearest(gain, over), self._final,
@@ -170,18 +157,14 @@ class Constants:
         ]  # fmt: skip
 
     def _turning(self, turned: bool) -> tuple[int, int, list[float]]:
-        """Return (turn, bits, fixed), the constants of one of two angles that the C function computes.
-
-        These angles, in revolutions, are multiples of the angle of rotation about the driven axis, in rad; the multiple
-        is ``turn/2**bits``. If ``turned`` is false, the angle is `half`, half the angle of rotation. If it is true, the
-        angle is `lag` (see axial.h), by which the transverse angular velocity rotates in the body. ``fixed`` lists
-        those constants of the angle that do not depend on the initial state, as doubles for C.
-        """
+        """Return (turn, bits, fixed), constants of an angle of ``turn/2**bits`` revolutions per radian of rotation."""
+        # half the angle of rotation; if turned, lag (axial.h), by which the transverse angular velocity rotates
         turn, bits = _HALF
         if turned:
             (a, over_a), (c, over_c) = self._moments
             lag = Fraction(c * over_a - a * over_c, over_c * a)
             turn, bits = _turns_of(lag.numerator, lag.denominator)
+        # fixed: the constants of the angle that do not depend on the initial state, as doubles for C
         if self._decay:
             fixed = parts(self._sign * self._push * turn, abs(self._decay) << bits, _WIDE)
         else:
@@ -211,12 +194,10 @@ class Constants:
         return Loops(evaluate, constants, ctypes.addressof(constants))
 
     def omega_rows(self, one: Any, other: Any) -> list[Any]:
-        """Return the entries of the matrix `omega` of axial.h, row by row; its product with three numbers is omega_b.
-
-        The three numbers are the damped cosine and sine of the angle by which the transverse angular velocity has
-        rotated in the body, and the rate about the driven axis. ``one`` and ``other`` are the initial rates, rad/s,
-        about the two axes that follow the driven axis in cyclic order.
-        """
+        """Return the entries, row by row, of the matrix that maps (cosine, sine, rate) to the angular velocity."""
+        # damped cosine and sine of the angle by which the transverse angular velocity has rotated in the
+        # body, and the rate about the driven axis; one, other: initial rates, rad/s, about the axes that follow it
+        # cyclically
         rows: list[list[Any]] = [[0.0] * 3 for _ in range(3)]
         rows[self.axis][2] = 1.0
         rows[self.axis - 2][:2] = one, -other

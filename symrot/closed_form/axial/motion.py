@@ -1,15 +1,8 @@
 """Rotation driven and damped about one axis, at any time, in closed form: C dw/dt = N - c w.
 
-C is the moment of inertia about the axis, w the angular velocity, N the torque and c the damping coefficient. If the
-body rotates only about this principal axis, the equation describes the whole motion. If a symmetric body also rotates
-across its axis, the transverse angular velocity rotates in the body by ``(C - A)/A`` times the angle about the axis,
-and decays by its own damping. The attitude then needs parabolic cylinder functions
-(:mod:`symrot.closed_form.spin_up.motion`); with damping it has no closed form here.
-
-Angles are sums of two doubles, in revolutions modulo 1, so the error of the attitude stays at a few 1e-16 for any
-number of revolutions, with or without damping. If there is a compiler, C computes the samples (:file:`axial_at.c`).
-Without a compiler, NumPy and Python's integers compute all samples; with a compiler, they compute only samples with
-more than 1e10 revolutions during the transient or 1e30 revolutions in all.
+C is the moment of inertia about the axis, w the angular velocity, N the torque and c the damping coefficient. A
+symmetric body may also rotate across its axis. C functions compute the samples if there is a compiler, otherwise NumPy
+and Python's integers.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -52,10 +45,9 @@ class AxialMotion:
 
     @property
     def has_attitude(self) -> bool:
-        """Whether the attitude can be computed: only if the body does not also rotate across the driven axis.
-
-        With such a rotation, this module has no closed form for the attitude.
-        """
+        """Whether the attitude can be computed: only if the body does not also rotate across the driven axis."""
+        # it then needs parabolic cylinder functions (symrot.closed_form.spin_up.motion); with damping it has no closed
+        # form
         return not any(self._across)
 
     def evaluate(
@@ -71,9 +63,8 @@ class AxialMotion:
         """
         if quaternion and not self.has_attitude:
             raise InputError(
-                "quaternion: expected False, because this body also rotates about an axis other than the driven one "
-                "and this closed form then has no attitude, got True; for the attitude use "
-                "symrot.closed_form.spin_up.motion, or numerical integration if the body is damped"
+                "quaternion: expected False, got True, but the body also rotates across the driven axis, where this "
+                "closed form has no attitude; use symrot.closed_form.spin_up.motion, or numerical integration if damped"
             )
         times = times_of(t)
         if self._loops is None:
@@ -85,6 +76,7 @@ class AxialMotion:
         status = self._loops(times, rates, attitudes)
         if status == axial_compiled.OUT_OF_RANGE:
             self._refuse(times)
+        # more than 1e10 revolutions during the transient or 1e30 revolutions in all
         if status == axial_compiled.TOO_MANY_TURNS:
             for values, way in ((rates, self._rates), (attitudes, self._quaternions)):
                 if values is not None and (lost := np.isnan(values).any(axis=1)).any():
@@ -98,10 +90,8 @@ class AxialMotion:
         )
 
     def _angle(self, t: Floats, share: Fraction) -> tuple[Floats, Floats]:
-        """Return sine and cosine of ``share`` times the angle of rotation about the driven axis, at the times ``t``, s.
-
-        Half the angle gives the attitude; the share (C - A)/A gives the rotation of the transverse angular velocity.
-        """
+        """Return sine and cosine of ``share`` times the angle of rotation about the driven axis, at the times ``t``."""
+        # half the angle gives the attitude, (C - A)/A times it the rotation of the transverse angular velocity
         turning = self._known.get(share)
         if turning is None:
             turning = self._known[share] = Turning(share, self._rate, self._push, self._decay)
@@ -113,6 +103,7 @@ class AxialMotion:
         rates[:, self._axis] = self._axial(t)
         if not any(self._across):
             return rates
+        # the transverse angular velocity rotates in the body and decays by its own damping
         left = np.exp(-float(self._decay_across) * t)
         first, second = (float(w) * left for w in self._across)
         sine, cosine = self._angle(t, self._lag)
@@ -182,10 +173,9 @@ def starts(
 ) -> Callable[[Initial], AxialMotion]:
     """Return a function from an initial state to the motion of one driven body.
 
-    The arguments describe the body and its torque, as for :func:`motion`. A call of ``starts`` computes the constants
-    that do not depend on the initial state; the function that it returns computes the others.
+    The arguments are those of :func:`motion`.
     """
-    body = Driven(inertia, axis, torque, damping, damping_across)
+    body = Driven(inertia, axis, torque, damping, damping_across)  # constants of all initial states
     return lambda start: body.moving(start.omega_b, [float(x) for x in start.quaternion])
 
 

@@ -1,12 +1,8 @@
 """Motion of a free rigid body at any time in closed form, for spherical, symmetric and asymmetric bodies.
 
-All motions are covered: around the axis of the smallest or of the largest moment of inertia, and on the separatrix
-between these motions. Each sample takes the same time, however far before or after the start it lies. Its error is a
-few 1e-16, because the constants of the motion have 31 digits and phases are reduced to a fraction of a revolution. The
-formulas are in :file:`free_body.c`.
-
-The defect of a motion is |L|^2 - 2 T I_mid, with the angular momentum L, the kinetic energy T and the middle moment
-I_mid; its sign tells around which axis the motion goes. A pair is a sum hi + lo of two doubles.
+Each sample takes the same time and has an error of a few 1e-16, however far from the start it lies. The formulas are in
+:file:`free_body.c`. The defect of a motion is |L|^2 - 2 T I_mid (angular momentum L, kinetic energy T, middle moment
+I_mid); its sign tells around which axis the motion goes.
 
 Source: Whittaker, Analytical Dynamics, 4th ed., section 69; van Zon & Schofield, J. Comput. Phys. 225 (2007) 145.
 
@@ -67,21 +63,14 @@ def motion(
 
 
 def starts(principal: Principal) -> Callable[[Initial], ExactMotion]:
-    """Return a function from an initial state to the motion of one free body, in any body axes.
-
-    ``principal`` holds the body's principal moments and axes, known to 110 digits. The initial state and the samples
-    refer to the axes in which the body was given. The constants of the motion are computed before anything is rounded
-    to doubles.
-    """
+    """Return a function from an initial state to the motion of one free body, in any body axes."""
+    # from principal moments and axes to 110 digits, before anything is rounded to doubles
     body = FreeRigidBody(principal)
     return lambda start: body.motion(start.omega_b, start.quaternion)
 
 
 class FreeRigidBody:
-    """A free body with the constants that all its motions share, whatever the initial state.
-
-    They are its principal moments, their differences, and its principal axes.
-    """
+    """A free body with the constants that all its motions share: moments, their differences, and principal axes."""
 
     def __init__(self, body: Principal) -> None:
         integers, shared = over_common_denominator(body.moments)
@@ -105,11 +94,7 @@ class FreeRigidBody:
         return fixed_body(self._principal.moments, [x for row in self._principal.axes for x in row])
 
     def along(self, omega0: Sequence[Number]) -> tuple[list[int], int]:
-        """Return the components of an angular velocity along the principal axes, as three integers and a denominator.
-
-        Each component, rad/s, is one of the integers divided by the denominator. ``omega0`` is given in the body's own
-        axes.
-        """
+        """Return an angular velocity along the principal axes as three integers and their common denominator."""
         rates, shared = over_common_denominator(omega0)
         x, y, z = rates
         largest = max(abs(x), abs(y), abs(z))
@@ -124,7 +109,7 @@ class FreeRigidBody:
     def motion(self, omega0: Sequence[Number], quaternion0: Sequence[Number]) -> ExactMotion:
         """Return the motion from an initial state: ``omega0``, rad/s, and ``quaternion0``, body to space.
 
-        Both refer to the axes in which the body was given, which need not be principal axes.
+        Both refer to the given axes of the body.
         """
         omega_before, omega, exact = self._rates
         if omega0 is not omega_before:
@@ -140,20 +125,14 @@ class FreeRigidBody:
 
 
 def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[float]:
-    """Return I2 - I3, I3 - I1, I1 - I2 and the defect |L|^2 - 2 T I_mid of a free body as one list hi, lo, hi, lo, ..
-
-    Each sum hi + lo is one of the numbers. They are computed exactly, since differences of doubles would lose digits;
-    the defect is scaled as in :class:`Defect`.
-    """
+    """Return I2 - I3, I3 - I1, I1 - I2 and the defect of a free body as a list hi, lo, hi, lo, .."""
+    # exactly, since differences of doubles would lose digits
     integers, shared = over_common_denominator(moments)
     return [*gaps(integers, shared), *Defect(integers)(over_common_denominator(omega)[0])]
 
 
 def gaps(i: list[int], shared: int) -> list[float]:
-    """Return I2 - I3, I3 - I1, I1 - I2 of the principal moments as one list hi, lo, hi, lo, ..
-
-    Each sum hi + lo is a difference. The moments are the integers ``i``, divided by the common denominator ``shared``.
-    """
+    """Return I2 - I3, I3 - I1, I1 - I2 of the principal moments ``i[k]/shared`` as one list hi, lo, hi, lo, .."""
     differences: list[float] = []
     for k in range(3):
         difference = i[(k + 1) % 3] - i[(k + 2) % 3]
@@ -164,11 +143,7 @@ def gaps(i: list[int], shared: int) -> list[float]:
 
 
 class Defect:
-    """The defect |L|^2 - 2 T I_mid of one free body as a function of its rates, computed exactly.
-
-    Its sign tells whether the motion goes around the axis of the smallest or of the largest moment of inertia. It is
-    divided by the square of (largest moment times largest rate). The moments are integers.
-    """
+    """The defect |L|^2 - 2 T I_mid of one free body as a function of its rates, computed exactly."""
 
     def __init__(self, i: list[int]) -> None:
         middle = sorted(i)[1]
@@ -176,10 +151,7 @@ class Defect:
         self._largest = max(i)
 
     def __call__(self, w: list[int]) -> tuple[float, float]:
-        """Return the defect of the motion with the integer body rates ``w``, as two doubles (hi, lo) whose sum it is.
-
-        The defect is |L|^2 - 2 T I_mid, divided by the square of (largest moment times largest rate).
-        """
+        """Return the defect of the motion with the integer body rates ``w``, as a sum of two doubles."""
         x, y, z = w
         one, two, three = self._one * x * x, self._two * y * y, self._three * z * z
         defect, largest = one + two + three, self._largest * max(abs(x), abs(y), abs(z))
@@ -190,6 +162,7 @@ class Defect:
             abs(one), abs(two), abs(three)
         ):
             return 0.0, 0.0
+        # divided by the square of (largest moment times largest rate)
         return quotient(defect, largest * largest)
 
 

@@ -79,19 +79,14 @@ def starts(
 ) -> Callable[[Initial], ExactMotion]:
     """Return a function from an initial state to the motion of one heavy top.
 
-    The arguments describe the body and its weight, as for :func:`motion`. The constants that do not depend on the
-    initial state are computed once, when this function is called.
+    The arguments are those of :func:`motion`.
     """
     top = Top(inertia, weight, center_of_mass, direction)
     return lambda start: top.motion(start.omega_b, start.quaternion)
 
 
 class Top:
-    """A symmetric heavy top with the constants that its motions from all initial states share.
-
-    They are the moments of inertia, the weight times the distance of the centre of mass from the fixed point, and the
-    axes in which the formulas hold (:class:`Frame`).
-    """
+    """A symmetric heavy top with the constants that its motions from all initial states share."""
 
     def __init__(
         self, inertia: Sequence[Number], weight: Number, center_of_mass: Sequence[Number], direction: Sequence[Number]
@@ -137,8 +132,6 @@ class Top:
 class Frame:
     """The axes of space and of the body in which the formulas of a heavy top hold, and the conversion to these axes.
 
-    The third axis in space points up, and the third axis of the body is the symmetry axis.
-
     Parameters
     ----------
     axis : 0, 1 or 2
@@ -149,6 +142,7 @@ class Frame:
     """
 
     def __init__(self, axis: int, up: Sequence[Number]) -> None:
+        # the third axis of space points up, the third axis of the body is the symmetry axis
         self.named = [(axis + 1) % 3, (axis + 2) % 3, axis]  # e1, e2, e3 among the body's axes, in cyclic order
         self.space, self.axes = _UPRIGHT, None
         self.before, self.after = None, None  # left and right factor of an attitude
@@ -165,18 +159,13 @@ class Frame:
 
     @property
     def plain(self) -> bool:
-        """Whether the axes of the formulas are those of the scene, so that attitudes need no conversion.
-
-        This is so if the body's third axis is the symmetry axis and ``up`` is the direction of z.
-        """
+        """Whether the axes of the formulas are those of the scene, so that attitudes need no conversion."""
+        # the symmetry axis is the body's third axis, and up is the direction of z
         return self._before is self._after is None
 
     def start(self, quaternion: Sequence[Number]) -> list[float]:
-        """Convert an attitude to the axes of body and space in which the formulas of a heavy top hold.
-
-        The result is 8 doubles, hi and lo of each component of the quaternion, rounded as in
-        :func:`symrot.closed_form.arithmetic.pairs.attitude`.
-        """
+        """Return an attitude in the axes of the formulas: 8 doubles, hi and lo of each component of the quaternion."""
+        # rounded as in symrot.closed_form.arithmetic.pairs.attitude
         if self.plain:
             return attitude(quaternion)
         integers, shared = over_common_denominator(quaternion)

@@ -1,8 +1,8 @@
 """Motions in closed form that need no C compiler: mpmath computes the constants, NumPy the samples.
 
 The formulas are the same as in the C files. The motions are slower (milliseconds for the constants, about a microsecond
-for each sample) but equally accurate: constants have 120 digits, and phases are reduced to a fraction of a revolution.
-Tests compare the samples with those of the C code.
+for each sample) but equally accurate, since constants have 120 digits. Tests compare the samples with those of the C
+code.
 """
 
 from collections.abc import Callable

@@ -1,4 +1,7 @@
-"""The motion of a free body by mpmath and NumPy, without a C compiler; formulas of :file:`free_body.h`."""
+"""The motion of a free body by mpmath and NumPy, without a C compiler; formulas of :file:`free_body.h`.
+
+The defect of a motion, |L|^2 - 2 T I_mid, is explained in :mod:`symrot.closed_form.free_body.motion`.
+"""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -31,17 +34,15 @@ NEGLIGIBLE = mpf(10) ** -150  # size, relative to the largest component of omega
 
 
 class PortableFreeBody:
-    """The motion of a free body, computed with mpmath and NumPy.
-
-    The arguments are those of the C function ``symrot_free_body_prepare``: lists hi, lo, hi, lo, .. of pairs of doubles
-    whose sums are the numbers.
-    """
+    """The motion of a free body, computed with mpmath and NumPy from the arguments of the C function."""
 
     @mp.workdps(DIGITS)  # type: ignore[untyped-decorator]
     def __init__(
         self, inertia: list[float], omega: list[float], quaternion: list[float], exact: list[float] | None,
         axes: list[float] | None,
     ) -> None:  # fmt: skip
+        # each argument of symrot_free_body_prepare is a list hi, lo, hi, lo, .. of doubles; each sum hi + lo is a
+        # number
         moments, w = vector(inertia), vector(omega)
         if min(moments) <= 0 or not any(vector(quaternion)):
             raise ValueError("expected positive moments of inertia and a quaternion that is not zero")
@@ -193,11 +194,9 @@ class PortableFreeBody:
             quaternion[:] = (x / np.sqrt(2.0 * p0 * (re * re + im * im))[:, None]) @ self.attitude.T
 
     def _sums(self, t: Floats) -> tuple[Any, Any, Floats]:
-        """Return, at the times t, the functions from which angular velocity and attitude are computed.
-
-        They are: the elliptic functions cn, sn and dn, each times its amplitude; the theta series of the attitude, as
-        real and imaginary part; and the phase in half revolutions.
-        """
+        """Return, at the times t, the functions from which angular velocity and attitude are computed."""
+        # they are cn, sn and dn times their amplitudes, the theta series of the attitude (real and imaginary part), and
+        # the phase in half revolutions
         if self.regime == "circular":
             sine, cosine = self.axial.circle(t)
             z = multiples(sine, cosine)
@@ -231,17 +230,12 @@ class PortableFreeBody:
 
 
 def _differences(inertia: list[float], omega: list[float], w: list[Any]) -> tuple[list[Any], Any]:
-    """Return two results: the list I2 - I3, I3 - I1, I1 - I2, and the defect |L|^2 - 2 T I_mid of a motion.
-
-    Both are computed from exact fractions: ``inertia`` and ``omega`` are lists hi, lo, hi, lo, .. of doubles, whose
-    sums are the principal moments and the angular velocity along the principal axes. L is the angular momentum, T the
-    kinetic energy and I_mid the middle moment of inertia. The defect is the sum of ``I (I - I_mid) omega_k^2`` over the
-    axes; its sign tells around which axis the motion goes. ``w`` holds the components of the angular velocity that the
-    rest of the code uses, in which tiny ones were set to zero: an axis with a zero in ``w`` is left out of the sum.
-    """
+    """Return the list I2 - I3, I3 - I1, I1 - I2, and the defect |L|^2 - 2 T I_mid of a motion, from exact fractions."""
+    # inertia, omega: lists hi, lo, hi, lo, .. of doubles, along the principal axes
     moments = [Fraction(high) + Fraction(low) for high, low in zip(inertia[::2], inertia[1::2], strict=True)]
     rates = [Fraction(high) + Fraction(low) for high, low in zip(omega[::2], omega[1::2], strict=True)]
     middle = sorted(moments)[1]
+    # the sum of I (I - I_mid) omega_k^2 without the axes whose tiny component was set to zero in w
     shares = (i * (i - middle) * x * x for i, x, component in zip(moments, rates, w, strict=True) if component)
     differences = [moments[i - 2] - moments[i - 1] for i in range(3)]
     return [_rounded(x) for x in differences], _rounded(sum(shares, Fraction(0)))
@@ -254,16 +248,12 @@ def _rounded(x: Fraction) -> Any:
 def _canonical(
     moments: list[Any], w: list[Any], differences: list[Any], defect: Any
 ) -> tuple[list[int], list[int], int]:
-    """Return the principal axes that the formulas call e1, e2, e3, with their signs, and the sign of I3 - I2.
-
-    ``moments`` and ``w`` are the moments and the initial angular velocity along the principal axes. ``differences`` and
-    ``defect`` (|L|^2 - 2 T I_mid) are the results of :func:`_differences`. The formulas need I2 between I1 and I3: I3
-    is the largest moment if the defect is positive or zero, and the smallest if it is negative.
-    """
+    """Return the principal axes that the formulas call e1, e2, e3, with their signs, and the sign of I3 - I2."""
     above = [differences[2] >= 0, differences[0] >= 0, differences[1] >= 0]  # I_i >= I_(i+1)
     largest = 0 if above[0] and not above[2] else 1 if above[1] else 2
     a, b = (largest + 1) % 3, (largest + 2) % 3
     smallest = b if above[a] else a
+    # I2 must lie between I1 and I3; the sign of the defect tells whether I3 is the largest or the smallest moment
     outer = (largest, smallest) if defect >= 0 else (smallest, largest)
     axis = [outer[1], 3 - largest - smallest, outer[0]]
     direction = [-1 if w[k] < 0 else 1 for k in axis]

@@ -12,11 +12,7 @@ __all__ = ["PortableGyrostat"]
 
 
 class PortableGyrostat:
-    """The motion of a gyrostat, computed with mpmath and NumPy.
-
-    The arguments are those of the C function ``symrot_gyrostat_prepare``: lists hi, lo, hi, lo, .. of pairs of doubles
-    whose sums are the numbers.
-    """
+    """The motion of a gyrostat, computed with mpmath and NumPy from the arguments of the C function."""
 
     regime = "steady"
 
@@ -24,6 +20,7 @@ class PortableGyrostat:
     def __init__(
         self, moments: list[float], rotor: list[float], omega: list[float], quaternion: list[float], axis: list[float]
     ) -> None:
+        # each argument of symrot_gyrostat_prepare is a list hi, lo, hi, lo, .. of doubles; each sum hi + lo is a number
         a, c = vector(moments)
         extra, w = number(*rotor) / a, vector(omega)
         if a <= 0 or not any(vector(quaternion)):

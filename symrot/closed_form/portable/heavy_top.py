@@ -1,8 +1,8 @@
 """The motion of a symmetric heavy top, computed by mpmath and NumPy without a C compiler.
 
-The formulas are those of :file:`heavy_top.h`; alpha and beta are the Cayley-Klein parameters of the attitude. Numbers
-have 120 digits. Differences may therefore lose many digits, so that the constants are computed directly from the roots
-of the cubic, without the rearrangements that doubles need.
+The formulas are those of :file:`heavy_top.h`; alpha and beta are the Cayley-Klein parameters of the attitude, quotients
+of theta series. Numbers have 120 digits, so the constants are computed directly from the roots of the cubic, without
+the rearrangements that doubles need.
 """
 
 from typing import Any
@@ -33,17 +33,15 @@ NOTHING = mpf(10) ** -31  # size, relative to alpha or beta, that counts as zero
 
 
 class PortableHeavyTop:
-    """The motion of a symmetric heavy top, computed with mpmath and NumPy.
-
-    The arguments are those of the C function ``symrot_heavy_top_prepare``: lists hi, lo, hi, lo, .. of pairs of doubles
-    whose sums are the numbers.
-    """
+    """The motion of a symmetric heavy top, computed with mpmath and NumPy from the arguments of the C function."""
 
     @mp.workdps(DIGITS)  # type: ignore[untyped-decorator]
     def __init__(
         self, moments: list[float], pull: list[float], omega: list[float], quaternion: list[float],
         space: list[float], axes: list[float] | None,
     ) -> None:  # fmt: skip
+        # each argument of symrot_heavy_top_prepare is a list hi, lo, hi, lo, .. of doubles; each sum hi + lo is a
+        # number
         a, c = vector(moments)
         if a <= 0 or not any(vector(quaternion)):
             raise ValueError("expected positive moments of inertia and a quaternion that is not zero")
@@ -160,17 +158,12 @@ class PortableHeavyTop:
         return numerators, kappas, leads, speed, v, below
 
     def _functions(self, i: int, place: Any) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
-        """Return the terms of a theta series at the angle ``place``, rad, and the derivatives of the terms.
-
-        The Cayley-Klein parameters alpha and beta of the attitude are quotients of theta series; the series is that of
-        alpha if i = 0, that of beta if i = 1. In the "circular" regime, ``place`` is an angle z and the terms are sin(n
-        z) and cos(n z). Otherwise, with z = i v, ``place`` is v and the terms are sinh(n v) and cosh(n v), each times a
-        weight (``_weights``), a power of the nome. The four lists have one value for each n: of the real part, of the
-        imaginary part, and of the derivatives of both.
-        """
+        """Return the terms of the theta series of alpha (i = 0) or beta (i = 1) at ``place``, and their derivatives."""
+        # four lists, with one value for each n: of the real part, of the imaginary part, of the derivatives of both
         odd = (
             [2 * n + 1 for n in range(TERMS)] if self.regime == "circular" or i == 0 else [2 * n for n in range(TERMS)]
         )
+        # place is an angle z, the terms are sin(n z) and cos(n z)
         if self.regime == "circular":
             sines, cosines = [mp.sin(o * place) for o in odd], [mp.cos(o * place) for o in odd]
             up, down = (
@@ -178,6 +171,7 @@ class PortableHeavyTop:
                 [-o * x for o, x in zip(odd, sines, strict=True)],
             )
             return (sines, cosines, up, down) if i == 0 else (cosines, sines, down, up)
+        # place is v with z = i v, the terms are sinh(n v) and cosh(n v) times powers of the nome
         weights = self._weights(i)
         sines = [x * mp.sinh(o * place) for x, o in zip(weights, odd, strict=True)]
         cosines = [x * mp.cosh(o * place) for x, o in zip(weights, odd, strict=True)]
@@ -192,14 +186,8 @@ class PortableHeavyTop:
         self, numerators: Any, kappas: Any, leads: Any, speed: Any, place: Any, below: Any, start: Any, across: Any,
         spin: Any,
     ) -> None:  # fmt: skip
-        """Set the constant factors of the theta series of alpha and beta, so that they agree with the initial state.
-
-        ``start`` are the Cayley-Klein parameters alpha and beta of the initial attitude. If one of the two series is
-        nearly zero at the start, the factor is computed from the time derivative of that parameter instead, which
-        follows from the initial angular velocity: ``across``, w1 + i w2, and ``spin``, w3. The other arguments are
-        results of :meth:`_circular` or :meth:`_hyperbolic`. The results are set as attributes (``terms``, ``kappas``,
-        ``speed``, ``attitude``, ``omega``).
-        """
+        """Set the constant factors of the theta series of alpha and beta, so that they agree with the initial state."""
+        # across: w1 + i w2, spin: w3 at the start; the other arguments are results of _circular or _hyperbolic
         alpha, beta = start
         initial_rates = [
             mpc(0, spin / 2) * alpha - beta * mp.conj(across) / 2,
@@ -212,6 +200,7 @@ class PortableHeavyTop:
             value = mpc(mp.fdot(re, f), mp.fdot(im, g))
             slope = mpc(mp.fdot(re, df), mp.fdot(im, dg))
             moving = slope * speed + mpc(0, kappas[i]) * value - inner * value
+            # if a series is nearly zero at the start, the time derivative of its parameter determines the factor
             by_rate = abs(value) < mpf(10) ** -3 * abs(moving)
             constant = initial_rates[i] / moving if by_rate else start[i] / value
             constants.append(constant * mp.expjpi(-2 * leads[i]))
@@ -255,10 +244,8 @@ class PortableHeavyTop:
             quaternion[:] = np.stack([a.real, a.imag, b.real, b.imag], axis=1) @ self.attitude.T
 
     def _values(self, t: Floats) -> tuple[Any, Any, Floats]:
-        """Return the Cayley-Klein parameters (alpha, beta), their rates, and the phase in half revolutions.
-
-        Alpha and beta are not normalised and do not include their phase factors.
-        """
+        """Return the Cayley-Klein parameters (alpha, beta), their rates, and the phase in half revolutions."""
+        # alpha and beta are not normalised and do not include their phase factors
         none = np.zeros_like(t)
         if self.regime == "steady":
             a, b = (np.full(t.shape, x, dtype=complex) for x in self.steady)
@@ -294,18 +281,17 @@ class PortableHeavyTop:
 
 
 def _roots(pull: Any, twice: Any, d: Any, spin: Any) -> list[Any]:
-    """Return the roots S1 >= S2 >= S3 of the cubic 2 (E - M + M s) s (2 - s) - (D + l s)^2 in s.
-
-    The cubic is (ds/dt)^2 of a heavy top with transverse moment 1, for s = 1 - cos theta. M is the weight times the
-    distance of the centre of mass (``pull``), E the energy without that of the spin (``twice`` is 2 (E - M)), l the
-    angular momentum along the axis (``spin``), and D is L_z - l (``d``). Nearly equal roots are made equal.
-    """
+    """Return the roots S1 >= S2 >= S3 of the cubic 2 (E - M + M s) s (2 - s) - (D + l s)^2 in s."""
+    # it is (ds/dt)^2 of a heavy top with transverse moment 1, for s = 1 - cos theta. M = pull: weight times distance of
+    # the centre of mass; 2 (E - M) = twice: E is the energy without that of the spin; l = spin: the angular momentum
+    # along the axis; D = d: L_z - l
     # -2M s^3 + (4M - 2(E - M) - l^2) s^2 + (4 (E - M) - 2 D l) s - D^2
     cubic = [-2 * pull, 4 * pull - twice - spin**2, 2 * twice - 2 * d * spin, -(d**2)]
     roots = sorted((mp.re(x) for x in mp.polyroots(cubic, maxsteps=400, extraprec=800)), reverse=True)
     s1, s2, s3 = roots
     s3, s2, s1 = min(s3, mpf(0)), max(s2, mpf(0)), min(s1, mpf(2))
     size = max(abs(x) for x in roots)
+    # nearly equal roots are made equal
     if s1 - s2 < EQUAL * size:
         s2 = s1
     if s2 - s3 < EQUAL * size:

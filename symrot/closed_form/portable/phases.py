@@ -46,20 +46,15 @@ def quarter_periods(m: Any, complement: Any) -> tuple[Any, Any]:
 
 
 class Phase(NamedTuple):
-    """A phase that grows linearly with time, in revolutions: its rate and its start, each a sum of two doubles.
-
-    The angles in closed forms are such phases, which keep all digits for any number of revolutions.
-    """
+    """A phase that grows linearly with time, in revolutions: its rate and its start, each a sum of two doubles."""
 
     rate: tuple[float, float]
     start: tuple[float, float]
 
     @classmethod
     def of(cls, rate: Any, start: Any = 0, periodic: bool = True) -> "Phase":
-        """Return the phase with the given rate, in revolutions per unit of time, and start, in revolutions.
-
-        If the phase is periodic, the start is reduced to the range from -1/2 to 1/2.
-        """
+        """Return the phase with the given rate, in revolutions per unit of time, and start, in revolutions."""
+        # the start of a periodic phase is reduced to the range from -1/2 to 1/2
         start = mpf(start) - mp.nint(start) if periodic else start
         high = [float(rate), float(start)]
         return cls((high[0], float(rate - high[0])), (high[1], float(start - high[1])))
@@ -67,13 +62,13 @@ class Phase(NamedTuple):
     def rest(self, t: Floats, parts: int, more: Floats | float = 0.0) -> tuple[Floats, Floats]:
         """Return the phase plus ``more`` revolutions, modulo one part (1/``parts``), and the number of parts removed.
 
-        The reduced phase lies between -1/2 and 1/2 of a part. The number of removed parts is correct modulo ``parts``,
-        that is, up to whole revolutions. Example: with 4 parts, 0.3 revolutions give 0.05 and 1.
+        With 4 parts, 0.3 revolutions give 0.05 and 1.
         """
         product, error = two_product(t, self.rate[0])
         small = error + t * self.rate[1]
         small = (small - np.rint(small)) + self.start[1] + more
         high, low = two_sum(product - np.rint(product), self.start[0])
+        # correct modulo parts, that is, up to whole revolutions
         steps = np.rint(parts * (high + small))
         return (high - steps / parts) + (low + small), steps
 
@@ -97,21 +92,15 @@ class Phase(NamedTuple):
         return sign * np.where(odd, cosine, sine), sign * np.where(odd, -sine, cosine)
 
     def argument(self, t: Floats, stretch: float) -> tuple[Floats, Floats, Floats]:
-        """Return the phase in half revolutions, a sign, and the argument of a theta series.
-
-        The phase is reduced to the range from -1/2 to 1/2. The sign is -1 if the reduction removes an odd number of
-        half revolutions. The argument is the reduced phase times ``stretch``.
-        """
+        """Return the phase in half revolutions, from -1/2 to 1/2, a sign, and this phase times ``stretch``."""
         rest, halves = self.rest(t, 2)
         whole = 2.0 * rest
+        # -1 if the reduction removes an odd number of half revolutions
         flip: Floats = np.where(halves.astype(np.int64) & 1, -1.0, 1.0)
         return whole, flip, np.clip(stretch * whole, -LARGEST, LARGEST)
 
     def argument_once(self, t: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return three results like those of :meth:`argument`, at the times ``t``, for a phase that is not periodic.
-
-        The reduced phase is 0, the sign is 1, and the argument is the phase itself.
-        """
+        """Return 0, 1 and the phase at the times ``t``: the results of :meth:`argument` if it is not periodic."""
         return np.zeros_like(t), np.ones_like(t), np.clip(self.whole(t), -LARGEST, LARGEST)
 
 
@@ -131,10 +120,7 @@ def hyperbolic(log_nome: float, weight: float, order: float, v: Floats) -> tuple
 
 
 def multiples(sine: Floats, cosine: Floats) -> list[tuple[Floats, Floats]]:
-    """Return the pairs (sine, cosine) of 0, 1, 2, .. times an angle, given its sine and cosine.
-
-    There are as many pairs as the terms of a theta series need. The angle is an array, one for each time.
-    """
+    """Return the pairs (sine, cosine) of 0, 1, 2, .. times an angle, as many as a theta series needs."""
     pairs = [(np.zeros_like(sine), np.ones_like(sine))]
     for _ in range(2 * TERMS - 1):
         s, c = pairs[-1]

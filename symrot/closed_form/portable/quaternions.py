@@ -26,10 +26,8 @@ def unit(a: Sequence[Any]) -> list[Any]:
 
 
 def matrix_quaternion(r: Sequence[Sequence[Any]]) -> list[Any]:
-    """Return the unit quaternion, scalar first, of a proper rotation matrix ``r``, given by its rows.
-
-    The formula divides by the largest component of the quaternion (Shepperd's method), so that no digits are lost.
-    """
+    """Return the unit quaternion, scalar first, of a proper rotation matrix ``r``, given by its rows."""
+    # Shepperd's method divides by the largest component of the quaternion, so that no digits are lost
     trace = r[0][0] + r[1][1] + r[2][2]
     rows = (
         [1 + trace, r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]],
@@ -41,13 +39,10 @@ def matrix_quaternion(r: Sequence[Sequence[Any]]) -> list[Any]:
 
 
 class Axes:
-    """The rotation from the internal axes of a motion to the given axes of the body: v_given = matrix*v.
-
-    The argument is a list of 26 numbers: hi and lo of the 9 entries of the matrix and of the 4 components of its
-    quaternion. None means the identity.
-    """
+    """The rotation from the internal axes of a motion to the given axes of the body: v_given = matrix*v."""
 
     def __init__(self, axes: list[float] | None) -> None:
+        # hi and lo of the 9 entries of the matrix and of the 4 components of its quaternion; None: the identity
         values = vector(axes) if axes else [mpf(int(i % 4 == 0)) for i in range(9)] + UNIT
         self.matrix, self.quaternion = [values[3 * i : 3 * i + 3] for i in range(3)], values[9:]
 

@@ -56,13 +56,10 @@ def _circle(turns: dd.Pair) -> tuple[Floats, Floats]:
 
 
 class PortableSpinUp:
-    """The motion of a symmetric body driven about its axis.
-
-    ``constants`` are the numbers that :class:`symrot.closed_form.spin_up.integers.Integers` computes. ``table`` holds
-    the Taylor polynomials for samples near resonance; it may be None if there are no such samples.
-    """
+    """The motion of a symmetric body driven about its axis, from constants and Taylor polynomials (``table``)."""
 
     def __init__(self, constants: Sequence[float], table: Floats | None) -> None:
+        # the constants of symrot.closed_form.spin_up.integers; table may be None without samples near resonance
         values = iter(constants)
 
         def take(count: int) -> list[float]:
@@ -107,13 +104,9 @@ class PortableSpinUp:
                 quaternion[chosen] = np.stack([a.real, b.real, b.imag, a.imag], axis=1) @ mapping.T
 
     def _far(self, side: Any, t: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
-        """Return q0 + i q3 and q1 + i q2 of the attitude relative to the rotating axes, at times far from resonance.
-
-        The rotating axes are attached to the body's axis and to the transverse angular velocity, its part normal to
-        that axis. Resonance is the time at which the axial rate Omega is zero. ``side`` holds the constants of the
-        motion before or after resonance, and ``omega`` the axial rate at the times ``t``.
-        :mod:`symrot.closed_form.spin_up.motion` has the formulas.
-        """
+        """Return q0 + i q3 and q1 + i q2 of the attitude relative to the rotating axes, far from resonance."""
+        # side: constants of the motion before or after resonance; omega: the axial rate at the times t; the formulas
+        # are in symrot.closed_form.spin_up.motion
         time, start, delta, _ = side
         square = dd.multiply(self._across, self._across)
         here, there = (dd.add(dd.multiply(x, x), square) for x in (omega, start))
@@ -149,11 +142,8 @@ class PortableSpinUp:
         )
 
     def _close(self, _: dd.Pair, omega: dd.Pair) -> tuple[Any, Any]:
-        """Return q0 + i q3 and q1 + i q2 of the attitude relative to the rotating axes, at times near resonance.
-
-        Taylor polynomials in x = Omega/sqrt(s) give the rotation since resonance (x = 0). The first argument, the
-        times, is not used.
-        """
+        """Return q0 + i q3 and q1 + i q2 of the attitude relative to the rotating axes, near resonance."""
+        # Taylor polynomials in x = Omega/sqrt(s) give the rotation since resonance (x = 0)
         assert self._table is not None
         sign = np.where(omega[0] < 0.0, -1.0, 1.0)
         high, low = dd.multiply((sign * omega[0], sign * omega[1]), self._inverse)

@@ -32,18 +32,12 @@ _bound: list[_Functions] = []
 
 
 def limits() -> tuple[float, float, float]:
-    """Return the three limits that the C function ``symrot_spin_up_prepare`` takes as an argument.
-
-    They are NEAR, WIDE and MOST of :mod:`symrot.closed_form.spin_up.series`, which say where each series is accurate.
-    """
+    """Return NEAR, WIDE and MOST of :mod:`symrot.closed_form.spin_up.series`, limits that C takes as an array."""
     return spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST
 
 
 def available() -> bool:
-    """Return whether C can compute the samples: the compiled loops are loaded already, or there is a C compiler.
-
-    Otherwise NumPy and Python's integers compute them.
-    """
+    """Return whether C can compute the samples: the compiled loops are loaded already, or there is a C compiler."""
     return bool(_bound) or not library.missing()
 
 
@@ -96,13 +90,11 @@ class Compiled:
         self.longest: float = constants[1] / constants[0]
 
     def _prepared(self, table: Floats | None) -> tuple[Any, int, Floats | None]:
-        """Let C compute the constants of the motion; return them as a ctypes array, with its address and ``table``.
-
-        If ``table`` is an array, the C function fills it with the Taylor polynomials for samples near resonance.
-        """
+        """Let C compute the constants of the motion; return them as a ctypes array, with its address and ``table``."""
         bound = functions()
         constants = bound.record()
         place = ctypes.addressof(constants)
+        # an array table is filled with the Taylor polynomials for samples near resonance
         if bound.prepare(self._axis, self._numbers, bound.limits(*limits()), address(table), place):
             raise CompilerError(
                 "expected a C compiler that rounds after every operation, got one that fuses some, such as a*b + c; "
@@ -111,10 +103,9 @@ class Compiled:
         return constants, place, table
 
     def fill(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> bool:
-        """Write the samples at ``times``, s, into ``omega`` (n, 3) and ``quaternion`` (n, 4).
+        """Write the samples at ``times``, s, into ``omega`` (n, 3) and ``quaternion`` (n, 4), unless they are None.
 
-        An array that is None is skipped. Return whether some times lie beyond :attr:`longest`; the samples there are
-        not valid.
+        Return whether some times exceed :attr:`longest`.
         """
         samples = len(times), address(times), address(omega), address(quaternion)
         _, place, table = self._known
@@ -122,4 +113,5 @@ class Compiled:
         if status & _LACKING:
             self._known = _, place, table = self._prepared(np.empty(TABLE))
             status = self._evaluate(place, address(table), *samples)
+        # the samples at these times are not valid
         return bool(status & _LOST)

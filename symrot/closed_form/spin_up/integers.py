@@ -1,15 +1,10 @@
-r"""A symmetric body under a constant torque about its axis, in integer arithmetic, for any number of revolutions.
+"""A symmetric body under a constant torque about its axis, in integer arithmetic, for any number of revolutions.
 
-Resonance is the time at which the axial component Omega of the angular velocity, in axes that rotate with its
-transverse component, passes through zero (:mod:`symrot.closed_form.spin_up.motion`). A motion has up to three parts:
-far before resonance, near it (\|x\| < NEAR for the scaled Omega), and far after it. The rotation of each far part comes
-from :mod:`~symrot.closed_form.spin_up.off_resonance`, that of the near part from
-:mod:`~symrot.closed_form.spin_up.resonance`; the attitude is the product of these rotations, each from one boundary to
-the next.
+The attitude is a product of rotations far before, near and far after resonance (see
+:mod:`symrot.closed_form.spin_up.motion`). The module computes the samples with too many revolutions for double-double
+numbers and, without a C compiler, the constants for NumPy.
 
-This module computes, one by one, the samples whose number of revolutions is too large for double-double numbers.
-Without a C compiler it also computes the constants for NumPy. The formulas are in :file:`spin_up.h`. Proof:
-``derivations/driven_rotation.md``.
+The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
 """
 
 import math
@@ -45,11 +40,8 @@ _LARGEST = Fraction(10) ** 300
 
 
 def _scale(*values: Fraction) -> Fraction:
-    """Return a power of two near the largest absolute value of ``values``, between half of it and twice it.
-
-    It is the unit in which the caller measures angular velocities, so that scaled numbers are near 1. One of the values
-    must not be zero. Outside 2^-900 to 2^900, the nearer end of this range is returned.
-    """
+    """Return a power of two near the largest absolute value of ``values``, between half of it and twice it."""
+    # the unit of angular velocities, so that scaled numbers are near 1
     largest = max(map(abs, values))
     size = largest.numerator.bit_length() - largest.denominator.bit_length()
     return Fraction(2) ** max(-900, min(900, size))
@@ -109,10 +101,8 @@ class Integers:
 
     @staticmethod
     def _body_axes(axis: int, sign: int, first: Fraction, second: Fraction) -> Quaternion:
-        """Return the rotation from the axes e1, e2, e3 used in the formulas to the axes of the body, as a quaternion.
-
-        e3 points along the torque, e1 along the transverse angular velocity at the start.
-        """
+        """Return the rotation from the axes e1, e2, e3 of the formulas to the axes of the body, as a quaternion."""
+        # e3 points along the torque, e1 along the transverse angular velocity at the start
         columns = [[Fraction(0)] * 3 for _ in range(3)]
         columns[0][axis - 2], columns[0][axis - 1] = first, second
         columns[1][axis - 2], columns[1][axis - 1] = -sign * second, sign * first
@@ -124,11 +114,8 @@ class Integers:
         return Near(rounded(self._sweep.across * self._scale / self._root))
 
     def _side(self, omega: Fraction) -> int:
-        """Return -1 before, 0 near and 1 after resonance, at the time when the axial rate Omega equals ``omega``.
-
-        If the asymptotic series holds everywhere (large kappa), the result is always 1.
-        """
-        if self._sweep.series.wide:
+        """Return -1 before, 0 near and 1 after resonance, at the time when the axial rate Omega equals ``omega``."""
+        if self._sweep.series.wide:  # the asymptotic series holds everywhere
             return 1
         return 0 if abs(omega) < self._edge else 1 if omega > 0 else -1
 
@@ -146,22 +133,16 @@ class Integers:
         return product(leaving, conjugate(self._near.quaternion(Fraction(side * int(NEAR)))))
 
     def _begin(self, side: int) -> tuple[Fraction, Fraction, Quaternion]:
-        """Return the state at which the formulas for one side of resonance begin: time, rate Omega and rotation.
-
-        ``side`` is -1 before and 1 after resonance. The state is the initial one if the motion starts on this side,
-        otherwise it lies at the boundary of resonance. The rotation is counted from the start of the motion.
-        """
+        """Return the time, the rate Omega and the rotation at which the formulas for one side of resonance begin."""
+        # side: -1 before, 1 after resonance
         if self._side(self._start) == side:
             return Fraction(0), self._start, ONE
+        # the motion starts elsewhere, so the formulas begin at the boundary of resonance
         edge, crossed = side * self._edge, self._near.quaternion(Fraction(side * int(NEAR)))
         return rounded((edge - self._start) / self._sweep.s), edge, product(self._resonance, crossed)
 
     def _constants(self, near: bool) -> list[float]:
-        """Return the constants with which NumPy computes samples, in the order of the C struct in :file:`spin_up.h`.
-
-        If ``near`` is false, all samples lie far from resonance, and on the same side of it as the start of the motion.
-        The constants for the far part on the other side and for the near part are then zero.
-        """
+        """Return the constants with which NumPy computes samples, in the order of the C struct in :file:`spin_up.h`."""
         sweep, back, wide = self._sweep, conjugate(self._axes), self._sweep.series.wide
         turns = [x / (4 * number.PI) for x in self._turn]
         inverse = self._scale / self._root if near else Fraction(0)
@@ -175,6 +156,7 @@ class Integers:
         for value in self._spin:
             values += pair(value)
         for side in (-1, 1):
+            # all samples lie on the side of the start, so that the constants of the other parts are not needed
             if not near and self._side(self._start) not in (side, 1 if wide else side):
                 values += [0.0] * 21
                 continue
@@ -185,10 +167,7 @@ class Integers:
 
     @cached_property
     def longest(self) -> float:
-        """The time, s, beyond which there may be too many revolutions for double-double numbers.
-
-        Samples at later times are computed in integer arithmetic, which is slower.
-        """
+        """The time, s, beyond which there may be too many revolutions for double-double numbers."""
         values = self._start, self._sweep.across, self._turn[0], self._sweep.s, self._turn[1]
         start, across, turn, s, growth = (abs(float(x)) for x in values)
         even = start + across + turn
@@ -202,15 +181,16 @@ class Integers:
         return self._sweep.series.wide or ends[1] <= -edge or ends[0] >= edge
 
     def fill(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> bool:
-        """Write the samples, computed by NumPy, into ``rates`` and ``attitudes``; skip an array that is None.
+        """Write the samples, computed by NumPy, into ``rates`` and ``attitudes``, unless they are None.
 
-        Return whether some times lie beyond :attr:`longest`; the samples there are not valid.
+        Return whether some times exceed :attr:`longest`.
         """
         first, last = min(0.0, float(times.min())), max(0.0, float(times.max()))
         near = attitudes is not None and not self._far(first, last)
         if near not in self._kinds:
             self._kinds[near] = Portable(self._constants(near), self._near.table() if near else None).evaluate
         self._kinds[near](times, rates, attitudes)
+        # the samples at these times are not valid
         return not max(last, -first) <= self.longest
 
     def finite(self, time: float) -> bool:

@@ -1,17 +1,12 @@
 """A symmetric body under a constant torque about its axis, at any time, in closed form.
 
-The transverse angular velocity (its part normal to the axis) has a constant length W and rotates in the body by an
-angle that is quadratic in time. In axes that rotate with the transverse angular velocity, the body rotates at ``(W, 0,
-Omega)``, with Omega linear in time. This is the equation of a two-level system swept through resonance (Zener, Proc. R.
-Soc. A 137 (1932) 696): resonance is the time at which Omega = 0, and the sweep rate s is dOmega/dt. The solutions are
-parabolic cylinder functions of ``x = Omega/sqrt(s)`` with the only parameter ``kappa = W/sqrt(s)``.
+In axes that rotate with its transverse angular velocity (normal to the axis, of constant length W), the body rotates at
+``(W, 0, Omega)``. The axial rate Omega grows steadily at the sweep rate s; at resonance it is zero. The attitude
+consists of parabolic cylinder functions of ``x = Omega/sqrt(s)`` with the parameter ``kappa = W/sqrt(s)``: asymptotic
+series far from resonance, Taylor series near it.
 
-Far from resonance, or for a large kappa, asymptotic series are as accurate as doubles: they describe a slowly rotating
-vector and the rotation of the body about this vector. Near resonance, Taylor series at 40 points are used. Phases are
-sums of two doubles, in revolutions, so the error of the attitude stays at a few 1e-16 for any number of revolutions. A
-sample takes the same time at any t; samples beyond 1e13 rad are computed in integers.
-
-The formulas are in :file:`spin_up.h`. Proof: ``derivations/driven_rotation.md``.
+The formulas are in :file:`spin_up.h`. Source: Zener, Proc. R. Soc. A 137 (1932) 696, for the same equation of a
+two-level system. Proof: ``derivations/driven_rotation.md``.
 """
 
 from collections.abc import Callable, Sequence
@@ -89,11 +84,7 @@ class SpinUp:
         return rates, attitudes
 
     def _by_integers(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Compute in integers all samples with too many revolutions for double-double numbers.
-
-        They are written into ``rates`` and ``attitudes``, which hold the other samples already; an array that is None
-        is skipped.
-        """
+        """Compute in integers all samples with too many revolutions for double-double numbers; fill their rows."""
         for time in (float(times.min()), float(times.max())):
             if not self.integers.finite(time):
                 raise InputError(f"expected times at which the angular velocity is a finite number, got {time!r} s")
@@ -134,8 +125,7 @@ def motion(
 def starts(inertia: Sequence[Number], axis: int, torque: Number) -> Callable[[Initial], SpinUp]:
     """Return a function from an initial state to the motion of one driven body.
 
-    The arguments describe the body and its torque, as for :func:`motion`. The constants that do not depend on the
-    initial state are computed once, when this function is called.
+    The arguments are those of :func:`motion`.
     """
     body = SpunBody(inertia, axis, torque)
     return lambda start: body.motion(start.omega_b, start.quaternion)

@@ -84,11 +84,7 @@ def _polynomial(coefficients: Floats, y: float) -> float:
 
 
 class Sweep:
-    """The constants of a driven body's motion far from resonance: W, s and the asymptotic series for kappa^2 = W^2/s.
-
-    W is the transverse angular velocity and s the rate at which the axial one, Omega, grows; resonance is at Omega = 0.
-    :mod:`symrot.closed_form.spin_up.motion` explains these quantities.
-    """
+    """The constants of a driven body far from resonance: W, s and the asymptotic series for kappa^2 = W^2/s."""
 
     def __init__(self, across: Fraction, s: Fraction, series: Series) -> None:
         self.across, self.s, self.series = across, s, series
@@ -96,33 +92,24 @@ class Sweep:
         self.unit = self._square + (0 if series.wide else Fraction(NEAR) ** 2 * s)
 
     def speed(self, omega: Fraction) -> Fraction:
-        """Return S = sqrt(Omega^2 + W^2), rad/s, at the axial angular velocity Omega = ``omega``.
-
-        W is the constant length of the transverse angular velocity, the part normal to the axis. S is the rate at which
-        the body rotates relative to axes that rotate with the transverse angular velocity.
-        """
+        """Return S = sqrt(Omega^2 + W^2), rad/s, at the axial angular velocity Omega = ``omega``."""
         return number.sqrt(rounded(omega * omega + self._square))
 
     def _direction(self, omega: Fraction) -> tuple[float, float, float]:
-        """Return the sine and cosine of the angle between the angular velocity (W, 0, Omega) and the third axis, and y.
-
-        y is the variable of the polynomials in :class:`symrot.closed_form.spin_up.series.Series`.
-        """
+        """Return the sine and cosine of the angle between (W, 0, Omega) and the third axis, and y = unit/S^2."""
+        # y is the variable of the polynomials in self.series
         speed = self.speed(omega)
         return float(self.across / speed), float(omega / speed), float(rounded(self.unit / (speed * speed)))
 
     def delta(self, omega: Fraction) -> float:
-        """Return the correction delta, rad: the angle of rotation minus the time integral of the rate of rotation S.
-
-        ``omega`` is the axial rate Omega. In the rotating axes, S = sqrt(Omega^2 + W^2) with the transverse rate W.
-        """
+        """Return the correction delta, rad, at the rate ``omega``: the angle of rotation minus the integral of S."""
         _, cosine, y = self._direction(omega)
         return cosine * _polynomial(self.series.e, y)
 
     def axes(self, omega: Fraction) -> Quaternion:
         """Return the rotation that maps the third axis to the vector n, at the axial rate Omega = ``omega``.
 
-        The vector n is at rest in space and stays near the axis of rotation; the body rotates about it.
+        The vector n is at rest in space, near the axis of rotation.
         """
         sine, cosine, y = self._direction(omega)
         g, c = _polynomial(self.series.g, y), _polynomial(self.series.c, y)
@@ -135,10 +122,8 @@ class Sweep:
         return product(turn, fixed(number.unit((m3, -m2, m1, Fraction(0)))))
 
     def angle(self, start: Fraction, time: Fraction) -> Fraction:
-        """Return the angle, rad, by which the body rotates about the vector n of :meth:`axes` in ``time`` s.
-
-        The motion begins when the axial rate Omega equals ``start``.
-        """
+        """Return the angle, rad, by which the body rotates about the vector n of :meth:`axes` in ``time`` s."""
+        # start: the axial rate Omega at the beginning
         omega = start + self.s * time
         here, there, product = self.speed(omega), self.speed(start), rounded(omega * start)
         if product >= 0:
@@ -152,9 +137,7 @@ class Sweep:
         return rounded(steady) + Fraction(self.delta(omega)) - Fraction(self.delta(start))
 
     def rotation(self, start: Fraction, time: Fraction) -> Quaternion:
-        """Return the rotation of the body in ``time`` s, far from resonance, as a quaternion of fixed-point integers.
-
-        The rotation begins when the axial rate Omega equals ``start``.
-        """
+        """Return the rotation of the body in ``time`` s, far from resonance, as a fixed-point quaternion."""
+        # start: the axial rate Omega at the beginning
         end = conjugate(self.axes(start + self.s * time))
         return product(self.axes(start), about_third(self.angle(start, time)), end)

@@ -1,14 +1,11 @@
 """Attitude of a driven symmetric body near resonance, by Taylor series at evenly spaced points, in integers.
 
-The scaled time x is zero at resonance, see :mod:`symrot.closed_form.spin_up.motion`. A body that rotates at
-``(kappa, 0, x)`` and whose axes agree with the space axes at ``x = 0`` has the attitude ``(alpha, beta)``,
-``alpha = q0 + i q3``, ``beta = q1 + i q2``, with
+A body rotates at ``(kappa, 0, x)``, where x is the scaled time (see :mod:`symrot.closed_form.spin_up.motion`). If its
+axes agree with the space axes at x = 0, the attitude is ``alpha = q0 + i q3``, ``beta = q1 + i q2``, with
 
     2 alpha' = i x alpha - kappa beta,  2 beta' = kappa alpha - i x beta.
 
-The solutions are parabolic cylinder functions of x. At ``-x``, q1 and q2 have the opposite signs. At each point the
-equations determine each Taylor coefficient from the two previous coefficients; each series begins with the final value
-of the previous series.
+At each point the equations determine each Taylor coefficient from the two previous coefficients.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -35,10 +32,7 @@ _Spinor = tuple[int, int, int, int]  # the complex pair alpha, beta as q0, q3, q
 
 
 class Near:
-    r"""Attitudes of a driven body near resonance, as a function of the scaled time x, for one value of kappa.
-
-    The size of x = Omega/sqrt(s) is at most NEAR; :mod:`symrot.closed_form.spin_up.motion` explains Omega, s and kappa.
-    """
+    """Attitudes of a driven body near resonance, as a function of the scaled time x, for one value of kappa."""
 
     def __init__(self, kappa: Fraction) -> None:
         self._kappa = self._fixed(kappa)
@@ -54,10 +48,8 @@ class Near:
         return (value.numerator << FIXED) // value.denominator
 
     def _coefficients(self, spinor: _Spinor, place: Fraction) -> list[_Spinor]:
-        """Return the coefficients of the Taylor series of the attitude about the scaled time x = ``place``.
-
-        ``spinor`` is the attitude there; the denominator of ``place`` is a power of two.
-        """
+        """Return the coefficients of the Taylor series of the attitude about the scaled time x = ``place``."""
+        # spinor: the attitude there; the denominator of place is a power of two
         top, shift, kappa = place.numerator, place.denominator.bit_length() - 1, self._kappa
         coefficients: list[_Spinor] = [spinor]
         before: _Spinor = (0, 0, 0, 0)
@@ -85,15 +77,13 @@ class Near:
         """Return the attitude at the scaled time x as a quaternion of fixed-point integers, with an error of 1e-30."""
         piece = min(int(abs(x) * PIECES), len(self._series) - 1)
         q0, q3, q1, q2 = self._sum(self._series[piece], abs(x) - Fraction(2 * piece + 1, 2 * PIECES))
+        # at -x, q1 and q2 have the opposite signs
         sign = -1 if x < 0 else 1
         return q0, sign * q1, sign * q2, q3
 
     def table(self) -> Floats:
-        """Return the Taylor coefficients as an array of doubles, for NumPy.
-
-        The indices are: the interval of x, the power of the distance from the middle of the interval, and the component
-        of the quaternion.
-        """
+        """Return the Taylor coefficients as an array of doubles: interval of x, power, component of the quaternion."""
+        # powers of the distance from the middle of the interval
         one = 1 << FIXED
         return np.array(
             [[[q0 / one, q1 / one, q2 / one, q3 / one] for q0, q3, q1, q2 in s[: DEGREE + 1]] for s in self._series]

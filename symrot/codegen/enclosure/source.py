@@ -1,9 +1,7 @@
 """C code that bounds how far the rates dy/dt deviate from constants near a step, so that no step misses a pulse.
 
-A pulse is a short change of the rates, such as a torque exp(-(t - 5)^2), that the Taylor series at the start of a step
-does not show. The bounds (enclosures) hold on discs of complex times and states. The code is placed between
-:file:`propagation/enclosures/disc.h`, which contains the rules of disc arithmetic, and a stepper. Standard library
-only.
+A pulse is a short change of the rates, such as a torque exp(-(t - 5)^2). The bounds hold on discs of complex times and
+states; :file:`propagation/enclosures/disc.h` contains the rules of disc arithmetic. Standard library only.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,11 +19,11 @@ __all__ = ["enclosure_definitions", "enclosure_source"]
 def enclosure_source(program: Program, order: int, edges: Sequence[int]) -> str:
     """Return C code that bounds a program's rates on complex discs, so that a stepper notices pulses within a step.
 
-    ``order`` and ``edges`` are explained in :func:`enclosure_definitions`. For rates without a Taylor series, such as
-    rates with abs, the result contains no bounds.
+    See :func:`enclosure_definitions` for the arguments.
     """
     try:
         return enclosure_definitions(enclosure(recurrences(program)), order, edges)
+    # rates without a Taylor series, such as rates with abs: code without bounds
     except InputError:
         return enclosure_definitions(None, order, edges)
 
@@ -90,12 +88,8 @@ def _constant(node: Node, places: Mapping[str, str]) -> str:
 
 
 def _disc(system: Recurrences, number: int, places: Mapping[str, str]) -> str:
-    """Return the C expression of a complex disc that contains all values of a Taylor series near a step.
-
-    ``number`` is the index of the series in ``system``; ``places`` maps the names of parameters to C, as ``p1`` to
-    ``p[1]``. For the product of the series 2 and 5 it is ``symrot_disc_product(d2, d5)``: ``d2`` is the disc of series
-    2.
-    """
+    """Return C text of a disc that contains the values of a Taylor series near a step: ``symrot_disc_square(d2)``."""
+    # d2 is the disc of series 2; places maps the name of a parameter to C, such as p[1]
     series = system.series[number]
     own = [f"d{operand}" for operand in value_operands(series)]
     if series.rule == "state":

@@ -1,16 +1,8 @@
-"""Selection of the terms of a right-hand side that must be bounded (enclosed), because a step may miss a pulse in them.
+"""Selection of the terms of the rates dy/dt that must be bounded, because a step may miss a pulse in them.
 
-A stepper evaluates a right-hand side only at some points. It does not notice a pulse, a switch or a pole between two of
-these points. Bounds notice it: the formula is evaluated over complex discs (:file:`propagation/enclosures/disc.h`),
-sets that contain all times and states near a step. The result is a disc that contains all values of the formula there,
-and its radius bounds all Taylor coefficients that a step omits.
-
-Polynomials of low degree in the states, in time and in sine and cosine of ``a*t + b`` need no bounds: from their
-coefficients follows how fast they can vary. Therefore each rate is split into its terms, and only the terms that are
-not such polynomials are bounded. The term "series" stands for the Taylor series of one quantity, see
-:mod:`symrot.codegen.taylor.recurrences`.
-
-Standard library only.
+A stepper evaluates the rates only at some points and misses a pulse between them. Bounds over complex discs of times
+and states notice it, see :file:`propagation/enclosures/disc.h`. Polynomials of low degree vary slowly and need no
+bounds. Standard library only.
 """
 
 from typing import NamedTuple
@@ -31,33 +23,28 @@ BOUNDED = ("sin", "cos")  # functions of a*t + b that are bounded at every time
 
 
 class Enclosure(NamedTuple):
-    """The terms of the rates dy/dt that must be bounded on complex discs, because a step may miss a pulse in them.
-
-    ``series`` lists the Taylor series to evaluate, each after its operands, as indices into ``system.series``.
-    ``terms`` holds for each rate the pairs (weight, series) of its bounded terms, and ``states`` the indices of the
-    states on which these terms depend.
-    """
+    """The terms of the rates dy/dt that must be bounded, because a step may miss a pulse in them."""
 
     system: Recurrences
+    # Taylor series to evaluate, each after its operands: indices into system.series
     series: tuple[int, ...]
+    # for each rate: pairs (weight, series) of its bounded terms
     terms: tuple[tuple[tuple[Node, int], ...], ...]
+    # indices of the states on which these terms depend
     states: tuple[int, ...]
 
 
 def value_operands(series: Series) -> tuple[int, ...]:
-    """Return those operands of a series from whose values the value of the series (its Taylor coefficient 0) follows.
-
-    Operands are indices of series. The series of sin(u) also has operands, such as the series of cos(u), that only its
-    later coefficients need; they are left out.
-    """
+    """Return the operands (indices of series) that determine the value of a series: u alone for sin(u)."""
+    # the first operands of a driven series determine only its later Taylor coefficients
     first = {"driven": 2, "primitive": 3}.get(series.rule, 0)
     return () if series.rule == "clock" else series.operands[first:]
 
 
 def enclosure(system: Recurrences) -> Enclosure | None:
-    """Return the terms of the rates dy/dt of ``system`` that must be bounded because a step may miss a pulse in them.
+    """Return the terms of the rates dy/dt of ``system`` in which a step may miss a pulse.
 
-    None means that all terms are polynomials of low degree, which cannot hide a pulse.
+    None if all are polynomials of low degree.
     """
     degrees: list[int] = []
     for series in system.series:
@@ -74,6 +61,7 @@ def enclosure(system: Recurrences) -> Enclosure | None:
         return None
     needed: set[int] = set()
     waiting = [operand for own in terms for _, operand in own]
+    # the operands of the bounded terms, and their operands
     while waiting:
         number = waiting.pop()
         if number not in needed:
@@ -84,14 +72,14 @@ def enclosure(system: Recurrences) -> Enclosure | None:
 
 
 def _degree(series: Series, degrees: list[int]) -> int:
-    """Return the degree of the quantity of a series as a polynomial in the states, t, sin(a t + b) and cos(a t + b).
+    """Return the degree of a series as a polynomial in the states, t, sin(a t + b) and cos(a t + b).
 
-    ``degrees`` holds the degrees of the earlier series, which are its operands. For another quantity, such as exp(u),
-    the result is at least BEYOND: a pulse may hide in it, so that the stepper must bound it.
+    If it is BEYOND or more, a pulse may hide in the series.
     """
     if series.rule in ("state", "time"):
         return 1
     if series.rule == "clock":
         return 1 if series.function in BOUNDED else BEYOND
+    # any other quantity, such as exp(u), is no polynomial
     own = [degrees[operand] for operand in value_operands(series)] if series.rule in ("sum", "product") else [BEYOND]
     return sum(own) if series.rule == "product" else max(own, default=0)

@@ -14,16 +14,12 @@ __all__ = ["Share"]
 
 
 class Share:
-    """A collection of formula trees in which products and sums that occur repeatedly become one shared node.
-
-    First all formulas are added (:meth:`add`), then :meth:`extract` looks for pairs of factors, or of terms, that occur
-    in several nodes. Each node has a number, its index in ``nodes``; the operands of a node are such numbers. Equal
-    nodes have the same number.
-    """
+    """A collection of formula trees in which products and sums that occur repeatedly become one shared node."""
 
     def __init__(self) -> None:
+        # first add() all formulas, then extract()
         self.identity: dict[Tree, int] = {}
-        self.nodes: list[tuple[Any, ...]] = []  # nodes by identity; their operands are identities
+        self.nodes: list[tuple[Any, ...]] = []  # operands are indices into this list; equal nodes have one index
 
     def intern(self, node: Tree) -> int:
         """Return the number of a node, whose operands are given by their numbers; add the node to ``nodes`` if new."""
@@ -45,12 +41,8 @@ class Share:
         return self.intern(("add", tuple(sorted(((self.add(item), sign) for sign, item in tree[1])))))
 
     def extract(self) -> None:
-        """Replace the pair of factors or terms that most nodes contain by a new node, until no pair occurs twice.
-
-        In ``a*b*c`` and ``a*b*d`` the pair (a, b) becomes a node p, and the formulas become ``p*c`` and ``p*d``.
-        Quotients ``a/b`` are replaced first, then reciprocals ``1/b``, products, and sums. Of several pairs that occur
-        equally often, one without numbers comes first, then the one whose operands have the lowest numbers.
-        """
+        """Replace repeated pairs of factors or terms by new nodes: ``a*b*c``, ``a*b*d`` become ``p*c``, ``p*d``."""
+        # quotients a/b are replaced first, then reciprocals 1/b, products and sums
         for kind, pairs, swap in (
             ("mul", self._quotient_pairs, self._swap_quotient),
             ("mul", self._reciprocals, self._swap_reciprocal),
@@ -62,6 +54,7 @@ class Share:
                 for node in self.nodes:
                     if node[0] == kind:
                         count.update(set(pairs(node)))
+                # the most frequent pair; between equals, one without numbers, then the one with the lowest indices
                 best = max(count, key=lambda pair: (count[pair], self._is_variable(pair), _negated(pair)), default=None)
                 if best is None or count[best] < 2:
                     break
@@ -85,26 +78,17 @@ class Share:
             yield "add", ((a, 1), (b, s * r))
 
     def _is_variable(self, pair: Any) -> bool:
-        """Return whether ``pair`` is a sum of two terms, or a product of two factors that are no numbers.
-
-        A pair that occurs repeatedly is computed once and replaced by a new node. Of pairs that occur equally often,
-        those for which the result is true are replaced first.
-        """
+        """Return whether ``pair`` is a sum of two terms, or a product of two factors that are no numbers."""
         return pair[0] == "add" or not any(self.nodes[i][0] == "num" for part in pair[1:] for i in part)
 
     def _replace(self, kind: str, pair: tuple[Any, ...], swap: Callable[..., tuple[Any, ...]]) -> None:
-        """Make a pair of factors (``kind`` is ``"mul"``) or terms (``"add"``) a node, used wherever it occurs.
-
-        ``pair`` is the new node, for example the product of two other nodes; it is appended to ``self.nodes`` if it is
-        not there. Then each other node of the kind is replaced by ``swap(node, pair, new)``, where ``new`` is the index
-        of the pair. ``swap`` returns the node with ``new`` in place of the pair, or the node unchanged if it does not
-        contain the pair: x*y*z becomes new*z for the pair x*y.
-        """
+        """Make ``pair``, a product or sum of two nodes, a node of its own, and use it wherever the pair occurs."""
         if pair not in self.nodes:
             self.nodes.append(pair)
         new = self.nodes.index(pair)
         for index, node in enumerate(self.nodes):
             if index != new and node[0] == kind:
+                # x*y*z becomes new*z for the pair x*y; a node without the pair is unchanged
                 self.nodes[index] = swap(node, pair, new)
 
     @staticmethod

@@ -23,10 +23,9 @@ ONE: Tree = ("num", Fraction(1))
 
 
 class Gather:
-    """Splits expressions into a constant factor and a rest with variables, the core; collects the constants.
+    """Splits expressions into a constant and a core with variables: ``2*m*sin(theta)`` into ``2*m`` and ``sin(theta)``.
 
-    ``2*m*sin(theta)`` is split into ``2*m`` and ``sin(theta)``. The constants are collected in ``hoisted`` and become
-    parameters of the program, which are computed once per motion.
+    The constants become parameters of the program.
 
     Parameters
     ----------
@@ -38,7 +37,7 @@ class Gather:
 
     def __init__(self, variables: Iterable[Symbol], flat: bool = False) -> None:
         self.variables, self.flat = frozenset(variables), flat
-        self.hoisted: dict[Expr, str] = {}
+        self.hoisted: dict[Expr, str] = {}  # constant -> name of its parameter, which is computed once per motion
         self.memo: dict[Expr, tuple[Expr, Tree]] = {}
 
     def is_variable(self, expr: Expr) -> bool:
@@ -46,17 +45,16 @@ class Gather:
         return bool(expr.free_symbols & self.variables)
 
     def constant(self, value: Expr) -> tuple[int, Tree | None]:
-        """Return (sign, tree) for a constant: ``value`` is the sign, 1 or -1, times the value of the tree.
+        """Return (sign, tree) of a constant: ``value`` is the sign, 1 or -1, times the value of the tree.
 
-        The tree is None if ``value`` is 1 or -1, a number if it is rational, and otherwise the symbol of a parameter
-        that stands for the constant. ``self.hoisted`` maps each such constant to the name of its parameter; a new
-        constant is added.
+        The tree is None for 1 and -1.
         """
         sign, value = _oriented(value)
         if value == 1:
             return sign, None
         if value.is_Rational:
             return sign, ("num", Fraction(int(value.p), int(value.q)))
+        # any other constant is the symbol of a parameter
         name = self.hoisted.setdefault(value, f"{HOISTED}{len(self.hoisted)}")
         return sign, ("sym", name)
 
@@ -71,10 +69,9 @@ class Gather:
         return sign, ("mul", (atom, *factors), divisors)
 
     def split(self, expr: Expr) -> tuple[Expr, Tree]:
-        """Return (constant, core) with ``expr = constant*core``; the core is the tree of the part with variables.
+        """Return (constant, core) with ``expr = constant*core``: ``2*m*sin(x)`` gives 2 m and the tree of sin(x).
 
-        For ``2*m*sin(theta)`` these are ``2*m`` and the tree of ``sin(theta)``. The core is ONE if ``expr`` is
-        constant.
+        The core of a constant is ONE.
         """
         if expr not in self.memo:
             self.memo[expr] = self._split(expr)
@@ -95,23 +92,18 @@ class Gather:
         return S.One, ("call", name, tuple(self.whole(argument) for argument in expr.args))
 
     def whole(self, expr: Expr) -> Tree:
-        """Return the formula tree of the expression ``expr``.
-
-        The parts of a sum or product are handled as a constant factor and the rest (``split``), so that constants can
-        be computed once, outside the kernel; here both are multiplied again into one tree.
-        """
+        """Return the formula tree of an expression, in which parameters replace the constant factors."""
         sign, tree = self.scaled(*self.split(expr))
         return tree if sign > 0 else ("add", ((-1, tree),))
 
     def _distributed(self, ordered: Sequence[Expr]) -> list[Expr]:
-        """Return the terms of an expanded product of a constant and a sum, or an empty list for any other product.
-
-        For example, c*(a + b*x) is expanded to c*a + (c*b)*x, which has one operation less. A sum that may tend to
-        zero, such as 1 + tanh(u), is not expanded, because a rounding error proportional to c would remain.
-        """
+        """Return the terms of a constant times a sum, multiplied out; for any other product, an empty list."""
         sums = [argument for argument in ordered if self.is_variable(argument)]
+        # a sum that may tend to zero, such as 1 + tanh(u), stays: a rounding error proportional to the constant would
+        # remain
         if len(sums) != 1 or not sums[0].is_Add or sums[0].atoms(*LEVELLING):
             return []
+        # c*(a + b*x) becomes c*a + (c*b)*x, which has one operation less
         outer = Mul(*(argument for argument in ordered if argument is not sums[0]))
         return [outer * term for term in sums[0].args]
 
@@ -199,11 +191,8 @@ def _repeated(tree: Tree, count: int) -> Tree:
 
 
 def _oriented(value: Expr) -> tuple[int, Expr]:
-    """Return (sign, magnitude) of a constant, with the same magnitude for a and -a, so that one parameter serves both.
-
-    For example, (A - C)/A and (C - A)/A have the same magnitude. It need not be positive: the signs of A - C and C - A
-    are not known.
-    """
+    """Return (sign, magnitude) of a constant: (A - C)/A and (C - A)/A have equal magnitudes and opposite signs."""
+    # one parameter serves both; the magnitude need not be positive, as the sign of A - C is unknown
     sign, factors = 1, []
     for factor in Mul.make_args(value):
         base, power = factor.as_base_exp()
@@ -214,10 +203,7 @@ def _oriented(value: Expr) -> tuple[int, Expr]:
 
 
 def _signed_sum(terms: Sequence[tuple[int, Tree]]) -> tuple[int, Tree]:
-    """Return (sign, tree) of a sum of terms (sign, tree), with plus signs for most terms.
-
-    The sum ``-a - b`` gives -1 and the tree of ``a + b``.
-    """
+    """Return a sum of terms (sign, tree) as one (sign, tree) with few minus signs: -1, ``a + b`` for ``-a - b``."""
     if len(terms) == 1:
         return terms[0]
     sign = 1 if any(s > 0 for s, _ in terms) else -1

@@ -54,10 +54,7 @@ def to_node(expr: Expr) -> Node:
 
 
 def chain(mark: str, nodes: Sequence[Node]) -> Node:
-    """Return the tree of one operator applied from left to right.
-
-    The nodes a, b, c and ``mark = "+"`` give the tree of ``(a + b) + c``.
-    """
+    """Return the tree of one operator applied from left to right: ``(a + b) + c`` for the nodes a, b, c and ``"+"``."""
     result = nodes[0]
     for node in nodes[1:]:
         result = (mark, result, node)

@@ -1,11 +1,8 @@
 """Lowering of SymPy expressions to a straight-line program with few operations.
 
-A straight-line program consists of assignments: first temporaries (intermediate results), then outputs. Three exact
-steps lead to it. Parts that do not depend on time or state become constants, which are computed once per motion
-(:mod:`symrot.codegen.lowering.constants`). Common factors and sums are computed once
-(:mod:`symrot.codegen.lowering.common_factors`). Temporaries get names
-(:mod:`symrot.codegen.lowering.temporary_names`). The result depends only on the expressions, never on the order of a
-hash table.
+A straight-line program consists of assignments: first temporaries (intermediate results), then outputs. Formulas that
+depend on neither time nor state become constants, computed once per motion. Common factors and sums are computed once,
+and temporaries get names. The result depends only on the expressions, never on the order of a hash table.
 """
 
 from collections import Counter
@@ -32,25 +29,18 @@ ANONYMOUS = "#"
 
 @dataclass(frozen=True)
 class Lowered:
-    """A program, and the formulas of its parameters, which are constants that are computed once per motion.
-
-    ``parameters[k]`` is a pair (name of component k of the argument p, formula in terms of physical constants), for
-    example ``("p0", (A - C)/A)`` for the moments of inertia A and C.
-    """
+    """A program, and the formulas of its parameters (constants of a motion), such as ``("p0", (A - C)/A)``."""
 
     program: Program
+    # component k of the argument p: its name, and its formula of physical constants
     parameters: tuple[tuple[str, Node], ...]
 
 
 class _Writer:
-    """Writes the nodes of a :class:`Share` as assignments in order of computation.
-
-    A node becomes a temporary if it is used repeatedly, calls a function, or is in ``named`` (number of the node ->
-    name). ``roots`` are the numbers of the output nodes. Names of other temporaries follow when the program is
-    complete; until then they begin with ANONYMOUS.
-    """
+    """Writes the nodes of a :class:`Share` as assignments in order of computation."""
 
     def __init__(self, share: Share, roots: Sequence[int], named: dict[int, str]) -> None:
+        # roots: indices of the output nodes; named: index of a node -> name of its temporary
         self.nodes, self.named = share.nodes, dict(named)
         self.anonymous: list[str] = []  # temporaries that are named after the program is complete
         self.uses: Counter[int] = Counter()
@@ -76,18 +66,16 @@ class _Writer:
                 self._count(operand, seen)
 
     def node(self, index: int) -> Node:
-        """Return the formula of the node ``index``, or the symbol of the temporary that holds its value.
-
-        A node is assigned to a temporary if it is used repeatedly, calls a function or has a name in ``self.named``;
-        the first call for it appends (name, formula) to ``self.temporaries``.
-        """
+        """Return the formula of the node ``index``, or the symbol of the temporary that holds its value."""
         kind = self.nodes[index][0]
         if kind == "num":
             return ("number", self.nodes[index][1])
         if kind == "sym":
             return ("symbol", self.nodes[index][1])
+        # a temporary is a node that is used repeatedly, calls a function or has a name
         if index not in self.named and kind != "call" and self.uses[index] < 2:
             return self._formula(index)
+        # the first call appends the assignment
         if index not in self.written:
             formula = self._formula(index)
             if index not in self.named:
@@ -102,10 +90,7 @@ class _Writer:
         return bool(kind == "num" or (kind == "sym" and first.startswith(HOISTED)))
 
     def _is_sum(self, index: int) -> bool:
-        """Return whether a node is printed as a sum in brackets. In a product such a sum comes first: (A - B) x y.
-
-        A sum that is a temporary is printed as its name, without brackets.
-        """
+        """Return whether a node is printed as a sum in brackets; a temporary is printed as its name."""
         return bool(self.nodes[index][0] == "add" and self.uses[index] < 2 and index not in self.named)
 
     def _formula(self, index: int) -> Node:
@@ -113,6 +98,7 @@ class _Writer:
         if node[0] == "call":
             return ("call", node[1], tuple(self.node(argument) for argument in node[2]))
         if node[0] == "mul":
+            # constants first, then sums in brackets: (A - B) x y
             factors = sorted(node[1], key=lambda i: (not self._is_constant(i), not self._is_sum(i)))
             top = chain("*", [self.node(i) for i in factors] or [("number", Fraction(1))])
             return top if not node[2] else ("/", top, chain("*", [self.node(i) for i in node[2]]))
@@ -163,16 +149,14 @@ def _lowered(
     signature: Signature, outputs: Sequence[tuple[str, Expr]], definitions: Sequence[tuple[Symbol, Expr]],
     parameter_argument: str, flat: bool,
 ) -> tuple[Lowered, list[str]]:  # fmt: skip
-    """Return (lowered, names): the program with the formulas of its parameters, and its temporaries that need names.
+    """Return the program with its parameters' formulas, and the names of its temporaries that need descriptive names.
 
-    The arguments are those of :func:`lower`. If ``flat`` is true, a sum inside a sum, such as a + (b + c), becomes one
-    sum a + b + c; only after that are repeated parts given a name and computed once. :func:`lower` tries ``flat`` true
-    and false and returns the program with fewer operations. The names here are preliminary; :func:`lower` replaces them
-    by descriptive names.
+    The arguments are those of :func:`lower`, and ``flat``.
     """
     inputs = [name for a in signature.arguments if a.role == "in" for name, *_ in a.components]
     held = {symbol for _, expr in [*outputs, *definitions] for symbol in expr.free_symbols}
     defined = [symbol for symbol, _ in definitions]
+    # flat: a + (b + c) becomes a + b + c before repeated sums and products are extracted
     gather = Gather([symbol for symbol in held if str(symbol) in inputs or symbol in defined], flat)
     share, named = Share(), {}
     alias: dict[str, Tree] = {}
@@ -193,11 +177,7 @@ def _lowered(
 
 
 def _numbers(parameters: Iterable[tuple[str, Node]]) -> dict[str, Node]:
-    """Return the parameters, by name, whose formula contains only numbers, such as ``2*pi`` or ``sqrt(3)``.
-
-    They have no physical constants such as A. The C text prints such a parameter as a number; the name of a temporary
-    that contains it is built from the formula.
-    """
+    """Return the parameters, by name, whose formula contains only numbers, such as ``2*pi`` or ``sqrt(3)``."""
     return {name: formula for name, formula in parameters if names(formula) <= {"pi"}}
 
 
@@ -209,12 +189,8 @@ def _numbered(
     formulas: Sequence[Node],
     parameter_argument: str,
 ) -> Lowered:
-    """Return a program in which each constant is a parameter ``p0, p1, ..``, and the parameters' formulas.
-
-    The parameters are numbered by first use. ``hoisted`` maps each constant to its preliminary symbol in the
-    ``temporaries`` and ``formulas``; ``targets`` names the outputs, which the formulas compute. The parameters are
-    added to the signature as the argument ``parameter_argument``.
-    """
+    """Return a program in which each constant is a parameter ``p0, p1, ..``, and the parameters' formulas."""
+    # preliminary name of a constant (a value of hoisted) -> parameter, numbered by first use
     order: dict[str, str] = {}
     for node in [node for _, node in temporaries] + list(formulas):
         for name in _leaves(node):

@@ -31,19 +31,16 @@ def negative(node: Node) -> Node:
 
 
 def _turned(sign: int, node: Node) -> tuple[int, Node]:
-    """Return (sign, node) for the term ``sign * node`` of a sum, with a positive sign if that costs no operation.
-
-    A minus sign is moved into a difference among the factors: -(a - b)*c becomes +(b - a)*c. Without such a difference
-    the term is returned unchanged.
-    """
+    """Return a term (sign, node) of a sum with a plus sign if possible: -1, ``(a - b)*c`` gives 1, ``(b - a)*c``."""
+    # a term without a difference among its factors keeps its sign, as a change would cost an operation
     turned = _with_difference_turned(node) if sign < 0 else None
     return (sign, node) if turned is None else (1, turned)
 
 
 def _with_difference_turned(node: Node) -> Node | None:
-    """Return the negative of a product, with one difference among its factors reversed: (b - a)*c for (a - b)*c.
+    """Return ``-node`` by reversing a difference among its factors: ``(b - a)*c`` for ``(a - b)*c``.
 
-    Return None if no factor is a difference; then a negation would cost an operation.
+    None if it has none.
     """
     if node[0] == "-":
         return negative(node)

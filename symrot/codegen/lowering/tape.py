@@ -16,14 +16,11 @@ __all__ = ["Operation", "Tape", "tape_of"]
 
 
 class Operation(NamedTuple):
-    """One entry of a tape: an operation, a call, a number, or an input.
+    """One entry of a tape: an operation, a call, a number, or an input."""
 
-    ``kind`` is ``+ - * / neg``, the name of a function such as ``sin``, ``number`` or ``symbol``. ``operands`` are the
-    indices of earlier entries; ``value`` is the Fraction of a number or the name of a symbol.
-    """
-
+    # + - * / neg, the name of a function such as sin, number or symbol
     kind: str
-    operands: tuple[int, ...] = ()
+    operands: tuple[int, ...] = ()  # indices of earlier entries
     value: Any = None  # the Fraction of a number, the name of a symbol
 
 
@@ -74,16 +71,14 @@ class _Writer:
 
 
 def tape_of(program: Program, outputs: Sequence[str], more: Sequence[Node] = ()) -> Tape:
-    """Return the tape (list of single operations) of the named ``outputs`` of a program, and of the formulas ``more``.
-
-    The formulas ``more`` may contain inputs and outputs of the program; each becomes a further output of the tape.
-    """
+    """Return the tape (list of single operations) of named ``outputs`` of a program, and of the formulas ``more``."""
     writer = _Writer()
     formulas = dict(program.outputs)
     for name, node in program.temporaries:
         writer.names[name] = writer.read(node)
     places = [writer.read(formulas[name]) for name in outputs]
     if more:
+        # these formulas may contain inputs and outputs of the program; each is a further output of the tape
         writer.names |= {name: writer.read(node) for name, node in formulas.items()}
         places += [writer.read(node) for node in more]
     return _trimmed(Tape(tuple(writer.known), tuple(places)))

@@ -1,9 +1,8 @@
-"""Descriptive names of temporaries: sin_theta, q1_q2, omega_1_sq, two_q3_sq, A_minus_B, inv_det.
+"""Descriptive names of temporaries (intermediate results): sin_theta, q1_q2, omega_1_sq, A_minus_B, inv_det.
 
-A temporary is an intermediate result of a straight-line program. A product of inputs is named by its factors, a small
-sum by its terms, a call by the function and its argument. If such a name would be too long, the temporary is named
-after the first output that needs it: ``domega_1_term_2`` is the second such temporary of domega_1. A name depends only
-on the program and is a valid name in C, C++ and Python.
+A product is named by its factors, a small sum by its terms, a call by the function and its argument. Otherwise the
+first output that needs the temporary names it, as in ``domega_1_term_2``. A name depends only on the program and is
+valid in C, C++ and Python.
 """
 
 from collections.abc import Collection, Iterable, Mapping
@@ -29,11 +28,7 @@ RESERVED = frozenset({"size_t", "ptrdiff_t", "wchar_t", "time_t", "and_eq", "or_
 
 @dataclass(frozen=True)
 class _Product:
-    """A product from which a name is built: a coefficient times powers of symbols, in the order in which they appear.
-
-    Divisors have negative powers: ``2*a/b^2`` has the coefficient 2 and the powers (a, 1), (b, -2), its name is
-    ``two_a_over_b_sq``.
-    """
+    """A product from which a name is built: ``2*a/b^2`` has the coefficient 2 and the powers (a, 1), (b, -2)."""
 
     coefficient: Fraction
     powers: tuple[tuple[str, int], ...]
@@ -47,14 +42,14 @@ class _Product:
         return _Product(coefficient, tuple((symbol, power) for symbol, power in powers.items() if power))
 
     def name(self) -> str | None:
-        """Return a name for a temporary with this value: ``two_q1_q2``, ``inv_sin_theta`` or ``A_over_C``.
+        """Return a name for a temporary with this value, such as ``two_q1_q2`` or ``inv_sin_theta``.
 
-        None is returned for a mere number, and for a product whose coefficient, such as 7, has no word in the table
-        WORDS.
+        None if it has no name.
         """
         size = abs(self.coefficient)
         divisor = [str(size.denominator)] if size.numerator == 1 and size not in WORDS else []
         word = "" if divisor else WORDS.get(size)
+        # a mere number, or a coefficient such as 7 without a word in WORDS
         if word is None or (not any(power > 0 for _, power in self.powers) and (divisor or not self.powers)):
             return None
         over = [f"{symbol}{POWERS.get(power, f'_pow_{power}')}" for symbol, power in self.powers if power > 0]
@@ -133,14 +128,12 @@ def _first_outputs(program: Program) -> dict[str, str]:
 
 
 def _product_of(node: Node, products: Mapping[str, _Product]) -> _Product | None:
-    """Return a formula as a product of powers of symbols, or None if it is not one, as for a sum or a call.
-
-    ``products`` holds the temporaries that are products themselves; they are replaced by their factors.
-    """
+    """Return a formula as a product of powers of symbols, or None if it is not one, as for a sum or a call."""
     kind = node[0]
     if kind == "number":
         return _Product(node[1], ())
     if kind == "symbol":
+        # a temporary that is itself a product is replaced by its factors
         return products.get(node[1], _Product(Fraction(1), ((node[1], 1),)))
     if kind == "neg":
         inner = _product_of(node[1], products)
@@ -154,11 +147,8 @@ def _product_of(node: Node, products: Mapping[str, _Product]) -> _Product | None
 
 
 def _structural_name(node: Node, product: _Product | None, products: Mapping[str, _Product]) -> str | None:
-    """Return a name composed of the names in a formula, such as ``sin_theta`` or ``A_minus_B``; None if none is short.
-
-    ``product`` is the formula as a product, or None if it is not one; ``products`` holds the products among the
-    temporaries.
-    """
+    """Return a name composed of the names in a formula: ``sin_theta``, ``A_minus_B``; None if it would be too long."""
+    # product: the formula as a product, or None if it is not one
     if product is not None:
         return product.name()
     if node[0] in ("+", "-"):

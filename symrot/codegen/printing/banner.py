@@ -26,29 +26,21 @@ CONTRACT = (  # lines in the head of a C file: place of the certificate, its ass
 
 @dataclass(frozen=True)
 class Description:
-    """Texts in the head comment of an emitted file that do not follow from its program.
+    """Texts in the head comment of an emitted file that do not follow from its program."""
 
-    ``title`` says what the kernel computes, ``domain`` for which inputs it is valid, ``derivation`` which page derives
-    it, ``command`` which command prints the file. ``contract`` holds further lines as pairs (heading, text).
-    """
-
-    title: str
-    domain: str
-    derivation: str
-    command: str
+    title: str  # what the kernel computes
+    domain: str  # for which inputs it is valid
+    derivation: str  # the page that derives it
+    command: str  # the command that prints the file
     convention: str = "body axes; quaternion scalar first, Hamilton, body to space (symrot conventions)"
     contract: tuple[tuple[str, str], ...] = ()  # further lines (heading, text); {kernel} is its name
 
 
 def _harmless(text: str) -> str:
-    """Return a text that is safe inside a comment or docstring: no mark that ends it, no trigraph, ASCII alone.
-
-    Titles and names of scenes may contain any characters. Characters that are not printable ASCII are written as
-    ``<U+00E9>``: the checker of certified C accepts only ASCII, and compilers warn about characters that reverse the
-    direction of a line.
-    """
+    """Return a text that is safe inside a comment or docstring: printable ASCII without trigraphs and end marks."""
     text = text.replace("\\", "/").replace('"""', "'''")
     text = re.sub(r"(?<=\*)(?=/)|(?<=/)(?=[*/])|(?<=\?)(?=\?)", " ", text)  # breaks ends of comments and trigraphs
+    # the checker of certified C accepts only ASCII; compilers warn about characters that reverse a line
     return re.sub(r"[^ -~]", lambda letter: f"<U+{ord(letter[0]):04X}>", text)
 
 
@@ -60,13 +52,10 @@ def cost(program: Program) -> str:
 
 
 def _rows(argument: Argument) -> list[tuple[str, str, str, str]]:
-    """Return the rows of the table of arguments for one argument, each as (argument, components, unit, meaning).
-
-    Components with the same unit and meaning share a row. A constant of a scene has a row of its own, in which the
-    meaning is its formula and value.
-    """
+    """Return the rows of the table of arguments for one argument, each as (argument, components, unit, meaning)."""
     size = "" if argument.is_scalar else f"[{argument.size}]"
     heads = chain([f"{argument.role:<4} {argument.name}{size}"], repeat(""))
+    # components with equal unit and meaning share a row; the meaning of a scene's constant is its formula and value
     groups = groupby(argument.components, key=lambda component: component[1:])
     return [
         (head, _listed([name for name, *_ in components]), unit, meaning)

@@ -47,15 +47,11 @@ SPAN = "SYMROT_SPAN"  # samples in a block of a batch: data that one loop has re
 
 @dataclass(frozen=True)
 class Real:
-    """A floating-point type of C, with the names and literals that C code for it contains.
+    """A floating-point type of C, with the names and literals that C code for it contains."""
 
-    ``type`` is its name, ``suffix`` that of its functions and literals (as in ``sinf``), ``precision`` its format, such
-    as ``binary64``.
-    """
-
-    type: str
-    suffix: str
-    precision: str
+    type: str  # its name
+    suffix: str  # of its functions and literals, as in sinf
+    precision: str  # its format, such as binary64
 
     def literal(self, value: Fraction) -> str:
         """Return the shortest C literal, such as ``0.1`` or ``0.1f``, of this type's number nearest to ``value``."""
@@ -71,10 +67,8 @@ class Real:
 
     @cached_property
     def near_functions(self) -> dict[str, str]:
-        """The C names of all functions that batches call: those of ``symrot_math.h`` for sine, cosine and arc tangent.
-
-        They are valid for moderate angles only; functions without such a version keep their names.
-        """
+        """The C names of all functions that batches call: ``sin`` is ``symrot_sin`` of ``symrot_math.h``."""
+        # valid for moderate angles only
         own = {name: f"symrot_near_{name}{self.suffix}" for name in NEAR}
         shared = {"sin": "sin", "cos": "cos", "atan2": "atan2", "select_ge": "choose_ge"}
         return self.functions | own | {name: f"symrot_{other}{self.suffix}" for name, other in shared.items()}
@@ -102,11 +96,11 @@ def _as_float(value: float) -> float:
 
 
 def c_expression(node: Node, real: Real = DOUBLE, near: bool = False) -> str:
-    """Return a formula as a C expression, with brackets that preserve the order of evaluation.
+    """Return a formula as a C expression of type ``real``, with brackets that preserve the order of evaluation.
 
-    If ``near`` is true, calls such as sin become functions of ``symrot_math.h``, which compilers vectorise but which
-    are valid for moderate angles only; otherwise functions of <math.h>. ``real`` is the type of all numbers.
+    With ``near``, it calls ``symrot_math.h``.
     """
+    # compilers vectorise the near functions, which are valid for moderate angles only
     return text(rename(node, functions=real.near_functions if near else real.functions), 0, real.literal)
 
 
@@ -138,7 +132,7 @@ def _used(program: Program) -> set[str]:
 def _statement(head: str, formula: str, indent: str, mark: str = "=") -> list[str]:
     """Return the lines of the C statement ``head = formula;``, broken after operators if one line is too long.
 
-    ``mark`` is the sign between head and formula: ``=`` or, for example, ``+=``.
+    ``mark`` may be ``+=``.
     """
     line = f"{indent}{head} {mark} {formula};"
     if len(line) <= WIDTH + 10:
@@ -159,14 +153,8 @@ def _index_in_batch(index: int) -> str:
 def _body(
     program: Program, index_of: Callable[[int], str], indent: str, real: Real, near: bool = False, late: bool = False
 ) -> list[str]:  # fmt: skip
-    """Return the statements of a function; each value is computed just before the first output that needs it.
-
-    This order keeps few values in use at a time, so that they fit into registers. ``index_of`` returns the C index of a
-    component in its array. If ``near`` is true, functions such as sin are called in versions without branches, for
-    arguments in a limited range. If ``late`` is false, each value is assigned to its output element as soon as it is
-    computed. If ``late`` is true (see :func:`_stores_last`), the outputs are computed in the order of
-    :func:`_computed_in_turn`, each value is held in a variable, and all are assigned at the end.
-    """
+    """Return the statements of a function; each value is computed just before the first output that needs it."""
+    # this order keeps few values in use at a time, so that they fit into registers
     results = dict(program.outputs)
     lines: list[str] = []
     stores: dict[str, list[str]] = {a.name: [] for a in program.signature.arguments}
@@ -184,6 +172,7 @@ def _body(
         statements = _statement(f"const {real.type} {name}", c_expression(node, real, near), indent)
         waiting[name] = (names(node), statements)
     outputs = [a for a in program.signature.arguments if a.role == "out"]
+    # late: results are held in variables and assigned at the end, see _stores_last
     for argument in _computed_in_turn(program) if late else outputs:
         due = _due(set().union(*(names(results[name]) for name, *_ in argument.components)), waiting)
         lines += [*([""] if due and lines else []), *due, *([""] if due else [])]
@@ -200,25 +189,20 @@ def _body(
 
 
 def _computed_in_turn(program: Program) -> list[Argument]:
-    """Return the output arguments in order of computation, for a loop that stores its results last.
-
-    The output with the fewest inputs comes first; if all inputs and results fit into registers, the order is unchanged.
-    Measured with gcc 12 on Zen 3 (geometric mean over n = 512, 1000, 1024, 4096, 10^6), the new order reduces the time
-    by the factor 0.88 for inertia_tetrahedron, 0.95 for heavy_top (1.03 at 1000, 0.97 at 10^6), and 0.98 for
-    heavy_top_symmetric. For two kernels with fewer values, inertia_triangular_prism and inertia_frustum, the factor
-    would be 1.06.
-    """
+    """Return the output arguments in order of computation, for a loop that stores its results last."""
     outputs = [a for a in program.signature.arguments if a.role == "out"]
+    # all inputs and results fit into registers
     if _streams(program) <= REGISTERS:
         return outputs
+    # Fewest inputs first. Measured with gcc 12 on Zen 3 (geometric mean over n = 512, 1000, 1024, 4096, 10^6), this
+    # multiplies the time by 0.88 for inertia_tetrahedron, by 0.95 for heavy_top (1.03 at 1000, 0.97 at 10^6) and by
+    # 0.98 for heavy_top_symmetric. For two kernels with fewer values, inertia_triangular_prism and inertia_frustum, the
+    # factor would be 1.06.
     return sorted(outputs, key=lambda a: _streams(_part(program, a)) - a.size)
 
 
 def _reserved(program: Program, real: Real) -> set[str]:
-    """Return the names that the C code of a batch already uses for arguments, temporaries, functions and loops.
-
-    A result that is stored in a new variable must have another name.
-    """
+    """Return the names that the C code of a batch already uses for arguments, temporaries, functions and loops."""
     arguments = program.signature.arguments
     inputs = {name for a in arguments if a.role == "in" for name, *_ in a.components}
     functions = {*real.functions.values(), *real.near_functions.values()}
@@ -227,11 +211,8 @@ def _reserved(program: Program, real: Real) -> set[str]:
 
 
 def _due(needed: set[str], waiting: dict[str, tuple[set[str], list[str]]]) -> list[str]:
-    """Remove from ``waiting`` the statements that compute the values ``needed``, and return their lines in order.
-
-    ``waiting`` maps each value that is not yet computed to (names that its statement needs, lines of the statement).
-    The statements on which these statements depend are included.
-    """
+    """Remove from ``waiting`` the statements that compute the values ``needed``, and return their lines in order."""
+    # waiting: value -> (names that its statement needs, lines); statements that they need are due too
     for name, (of, _) in reversed(waiting.items()):
         if name in needed:
             needed = needed | of
@@ -272,31 +253,25 @@ def c_function(program: Program, qualifier: str = "", real: Real = DOUBLE) -> st
 
 
 def _own_function(name: str, real: Real) -> list[str]:
-    """Return the C definition of a function, such as sinc, that kernels call and <math.h> does not contain.
-
-    After a comparison, the C function evaluates one of two formulas: the limit or a series near x = 0, or a quotient
-    such as sin(x)/x elsewhere. Functions for one sample call it; batch loops call that of :func:`_near_function`.
-    """
+    """Return the C definition of a function, such as sinc, that kernels call and <math.h> does not contain."""
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
     arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
     lines = [_head(real.functions[name], arguments, "static inline ", real.type), "{"]
     for temporary, node in temporaries:
         lines += _statement(f"const {real.type} {temporary}", c_expression(node, real), "    ")
+    # near x = 0 the limit or a series, elsewhere a quotient such as sin(x)/x
     condition = f"{c_expression(left, real)} {relation} {c_expression(right, real)}"
     return [*lines, f"    return {condition} ? {c_expression(then, real)} : {c_expression(other, real)};", "}", ""]
 
 
 def _near_function(name: str, real: Real) -> list[str]:
-    """Return the C definition of a function that <math.h> lacks, such as sinc, without branches, for batch loops.
-
-    The C function evaluates both formulas, the limit or series near x = 0 and the quotient such as sin(x)/x, and takes
-    one of the two results by a bit mask from the comparison, so that compilers can vectorise the loop.
-    """
+    """Return the C definition of a function that <math.h> lacks, such as sinc, without branches, for batch loops."""
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, real.precision)
     arguments = ", ".join(f"{real.type} {parameter}" for parameter in parameters)
     lines = [_head(real.near_functions[name], arguments, "static inline ", real.type), "{"]
     for temporary, node in temporaries:
         lines += _statement(f"const {real.type} {temporary}", c_expression(node, real, True), "    ")
+    # both formulas are evaluated; a bit mask selects one, so that compilers can vectorise the loop
     operands = ", ".join(c_expression(node, real, True) for node in (left, right, then, other))
     return [*lines, f"    return symrot_select_{RELATIONS[relation]}{real.suffix}({operands});", "}", ""]
 
@@ -313,11 +288,7 @@ def _batch_arguments(program: Program, real: Real) -> str:
 
 
 def _batch(program: Program, real: Real, near: bool) -> list[str]:
-    """Return the C text of the batch function, which computes n samples.
-
-    With ``near``, functions of ``symrot_math.h`` are called; a block of samples that contains an angle out of their
-    range is computed again with the functions of <math.h>.
-    """
+    """Return the C text of the batch function, which computes n samples."""
     head = [
         _head(f"{c_name(program.signature.name, real)}_batch", _batch_arguments(program, real)),
         "{",
@@ -338,6 +309,7 @@ def _batch(program: Program, real: Real, near: bool) -> list[str]:
     late = _stores_last(program)
     if not angles:
         return [*head, *_loop(of_sample, real, ("0", "n"), loaded, "    ", late, INDEPENDENT, near), "}"]
+    # a block of samples with an angle out of the range of symrot_math.h is computed again with <math.h>
     far = " + ".join(f"symrot_far{real.suffix}({c_expression(angle, real, True)})" for angle in angles)
     return [
         *head,
@@ -362,20 +334,17 @@ def _blocks(size: str) -> list[str]:
 
 
 def _split(program: Program) -> list[Program]:
-    """Return the programs for which a batch gets separate loops.
-
-    This is one program for each output argument, or the whole program alone. Separate loops are faster if the whole
-    program accesses more arrays than processors prefetch and each part does not, provided that no operation is done
-    twice and the number of accessed arrays grows by at most a fifth. Programs with sines are not split, because sines
-    take longer than memory access.
-    """
+    """Return the programs for which a batch gets separate loops: one for each output argument, or the whole program."""
     whole = _streams(program)
     scalars = any(a.is_scalar for a in program.signature.arguments if a.role == "in")
+    # processors prefetch all arrays, or sines take longer than memory access
     if whole <= STREAMS or scalars or turning_arguments(program):
         return [program]
     parts = [_part(program, a) for a in program.signature.arguments if a.role == "out"]
     apart = [_streams(part) for part in parts]
     again = sum(len(part.temporaries) for part in parts) > len(program.temporaries)
+    # separate loops are slower if operations are done twice, if they still access too many arrays, or over a fifth more
+    # arrays than the whole program
     return [program] if again or max(apart) > STREAMS or 5 * sum(apart) > 6 * whole else parts
 
 
@@ -401,15 +370,12 @@ def _streams(program: Program) -> int:
 
 
 def _stores_last(program: Program) -> bool:
-    """Return whether the loop of a batch computes all results before it stores the first one.
-
-    Compilers load values again after a store. If n is a multiple of 512, the arrays of all components fall into the
-    same set of the first cache, which holds WAYS of them; with more arrays, the values are then no longer in the cache.
-    So the result is true for more than WAYS arrays. Measured with gcc 12 on Zen 3, for n a multiple of 512: time with
-    late stores divided by time without is about 0.9 (heavy_top 0.7, heavy_top_symmetric 1.1); for other n it is 1. For
-    12 arrays (quaternion_product) it would be 1.15 at n = 1000, since the loop would need 26 loads per iteration
-    instead of 22.
-    """
+    """Return whether the loop of a batch computes all results before it stores the first one."""
+    # Compilers load values again after a store. If n is a multiple of 512, the arrays of all components fall into one
+    # set of the first cache, which holds WAYS of them: with more, the values are no longer in it. Measured with gcc 12
+    # on Zen 3 for such n, late stores multiply the time by about 0.9 (heavy_top 0.7, heavy_top_symmetric 1.1), for
+    # other n by 1. For 12 arrays (quaternion_product) it would be 1.15 at n = 1000: 26 loads per iteration instead of
+    # 22.
     return _streams(program) > WAYS
 
 

@@ -1,11 +1,7 @@
 """C code of event functions, whose zeros are located: values with bounds of their rounding errors, and enclosures.
 
-The bound is computed together with the value, operation by operation, to first order. If a value is smaller than its
-bound, its sign is not known; so the bound distinguishes a curve that touches zero from a curve that only comes close to
-zero.
-
-Enclosures (real intervals and complex discs) contain all values of the formula over an interval of time. They prove
-where there is no zero, and they also cover pulses between the points at which the formula is evaluated.
+If a value is smaller than its bound, its sign is unknown. Enclosures (real intervals and complex discs) contain all
+values of the formula over an interval of time, and so prove where there is no zero.
 
 The code is placed between :file:`event_enclosures.h` and :file:`events.c`.
 """
@@ -101,28 +97,23 @@ def _switch(
     ends: Sequence[str],
     kind: str = "double",
 ) -> list[str]:
-    """Return the lines of a C function body: ``switch (which)`` with one case per event function.
-
-    Case k contains the definitions ``texts[k]`` of type ``kind``, then the lines ``ends``, in which ``{last}`` stands
-    for the index of the result of ``tapes[k]``. ``head`` comes first. The caller adds the return for an unknown event.
-    """
+    """Return the lines of a C function body: ``switch (which)`` with one case per event function."""
     lines = ["{", "    (void)t;", "    (void)y;", "    (void)p;", *head, "    switch (which) {"]
+    # case k: the definitions texts[k] of type kind, then ends, where {last} is the index of the result of tapes[k]
     for number, (tape, statements) in enumerate(zip(tapes, texts, strict=True)):
         lines += [f"    case {number}: {{", *(f"        const {kind} {text};" for text in statements)]
         lines += [*(f"        {end.format(last=tape.outputs[0])}" for end in ends), "    }"]
+    # the caller adds the return for an unknown event
     return [*lines, "    }"]
 
 
 def _span(tape: Tape, states: Sequence[str], edges: Sequence[int]) -> tuple[int, int]:
-    """Return (first, last + 1), the range of indices of the ``states`` on which the formula of a tape depends.
-
-    The range is extended to whole blocks, groups of states (bounded by ``edges``) that share one error, such as the
-    quaternion. It is (0, 0) if the formula depends on no state.
-    """
+    """Return (first, last + 1), the range of indices of the ``states`` on which the formula of a tape depends."""
     used = {op.value for op in tape.operations if op.kind == "symbol"}
     places = [i for i, name in enumerate(states) if name in used]
     if not places:
         return 0, 0
+    # extended to whole blocks of states that share one error, such as the quaternion
     return max(edge for edge in edges if edge <= places[0]), min(edge for edge in edges if edge > places[-1])
 
 
@@ -135,17 +126,15 @@ def _largest(terms: Sequence[str]) -> str:
 
 
 def _statements(index: int, op: Operation, places: dict[str, str], known: dict[str, str]) -> tuple[str, str]:
-    """Return two C definitions for operation ``index`` of a tape: its value ``v3``, and the bound ``e3`` of its error.
-
-    ``places`` maps inputs to C, such as ``y[2]``; ``known`` maps those inputs whose error is known to the C expression
-    of the error. Other inputs have the rounding error of one operation.
-    """
-    v, e = f"v{index}", f"e{index}"
+    """Return two C definitions for operation ``index`` of a tape: ``v3``, its value, and ``e3``, the error bound."""
+    v, e = f"v{index}", f"e{index}"  # errors to first order
     values, errors = [f"v{i}" for i in op.operands], [f"e{i}" for i in op.operands]
     own = f"SYMROT_ROUNDING*fabs({v})"
     if op.kind == "number":
         return f"{v} = {c_expression(('number', op.value))}", f"{e} = {'0.0' if float(op.value) == op.value else own}"
     if op.kind == "symbol":
+        # places: input -> C, such as y[2]; known: state -> C text of its error; other inputs have the error of one
+        # rounding
         return f"{v} = {places[op.value]}", f"{e} = {known.get(op.value, own)}"
     if op.kind == "neg":
         return f"{v} = -{values[0]}", f"{e} = {errors[0]}"
@@ -167,12 +156,9 @@ def _statements(index: int, op: Operation, places: dict[str, str], known: dict[s
 
 
 def _enclosed(kind: str, around: str, op: Operation, places: dict[str, str], known: dict[str, str]) -> str:
-    """Return the C expression for the enclosure of one operation: a call of a function of :file:`event_enclosures.h`.
-
-    ``kind`` is the word for the type of enclosure in names of C functions, ``around`` the C function that makes an
-    enclosure from a centre and a radius. ``places`` maps inputs to C expressions; ``known`` maps each state to the C
-    expression of the error of its value.
-    """
+    """Return the C expression for the enclosure of one operation: a call of a function of event_enclosures.h."""
+    # around: the C function that makes an enclosure from a centre and a radius; places: input -> C; known: state -> C
+    # text of the error of its value
     if op.kind == "number":
         return f"symrot_{kind}_point({c_expression(('number', op.value))})"
     if op.kind == "symbol":

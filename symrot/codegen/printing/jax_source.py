@@ -44,10 +44,8 @@ def _expression(node: Node) -> str:
 
 
 def _needed(program: Program) -> list[str]:
-    """Return the functions, such as sinc, that JAX lacks and the text of a program must define.
-
-    They are those that the program calls, and those that occur in their derivatives.
-    """
+    """Return the functions, such as sinc, that JAX lacks and the text of a program must define."""
+    # the called functions, and the functions in their derivatives
     needed = dict.fromkeys(called(program))
     for name in SLOPES:  # each is before its derivative
         if name in needed:
@@ -56,13 +54,10 @@ def _needed(program: Program) -> list[str]:
 
 
 def _own_function(name: str) -> list[str]:
-    """Return the definition of a function, such as sinc, that JAX lacks.
-
-    If SLOPES has a formula of its derivative, the definition tells JAX this formula, as ``custom_jvp``; otherwise JAX
-    differentiates the definition itself.
-    """
+    """Return the definition of a function, such as sinc, that JAX lacks."""
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, "binary64")
     condition = f"{_expression(left)} {relation} {_expression(right)}"
+    # custom_jvp tells JAX the formula of the derivative; without one, JAX differentiates the definition
     slope = SLOPES.get(name)
     return [
         "", "", *(["@jax.custom_jvp"] if slope else []), f"def _{name}({', '.join(parameters)}):",
@@ -79,8 +74,7 @@ def _unpacked(argument: Argument, used: set[str]) -> list[str]:
 def jax_source(program: Program, description: Description) -> str:
     """Return the text of a Python module with one function; the same program gives the same bytes.
 
-    The function takes the input arguments in order and returns the output arrays, each of shape (size,). It is pure:
-    ``jax.jit``, ``jax.vmap`` and derivatives take it as it is.
+    It returns arrays of shape (size,).
     """
     program = with_safe_names(program, RESERVED)
     inputs = [a for a in program.signature.arguments if a.role == "in" and a.size]

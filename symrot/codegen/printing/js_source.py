@@ -108,7 +108,7 @@ def _called(program: Program) -> list[str]:
 def js_source(program: Program, description: Description) -> str:
     """Return the text of a JavaScript module that exports one function; the same program gives the same bytes.
 
-    The function takes the input arguments, then the output arguments: arrays that it fills. It returns nothing.
+    The function fills its output arrays.
     """
     head = banner(program, description, "/*", " *", " */")
     return "\n".join([*head, "", *js_functions(program), *js_function(program, "export ")]) + "\n"

@@ -40,36 +40,24 @@ def _calls(program: Program) -> Iterator[tuple[str, tuple[Node, ...]]]:
 
 
 def turning_arguments(program: Program) -> list[Node]:
-    """Return the formulas of all angles whose sine or cosine a program computes, each once.
-
-    The argument of a function that calls sine or cosine, such as sinc, counts too. Batches test whether these angles
-    are in the range of ``symrot_math.h``.
-    """
+    """Return the formulas of all angles whose sine or cosine a program computes, each once."""
+    # sinc and similar functions call sine or cosine of their argument too
     return list(dict.fromkeys(arguments[0] for name, arguments in _calls(program) if name in ("sin", "cos", *TURNING)))
 
 
 def has_branch_free_calls(program: Program) -> bool:
-    """Return whether a program calls a function, such as sin, that ``symrot_math.h`` has without branches.
-
-    The C file of such a program includes that header for its batch loops, which compilers can then vectorise.
-    """
+    """Return whether a program calls a function, such as sin, that ``symrot_math.h`` has without branches."""
     return any(name in ("sin", "cos", "atan2", "select_ge", *NEAR) for name, _ in _calls(program))
 
 
 def called(program: Program) -> list[str]:
-    """Return the names of the functions, such as sinc, that a program calls and <math.h> does not contain.
-
-    The emitted file must define them. They are in the order of the table :data:`symrot.kernels.removable.FUNCTIONS`.
-    """
+    """Return the names of the functions, such as sinc, that a program calls and <math.h> does not contain."""
     used = {name for name, _ in _calls(program)}
     return [name for name in FUNCTIONS if name in used and (name in _CHOICES or name in REMOVABLE)]
 
 
 def series(coefficients: Iterable[Fraction], variable: str) -> Node:
-    """Return the formula of a polynomial in the symbol ``variable`` by Horner's rule, such as ``a + x*(b + x*c)``.
-
-    The ``coefficients`` begin with the lowest power.
-    """
+    """Return the polynomial with ``coefficients``, lowest power first, by Horner's rule: ``a + x*(b + x*c)``."""
     first, *rest = reversed(tuple(coefficients))
     node: Node = ("number", first)
     for coefficient in rest:
@@ -80,9 +68,7 @@ def series(coefficients: Iterable[Fraction], variable: str) -> Node:
 def own_function(name: str, precision: str) -> tuple[tuple[str, ...], list[Statement], Choice]:
     """Return the definition of a function that <math.h> lacks, such as sinc, as (parameters, temporaries, choice).
 
-    ``choice`` is (relation, left, right, then, else): the function has the value ``then`` if the relation between
-    ``left`` and ``right`` holds, otherwise ``else``. These are, for example, a Taylor series near zero and a quotient.
-    ``precision`` determines the number of Taylor coefficients.
+    ``choice`` is (relation, left, right, then, else).
     """
     if name in _CHOICES:
         parameters, choice = _CHOICES[name]
@@ -95,4 +81,5 @@ def _removable(which: Removable, precision: str) -> tuple[tuple[str, ...], list[
     taylor = ("taylor", series(which.coefficients(precision), "t"))
     direct = ("/", ("/", parse(which.scaled), _X), _X)
     choice = ("<", ("symbol", "t"), ("number", which.split), ("symbol", "taylor"), direct)
+    # a Taylor series near zero, its length determined by the precision; elsewhere a quotient
     return ("x",), [square, taylor], choice

@@ -1,16 +1,8 @@
-"""The file ``symrot_math.h``: sine, cosine and arc tangent without branches, in double and float, for batches.
+"""The file ``symrot_math.h``: sine, cosine and arc tangent without branches, so that compilers vectorise batches.
 
-Compilers can vectorise such functions. The nearest multiple of pi/2 is subtracted from the angle, in parts with so few
-bits that each product is exact, with and without fused operations (Cody and Waite, Software Manual for the Elementary
-Functions, 1980). Sine and cosine of the remainder are polynomials; bits of the multiple select the function and its
-sign. The arc tangent is computed from a quotient z of at most 1/2: the smaller coordinate divided by the larger, or
-their difference divided by their sum. The rounding error of the quotient is computed exactly from factors of half
-length and added. The coefficients of the polynomials are computed here, in fractions, by interpolation of the exact
-series at Chebyshev points.
-
+An argument is reduced, and polynomials approximate the function; their coefficients are computed here, in fractions.
 The error is at most 1 unit in the last place, for sine and cosine if ``|x|`` is at most ``FAR``. It is measured by
-``python -m symrot.bench.ulps`` and, for every float and all multiples of pi/2, by tests/kernels/test_in_c.py
-(tests/reference/sine_harness.c).
+``python -m symrot.bench.ulps`` and tests/kernels/test_in_c.py (tests/reference/sine_harness.c).
 """
 
 from fractions import Fraction
@@ -37,11 +29,8 @@ _RAISED = {"binary64": (900, 200), "binary32": (90, 40)}  # a quotient below 2^-
 
 @cache
 def tail_coefficients(first: int, count: int) -> tuple[Fraction, ...]:
-    """Return the coefficients, lowest power first, of the polynomial in t = x^2 for the tail of sine or cosine.
-
-    The tail is the series of sine (``first = 3``) or cosine (``first = 4``) from the term ``x^first/first!`` on,
-    divided by ``x^first``.
-    """
+    """Return the coefficients, lowest power first, of the polynomial in t = x^2 for the tail of sine or cosine."""
+    # the series of sine (first = 3) or cosine (first = 4) from the term x^first/first! on, divided by x^first
     sign = -1 if first == 3 else 1
     return _nearest([Fraction(sign * (-1) ** k, factorial(first + 2 * k)) for k in range(_TERMS)], _SQUARE, count)
 
@@ -53,11 +42,8 @@ def _arc_coefficients(count: int) -> tuple[Fraction, ...]:
 
 
 def _nearest(series: list[Fraction], largest: Fraction, count: int) -> tuple[Fraction, ...]:
-    """Return ``count`` coefficients of a polynomial that approximates ``series`` for 0 <= t <= ``largest``.
-
-    ``series`` holds the coefficients of a power series. The largest value of |t*(series - polynomial)| is about as
-    small as possible for this number of coefficients. The lowest power comes first.
-    """
+    """Return ``count`` coefficients of a polynomial that approximates the power series ``series`` up to ``largest``."""
+    # interpolation at Chebyshev points makes the largest |t*(series - polynomial)| about as small as possible
     # zeros of a Chebyshev polynomial whose last zero is moved to t = 0, because the error is weighted with t
     zeros = [Fraction(round(cos(pi * (2 * k + 1) / (2 * count + 2)) * 2**20), 2**20) for k in range(count + 1)]
     points = [largest * (zero - zeros[-1]) / (1 - zeros[-1]) for zero in zeros[:-1]]
@@ -74,13 +60,13 @@ def _nearest(series: list[Fraction], largest: Fraction, count: int) -> tuple[Fra
 
 
 def quarter_turn_parts(precision: str) -> list[Fraction]:
-    """Return the parts of pi/2 that are subtracted from an angle one after the other: numbers whose sum is pi/2.
+    """Return numbers whose sum is pi/2, which are subtracted from an angle one after the other.
 
-    All parts have so few bits that their products with the number of quarter turns are exact, except the last part,
-    which is the rest. ``precision`` is ``"binary64"`` (double) or ``"binary32"`` (float).
+    ``precision`` is ``"binary64"`` or ``"binary32"``.
     """
     rest, parts = PI / 2, []
     for bits in _PARTS[precision]:
+        # so few bits that the product with the number of quarter turns is exact
         parts.append(_leading(rest, bits))
         rest -= parts[-1]
     return [*parts, rest]
@@ -118,11 +104,10 @@ def _wrapped(head: str, formula: str) -> list[str]:
 
 
 def _reduction(real: Real) -> list[str]:
-    """Return the C statements that reduce an angle x: they subtract the nearest multiple of pi/2.
-
-    They define the remainder as a sum ``high + low``, its square t, and the multiple, whose last bits select the
-    quadrant.
-    """
+    """Return the C statements that reduce an angle x: they subtract the nearest multiple of pi/2."""
+    # Cody and Waite, Software Manual for the Elementary Functions, 1980: the products with all numbers but the last are
+    # exact, with and without fused operations. The remainder is high + low, its square t; the last bits of quarter
+    # select the quadrant.
     parts = [real.literal(part) for part in quarter_turn_parts(real.precision)]
     digits = _DIGITS[real.precision]
     lines = [
@@ -228,6 +213,8 @@ def _arc(real: Real) -> list[str]:
     def number(value: int | Fraction) -> str:
         return real.literal(Fraction(value))
 
+    # the quotient z is at most 1/2: smaller by larger coordinate, or their difference by their sum; its rounding error
+    # is computed exactly from factors of half length and added
     eighth = _leading(PI / 4, _DIGITS[real.precision] - 3)
     return [
         "/* the angle of (x, y): atan2(y, x) */",

@@ -28,11 +28,7 @@ _NAMES["copysign"] = "np.copysign"
 
 
 def _own_function(name: str) -> list[str]:
-    """Return the Python definition of a function, such as sinc, that NumPy lacks.
-
-    It has two formulas: the limit or a series near x = 0, and a quotient such as sin(x)/x elsewhere. Both are evaluated
-    on the whole array, and ``where`` selects one result for each element.
-    """
+    """Return the Python definition of a function, such as sinc, that NumPy lacks."""
     parameters, temporaries, (relation, left, right, then, other) = own_function(name, "binary64")
     condition = f"{_expression(left)} {relation} {_expression(right)}"
     high = name in REMOVABLE and REMOVABLE[name].power > 3  # its quotient overflows next to zero, where it is not used
@@ -40,6 +36,7 @@ def _own_function(name: str) -> list[str]:
     return [
         "", "", f"@np.errstate({ignored})", f"def _{name}({', '.join(parameters)}):",
         *(f"    {temporary} = {_expression(node)}" for temporary, node in temporaries),
+        # both formulas are evaluated on the whole array, also where the other one is used
         f"    return np.where({condition}, {_expression(then)}, {_expression(other)})",
     ]  # fmt: skip
 
@@ -49,11 +46,7 @@ def _unpacked(argument: Argument, used: set[str]) -> list[str]:
 
 
 def numpy_source(program: Program, description: Description) -> str:
-    """Return the text of a Python module with one function that computes a kernel for one sample or n samples.
-
-    The function takes the input arguments in order and returns each output argument as an array of shape (size,) or
-    (size, n). The text depends only on the arguments.
-    """
+    """Return the text of a Python module with one function that computes a kernel for one sample or n samples."""
     inputs = [a for a in program.signature.arguments if a.role == "in" and a.size]
     outputs = [a for a in program.signature.arguments if a.role == "out"]
     used = set().union(*(names(node) for _, node in program.temporaries + program.outputs))

@@ -1,14 +1,8 @@
 """Auxiliary states ("companions") of a Taylor series: quantities of the attitude that have equations of their own.
 
-The components of a direction fixed in space, seen from the body, ``gamma = R(q)^T e``, are sums of products of q0..q3.
-They occur in further products, so at each order of the series one convolution needs the result of another. But because
-``gamma' = gamma x omega``, gamma can be integrated like a state, and its coefficients are then known one order earlier.
-Such equations are found automatically: a quantity that contains only the attitude and functions of time is
-differentiated along the motion; each factor in the result that multiplies a component of omega becomes a companion too,
-and so on, until no new companion appears. If more than nine would be needed, the system stays unchanged.
-
-At the start of every step the companions are computed from the attitude, so that they cannot drift. The identities hold
-for a unit quaternion; its norm must be constant along the motion.
+The components of a fixed direction seen from the body, ``gamma = R(q)^T e``, contain products of q0..q3, which take
+convolutions. But ``gamma' = gamma x omega``, so gamma can be integrated like a state. At the start of every step it is
+computed from the attitude, so that it cannot drift.
 """
 
 from collections.abc import Iterable
@@ -27,33 +21,22 @@ ONE: Node = ("number", Fraction(1))
 
 
 class _Open(Exception):
-    """Raised if no auxiliary states can be used for a system, which :func:`with_companions` then returns unchanged.
-
-    The time derivative of an auxiliary state must be a sum of terms (constant) * (state or 1) * (auxiliary state). This
-    fails if a term has two states, such as omega_1*omega_2*q0*q1, or if the derivatives of auxiliary states need more
-    and more auxiliary states, above a limit.
-    """
+    """Raised if no auxiliary states can be used for a system, which :func:`with_companions` then returns unchanged."""
 
 
 class _Term(NamedTuple):
-    """One term of a rate: ``number * constant * companion * state``, where a companion is an auxiliary state.
+    """One term of a rate: ``number * constant * companion * state``, where a companion is an auxiliary state."""
 
-    ``companion`` and ``state`` are indices of auxiliary states and of states; None stands for the factor 1.
-    ``constant`` is a formula that does not change during the motion.
-    """
-
-    companion: int | None
+    companion: int | None  # index of an auxiliary state; None for the factor 1
     number: Fraction
-    constant: Node
-    state: int | None
+    constant: Node  # a formula that does not change during the motion
+    state: int | None  # index of a state; None for the factor 1
 
 
 def with_companions(system: Recurrences) -> Recurrences:
     """Return a Taylor system in which functions of the attitude alone, such as R(q)^T e, are additional states.
 
-    These auxiliary states ("companions") follow the states of the program: ``rates`` of the result contains their
-    rates, and ``seeds`` a formula of states and t for coefficient 0 of each. A system without such functions is
-    returned unchanged.
+    A system without them is unchanged.
     """
     if not set(QUATERNION) <= set(system.states):
         return system
@@ -71,11 +54,7 @@ def _times(a: Polynomial, b: Polynomial) -> Polynomial:
 
 
 class _Closure:
-    """A Taylor system and the auxiliary states that replace functions of the attitude in its rates.
-
-    Rates of auxiliary states may need further ones; :meth:`result` adds these until none is new (the set is closed).
-    Quantities are polynomials whose variables are numbered: states, functions of ``a t + b``, and constants.
-    """
+    """A Taylor system and the auxiliary states that replace functions of the attitude in its rates."""
 
     def __init__(self, system: Recurrences) -> None:
         self.system, self.series = system, system.series
@@ -84,6 +63,7 @@ class _Closure:
         numbers = [system.states.index(name) for name in QUATERNION]
         self.attitude = {self.variable("state", number) for number in numbers}
         self.norm = Polynomial({((q, 2),): Fraction(1) for q in self.attitude})
+        # the identities hold for a unit quaternion, so its norm must be constant along the motion
         if self.derivative(self.norm):
             raise _Open
         self.companions: list[Polynomial] = []
@@ -118,13 +98,10 @@ class _Closure:
         return parts[0] + (parts[1] if node[0] == "+" else _times(parts[1], constant(-1)))
 
     def polynomial(self, i: int) -> Polynomial | None:
-        """Return series ``i`` as a polynomial in states, functions of ``a t + b`` and constants.
-
-        Return None if it is not such a polynomial, as for a quotient.
-        """
+        """Return series ``i`` as a polynomial in states, functions of ``a t + b`` and constants, or None."""
         if i not in self.polynomials:
             s = self.series[i]
-            result: Polynomial | None = None
+            result: Polynomial | None = None  # other rules, such as a quotient, give no polynomial
             if s.rule == "state":
                 result = self.single("state", s.number)
             elif s.rule == "clock":
@@ -140,11 +117,10 @@ class _Closure:
     def sum(self, s: Series, only: Iterable[int] | None = None) -> Polynomial | None:
         """Return a sum of series as a polynomial in states, constants and functions of time.
 
-        ``s`` is a series with the rule "sum": a weighted sum of other series plus a constant. With ``only``, a set of
-        indices of series in this sum, the result is the sum of their terms, without the constant. The result is None if
-        one of the terms is no polynomial.
+        None if one of its terms is no polynomial.
         """
         *weights, constant = s.weights
+        # only: indices of the series in the sum whose terms are added, without the constant
         total = self.constant(constant) if constant is not None and only is None else Polynomial({})
         for operand, weight in zip(s.operands, weights, strict=True):
             if only is None or operand in only:
@@ -155,11 +131,7 @@ class _Closure:
         return total
 
     def rate(self, variable: int) -> Polynomial:
-        """Return the time derivative, along the motion, of the variable with the index ``variable``, as a polynomial.
-
-        It is zero for a constant. _Open is raised if the derivative is not a polynomial; no auxiliary states are then
-        used.
-        """
+        """Return the time derivative, along the motion, of the variable with the index ``variable``: a polynomial."""
         kind, what = self.variables[variable]
         if kind == "constant":
             return Polynomial({})
@@ -185,14 +157,11 @@ class _Closure:
         return variable in self.attitude or self.variables[variable][0] == "clock"
 
     def of_attitude(self, form: Polynomial | None) -> bool:
-        """Return whether a polynomial can be an auxiliary state, or a sum of such states.
-
-        It must have degree 2 or more in the components of the quaternion, and contain no other state. None, which
-        stands for a quantity that is not a polynomial, gives False.
-        """
+        """Return whether a polynomial can be an auxiliary state, or a sum of auxiliary states."""
         if form is None:
             return False
         free = [v for monomial in form.terms for v, _ in monomial if self.variables[v][0] != "constant"]
+        # no other state, and degree 2 or more in the components of the quaternion
         return all(map(self.is_inner, free)) and max(map(self.degree, form.terms), default=0) > 1
 
     def degree(self, monomial: Monomial) -> int:
@@ -202,11 +171,9 @@ class _Closure:
     def split(self, form: Polynomial) -> list[tuple[Node, int | None, Polynomial]]:
         """Return a polynomial as a sum of products (constant, state, inner polynomial), by grouping its terms.
 
-        The inner polynomials contain only components of the attitude and functions of time; the caller makes each of
-        them an auxiliary state. The state is an index, or None for a product without a state such as omega_1. For
-        example, ``I omega_1 q0 q1 + I omega_1 q2 q3`` gives one product: I, the index of omega_1, and ``q0 q1 + q2
-        q3``. _Open is raised if a term contains two states, or a power of one.
+        For ``I omega_1 q0 q1 + I omega_1 q2 q3`` they are I, the index of omega_1, and ``q0 q1 + q2 q3``.
         """
+        # inner: attitude and functions of time alone; the caller makes each inner polynomial an auxiliary state
         groups: dict[Monomial, dict[Monomial, Fraction]] = {}
         for monomial, x in form.terms.items():
             outer = tuple((v, p) for v, p in monomial if not self.is_inner(v))
@@ -217,6 +184,7 @@ class _Closure:
             for variable, power in outer:
                 kind, what = self.variables[variable]
                 if kind == "state":
+                    # the rate of an auxiliary state must be a sum of constant * (state or 1) * auxiliary state
                     if state is not None or power > 1:
                         raise _Open
                     state = what
@@ -228,26 +196,25 @@ class _Closure:
     # -------------------------------------------------------------------------------------------- closing
 
     def adjoin(self, inner: Polynomial) -> tuple[int | None, Fraction, Fraction]:
-        """Return (index, factor, number) with ``inner = factor*state + number`` for the auxiliary state ``index``.
+        """Write ``inner`` as ``factor*state + number`` with an auxiliary state; return (index, factor, number).
 
-        The state is added if it is new; the index is None if ``inner`` is a number. Two polynomials that differ only by
-        the identity q0^2 + q1^2 + q2^2 + q3^2 = 1 must give the same state. So they are brought to one form, in two
-        steps. First, each term is multiplied by powers of the squared norm until all terms have the same degree: ``q0^2
-        + 1`` becomes ``2 q0^2 + q1^2 + q2^2 + q3^2``. Second, if the degree is 2, a multiple of the squared norm is
-        subtracted, so that the coefficients of the four squares sum to zero, and the multiple becomes ``number``: in
-        the example 5/4, which leaves ``3/4 q0^2 - 1/4 (q1^2 + q2^2 + q3^2)``. _Open is raised if the degrees differ by
-        an odd number, or if there are too many states.
+        The index is None if ``inner`` is a number.
         """
+        # polynomials that differ only by the identity q0^2 + q1^2 + q2^2 + q3^2 = 1 must give the same state
         degrees = {self.degree(monomial) for monomial in inner.terms}
         top = max(degrees)
         if any((top - degree) % 2 for degree in degrees):
             raise _Open
+        # terms are multiplied by the squared norm until their degrees are equal: q0^2 + 1 becomes 2 q0^2 + q1^2 + q2^2
+        # + q3^2
         whole = Polynomial({})
         for monomial, x in inner.terms.items():
             part = Polynomial({monomial: x})
             for _ in range((top - self.degree(monomial)) // 2):
                 part = _times(part, self.norm)
             whole = whole + part
+        # a multiple of the squared norm is subtracted, so that the coefficients of the squares sum to zero: 5/4 in the
+        # example, which leaves 3/4 q0^2 - 1/4 (q1^2 + q2^2 + q3^2)
         spare = Fraction(0)
         if top == 2 and all(variable in self.attitude for monomial in inner.terms for variable, _ in monomial):
             spare = sum((whole.terms.get(square, Fraction(0)) for square in self.norm.terms), start=Fraction(0)) / 4
@@ -273,10 +240,7 @@ class _Closure:
         return result
 
     def seek(self, i: int) -> None:
-        """Search series ``i`` and its operands for polynomials of the attitude, and replace them by auxiliary states.
-
-        ``self.replaced`` maps a series to the terms that replace it.
-        """
+        """Replace polynomials of the attitude in series ``i`` and its operands by auxiliary states."""
         s = self.series[i]
         if i in self.replaced or s.rule not in ("sum", "product"):
             return
@@ -289,12 +253,8 @@ class _Closure:
                 self.seek(operand)
 
     def seek_in(self, s: Series) -> None:
-        """Replace polynomials in components of the attitude that occur in ``s``, a sum of series, by auxiliary states.
-
-        The terms of the sum that are products of components of the attitude are replaced together: in ``q1 q3 + q0 q2 +
-        t``, the first two. ``self.parts[s]`` then holds the indices of these terms, and the terms with auxiliary states
-        that replace them. In the other terms of the sum, :meth:`seek` searches for such polynomials.
-        """
+        """Replace polynomials of the attitude in ``s``, a sum of series, by auxiliary states."""
+        # products of components of the attitude are replaced together: q1 q3 + q0 q2 in q1 q3 + q0 q2 + t
         alone = {
             i for i in s.operands if self.series[i].rule == "product" and self.of_attitude(self.polynomial(i))
             and not any(self.of_attitude(self.polynomial(factor)) for factor in self.series[i].operands)
@@ -316,16 +276,14 @@ class _Closure:
         if not self.companions:
             return self.system
         rates: list[list[_Term]] = []
+        # the derivative of a companion may need further companions, until none is new
         while len(rates) < len(self.companions):
             rates.append(self.terms(self.derivative(self.companions[len(rates)])))
         return _rebuilt(self, rates)
 
     def seed(self, form: Polynomial) -> Node:
-        """Return the formula that computes an auxiliary state, the polynomial ``form``, at the start of each step.
-
-        The formula contains states and t: an auxiliary state ``q0 q1 + q2 q3`` is not carried over from step to step,
-        but computed from the states again. Terms with the same functions of time are put in one bracket.
-        """
+        """Return the formula in states and t that computes an auxiliary state, ``form``, at the start of each step."""
+        # terms with the same functions of time are put in one bracket
         groups: dict[Monomial, dict[Fraction, list[Node]]] = {}
         for monomial, x in sorted(form.terms.items()):
             clocks = tuple((v, p) for v, p in monomial if v not in self.attitude)
@@ -366,13 +324,9 @@ def _total(terms: list[Node]) -> Node:
 
 
 def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
-    """Return the system with the auxiliary states as further states, and without the series that they replace.
-
-    An auxiliary state is a polynomial in the components of the attitude, such as ``q1 q3 + q0 q2``, half a component of
-    the rotation matrix R(q). As a series computed from q0 to q3 it takes two convolutions (sums of products of Taylor
-    coefficients) per coefficient. As a state, its coefficients follow from its time derivative, without a convolution
-    of its own. ``rates`` holds the time derivatives of the auxiliary states.
-    """
+    """Return the system with the auxiliary states as further states, and without the series that they replace."""
+    # as a series, q1 q3 + q0 q2 takes two convolutions per coefficient; as a state, its coefficients follow from its
+    # rate
     system, old = closure.system, closure.series
     count = len(system.states)
     alias = {
@@ -404,13 +358,11 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     def summed(
         terms: list[_Term], pairs: Iterable[tuple[int, Node | None]] = (), constant: Node | None = None
     ) -> Series:
-        """Return the :class:`Series` of a sum of auxiliary states (``terms``), other series (``pairs``) and a constant.
-
-        ``pairs`` holds (index of a series, weight). ``constant`` is added to coefficient 0; None stands for zero.
-        """
+        """Return the series of a sum of auxiliary states (``terms``), other series (``pairs``) and a constant."""
         for term in terms:
             if term.companion is None:
                 constant = weight(term) if constant is None else ("+", constant, weight(term))
+        # pairs: (index of a series, weight)
         both = [*pairs, *((count + term.companion, weight(term)) for term in terms if term.companion is not None)]
         return Series("sum", tuple(i for i, _ in both), (*(w for _, w in both), constant))
 

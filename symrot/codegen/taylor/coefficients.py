@@ -15,14 +15,11 @@ __all__ = ["coefficients"]
 
 
 class _Run(NamedTuple):
-    """One computation of Taylor coefficients, with one kind of number.
-
-    It holds the values of the inputs, the functions for this kind of number, and the coefficients so far.
-    """
+    """One computation of Taylor coefficients, with one kind of number."""
 
     constant: Callable[[Node], Any]
     functions: Mapping[str, Callable[..., Any]]
-    coefficients: list[list[Any]]
+    coefficients: list[list[Any]]  # of each series, so far
     t: Any
 
 

@@ -1,12 +1,7 @@
 """C code of the Taylor coefficients of an ensemble: each SIMD lane (element of a vector) holds one trajectory.
 
-The code computes the jet, which is the list of the Taylor coefficients of all states at one time. Lanes never exchange
-values: a series is an array of vectors, and each operation is done for all trajectories at once. A slot is a C variable
-that sums up (accumulates) convolutions; convolutions that occur with the same weight in the same sums share a slot.
-Orders n and n + 1 are computed together: loops over the known coefficients read each number once for both orders; then
-the terms with the newest coefficients are added. No loop over the order is unrolled.
-
-The code is placed between :file:`lanes.h` and :file:`lanes.c` of :mod:`symrot.ensemble`.
+The jet is the list of the Taylor coefficients of all states at one time. A slot is a C variable that sums up
+convolutions. The code is placed between :file:`lanes.h` and :file:`lanes.c` of :mod:`symrot.ensemble`.
 """
 
 from collections.abc import Iterable, Sequence
@@ -27,15 +22,11 @@ LOAD_OF_LOOP = 24  # accumulators and factors of a loop: by measurement, half mo
 
 
 class Convolution(NamedTuple):
-    """A convolution ``sum(a[k] b[n-k])`` of the coefficients of two series, given by their indices a and b.
-
-    ``ends`` says whether it includes the terms k = 0 and k = n: ``both``, ``last`` (only k = n, with the newest
-    coefficient of a) or ``none``.
-    """
+    """A convolution ``sum(a[k] b[n-k])`` of the coefficients of two series, given by their indices a and b."""
 
     a: int
     b: int
-    ends: str
+    ends: str  # its terms k = 0 and k = n: both, last (only k = n, with the newest coefficient of a) or none
 
     @property
     def square(self) -> bool:
@@ -62,10 +53,9 @@ CONVOLUTIONS = {  # rule -> operands a and b of its convolution (-1 is the serie
 
 
 def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[float], order: int) -> str:
-    """Return the C code of one right-hand side that :file:`lanes.c`, the Taylor stepper of ensembles, includes.
+    """Return C code for :file:`lanes.c`, the stepper of ensembles: sizes, and a function for the Taylor coefficients.
 
-    It defines sizes, blocks of states, constants and the function for the Taylor coefficients. The arguments are
-    described in :func:`symrot.codegen.taylor.source.taylor_definitions`.
+    See :func:`symrot.codegen.taylor.source.taylor_definitions` for the arguments.
 
     Raises
     ------
@@ -103,13 +93,11 @@ def multiplications(program: Program, order: int) -> int:
 class _Jet:
     """Writes the C function that computes the jet (all Taylor coefficients) of one system.
 
-    In C, ``v{i}`` is the newest coefficient of series i, and ``u{i}`` is the array of all coefficients of the series
-    (for a state the array is ``x[..]``). The coefficients of order n of all series are computed before those of order n
-    + 1. The C statements differ for n = 0, n = 1 and larger n; the argument ``stage`` of the methods is then ``first``,
-    ``second`` and ``later``.
+    The C code differs by ``stage``: ``first`` for n = 0, ``second`` for n = 1, then ``later``.
     """
 
     def __init__(self, system: Recurrences) -> None:
+        # in C, v{i} is the newest coefficient of series i, and u{i} the array of all (x[..] for a state)
         self.system, self.series = system, system.series
         self.state = {i: s.number for i, s in enumerate(self.series) if s.rule == "state"}
         self.constants: dict[Node, int] = {}
@@ -123,10 +111,7 @@ class _Jet:
         self.divided = [i for i, s in enumerate(self.series) if s.rule in ("quotient", "root", "primitive")]
 
     def _make_slots(self) -> None:
-        """Assign each convolution to a slot (a C variable that sums convolutions), and store the slots.
-
-        Products that occur with equal weights in the same sums share a slot.
-        """
+        """Assign each convolution to a slot, a C variable that sums convolutions."""
         uses: dict[int, list[tuple[int, Node, int]]] = {}
         own: set[int] = set()
         for place, s in enumerate((*self.series, *self.system.rates)):
@@ -145,6 +130,7 @@ class _Jet:
             key: object = i
             if s.rule == "product" and i not in own and i in uses:
                 sign = uses[i][0][2]
+                # products that occur with equal weights in the same sums share a slot
                 key = (c.square, tuple((place, size, sign * other) for place, size, other in uses[i]))
                 self.shared.add(i)
             groups.setdefault(key, []).append((sign, c, i))
@@ -164,10 +150,7 @@ class _Jet:
         return f"x[{self.state[series]}][{n}]" if series in self.state else f"u{series}[{n}]"
 
     def weight(self, node: Node) -> str:
-        """Return the C expression of a positive constant.
-
-        It is a literal for a number, and ``c[k]``, an element of the array of constants, for a formula of parameters.
-        """
+        """Return the C expression of a positive constant: a literal, or ``c[k]`` for a formula of parameters."""
         if not names(node) and node[0] == "number":
             return f"V_ALL({c_expression(node)})"
         return f"c[{self.constants.setdefault(node, len(self.constants))}]"
@@ -178,15 +161,10 @@ class _Jet:
         return self.weight(size) if sign > 0 else f"V_SUB(V_ALL(0.0), {self.weight(size)})"
 
     def slot(self, number: int, stage: str, sums: str) -> str:
-        """Return the C expression for coefficient n of slot ``number``, which is a sum of convolutions.
-
-        A convolution is ``sum(u[k] v[n-k], k = 0..n)``. For the stage ``later``, the variable with the letter ``sums``
-        and the slot's number, such as ``a3``, holds the part of the sum with k = 1..n-1; the terms k = 0 and k = n are
-        added here. These use coefficients n, which have just been computed. They are added in two separate sums, one
-        with u[n] and one with v[n], and the two are added last, so that the processor can compute one while it still
-        waits for a coefficient in the other. ``stage`` depends on n: see the class.
-        """
+        """Return the C expression for coefficient n of slot ``number``, a sum of convolutions ``sum(u[k] v[n-k])``."""
+        # the C variable such as a3 holds the terms k = 1..n-1; terms with coefficients n are added here
         older = f"{sums}{number}" if stage == "later" else ""
+        # terms with v[n] are summed apart, so that the processor can add them while it waits for u[n]
         newer = ""
         for sign, (a, b, ends) in self.slots[number].terms:
             if stage == "first":
@@ -200,14 +178,10 @@ class _Jet:
         return f"V_ADD({older}, {newer})" if older and newer else older or newer
 
     def sum(self, s: Series, first: bool, factor: str = "") -> str:
-        """Return the C expression of the sum ``s`` of weighted series, times ``factor`` if it is not empty.
-
-        With ``first``, for coefficient 0, the constant of the sum is included. Terms that are computed last are added
-        last.
-        """
+        """Return the C expression of the sum ``s`` of weighted series, times ``factor`` if it is not empty."""
         value = ""
         *weights, constant = s.weights
-        if first and constant is not None and constant != ("number", 0):
+        if first and constant is not None and constant != ("number", 0):  # coefficient 0
             sign, size = split_sign(constant)
             value = f"V_MUL({self.weight(size)}, {factor})" if factor else self.weight(size)
             value = value if sign > 0 else f"V_SUB(V_ALL(0.0), {value})"
@@ -224,6 +198,7 @@ class _Jet:
                 done.add(slot)
                 sign, name = sign * own, f"s{slot}"
             parts.append((operand in self.shared, sign, size, name))
+        # terms that are computed last are added last
         for _, sign, size, name in sorted(parts, key=lambda part: part[0]):
             scale = "" if size == ONE else self.weight(size)
             scale = f"V_MUL({scale}, {factor})" if scale and factor else scale or factor
@@ -238,11 +213,7 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- series
 
     def coefficient(self, i: int, n: str, stage: str, sums: str) -> list[str]:
-        """Return the C statements that set the variable ``v{i}`` to coefficient ``n`` (as C text) of series ``i``.
-
-        ``stage`` is ``first``, ``second`` or ``later`` (see the class). ``sums`` is ``a`` or ``b``, the first letter of
-        the C variables with the sums over earlier coefficients (:meth:`slot`).
-        """
+        """Return the C statements that set the variable ``v{i}`` to coefficient ``n`` (as C text) of series ``i``."""
         s, name = self.series[i], f"v{i}"
         if s.rule == "sum":
             return [f"{name} = {self.sum(s, stage == 'first')};"]
@@ -254,6 +225,7 @@ class _Jet:
             return [f"{name} = V_MUL(v{s.operands[0]}, V_ALL({factor}));"]
         if s.rule == "clock":
             return self._clock_start(i, s) if stage == "first" else self._clock(s, name, n)
+        # sums: the first letter, a or b, of the C variables with the sums over earlier coefficients
         total = self.slot(self.slot_of[i][1], stage, sums)
         if s.rule == "product":
             return [f"{name} = {total};"]
@@ -283,25 +255,20 @@ class _Jet:
         return [f"{name} = V_DIV({upper}, V_MUL(d{i}, V_ALL((double)({n}))));"]
 
     def _clock(self, s: Series, name: str, n: str) -> list[str]:
-        """Return the C statement that sets ``name`` to coefficient ``n`` (C text) of s, a function of ``a t + b``.
-
-        It uses coefficient n - 1 of the derivative of the function, for example of cosine if the function is sine.
-        """
+        """Return the C statement that sets ``name`` to coefficient ``n`` (C text) of s, a function of ``a t + b``."""
         rate, _ = s.weights
         assert rate is not None
         sign, size = split_sign(rate)
         step = f"V_MUL(unit, V_ALL(symrot_inverse[{n}]))"
         step = step if size == ONE else f"V_MUL({self.weight(size)}, {step})"
         step = step if sign * s.sign > 0 else f"V_SUB(V_ALL(0.0), {step})"
+        # p{i} is coefficient n - 1 of the function's derivative, such as cosine for sine
         return [f"{name} = V_MUL(p{s.operands[0]}, {step});"]
 
     def _clock_start(self, i: int, s: Series) -> list[str]:
-        """Return the C statements for coefficient 0 of series i, a function of ``a t + b`` such as sine.
-
-        Sine and cosine are computed together: for the first function of such a pair, the statements of both are
-        returned; for the second function, none.
-        """
+        """Return the C statements for coefficient 0 of series i, a function of ``a t + b`` such as sine."""
         both = sorted({i, s.operands[0]})
+        # sine and cosine are computed together, by the statements of the series with the lower index
         if i != both[0]:
             return []
         rate, offset = (self.signed(node) for node in s.weights)
@@ -318,10 +285,7 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- orders
 
     def order(self, n: str, stage: str, sums: str) -> list[str]:
-        """Return the C statements for coefficient ``n`` (C text) of all series and coefficient n + 1 of the states.
-
-        ``stage`` and ``sums`` are those of :meth:`coefficient`.
-        """
+        """Return the C statements for coefficient ``n`` (C text) of all series and coefficient n + 1 of the states."""
         lines: list[str] = []
         made: set[int] = set()
 
@@ -351,29 +315,22 @@ class _Jet:
         return lines
 
     def _partners(self) -> list[int]:
-        """Return the indices of the series whose coefficient n - 1 another series needs for coefficient n.
-
-        Sine and cosine of ``a t + b`` need each other, for example.
-        """
+        """Return the indices of the series whose coefficient n - 1 another series needs, such as sine for cosine."""
         return sorted({s.operands[0] for s in self.series if s.rule == "clock"})
 
     def loops(self) -> list[str]:
-        """Return the C loops that sum products of known coefficients, for the orders n (even) and m = n + 1.
-
-        The C variables ``a{i}`` sum the products u[k] v[n-k] of order n, and ``b{i}`` the products of order m.
-        """
+        """Return the C loops that sum products u[k] v[n-k] of known coefficients, for the orders n (even) and n + 1."""
+        # variables a{i} for order n, b{i} for order n + 1; each number is read once for both orders
         return [line for group in self._groups() for line in self._loop(group)]
 
     def _groups(self) -> list[list[int]]:
-        """Return, for each C loop, the indices of the slots (sums of convolutions) that it computes.
-
-        Slots with common factors share a loop as long as registers suffice.
-        """
+        """Return, for each C loop, the indices of the slots (sums of convolutions) that it computes."""
         left = list(range(len(self.slots)))
         groups: list[list[int]] = []
         while left:
             group = [left.pop(0)]
             alike = [i for i in left if self.slots[i].square == self.slots[group[0]].square]
+            # slots with common factors share a loop as long as registers suffice
             while (
                 alike
                 and self._load([*group, best := min(alike, key=lambda i: self._load([*group, i]))]) <= LOAD_OF_LOOP
@@ -385,13 +342,9 @@ class _Jet:
         return groups
 
     def _load(self, group: Sequence[int]) -> int:
-        """Return the number of registers that a C loop over the slots ``group`` needs.
-
-        A slot is a sum of convolutions ``sum(u[k] v[n-k])``. The loop over k (:meth:`_products`) takes two values of k
-        at a time and holds two partial sums of each slot, the values of each series u for both, and one value of each
-        series v.
-        """
+        """Return the number of registers that a C loop over the slots ``group`` needs."""
         terms = [c for i in group for _, c in self.slots[i].terms]
+        # two sums of each slot, the values of each series u for two k, and one value of each series v
         return 2 * len(group) + 2 * len({c.a for c in terms}) + len({c.b for c in terms})
 
     def _loop(self, group: Sequence[int]) -> list[str]:
@@ -415,13 +368,8 @@ class _Jet:
     def _products(
         self, terms: Sequence[tuple[int, int, Convolution]], left: Sequence[int], right: Sequence[int]
     ) -> list[str]:
-        """Return the C loop over k that adds products u[k] v[n-k] to the sums of slots, two values of k at a time.
-
-        A slot is a sum of convolutions, of which the product u v of two series is one. Slot i has two partial sums, the
-        variables ``a{i}`` and ``b{i}``, one for each of the two values of k. ``terms`` holds (slot i, sign,
-        convolution). ``left`` and ``right`` are the indices of the series u and of the series v that occur in the
-        convolutions, each once.
-        """
+        """Return the C loop over k that adds products u[k] v[n-k] to the sums of slots, two values of k at a time."""
+        # slot i has the sums a{i} of order n and b{i} of order n + 1; left, right: indices of the series u, v
         lines = ["{", *(f"    symrot_v f{i} = {self.at(i, '1')};" for i in left)]
         lines.append("    for (int64_t k = 1; k < n - 1; k += 2) {")
         for new, old, ahead, behind in (("g", "f", "k + 1", "n - k"), ("f", "g", "k + 2", "n - k - 1")):
@@ -439,12 +387,10 @@ class _Jet:
         return [*lines, "}"]
 
     def completed_sums(self) -> list[str]:
-        """Return the C statements that complete the sums ``b{i}`` of order n + 1, once coefficients n are known.
-
-        They add the terms u[1] v[n] and u[n] v[1]; the loop before has added the others.
-        """
+        """Return the C statements that complete the sums ``b{i}`` of order n + 1, once coefficients n are known."""
         lines: list[str] = []
         for i, slot in enumerate(self.slots):
+            # the terms u[1] v[n] and u[n] v[1]; the loop before has added the others
             for sign, (a, b, _) in slot.terms:
                 one = self.at(a, "1")
                 if a == b:
@@ -467,6 +413,7 @@ class _Jet:
             *(f"symrot_v d{i};" for i in self.divided),
             "{", *_indented(orders["0"]), "}",
             "{", *_indented(orders["1"]), "}",
+            # no loop over the order is unrolled, so that the code stays small
             "for (int64_t n = 2; n < order; n += 2) {",
             *_indented(["const int64_t m = n + 1;", *self.loops(), "{", *_indented(orders["n"]), "}",
                         *self.completed_sums(), "{", *_indented(orders["m"]), "}"]),
@@ -510,10 +457,8 @@ def _add(name: str, sign: int, factors: str) -> str:
 
 
 def _called(s: Series, first: int) -> str:
-    """Return the C call that computes coefficient 0 of a function such as exp from coefficient 0 of its arguments.
-
-    The arguments are the operands of the series from number ``first`` on.
-    """
+    """Return the C call that computes coefficient 0 of a function such as exp from coefficient 0 of its arguments."""
+    # the operands of the series from number first on
     arguments = [f"v{operand}" for operand in s.operands[first:]]
     return f"V_CALL{'' if len(arguments) == 1 else len(arguments)}({s.function}, {', '.join(arguments)})"
 

@@ -1,11 +1,8 @@
 """C code of the conserved quantities of a motion: values in double-double arithmetic, gradients in doubles.
 
-A value in double-double arithmetic is a sum of two doubles with about 32 digits, so that a drift of a conserved
-quantity is visible long before a double would show it. From the gradients follows the smallest change of the states
-that restores the conserved values. Gradients are computed by reverse differentiation: one pass over the list of
-operations, from the last to the first, for each quantity.
-
-The code is placed between :file:`taylor.h` and :file:`taylor.c`; :file:`projection.c` uses it.
+A double-double number is a sum of two doubles with about 32 digits, in which a drift is visible early. From the
+gradients follows the smallest change of the states that restores the conserved values. The code is placed between
+:file:`taylor.h` and :file:`taylor.c`; :file:`projection.c` uses it.
 """
 
 from collections.abc import Sequence
@@ -28,11 +25,8 @@ IN_PAIRS = {*_OPERATIONS, "number", "symbol"}
 
 
 def projectable(program: Program, outputs: Sequence[str]) -> list[str]:
-    """Return the names of those ``outputs`` of a program whose formulas contain only + - * / and square roots.
-
-    Double-double arithmetic can compute these; conserved quantities with other functions are not restored by
-    projection.
-    """
+    """Return the names of those ``outputs`` of a program whose formulas contain only + - * / and square roots."""
+    # operations of double-double arithmetic; other conserved quantities are not restored by projection
     return [name for name in outputs if {op.kind for op in tape_of(program, [name]).operations} <= IN_PAIRS]
 
 
@@ -118,11 +112,8 @@ def _varying(tape: Tape, needed: Sequence[int], states: set[str]) -> set[int]:
 
 
 def _shares(op: Operation, index: int, own: str) -> list[str]:
-    """Return C expressions, one per operand of an operation, for what it adds to the derivative of that operand.
-
-    ``own`` is the C name of the derivative of the operation's result, whose index is ``index``. For the product
-    ``v1*v2`` these are ``own*v2`` and ``own*v1`` (reverse differentiation).
-    """
+    """Return the C terms that an operation adds to the derivatives by its operands: ``g*v2, g*v1`` for ``v1*v2``."""
+    # own: the C name g of the derivative by the result of the operation
     values = [f"v{i}.hi" for i in op.operands]
     if op.kind == "+":
         return [own, own]

@@ -68,10 +68,8 @@ static inline void symrot_circle(symrot_v high, symrot_v low, symrot_v *sine, sy
 
 
 def _horner(name: str, coefficients: tuple[Fraction, ...]) -> str:
-    """Return the C statements of Horner's rule for a polynomial in ``square``.
-
-    At the start, the C variable ``name`` must contain the last coefficient; at the end, it contains the result.
-    """
+    """Return the C statements that compute a polynomial in ``square`` by Horner's rule."""
+    # at the start, the C variable name contains the last coefficient; at the end, the result
     return "\n".join(
         f"    {name} = V_FMA(square, {name}, V_ALL({DOUBLE.literal(each)}));" for each in coefficients[-2::-1]
     )

@@ -1,11 +1,7 @@
 """Arrangement of the Taylor series of one motion in SIMD vectors of four elements, called lanes.
 
-A row is a vector of up to four series that have the same recurrence rule and are computed together; states have rows of
-their own. A pack is a vector of any four series. A column is the convolution of two packs, lane by lane: four products
-of two series. A slot is a sum of columns times one vector of four constants, one per lane. In a row of sums such as
-``a*(u v + w x) + b*y z``, the products with the constant a form one slot, and the product with b another. A pack whose
-four lanes hold the same series is read as one number for all lanes (broadcast) and needs no storage. For example,
-``dq/dt = 1/2 q*(0, omega)`` is computed as three broadcasts times a permuted quaternion.
+A row is a vector of up to four series with the same rule, computed together. A pack is a vector of any four series, and
+a column the convolution of two packs. A slot is a sum of columns times a vector of four constants.
 """
 
 from collections.abc import Iterable, Sequence
@@ -25,40 +21,30 @@ ONE: Node = ("number", Fraction(1))
 
 
 class Address(NamedTuple):
-    """The place of a series: number of its row, its lane in this row, and a sign as factor.
+    """The place of a series: the number of its row, its lane in this row, and a sign as factor."""
 
-    The sign is 1, -1, or 0; the last gives the value zero.
-    """
-
-    sign: int
+    sign: int  # 1, -1, or 0 for the value zero
     row: int
     lane: int
 
 
+# if all four are the same, the series is read as one number for all lanes (broadcast) and needs no storage
 Pack = tuple[Address, ...]  # a vector of four series, each given by its address
 _Pair = tuple[tuple[int, int], tuple[int, int]]  # two factors, each given by its sign and the index of its series
 
 
 class Column(NamedTuple):
-    """Four convolutions ``sum(a[k] b[n-k])``, one in each lane of a vector.
-
-    Lane 0 of ``a`` is combined with lane 0 of ``b``, and so on. ``a`` and ``b`` are packs, vectors of four series each.
-    The range is k = 0 to n if ``ends`` is ``both``, k = 1 to n for ``last``, and k = 1 to n - 1 for ``none``.
-    """
+    """Four convolutions ``sum(a[k] b[n-k])``, one in each lane of the packs (vectors of four series) a and b."""
 
     a: Pack
     b: Pack
-    ends: str
+    ends: str  # range of k: 0 to n for both, 1 to n for last, 1 to n - 1 for none
 
 
 class Slot(NamedTuple):
-    """A sum of columns (vectors of four convolutions); each of its four elements is multiplied by a constant.
+    """A sum of columns (vectors of four convolutions), multiplied by a vector of four constants, ``weights``."""
 
-    ``columns`` are indices of columns, ``weights`` the four constants: the result is ``weights * (column + column +
-    ..)``.
-    """
-
-    columns: tuple[int, ...]
+    columns: tuple[int, ...]  # indices
     weights: tuple[Node, ...]
 
 
@@ -70,62 +56,44 @@ class Term(NamedTuple):
 
 
 class Row(NamedTuple):
-    """Up to four series with the same recurrence rule that are computed together, one in each lane of a SIMD vector.
+    """Up to four series with the same recurrence rule that are computed together, one in each lane of a SIMD vector."""
 
-    ``lanes`` holds the indices of the series, or None for an unused lane, whose value is zero. The rules are those of
-    :mod:`symrot.codegen.taylor.recurrences`. In a row of the rule ``sum``, ``slots`` are the summands that are
-    products, ``terms`` the other summands, and ``constant`` the four numbers that are added to coefficient 0. In a row
-    of another rule, ``slots`` are the convolutions of the rule and ``terms`` its operands.
-    """
-
-    rule: str
-    lanes: tuple[int | None, ...]
-    slots: tuple[Slot, ...] = ()
-    terms: tuple[Term, ...] = ()
-    constant: tuple[Node, ...] | None = None
+    rule: str  # see symrot.codegen.taylor.recurrences
+    lanes: tuple[int | None, ...]  # indices of the series; None for an unused lane, whose value is zero
+    slots: tuple[Slot, ...] = ()  # in a sum, the summands that are products; else the convolutions of the rule
+    terms: tuple[Term, ...] = ()  # in a sum, the other summands; else the operands of the rule
+    constant: tuple[Node, ...] | None = None  # in a sum, added to coefficient 0
 
 
 class Layout(NamedTuple):
-    """The series of a system, and their arrangement in rows: vectors of up to four series that are computed together.
-
-    Four is the number of doubles in a SIMD vector. ``rows`` are in order of computation: first states, then auxiliary
-    states (:mod:`symrot.codegen.taylor.auxiliary_states`), then other series. ``rates`` has, for each row of states or
-    auxiliary states, a row with their time derivatives. ``seeds`` has the formulas that compute the auxiliary states at
-    the start of a step.
-    """
+    """The series of a system, arranged in rows: vectors of up to four series that are computed together."""
 
     series: tuple[Series, ...]
-    rows: tuple[Row, ...]
-    rates: tuple[Row, ...]
+    rows: tuple[Row, ...]  # in order of computation: states, auxiliary states, other series
+    rates: tuple[Row, ...]  # the time derivatives of each row of states or auxiliary states
     columns: tuple[Column, ...]
     states: tuple[tuple[int, ...], ...]  # the indices of the states in each row of states
     names: tuple[str, ...]  # names of the states
-    seeds: tuple[tuple[Node, ...], ...] = ()  # one tuple per row of auxiliary states
+    seeds: tuple[tuple[Node, ...], ...] = ()  # formulas of the auxiliary states at the start of a step, by row
 
 
 def lay_out(system: Recurrences, edges: Sequence[int]) -> Layout:
     """Return the arrangement of the Taylor series of a system in SIMD vectors of four.
 
-    State i is in block j if ``edges[j] <= i < edges[j + 1]``; two blocks never share a vector. A product that occurs in
-    two sums is computed once, or once in each sum, whichever costs less.
+    Blocks of states, given by ``edges``, never share a vector.
     """
     bundled = _with_bundles(system)
+    # a product that occurs in two sums is computed once, or once in each sum, whichever costs less
     return min((_Placer(bundled, edges, uses).layout() for uses in MOST_USES), key=cost)
 
 
 def cost(layout: Layout) -> int:
-    """Return an estimate of the time that one order of the series takes: the number of columns (convolutions) and rows.
-
-    The layout with the smallest estimate is used.
-    """
+    """Return an estimate of the time for one order of the series: the number of columns (convolutions) and rows."""
     return len(layout.columns) + len(layout.rows)
 
 
 def _with_bundles(system: Recurrences) -> Recurrences:
-    """Return a system in which products that occur together in several sums form one sum of their own.
-
-    If two rates contain ``a*b - c*d``, this difference becomes a series, and both rates refer to it.
-    """
+    """Return a system in which products that occur together in several sums, such as ``a*b - c*d``, form one sum."""
     series = list(system.series)
     sums = [(i, s) for i, s in enumerate(series) if s.rule == "sum"]
     sums += [(-1 - i, rate) for i, rate in enumerate(system.rates)]
@@ -164,11 +132,7 @@ def _with_bundles(system: Recurrences) -> Recurrences:
 
 
 class _Placer:
-    """Assigns the series of a system to rows (vectors of up to four series), and their products to columns.
-
-    ``place`` maps each series to its address: row, lane and sign. A product that occurs in at most ``most_uses`` sums,
-    and nowhere else, gets no row; each of these sums computes it again.
-    """
+    """Assigns the series of a system to rows (vectors of up to four series), and their products to columns."""
 
     def __init__(self, system: Recurrences, edges: Sequence[int], most_uses: int) -> None:
         self.system, self.series = system, system.series
@@ -196,25 +160,22 @@ class _Placer:
         self.rows.append(row._replace(lanes=lanes))
 
     def _inlined(self, most_uses: int) -> set[int]:
-        """Return the indices of the products (series u v) that are not stored as series of their own.
-
-        Such a product occurs in at most ``most_uses`` sums and in no other series. Each of these sums computes it anew,
-        as a convolution within the sum, which is cheaper than to compute it in a row, store it and add it.
-        """
+        """Return the indices of the products (series u v) that are not stored as series of their own."""
         count: dict[int, int] = {}
         for s in (*self.series, *self.system.rates):
             for operand in s.operands:
                 if self.series[operand].rule == "product":
                     count[operand] = count.get(operand, 0) + (1 if s.rule == "sum" else most_uses + 1)
+        # each of the few sums computes such a product as a convolution; to compute it in a row, store it and add it
+        # costs more
         return {operand for operand, uses in count.items() if uses <= most_uses}
 
     def level(self, i: int) -> int:
         """Return the number of computations in the longest chain that leads to coefficient n of series ``i``.
 
-        It is 0 for a state, whose coefficient n is known from order n - 1; 1 for a product of two states; 2 for a
-        quotient of such a product. The series of one row (a vector of up to four series that are computed together)
-        must have equal levels, because none of them may need another one.
+        It is 0 for a state and 1 for a product of two states.
         """
+        # the series of one row have equal levels, because none of them may need another one
         if i not in self.levels:
             s = self.series[i]
             older = {"driven": (1,), "primitive": (1,), "clock": (0,)}.get(s.rule, ())  # operands used up to n - 1 only
@@ -248,23 +209,16 @@ class _Placer:
         return Layout(self.series, tuple(self.rows), tuple(rates), tuple(self.columns), own, self.system.states, seeds)
 
     def _shape(self, i: int) -> tuple[int, ...]:
-        """Return a sort key for series of one rule.
-
-        Up to four neighbours in its order are computed together, as one row. Exponentials come after pairs such as sine
-        and cosine; sums come in the order of decreasing numbers of products, so that the sums in a row have about
-        equally many.
-        """
+        """Return a sort key for series of one rule, of which up to four neighbours form a row."""
         s = self.series[i]
         products = sum(operand in self.inlined for operand in s.operands)
+        # exponentials come after pairs such as sine and cosine; sums in a row have about equally many products
         return (s.function == "exp", -products)
 
     # -------------------------------------------------------------------------------------------- packs
 
     def pack(self, items: Sequence[tuple[int, int] | None]) -> Pack:
-        """Return the pack (vector of four series) of up to four ``items``, each a pair (sign, series).
-
-        A lane without an item (None) gets a series with which the pack costs no extra time.
-        """
+        """Return the pack (vector of four series) of up to four ``items``, each a pair (sign, series) or None."""
         addresses = [None if item is None else self.address(*item, lane) for lane, item in enumerate(items)]
         first = next(address for address in addresses if address is not None)
         if (
@@ -272,27 +226,21 @@ class _Placer:
             and len(addresses) - addresses.count(None) > 1
         ):
             return (first,) * LANES
+        # a lane without an item gets a series with which the pack costs no extra time
         return tuple(Address(1, first.row, lane) if a is None else a for lane, a in enumerate(addresses))
 
     def address(self, sign: int, series: int, lane: int) -> Address:
-        """Return an Address (sign, row, lane): the place of ``series``, and the sign with which it is read.
-
-        ``sign`` (1, -1, or 0 for a zero instead of the series) is copied from the argument. A row, a vector of four
-        lanes, may contain copies of a series. The address of the copy in ``lane`` is returned if there is one, because
-        no permutation is then needed; otherwise that of the first copy.
-        """
+        """Return the address of ``series`` with the factor ``sign``, in ``lane`` if its row has a copy there."""
         first = self.place[series]
+        # a copy in the same lane needs no permutation
         return Address(sign, first.row, lane if self.rows[first.row].lanes[lane] == series else first.lane)
 
     def column(self, pairs: Sequence[_Pair | None], ends: str, needed: Sequence[bool] = ()) -> int:
-        """Add a column, which is a vector of up to four convolutions, and return its index.
-
-        ``pairs`` holds the two series of each lane, each as (sign, index), and ``ends`` the range as in
-        :class:`Column`. In a lane without a pair, the column is zero if the lane is ``needed``, and otherwise has any
-        value.
-        """
+        """Add a column, a vector of up to four convolutions, and return its index."""
+        # pairs: the two series of each lane, each as (sign, index)
         a = self.pack([None if pair is None else pair[0] for pair in pairs])
         b = self.pack([None if pair is None else pair[1] for pair in pairs])
+        # a needed lane without a pair is zero; other lanes may have any value
         empty = [pair is None and need for pair, need in zip(pairs, needed, strict=False)]
         if any(empty):
             b = tuple(b[lane]._replace(sign=0) if empty[lane] else b[lane] for lane in range(LANES))
@@ -366,17 +314,12 @@ class _Placer:
         return Row("sum", lanes, tuple(made), tuple(terms), None if set(constants) == {ZERO} else constants)
 
     def _columns(self, lanes: list[list[tuple[int, int]]]) -> Iterable[int]:
-        """Yield the indices of columns that together contain all products of ``lanes``, each product once.
-
-        A column is a vector of four convolutions, one per lane; it is made here. ``lanes`` has a list for each lane of
-        a row: the products u v of the sum in this lane, as pairs (sign, index of the product). Each column has at most
-        one product from each lane. If one series occurs as a factor in every lane that still has products, the next
-        column has, from each lane, the first product with this factor, so that one number is broadcast to all lanes.
-        Otherwise it has the next product of each lane (:meth:`_mixed`).
-        """
+        """Yield the indices of new columns that together contain each product of ``lanes`` once."""
+        # lanes: for each lane of a row, the products u v of its sum, as (sign, index of the product)
         rest = [[(sign, self.series[p].operands[0], self.series[p].operands[1]) for sign, p in lane] for lane in lanes]
         needed = [bool(lane) for lane in lanes]
         while any(rest):
+            # a factor in every lane that still has products is broadcast to all lanes as one number
             shared = self._shared([lane for lane in rest if lane])
             picked: list[_Pair | None] = []
             if shared is None:
@@ -393,26 +336,19 @@ class _Placer:
             yield self.column(picked, "both", needed)
 
     def _shared(self, lanes: list[list[tuple[int, int, int]]]) -> int | None:
-        """Return a series that is a factor of some product in every lane, so that it can be broadcast to all lanes.
-
-        Each lane is a list of products (sign, factor, factor). Return None if there is no such series, or only one
-        lane.
-        """
+        """Return a series that is a factor of some product in every lane (and can be broadcast), or None."""
         if len(lanes) < 2:
             return None
         common = set.intersection(*({u for _, *pair in lane for u in pair} for lane in lanes))
         return min(common, default=None)
 
     def _mixed(self, terms: list[tuple[int, int, int] | None], needed: Sequence[bool]) -> int:
-        """Add a column that multiplies one pair of series per lane, and return its index.
-
-        ``terms`` holds a product (sign, u, v) of two series for each lane, or None. A column is two packs (vectors of
-        four series): one holds the first factors of all lanes, the other the second factors. Each product is written as
-        u v or as v u, so that both packs are, if possible, already in use in other columns.
-        """
+        """Add a column that multiplies one pair of series per lane, and return its index."""
         known = {pack for column in self.columns for pack in (column.a, column.b)}
         whole = {tuple(Address(1, row, lane) for lane in range(LANES)) for row in range(len(self.rows))}
         best: tuple[int, list[_Pair | None]] | None = None
+        # each product is written as u v or as v u, so that both packs (of first and of second factors) are, if
+        # possible, already in use in other columns
         for turns in product((False, True), repeat=sum(term is not None for term in terms)):
             turn = iter(turns)
             pairs: list[_Pair | None] = []
@@ -432,11 +368,7 @@ class _Placer:
 
 
 def _first_positive(item: tuple[Node, list[tuple[int, int]]]) -> tuple[Node, list[tuple[int, int]]]:
-    """Return a weighted group of products (weight, products) in the form whose first product has a positive sign.
-
-    A group stands for weight * (sum of sign * product); ``products`` holds pairs (sign, index of the product). If the
-    first sign is -1, all signs and the weight are negated. So -a*(u v - w x) and a*(w x - u v), which differ in form
-    only, are recognised as equal if their products are listed in the same order.
-    """
+    """Return a group (weight, products), which stands for ``weight*sum(sign*product)``, with a positive first sign."""
+    # so -a*(u v - w x) and a*(w x - u v) are recognised as equal if their products are listed in the same order
     weight, terms = item
     return item if terms[0][0] > 0 else (("neg", weight), [(-sign, operand) for sign, operand in terms])

@@ -1,9 +1,8 @@
 """Recurrences for the Taylor coefficients of a motion, built from its rates dy/dt with one rule for each operation.
 
-A series is the list of Taylor coefficients ``u[0], u[1], ...`` of one quantity along the motion. Every operation of a
-program becomes a rule, which computes coefficient n of the result from coefficients up to n of the operands; for the
-states, ``x[n+1] = rate[n]/(n+1)``. Linear operations are sums with constant weights, and equal operations share one
-series. Sums over n terms (convolutions) occur only in products and in rules that are derived from a product:
+A series is the list of Taylor coefficients ``u[0], u[1], ...`` of one quantity along the motion. A rule computes
+coefficient n of the result from coefficients up to n of the operands; for the states, ``x[n+1] = rate[n]/(n+1)``. Rules
+with sums over n terms (convolutions):
 
 =====================  ====================================================================================
 product ``w = u v``    ``w[n] = sum(u[k] v[n-k], k = 0..n)``; a square adds each pair once and doubles it
@@ -14,9 +13,9 @@ primitive              ``n w[n] = (g[n] - sum(e[k] v[n-k], k = 1..n-1))/v[0]``: 
 clock                  ``n w[n] = s a v[n-1]``: exp, sin, cos, sinh, cosh of ``a t + b``
 =====================  ====================================================================================
 
-In the rules driven and clock, ``s v`` is the derivative of the function: for sin, v is cos and s = 1; for cos, v is sin
-and s = -1; for exp, v is exp itself. Here t is the time from the centre of the expansion, so ``t u'`` has the
-coefficients ``n u[n]``. Source: A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., sections 10.2 and 13.2.
+In the rules driven and clock, ``s v`` is the derivative of the function: for cos, v is sin and s = -1. Here t is the
+time from the centre of the expansion. Source: A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., sections 10.2
+and 13.2.
 
 Standard library only: the recurrences of a cached kernel are built without SymPy.
 """
@@ -41,37 +40,27 @@ TANGENTS = {"tan": 1, "tanh": -1}  # function -> sign in t w' = (1 + sign w^2) t
 
 
 class Series(NamedTuple):
-    """One series of Taylor coefficients: its rule, its operands, and the constants of the rule.
-
-    ``operands`` are indices of series. For a sum, ``weights`` holds one constant per operand, and as its last entry the
-    constant that is added to coefficient 0, or None for no such constant. For a function of ``a t + b`` (rule
-    ``clock``), it holds a and b. A rule such as ``driven``, for f(u) with f' known, gives coefficients 1, 2, .. only.
-    Coefficient 0 is f(u[0]): ``function`` is the name of f, and the last of the ``operands`` is the argument u.
-    ``sign`` is s in the rules ``driven`` and ``clock``: 1, or -1 as for cos, whose derivative is -sin. ``number`` is
-    the index of a state.
-    """
+    """One series of Taylor coefficients: its rule, its operands, and the constants of the rule."""
 
     rule: str  # state time sum product quotient root driven primitive clock, or theta (t u')
+    # indices of series; for a function f(u), the last is the argument u
     operands: tuple[int, ...] = ()
+    # of a sum: one constant per operand, then the constant that is added to coefficient 0, or None; of a function of a
+    # t + b: a and b
     weights: tuple[Node | None, ...] = ()
-    function: str = ""
-    sign: int = 1
-    number: int = 0
+    function: str = ""  # name of f, whose rule gives coefficients 1, 2, ..; coefficient 0 is f(u[0])
+    sign: int = 1  # s in the rules driven and clock: -1 for cos, whose derivative is -sin
+    number: int = 0  # index of a state
 
 
 class Recurrences(NamedTuple):
-    """The recurrences of a program: all series, in an order in which each coefficient can be computed.
-
-    ``rates`` holds the series of the rate of each state. Auxiliary states, if any, come after the states of the
-    program; ``seeds`` holds the formulas, in terms of the states and t, for coefficient 0 of the auxiliary states
-    (:mod:`symrot.codegen.taylor.auxiliary_states`).
-    """
+    """The recurrences of a program: all series, in an order in which each coefficient can be computed."""
 
     states: tuple[str, ...]
     parameters: tuple[str, ...]
     series: tuple[Series, ...]
-    rates: tuple[Series, ...]
-    seeds: tuple[Node, ...] = ()
+    rates: tuple[Series, ...]  # the rate of each state, then of each auxiliary state
+    seeds: tuple[Node, ...] = ()  # formulas of states and t: coefficient 0 of each auxiliary state
 
 
 POLYNOMIAL = {"state", "time", "sum", "product"}  # rules of polynomials; other functions, as tanh, may tend to -1
@@ -131,11 +120,7 @@ class _Builder:
         return self.known[series]
 
     def read(self, node: Node) -> _Linear:
-        """Return a formula as a linear form, which is a constant plus weighted series.
-
-        The list ``self.series`` gets a series for each operation in the formula that it does not have yet. ``2*x*y +
-        1`` gives the weight 2, the series of x*y, and the constant 1.
-        """
+        """Return a formula as a linear form: for ``2*x*y + 1``, the constant 1 plus 2 times the series of x*y."""
         kind = node[0]
         if kind == "number":
             return _Linear(node, {})
@@ -144,14 +129,11 @@ class _Builder:
         parts = [self.read(child) for child in children(node)]
         if kind in "+-*/neg" and not any(part.terms for part in parts):
             return _Linear(_folded((kind, *map(_value, parts))), {})
+        # adds a series for each new operation
         return _READERS[kind](self, node, parts)
 
     def series_of(self, form: _Linear) -> int:
-        """Return the index of the series that equals a linear form (a constant plus weighted series).
-
-        If the form is one series with weight 1 and no constant, this is the index of that series. Otherwise it is the
-        index of a sum, which is added to the series unless it exists.
-        """
+        """Return the index of the series that equals a linear form (a constant plus weighted series)."""
         if form.constant is None and list(form.terms.values()) == [ONE]:
             return next(iter(form.terms))
         return self.add(self.sum_of(form))
@@ -162,10 +144,7 @@ class _Builder:
         return Series("sum", tuple(i for i, _ in terms), (*(weight for _, weight in terms), form.constant))
 
     def factored(self, form: _Linear) -> tuple[Node, int]:
-        """Return (constant, series) whose product equals a linear form (a constant plus weighted series).
-
-        Proportional linear forms, such as ``2*u + 4*v`` and ``u + 2*v``, share one series, which is added if new.
-        """
+        """Return (constant, series) whose product equals a linear form (a constant plus weighted series)."""
         if form.constant is None and len(form.terms) == 1:
             ((series, weight),) = form.terms.items()
             return weight, series
@@ -184,14 +163,13 @@ class _Builder:
             return _folded(("*", ("number", number / lead), ONE if len(rests) == 1 else own))
 
         constant = None if form.constant is None else reduced(form.constant)
+        # proportional forms, such as 2*u + 4*v and u + 2*v, share one series
         whole = self.series_of(_Linear(constant, {series: reduced(w) for series, w in form.terms.items()}))
         return _folded(("*", ("number", lead), rest)), whole
 
     def sum(self, left: _Linear, right: _Linear, sign: int) -> _Linear:
-        """Return ``left + sign*right`` for two linear forms (a constant plus weighted series), with ``sign`` 1 or -1.
-
-        A sum in brackets that may become zero during the motion is not expanded; see :meth:`bracket`.
-        """
+        """Return ``left + sign*right`` for two linear forms (a constant plus weighted series); ``sign`` is 1 or -1."""
+        # a sum in brackets that may become zero during the motion is not expanded
         if left.terms and right.terms:
             left, right = self.bracket(left), self.bracket(right)
         return _sum(left, right, sign)
@@ -199,9 +177,7 @@ class _Builder:
     def bracket(self, form: _Linear) -> _Linear:
         """Return a form such as ``m + m*tanh(u)`` as ``m*s``, with one series ``s = 1 + tanh(u)``.
 
-        ``form`` is a constant plus weighted series. It is changed if all weights and the constant are numbers times the
-        same factor m, and if one of the series is not a polynomial, such as tanh; other forms are returned unchanged.
-        The expanded form would have a rounding error proportional to m where the sum tends to zero.
+        Other forms are returned unchanged.
         """
         parts = [*form.terms.values(), *([] if form.constant is None else [form.constant])]
         factors = [_number_and_rest(part) for part in parts]
@@ -211,7 +187,9 @@ class _Builder:
             or all(rest == ONE and abs(number) == 1 for number, rest in factors)
             or all(self.series[series].rule in POLYNOMIAL for series in form.terms)
         ):
+            # one term, different factors, no factor, or polynomials alone
             return form
+        # expanded, the form would have a rounding error proportional to m where the sum tends to zero
         weight, series = self.factored(form)
         return _Linear(None, {series: weight})
 
@@ -235,16 +213,14 @@ class _Builder:
         return _Linear(None, {self.add(Series("quotient", (v,))): _folded(("/", _value(left), b))})
 
     def reciprocal(self, number: int) -> _Linear | None:
-        """Return 1/v as a linear form if v, the series ``number``, is a product of hyperbolic cosines; otherwise None.
-
-        It is computed from functions sech, because the hyperbolic cosines could overflow.
-        """
+        """Return 1/v as a linear form if v, the series ``number``, is a product of hyperbolic cosines, else None."""
         series = self.series[number]
         if series.rule == "product":
             left, right = map(self.reciprocal, series.operands)
             return None if left is None or right is None else self.product(left, right)
         if number not in self.cosh_arguments:
             return None
+        # a product of sech, because hyperbolic cosines could overflow
         return self.secant(self.cosh_arguments[number])
 
     def secant(self, argument: _Linear) -> _Linear:
@@ -288,14 +264,8 @@ class _Builder:
         return (weight, form.constant) if series >= 0 and self.series[series].rule == "time" else None
 
     def driven(self, functions: Sequence[tuple[str, int]], partners: Sequence[int], argument: _Linear) -> int:
-        """Return the index of the first series of several functions that are each other's derivatives.
-
-        Sine and cosine are such functions. Each function is given by its name and the sign of its derivative.
-        ``partners`` holds, for each function, the position of the function in its derivative: 1 for sine and 0 for
-        cosine, in the order (sine, cosine). The series follow each other in ``self.series``, and are added if they do
-        not exist: by the rule ``clock`` if ``argument`` is ``a t + b``, since this rule needs no convolution, otherwise
-        by the rule ``driven``.
-        """
+        """Return the index of the first series of functions that are each other's derivatives, as sine and cosine."""
+        # functions: (name, sign of its derivative); partners: positions of the functions in their derivatives
         clock = self.clock(argument)
         seed = () if clock else (self.series_of(argument),)
         drive = () if clock else (self.theta(*seed),)
@@ -303,16 +273,15 @@ class _Builder:
         if key not in self.known:
             first = self.known[key] = len(self.series)
             for (function, sign), partner in zip(functions, partners, strict=True):
+                # the rule clock needs no convolution
                 rule = "clock" if clock else "driven"
                 self.series.append(Series(rule, (*drive, first + partner, *seed), clock or (), function, sign))
         return self.known[key]
 
     def sine_or_cosine(self, name: str, argument: _Linear) -> _Linear:
-        """Return sin, cos, sinh or cosh (``name``) of ``argument`` as a linear form: its series, with weight 1.
-
-        The series of the other function of the pair is added too, because the derivative of each contains the other.
-        """
+        """Return sin, cos, sinh or cosh (``name``) of ``argument`` as a linear form: its series, with weight 1."""
         sine, cosine, *signs = SINE_COSINE_PAIRS[name]
+        # the derivative of each function of a pair contains the other, so both series are added
         first = self.driven(((sine, signs[0]), (cosine, signs[1])), (1, 0), argument)
         if cosine == "cosh":
             self.cosh_arguments[first + 1] = argument
@@ -434,10 +403,7 @@ def _signed(sign: int, node: Node) -> Node:
 
 
 def split_sign(node: Node) -> tuple[int, Node]:
-    """Return (sign, formula) such that ``node`` is their product, and the formula has no minus sign in front.
-
-    The sign is 1 or -1: the formula ``-a`` gives -1 and a, the number -2 gives -1 and 2, and ``a`` gives 1 and a.
-    """
+    """Return (sign, formula) whose product is ``node``: ``-a`` gives -1 and a, ``a`` gives 1 and a."""
     if node[0] == "neg":
         sign, inner = split_sign(node[1])
         return -sign, inner

@@ -1,11 +1,8 @@
 """C code of the Taylor series of one motion: one function computes the jet, all Taylor coefficients of all states.
 
-The words row, pack, column and slot are explained in :mod:`symrot.codegen.taylor.lanes`: in short, a row is a SIMD
-vector of four series, and a column the convolution of two such vectors. Orders n and n + 1 are computed together. Loops
-over the known coefficients read each number once for both orders; then the terms with the newest coefficients are
-added. No loop over the order is unrolled, so the code stays small for any order.
-
-The code is placed between :file:`taylor.h`, the operations on SIMD vectors of four, and :file:`taylor.c`, the stepper.
+The series are arranged in rows (SIMD vectors of four), and their products in columns (convolutions of two vectors), see
+:mod:`symrot.codegen.taylor.lanes`. The code is placed between :file:`taylor.h`, the operations on vectors, and
+:file:`taylor.c`, the stepper.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -25,9 +22,7 @@ COLUMNS_PER_LOOP = 4  # each with two sums, so that sums and factors fit into 16
 
 
 def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[float], order: int = ORDER) -> str:
-    """Return the C code of one right-hand side that the Taylor stepper :file:`taylor.c` needs.
-
-    It defines sizes, tables, constants and the function that computes all Taylor coefficients.
+    """Return C code for the stepper :file:`taylor.c`: tables, and a function for the Taylor coefficients of a motion.
 
     Parameters
     ----------
@@ -69,7 +64,7 @@ def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[
 def checked_system(program: Program, edges: Sequence[int], scales: Sequence[float], order: int) -> Recurrences:
     """Return the Taylor recurrences of the right-hand side ``program``.
 
-    Raise InputError if the order or the blocks cannot be used. The arguments are those of :func:`taylor_definitions`.
+    Raise InputError if the order or the blocks cannot be used.
     """
     if order < 4 or order % 2:
         raise InputError(f"order of the Taylor method: expected an even number, at least 4, got {order}")
@@ -93,10 +88,9 @@ def jet_source(layout: Layout, parameters: Sequence[str]) -> str:
 
 
 class _Jet:
-    """Writes the C function that computes the jet, all Taylor coefficients, of series arranged in vectors (``layout``).
+    """Writes the C function that computes the jet, all Taylor coefficients, of series in SIMD vectors (``layout``).
 
-    The coefficients of order n of all series are computed before those of order n + 1. The C statements differ for n =
-    0, n = 1 and larger n; the argument ``stage`` of the methods is then ``first``, ``second`` and ``later``.
+    The C code differs by ``stage``: ``first`` for n = 0, ``second`` for n = 1, then ``later``.
     """
 
     def __init__(self, layout: Layout, parameters: Sequence[str]) -> None:
@@ -128,19 +122,12 @@ class _Jet:
         return f"x[{row}]" if row < self.own_rows else f"u{row}"
 
     def newest(self, pack: Pack) -> str:
-        """Return the C expression for the coefficients of order n, just computed, of a pack (a vector of four series).
-
-        It is the name of a variable if there is one, otherwise the result of :meth:`picked`.
-        """
+        """Return the C expression for the coefficients of order n, just computed, of a pack (vector of four series)."""
         return f"l{self.packs[pack]}" if pack in self.packs else self.picked(pack)
 
     def picked(self, pack: Pack) -> str:
-        """Return the C expression of the coefficients of order n of a pack, a vector of any four series.
-
-        The coefficients of order n have just been computed, in vectors of up to four series each, the rows; the
-        variable ``r{i}`` holds those of row i. The expression picks the elements of the pack from the rows and gives
-        them the signs of the pack: for a pack with elements from rows 0 and 2, a permutation of ``r0`` and ``r2``.
-        """
+        """Return the C expression that picks coefficients n of a pack (any four series) from vectors ``r0, r1, ..``."""
+        # r{i} holds coefficients n of the up to four series in row i
         rows = sorted({address.row for address in pack})
         if _is_row(pack):
             return f"r{rows[0]}"
@@ -155,13 +142,9 @@ class _Jet:
         return f"V_FLIP({value}, {', '.join('-1' if sign < 0 else '1' for sign in signs)})" if -1 in signs else value
 
     def column(self, index: int, stage: str, sums: str) -> str:
-        """Return the C expression for coefficient n of the convolutions in column ``index``, a vector of four numbers.
-
-        A convolution is ``sum(a[k] b[n-k], k = 0..n)``. The sum over k = 1..n-1 is in the variable with the letter
-        ``sums`` and the column's number, such as ``a3``; the terms k = 0 and k = n are added. ``stage`` depends on n:
-        see the class. An empty text stands for zero.
-        """
+        """Return the C expression for coefficient n of the convolutions in column ``index``; empty for zero."""
         a, b, ends = self.layout.columns[index]
+        # a C variable such as a3 holds the terms k = 1..n-1; the terms k = 0 and k = n are added
         known = f"{sums}{index}" if stage == "later" else ""
         if ends == "none":
             return known
@@ -181,12 +164,8 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- rows
 
     def sum(self, row: Row, stage: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
-        """Return the C expression for a row of the rule ``sum``, which consists of four weighted sums of series.
-
-        They are multiplied by ``factor`` if it is not empty. ``stage`` and ``sums`` are explained in the class and in
-        :meth:`column`; ``fused`` is the C function that computes a b + c. Terms that are computed last are added last,
-        so that the other additions need not wait for them.
-        """
+        """Return the C expression for a row of the rule ``sum``, four weighted sums of series, times ``factor``."""
+        # fused: the C function of a b + c; terms that are computed last are added last, so that others need not wait
         value = ""
         parts = [(self.picked(term.pack), term.weights) for term in row.terms]
         parts += [(self.slot(slot.columns, stage, sums), slot.weights) for slot in reversed(row.slots)]
@@ -204,9 +183,9 @@ class _Jet:
     def _rest_of_time(self, row: Row) -> str:
         """Return the C text of the four constants that multiply ``t_low`` in a row of sums.
 
-        The time is the sum of two doubles, ``t`` and the much smaller ``t_low``. The text is empty if no sum of the row
-        contains the time.
+        It is empty if no sum contains the time.
         """
+        # the time is the sum of two doubles, t and the much smaller t_low
         weights: list[Node] = []
         for number in row.lanes:
             series = None if number is None else self.layout.series[number]
@@ -216,10 +195,7 @@ class _Jet:
         return self.constant(tuple(weights)) if any(weight != ("number", 0) for weight in weights) else ""
 
     def _weighted(self, weights: tuple[Node, ...], factor: str) -> str:
-        """Return the C expression of a vector of constants times ``factor``; ``factor`` alone if all constants are 1.
-
-        An empty ``factor`` stands for 1, and so does an empty result.
-        """
+        """Return the C expression of a vector of constants times ``factor``; an empty text stands for 1."""
         ones = all(weight == ("number", 1) for weight in weights)
         if ones:
             return factor
@@ -227,10 +203,7 @@ class _Jet:
         return f"V_MUL({constant}, {factor})" if factor else constant
 
     def row(self, number: int, n: str, stage: str, sums: str) -> list[str]:
-        """Return the C statements that set ``r{number}`` to coefficient ``n`` of the four series in the row ``number``.
-
-        ``stage`` and ``sums`` are explained in the class and in :meth:`column`.
-        """
+        """Return the C statements that set ``r{number}`` to coefficient ``n`` of the four series in row ``number``."""
         row, name = self.rows[number], f"r{number}"
         terms = [self.picked(term.pack) for term in row.terms]
         total = self.slot(row.slots[0].columns, stage, sums) if row.slots else ""
@@ -270,12 +243,8 @@ class _Jet:
         return [f"{name} = V_DIV({upper}, {lower});"]
 
     def _quotient(self, row: Row, name: str, stage: str, terms: list[str], total: str) -> list[str]:
-        """Return the C statements that set the variable ``name`` to coefficient n of ``u/v``: ``(u[n] - total)/v[0]``.
-
-        ``row`` describes up to four quotients that are computed as one vector. ``terms`` holds the C expressions of
-        v[n] and, unless u is constant, of u[n]. ``total`` is the C expression of ``sum(v[k] (u/v)[n-k], k = 1..n)``,
-        whose terms are known at this point. ``stage`` is "first" for n = 0, where v[0] is also stored for later orders.
-        """
+        """Return the C statements that set the variable ``name`` to coefficient n of u/v: ``(u[n] - total)/v[0]``."""
+        # terms: C text of v[n] and, unless u is constant, of u[n]; total: of sum(v[k] (u/v)[n-k], k = 1..n)
         divisor, upper = f"d{name[1:]}", "V_ALL(0.0)"
         if len(terms) > 1:
             weights = self._weighted(row.terms[1].weights, "")
@@ -284,6 +253,7 @@ class _Jet:
             return [f"{name} = V_DIV(V_SUB({upper}, {total}), {divisor});"]
         if row.constant is not None and set(row.constant) != {("number", 0)}:
             upper = f"V_ADD({upper}, {self.constant(row.constant)})"
+        # v[0] is stored for later orders
         return [f"{divisor} = {terms[0]};", f"{name} = V_DIV({upper}, {divisor});"]
 
     def _seed(self, row: Row) -> str:
@@ -303,10 +273,7 @@ class _Jet:
         return f"V_SET({', '.join(lanes)})"
 
     def _clock_seed(self, row: Row, name: str) -> list[str]:
-        """Return the C statements for coefficient 0 of functions of ``a t + b``.
-
-        The rounding error of ``a t + b`` is corrected to first order, with the slope of the function.
-        """
+        """Return the C statements for coefficient 0 of functions of ``a t + b``."""
         series = [self.layout.series[i] for i in row.lanes if i is not None]
         rates = self.constant(tuple(s.weights[0] for s in series))  # type: ignore[misc]
         offsets = self.constant(row.constant) if row.constant and set(row.constant) != {("number", 0)} else ""
@@ -323,6 +290,7 @@ class _Jet:
         for s in series:
             turn, partner = turns[s.weights], self.layout.series[s.operands[0]].function
             sign = "-" if s.sign < 0 else "+"
+            # the rounding error of a t + b is corrected to first order, with the slope of the function
             lanes.append(f"{_of(s.function, turn)} {sign} {turn}.lo*{_of(partner, turn)}")
         return [*lines, f"{name} = V_SET({', '.join(lanes)});"]
 
@@ -357,12 +325,7 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- orders
 
     def order(self, n: str, stage: str, sums: str) -> list[str]:
-        """Return the C statements for coefficient ``n`` (C text) of all series and coefficient n + 1 of the states.
-
-        ``stage`` is "first" for n = 0, "second" for n = 1 and "later" for larger n: later convolutions have more terms.
-        ``sums`` is the letter of the C variables that hold the terms k = 1..n-1 of each convolution, already summed
-        (see :meth:`column`).
-        """
+        """Return the C statements for coefficient ``n`` (C text) of all series and coefficient n + 1 of the states."""
         lines: list[str] = []
         done, packed = set(range(self.state_rows)), set[Pack]()
 
@@ -391,10 +354,8 @@ class _Jet:
         return lines
 
     def loops(self) -> list[str]:
-        """Return the C loops that sum products of known coefficients, for the orders n (even) and m = n + 1.
-
-        The C variables ``a{i}`` sum the products u[k] v[n-k] of order n, and ``b{i}`` the products of order m.
-        """
+        """Return the C loops that sum products a[k] b[n-k] of known coefficients, for the orders n (even) and n + 1."""
+        # variables a{i} for order n, b{i} for order n + 1; each number is read once for both orders
         lines: list[str] = []
         columns = self.layout.columns
         loops = -(-len(columns) // COLUMNS_PER_LOOP)
@@ -420,12 +381,10 @@ class _Jet:
         return lines
 
     def completed_sums(self) -> list[str]:
-        """Return the C statements that complete the sums ``b{i}`` of order n + 1, once coefficients n are known.
-
-        They add the terms a[1] b[n] and a[n] b[1]; the loop before has added the others.
-        """
+        """Return the C statements that complete the sums ``b{i}`` of order n + 1, once coefficients n are known."""
         lines: list[str] = []
         for i, (a, b, _) in enumerate(self.layout.columns):
+            # the terms a[1] b[n] and a[n] b[1]; the loop before has added the others
             one, two = (self.at(a, "1"), self.at(b, "n")), (self.at(a, "n"), self.at(b, "1"))
             lines.append(f"b{i} = V_FMA({one[0]}, {one[1]}, V_FMA({two[0]}, {two[1]}, b{i}));")
         return lines
@@ -447,6 +406,7 @@ class _Jet:
             *(f"symrot_v4 d{i};" for i in divisors),
             "{", *_indented(orders["0"]), "}",
             "{", *_indented(orders["1"]), "}",
+            # no loop over the order is unrolled, so that the code stays small
             "for (int64_t n = 2; n < order; n += 2) {",
             *_indented(["const int64_t m = n + 1;", *self.loops(), "{", *_indented(orders["n"]), "}",
                         *self.completed_sums(), "{", *_indented(orders["m"]), "}"]),

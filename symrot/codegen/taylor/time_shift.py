@@ -1,12 +1,8 @@
 """Rates dy/dt with time counted from an epoch, for motions that start far from t = 0.
 
-A double holds 53 bits of ``a*t + b``: at t = 1e9 s the error of a phase is 1e-7 rad, however short the steps are. With
-``t = epoch + tau`` (shifted time tau) every polynomial of t, inside sine, cosine, exp or elsewhere, becomes a
-polynomial of tau whose coefficients are computed exactly and rounded once. In the arguments of sine, cosine and
-tangent, multiples of 2 pi are subtracted first. A product of factors of degree one is not expanded: ``((t - c)/w)**2``
-would become a difference of large numbers near a narrow pulse.
-
-Standard library only.
+A double holds 53 bits of ``a*t + b``: at t = 1e9 s the error of a phase is 1e-7 rad. With ``t = epoch + tau``, a
+polynomial of t becomes a polynomial of tau, whose coefficients are computed exactly and rounded once. Standard library
+only.
 """
 
 from collections.abc import Collection, Iterator, Sequence
@@ -29,12 +25,9 @@ HIGHEST = 12  # largest degree of a polynomial of t that is shifted as a whole
 
 
 def from_epoch(kernel: SceneKernel) -> SceneKernel:
-    """Return the kernel of a scene with time counted from the epoch, a new constant ``epoch`` of the scene, in s.
-
-    Conserved quantities that depend on time are marked as not conserved, because their formulas still contain the
-    original time.
-    """
+    """Return the kernel of a scene with time counted from the epoch, a new constant ``epoch`` of the scene, in s."""
     rates, parameters = moved(kernel.rates, kernel.rate_parameters)
+    # formulas of conserved quantities still contain the original time
     timeless = [
         item._replace(holds=item.holds and not kernel.quantities.uses(TIME, (item.output,)))
         for item in kernel.conserved
@@ -59,9 +52,6 @@ def moved(program: Program, parameters: Parameters) -> tuple[Program, Parameters
 def moved_formulas(formulas: Sequence[Node], constants: Collection[str]) -> tuple[tuple[Node, ...], Parameters]:
     """Return formulas in which t is the time since ``epoch``, and the (name, formula) of each parameter in them.
 
-    ``epoch``, in s, is a new constant: for times far from 0, ``sin(a*t)`` would lose digits. A parameter is a constant
-    part of a formula:  ``sin(a*t)`` becomes sin(a*t + p), with a parameter p whose formula is a*epoch.
-
     Parameters
     ----------
     formulas : sequence of Node
@@ -69,6 +59,7 @@ def moved_formulas(formulas: Sequence[Node], constants: Collection[str]) -> tupl
     constants : collection of str
         The names of constants; all other names are states.
     """
+    # sin(a*t) becomes sin(a*t + p) with the parameter p = a*epoch, as it would lose digits for times far from 0
     used = sorted(set().union(*map(names, formulas)) - {TIME})
     shared = tuple((name, ("symbol", name)) for name in used if name in constants)
     states = Argument("y", "in", tuple((name, "", "") for name in used if name not in constants))
@@ -80,12 +71,10 @@ def moved_formulas(formulas: Sequence[Node], constants: Collection[str]) -> tupl
 
 
 class _Form(NamedTuple):
-    """A formula in the shifted time (``node``) and, if it is a polynomial of t, its coefficients (``terms``).
-
-    The coefficients are constant formulas, lowest power first; ``terms`` is None for any other formula.
-    """
+    """A formula in the shifted time (``node``) and, if it is a polynomial of t, its coefficients (``terms``)."""
 
     node: Node | None  # None for a polynomial of degree one, whose formula is made from the terms when it is used
+    # constant formulas, lowest power first
     terms: tuple[Node, ...] | None = None
     centred: bool = False  # whether it is a product with a factor a t + b, which is small near its zero -b/a
 
@@ -136,15 +125,12 @@ class _Mover:
         written = tuple(self.written(part, turns) for part in parts)
         if kind == "call":
             return _Form((kind, node[1], written), terms)
+        # such a product is not expanded: ((t - c)/w)**2 would become a difference of large numbers near a narrow pulse
         centred = any(part.centred for part in parts) or (kind in ("*", "**") and any(map(_is_shifted, parts)))
         return _Form((kind, *written, *node[2:]) if kind == "**" else (kind, *written), terms, centred)
 
     def gathered(self, node: Node) -> _Form | None:
-        """Return a sum in which all terms of the form a t + b are combined into one, or None if that changes nothing.
-
-        Combining matters if constants b nearly cancel, which they do far from t = 0. It changes nothing if fewer than
-        two terms have this form or none of them contains the time. If all terms have it, the sum itself has it too.
-        """
+        """Return a sum in which all terms of the form a t + b are one term, or None if that changes nothing."""
         lines: list[tuple[Node, ...]] = []
         others: list[tuple[bool, _Form]] = []
         for negative, form in self.summands(node, False):
@@ -152,8 +138,10 @@ class _Mover:
                 lines.append(tuple(map(_negative, form.terms)) if negative else form.terms)
             else:
                 others.append((negative, form))
+        # without other terms, the sum itself is a t + b
         if not others or len(lines) < 2 or max(map(len, lines)) == 1:
             return None
+        # constants b nearly cancel far from t = 0
         line = _trimmed([_total([each[i] for each in lines if i < len(each)]) for i in (0, 1)])
         gathered = self.written(_Form(None, line))
         for negative, other in others:
@@ -174,11 +162,8 @@ class _Mover:
             yield negative, self.read(node)
 
     def written(self, form: _Form, turns: bool = False) -> Node:
-        """Return the formula tree of ``form`` in the shifted time; a polynomial of t is written by Horner's rule.
-
-        The coefficients of the polynomial become parameters. With ``turns``, the value is an angle in a sine, cosine or
-        tangent, and multiples of 2 pi may be subtracted.
-        """
+        """Return the formula tree of ``form`` in the shifted time; a polynomial of t is written by Horner's rule."""
+        # turns: the value is an angle in a sine, cosine or tangent, from which multiples of 2 pi may be subtracted
         whole = turns and form.terms is not None and len(form.terms) > 1 and not form.centred
         if form.node is not None and not whole:
             return form.node
@@ -227,11 +212,8 @@ def _is_shifted(form: _Form) -> bool:
 
 
 def _terms(node: Node, parts: list[tuple[Node, ...] | None]) -> tuple[Node, ...] | None:
-    """Return the result of an operation as a polynomial in t: its coefficients, lowest power first.
-
-    Return None if it is not a polynomial. ``parts`` holds the coefficients of each operand, or None for an operand that
-    is not a polynomial in t.
-    """
+    """Return the result of an operation as the coefficients of a polynomial in t, lowest power first, or None."""
+    # parts: the coefficients of each operand; None for an operand that is no polynomial
     if any(part is None for part in parts):
         return None
     kind, polynomials = node[0], [part for part in parts if part is not None]

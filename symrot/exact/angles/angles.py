@@ -1,9 +1,7 @@
-"""Angles as rational combinations of atoms (symbols or other non-numeric factors), and the base angle of each atom.
+"""Angles as rational combinations of atoms (symbols or other factors that are not numbers).
 
-``sin(2*phi - psi/2 + pi/3)`` has the linear form ``{phi: 2, psi: -1/2}`` plus ``1/3`` of pi. When the forms of all
-angles of a problem are known, each atom gets one base angle, the greatest common divisor of its coefficients. Then
-every angle is an integer combination of base angles, and every sine and cosine is a polynomial in the sines and cosines
-of base angles (``docs/exact_decisions.md``, section 4).
+``2*phi - psi/2 + pi/3`` has the linear form ``{phi: 2, psi: -1/2}`` plus ``1/3`` of pi. Each atom has a base angle, of
+which all its angles are whole multiples: theta/6 if theta/2 and theta/3 occur (``docs/exact_decisions.md``, section 4).
 """
 
 from collections.abc import Iterable
@@ -21,21 +19,15 @@ PARTS = 24
 
 @dataclass(frozen=True)
 class LinearForm:
-    """An angle in rad as ``sum(coefficient * atom) + half_turns * pi``; ``terms`` holds the pairs (atom, coefficient).
+    """An angle in rad as ``sum(coefficient * atom) + half_turns * pi``; an atom is a symbol or another factor."""
 
-    An atom is a symbol or another factor that is not a number. ``half_turns`` is a multiple of 1/24; a constant angle
-    with another denominator is a multiple of the atom ``pi``.
-    """
-
-    terms: tuple[tuple[Expr, Fraction], ...]
+    terms: tuple[tuple[Expr, Fraction], ...]  # pairs (atom, coefficient); no atom is a number
+    # a multiple of 1/24; a constant angle with another denominator is a term with the atom ``pi``
     half_turns: Fraction
 
 
 def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
-    """Return an angle (rad) as rational multiples of atoms plus a multiple of pi.
-
-    In ``2*phi - psi/2 + pi/3`` the atoms are phi and psi. Products are expanded; every factor that is not a number is
-    an atom. With ``turns=False``, used for the exponent of an exponential, ``pi`` is an atom as any symbol is.
+    """Return an angle (rad) as a sum of rational multiples of pi and of atoms: phi and psi in ``2*phi - psi/2 + pi/3``.
 
     Raises
     ------
@@ -49,6 +41,7 @@ def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
         if not number.is_Rational:
             raise InputError(f"expected rational coefficients, such as 1/2, in an angle; got {number} in {argument}")
         coefficient = Fraction(int(number.p), int(number.q))
+        # turns=False: in the exponent of an exponential, pi is an atom like any symbol
         if turns and atom == pi and PARTS % coefficient.denominator == 0:
             half_turns += coefficient
         elif coefficient:
@@ -58,10 +51,9 @@ def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
 
 
 def base_coefficients(forms: Iterable[LinearForm]) -> dict[Expr, Fraction]:
-    """Return, for each atom, the greatest common divisor of its coefficients in all ``forms``, a rational number.
+    """Return, for each atom, the greatest common divisor of its coefficients in all ``forms``.
 
-    The base angle of the atom is this number times the atom: ``theta/2`` if ``theta`` and ``theta/2`` occur. Every
-    angle is an integer combination of base angles.
+    If ``theta`` and ``theta/2`` occur, it is 1/2 for theta.
     """
     bases: dict[Expr, Fraction] = {}
     for form in forms:
@@ -73,17 +65,14 @@ def base_coefficients(forms: Iterable[LinearForm]) -> dict[Expr, Fraction]:
 
 
 def constant_cosine_sine(half_turns: Fraction) -> tuple[Expr, Expr]:
-    """Return the exact cosine and sine of ``half_turns * pi`` (a multiple of 1/24) in terms of square roots.
-
-    An odd multiple of pi/24 is a multiple of pi/12 plus pi/8. Because ``sin(pi/8) = (sqrt(2) - 1) cos(pi/8)``, one
-    additional root suffices; sin(pi/8) and cos(pi/8) would be two roots that depend on each other.
-    """
+    """Return the exact cosine and sine of ``half_turns * pi``, a multiple of pi/24, in terms of square roots."""
     odd = half_turns * PARTS % 2 == 1
     rest = half_turns - Fraction(1, 8) if odd else half_turns
     angle = Rational(rest.numerator, rest.denominator) * pi
     cosine, sine = cos(angle), sin(angle)
     if not odd:
         return cosine, sine
+    # only cos(pi/8) is a new root: sin(pi/8) would be a second one that depends on it
     c8 = cos(pi / 8)
     s8 = (sqrt(2) - 1) * c8
     return cosine * c8 - sine * s8, sine * c8 + cosine * s8
@@ -95,11 +84,11 @@ def base_angle(atom: Expr, coefficient: Fraction) -> Expr:
 
 
 def chebyshev(multiple: int) -> tuple[list[int], list[int]]:
-    """Return the Chebyshev polynomials T_n and U_(n-1) for n = ``multiple`` >= 1, as integer coefficients.
+    """Return the Chebyshev polynomials T_n and U_(n-1), n = ``multiple`` >= 1, as lists of integer coefficients.
 
-    The lowest power comes first. They express multiples of an angle: ``cos(n x) = T_n(cos x)`` and ``sin(n x) = sin(x)
-    U_(n-1)(cos x)``.
+    The lowest power comes first.
     """
+    # cos(n x) = T_n(cos x) and sin(n x) = sin(x) U_(n-1)(cos x)
     first, first_next = [1], [0, 1]  # T_0, T_1
     second, second_next = [0], [1]  # U_(-1), U_0
     for _ in range(multiple - 1):

@@ -1,9 +1,7 @@
 """Prove that a number made of roots and of cosines of rational multiples of pi is zero or is not zero.
 
-The method is a separation bound. A sum of products of algebraic integers is an algebraic integer. If it is not zero,
-the product of its conjugates is a nonzero whole number, so its size is at least ``B^(1 - D)``, where B bounds all its
-conjugates and D is the degree of the field (Burnikel, Funke, Mehlhorn, Schirra, Schmitt, A separation bound for real
-algebraic expressions, 2001). An interval around the number that is narrower than this bound decides.
+An algebraic integer that is not zero has a smallest possible size, which its conjugates bound. So an interval around
+the number that is narrower than this bound decides.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -21,24 +19,23 @@ MOST_BITS = 40_000
 
 Monomial = tuple[int, ...]
 
+# Separation bound: the product of the conjugates of an algebraic integer other than 0 is a nonzero whole number, so the
+# integer is at least B^(1 - D) in size, if B bounds all its conjugates and D is the degree of the field.
+# (Burnikel, Funke, Mehlhorn, Schirra, Schmitt, A separation bound for real algebraic expressions, 2001)
+
 
 @dataclass(frozen=True)
 class Number:
-    """An algebraic number that is a variable (generator) of the ring: a root, or ``2 cos(pi/order)``.
+    """An algebraic number that is a variable of the polynomial ring: a root, or ``2 cos(pi/order)``."""
 
-    ``place`` is the index of the variable, ``degree`` a bound on the degree that the number adds to the field.
-    ``multiplier * number`` is an algebraic integer whose conjugates are at most ``2^bound`` in size. A root has
-    ``index`` and ``inside`` (its radicand), a cosine has ``order``; ``needs`` are the generators in the radicand.
-    """
-
-    place: int
-    degree: int
-    multiplier: int
-    bound: int
-    order: int = 0
-    index: int = 0
-    inside: PolyElement | None = None
-    needs: frozenset[int] = frozenset()
+    place: int  # index of the variable
+    degree: int  # bound on the degree that the number adds to the field
+    multiplier: int  # multiplier * number is an algebraic integer
+    bound: int  # the conjugates of this algebraic integer are at most 2^bound in size
+    order: int = 0  # of a cosine
+    index: int = 0  # of a root: 2 for a square root
+    inside: PolyElement | None = None  # radicand of a root
+    needs: frozenset[int] = frozenset()  # indices of the variables in the radicand
 
 
 class NotReal(ArithmeticError):
@@ -51,10 +48,9 @@ def cosine_number(place: int, degree: int, order: int) -> Number:
 
 
 def root_number(place: int, index: int, inside: PolyElement, known: Mapping[int, Number]) -> Number:
-    """Return the root ``inside^(1/index)`` as an algebraic number, with the bounds that proofs need.
+    """Return the root ``inside^(1/index)`` as an algebraic number.
 
-    ``inside`` is a polynomial in the numbers ``known`` (index of the variable -> number); ``place`` is the index of the
-    root's own variable in the ring.
+    ``inside`` is a polynomial in the numbers ``known`` (index of the variable -> number).
     """
     needs = _places(inside)
     needs = needs.union(*(known[n].needs for n in needs)) if needs else needs
@@ -67,8 +63,7 @@ def root_number(place: int, index: int, inside: PolyElement, known: Mapping[int,
 def vanishes(poly: PolyElement, known: Mapping[int, Number]) -> bool:
     """Return whether a polynomial in the algebraic numbers ``known`` is proven to be zero.
 
-    ``known`` maps indices of variables to numbers. False means that it is not zero, or that the proof needs too many
-    digits.
+    ``known`` maps indices of variables to numbers.
     """
     terms = list(poly.items())
     if not terms:
@@ -87,6 +82,7 @@ def vanishes(poly: PolyElement, known: Mapping[int, Number]) -> bool:
                 return False
             if size.b < iv.mpf(2) ** -bits:
                 return True
+            # a proof that needs too many digits is given up
             if iv.prec > min(bits + bound + 200, MOST_BITS):
                 return False
             iv.prec = min(4 * iv.prec, bits + bound + 201)
@@ -101,15 +97,12 @@ def _places(poly: PolyElement) -> frozenset[int]:
 
 
 def _integral(terms: Iterable[tuple[Monomial, Any]], known: Mapping[int, Number]) -> tuple[int, int]:
-    """Return (multiplier, bits) for a sum of terms (powers of the variables, coefficient).
-
-    The multiplier makes the sum an algebraic integer, whose conjugates are then below 2^bits. ``known`` maps the
-    indices of the variables to their numbers.
-    """
+    """Return (multiplier, bits): the factor that makes a sum an algebraic integer, and the size of its conjugates."""
     terms = list(terms)
     most = [max(column) for column in zip(*(mono for mono, _ in terms), strict=True)]
     whole = lcm(*(int(c.denominator) for _, c in terms))
     multiplier = whole * prod(known[n].multiplier ** power for n, power in enumerate(most) if power)
+    # all conjugates of multiplier * sum are below 2^bits
     total = 0
     for mono, c in terms:
         rest = abs(int(c.numerator)) * whole // int(c.denominator)

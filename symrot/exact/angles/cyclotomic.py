@@ -1,8 +1,7 @@
 """Sines and cosines of rational multiples of pi other than multiples of pi/24, as polynomials in one number.
 
-With ``g = 2 cos(pi/N)``, N even, ``2 cos(k pi/N)`` is a polynomial in g with integer coefficients, and a sine is the
-cosine of the complementary angle. The minimal polynomial M of g follows from the cyclotomic polynomial of order 2N,
-which equals ``x^d M(x + 1/x)``.
+With ``g = 2 cos(pi/N)``, N even, ``2 cos(k pi/N)`` is a polynomial in g with integer coefficients. A sine is the cosine
+of the complementary angle.
 """
 
 from fractions import Fraction
@@ -41,11 +40,11 @@ def order(denominator: int) -> int:
 
 
 def needs_cyclotomic_field(denominator: int) -> bool:
-    """Return whether sines and cosines of multiples of pi/denominator are read as polynomials in g = 2 cos(pi/N).
+    """Return whether sines and cosines of multiples of pi/denominator are written as polynomials in 2 cos(pi/N).
 
-    N is ``order(denominator)``. The result is False, and these sines and cosines stay symbols, if the minimal
-    polynomial of g over the rationals has a degree above ``LARGEST_DEGREE``: the polynomials would be too long.
+    N is ``order(denominator)``.
     """
+    # beyond this degree the polynomials would be too long: the sines and cosines stay symbols
     return order(denominator) <= 12 * LARGEST_DEGREE and degree(order(denominator)) <= LARGEST_DEGREE
 
 
@@ -57,6 +56,7 @@ def degree(n: int) -> int:
 @cache
 def minimal_polynomial(n: int) -> tuple[int, ...]:
     """Return the coefficients, lowest power first, of the minimal polynomial of 2 cos(pi/n), n >= 2; the last is 1."""
+    # the cyclotomic polynomial of order 2n is x^d M(x + 1/x), with the minimal polynomial M of degree d
     symmetric = [int(c) for c in Poly(cyclotomic_poly(2 * n, x), x).all_coeffs()]
     middle = len(symmetric) // 2
     total = [symmetric[middle]] + [0] * middle
@@ -85,7 +85,6 @@ def doubled_cosine(times: int, n: int) -> tuple[int, ...]:
 def multiples(turns: Fraction, n: int) -> tuple[int, int]:
     """Return whole numbers (k, l) with ``cos(turns*pi) = cos(k*pi/n)`` and ``sin(turns*pi) = cos(l*pi/n)``.
 
-    With k and l, :func:`doubled_cosine` gives the cosine and the sine of ``turns*pi`` as polynomials in 2 cos(pi/n).
     The product ``n * turns`` must be a whole number.
 
     Examples

@@ -1,7 +1,6 @@
 """Inverse trigonometric functions as angles: the sine and cosine of their values, and the ranges of their values.
 
-``asin``, ``acos``, ``atan`` and ``atan2`` return principal values. So ``cos(asin(u)) = +sqrt(1 - u^2)``, and half of
-any value lies in [-pi/2, pi/2], where the cosine is not negative. ``atan2(y, x)`` is undefined at (0, 0).
+The functions return principal values, so ``cos(asin(u)) = +sqrt(1 - u^2)``. ``atan2(y, x)`` is undefined at (0, 0).
 """
 
 from collections.abc import Callable
@@ -45,7 +44,7 @@ INVERSE: dict[type, Callable[..., Pair]] = {asin: _asin, acos: _acos, atan: _ata
 def cosine_sine(angle: Expr, halvings: int) -> Pair:
     """Return the cosine and sine of ``angle / 2**halvings`` without trigonometric functions.
 
-    The angle is an inverse function: for ``asin(u)`` and 0 halvings they are sqrt(1 - u^2) and u.
+    For ``asin(u)`` and 0 halvings they are sqrt(1 - u^2) and u.
     """
     pair = INVERSE[type(angle)](*angle.args)
     if halvings and isinstance(angle, acos):  # the range of acos ends at pi, half of which is included too
@@ -64,12 +63,13 @@ _QUARTER = Fraction(1, 2)
 
 
 def range_of(angle: Expr) -> Range:
-    """Return (low, high, low attained, high attained): a range of the values of an inverse function, in units of pi.
+    """Return (low, high, low attained, high attained): bounds of an inverse function's values, in units of pi.
 
-    For ``atan(u)`` it is (-1/2, 1/2, False, False). Known signs of the arguments narrow the range.
+    ``atan(u)`` has (-1/2, 1/2, False, False).
     """
     first, second = (*angle.args, Integer(1))[:2]
     closed = not isinstance(angle, atan)
+    # known signs of the arguments narrow the range
     if isinstance(angle, acos):
         return Fraction(0), _QUARTER if first.is_nonnegative else Fraction(1), True, True
     low, high, attains_low = -_QUARTER, _QUARTER, closed

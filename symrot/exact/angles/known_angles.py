@@ -12,26 +12,18 @@ __all__ = ["halved", "is_bound", "parts_of", "unbound"]
 
 
 def is_bound(atom: Expr, coefficient: Fraction) -> bool:
-    """Return whether cosine and sine of ``coefficient * atom`` follow from roots alone, as those of ``2*asin(u)`` do.
-
-    This is so if the atom is an inverse trigonometric function and the coefficient's denominator is 1, 2, 4 or 8.
-    """
+    """Return whether cosine and sine of ``coefficient * atom`` follow from roots alone, as for ``2*asin(u)``."""
+    # halving an angle whose cosine and sine are known gives square roots
     return type(atom) in INVERSE and coefficient.denominator in (1, 2, 4, 8)
 
 
 def unbound(form: LinearForm) -> LinearForm:
-    """Return an angle without those of its terms whose cosine and sine are known by formulas, such as ``2*asin(u)``.
-
-    :func:`is_bound` decides which terms are left out. The angle ``x + 2*asin(u)`` gives x.
-    """
+    """Return an angle without the terms for which :func:`is_bound` holds: ``x + 2*asin(u)`` gives x."""
     return LinearForm(tuple(term for term in form.terms if not is_bound(*term)), form.half_turns)
 
 
 def halved(coefficient: Fraction) -> Iterator[tuple[int, int]]:
-    """Yield pairs (h, n) for which ``coefficient`` is the sum of all n/2^h: 5/4 gives (0, 1) and (2, 1).
-
-    A multiple of an angle is then a sum of angles, each n times the angle after h halvings.
-    """
+    """Yield pairs (h, n) for which ``coefficient`` is the sum of all n/2^h: 5/4 gives (0, 1) and (2, 1)."""
     left, halvings = coefficient, 0
     while left:
         times = int(left)
@@ -41,11 +33,9 @@ def halved(coefficient: Fraction) -> Iterator[tuple[int, int]]:
 
 
 def parts_of(atom: Expr, coefficient: Fraction) -> list[Expr]:
-    """Return the expressions from which cosine and sine of the angle ``coefficient * atom`` follow by sum formulas.
+    """Return the cosines and sines from which those of ``coefficient * atom`` follow by sum formulas.
 
-    These are the cosine and the sine of ``atom``, ``atom/2``, ``atom/4`` and ``atom/8``, as far as the angle is a sum
-    of whole multiples of them: for 5/4, of ``atom`` and ``atom/4``. The caller gives the polynomial ring a variable for
-    each square root in these expressions, such as sqrt(1 - u**2).
+    The coefficient 5/4 gives those of ``atom`` and ``atom/4``.
 
     Examples
     --------

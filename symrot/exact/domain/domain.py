@@ -12,21 +12,19 @@ __all__ = ["divisors", "is_dense", "radicands", "signs", "split_radicands"]
 
 
 def divisors(ring: FormulaRing, granted: Container[int] = ()) -> list[tuple[Expr, Expr]]:
-    """Return what must not be zero in the formulas of a ring, as pairs (divisor as written, one of its factors).
-
-    Each factor of a divisor has a pair; a factor that is a root is replaced by its radicand. Left out are factors that
-    cannot be zero, and those whose index in ``ring.ratios.factors`` is in ``granted``. Arguments of logarithms and
-    ``x^2 + y^2`` of ``atan2(y, x)`` count too.
-    """
+    """Return the divisors in a ring's formulas, which must not be zero, as pairs (divisor as written, a factor)."""
     roots = {place: root for root, place in ring.roots.items()}
     pairs: list[tuple[Expr, Expr]] = []
     for number, (source, factor) in enumerate(zip(ring.ratios.sources, ring.ratios.factors, strict=True)):
+        # ``granted`` holds indices of factors that the caller knows to be nonzero
         if number in granted:
             continue
         places = [n for n, power in enumerate(factor.leading_expv()) if power] if len(factor) == 1 else []
         root = roots.get(places[0]) if len(places) == 1 else None
+        # a root is zero where its radicand is
         inside = _inside(root) if root else factor.as_expr(*ring.generators)
         pairs.append((source, inside))
+    # arguments of logarithms and ``x^2 + y^2`` of ``atan2(y, x)``
     pairs += [(formula, formula) for leaf in _leaves(ring) for formula in _nonzero(leaf)]
     return [pair for pair in dict.fromkeys(pairs) if not any(form.is_nonzero or form.is_number for form in pair)]
 
@@ -45,22 +43,15 @@ def radicands(ring: FormulaRing) -> list[Expr]:
 
 
 def split_radicands(ring: FormulaRing) -> list[Expr]:
-    """Return the formulas P under roots that proofs assume to be nonnegative, although negative values may be allowed.
-
-    A proof replaces ``sqrt(P f^2)`` by ``|f| sqrt(P)``, and P is in the result. Where f = 0 and P = -1, ``sqrt(P f^2)``
-    is 0, but ``|f| sqrt(P)`` is not real: such a point is not covered by the proof.
-    """
+    """Return the formulas P of square roots ``sqrt(P f^2)`` that a proof replaces by ``|f| sqrt(P)``."""
+    # where f = 0 and P = -1, sqrt(P f^2) is 0 but |f| sqrt(P) is not real: the proof does not cover such a point
     loose = [root for radical in ring.radicals.values() if radical.loose for root in radical.roots]
     return list(dict.fromkeys(root.power_expression for root in loose if not root.power_expression.is_positive))
 
 
 def is_dense(ring: FormulaRing) -> bool:
-    """Return whether the points at which no divisor is zero are known to be dense among all real points.
-
-    Then an equation that is proven there is not vacuous. They are dense for formulas in the decidable scope, but maybe
-    not if roots occur, or numbers that are not algebraic, or angles and exponents that may depend on each other, as ``x
-    log(4)`` and ``x log(2)`` do.
-    """
+    """Return whether the points at which no divisor is zero are known to be dense among all real points."""
+    # angles and exponents may depend on each other, as ``x log(4)`` and ``x log(2)``: they must be plain
     return not ring.roots and not ring.outside_scope and all(map(_is_plain, (*ring.bases, *ring.exponent_bases)))
 
 
@@ -74,10 +65,8 @@ def _is_plain(atom: Expr) -> bool:
 
 
 def signs(ring: FormulaRing) -> list[Expr]:
-    """Return formulas that are nonnegative wherever the formulas of the ring are defined.
-
-    They are the radicands, and 1 + x and 1 - x for asin(x) and acos(x).
-    """
+    """Return formulas that are nonnegative wherever the formulas of the ring are defined, such as radicands."""
+    # 1 + x and 1 - x for asin(x) and acos(x)
     sides = [1 + sign * leaf.args[0] for leaf in _leaves(ring) if isinstance(leaf, asin | acos) for sign in (1, -1)]
     return [*radicands(ring), *sides]
 

@@ -1,7 +1,6 @@
 """Bounds of a formula that hold for all real values of its symbols.
 
-``cos(x) - 2`` lies between -3 and -1, so its root is real nowhere. Bounds are exact fractions or infinite; a formula
-whose range is not known gets the bounds (-inf, inf), which exclude nothing.
+``cos(x) - 2`` lies between -3 and -1, so its root is real nowhere. Bounds are fractions or infinite.
 """
 
 from collections.abc import Callable, Sequence
@@ -32,10 +31,8 @@ def fails_everywhere(need: Need) -> bool:
 
 
 def range_everywhere(formula: Expr) -> Range:
-    """Return (low, high): bounds of a formula that hold at all real points where it is defined.
-
-    For ``cos(x) - 2`` they are -3 and -1. A bound is a fraction, or infinite if none is known.
-    """
+    """Return (low, high): bounds of a formula at all real points where it is defined, -3 and -1 for ``cos(x) - 2``."""
+    # an unknown bound is infinite
     return _range(formula, {})
 
 
@@ -120,13 +117,10 @@ def _power(base: Range, exponent: Expr) -> Range:
 
 
 def _monotone(function: Callable[[Expr], Expr], least: Bound, most: Bound) -> Callable[[Range], Range]:
-    """Return a function that maps a range (low, high) of u to the range of f(u), for an increasing f such as log.
-
-    ``function`` is f. ``least`` and ``most`` are the limits of f(u) at the lower and upper end of the domain of f,
-    which replace f(low) and f(high) where these have no finite value: for log they are minus and plus infinity.
-    """
+    """Return a function from a range of u to that of f(u), where f = ``function`` rises from ``least`` to ``most``."""
 
     def of(argument: Range) -> Range:
+        # the limits replace f(low) and f(high) where these have no finite value: log(0) is -infinity
         low, high = (_at(function, end) for end in argument)
         return (least if low is None else low[0]), (most if high is None else high[1])
 

@@ -1,8 +1,7 @@
 """Search for points at which formulas are proven to be real numbers, so that no verdict "true" is vacuous.
 
-Any claim about formulas that are defined nowhere, or under hypotheses that no point satisfies, would be "true". The
-search runs in double precision. Interval arithmetic then proves its result, with fractions for the unknowns or with a
-box that contains a solution of the hypotheses (:mod:`symrot.exact.domain.newton_box`).
+The search runs in double precision. Interval arithmetic then proves its result, with fractions for the unknowns or with
+a box that contains a solution of the hypotheses.
 """
 
 from collections.abc import Iterator, Sequence
@@ -36,9 +35,9 @@ Point = dict[Expr, Any]
 
 
 def holds(need: Need, point: Point) -> bool:
-    """Return whether a condition, such as ``x >= 0`` (see :class:`Need`), is proven to hold at a point.
+    """Return whether a condition, such as ``x >= 0``, is proven to hold at a point.
 
-    The point maps symbols to fractions or intervals. False means that no proof was found.
+    The point maps symbols to fractions or intervals.
     """
     if need.sign == "real":
         return False
@@ -124,35 +123,27 @@ class _Search:
         return value >= -TOLERANCE if need.sign == ">= 0" else value > 0 if need.sign == "> 0" else value != 0
 
     def moved(self, point: Point) -> Point:
-        """Return a point at which fewer conditions are violated, or the same point; one value is changed at a time.
-
-        The conditions are evaluated in double precision. A point that obeys all of them is therefore only a candidate;
-        the caller still has to prove that it obeys them.
-        """
+        """Return a point at which fewer conditions are violated, in double precision, or the same point."""
+        # only a candidate: the caller proves that it obeys the conditions
         point = self.jumped(point)
         return self.climbed(point) if self.broken(point) else point
 
     def climbed(self, point: Point) -> Point:
-        """Return a point at which the violated conditions are violated less, by steps in one value at a time.
-
-        If no step improves the point, shorter steps are tried.
-        """
+        """Return a point at which the conditions are violated less, by steps in one value at a time."""
         size, depth = Fraction(1), self.depth(point)
         while depth < 0 and size > SMALLEST_STEP and self.looks < MOST_LOOKS:
             trials = ({**point, leaf: point[leaf] + sign * size}
                       for leaf in self.leaves for sign in (1, -1) if not leaf.is_integer)  # fmt: skip
             better = next(((deeper, trial) for trial in trials if (deeper := self.depth(trial)) > depth), None)
             if better is None:
+                # if no step helps, shorter ones may
                 size /= 4
             else:
                 (depth, point), size = better, min(2 * size, LARGEST_STEP)
         return point
 
     def depth(self, point: Point) -> float:
-        """Return minus the sum of all violations of the conditions at a point, in double precision; 0 if all hold.
-
-        For the condition ``x >= 0`` at x = -2 the violation is 2.
-        """
+        """Return minus the sum of all violations of the conditions at a point: -2 for ``x >= 0`` at x = -2."""
         values = {leaf: float(value) for leaf, value in point.items()}
         known: dict[Expr, float] = {}
         self.looks += len(self.needs)

@@ -1,9 +1,7 @@
 """The conditions under which a formula is a real number: on its radicands, logarithms and divisors.
 
-All functions take real values for real arguments, on their principal branch. A power ``u^(p/q)`` with a fraction in
-lowest terms, even with odd q, is real only for u >= 0, and for u > 0 if p < 0: SymPy's cube root of -8 is ``1 + sqrt(3)
-i``. A term that SymPy cancels while it builds the formula (``0*log(x)``) cannot be seen here; the module that reads
-claims records it.
+All functions take real values for real arguments, on their principal branch. A power ``u^(p/q)`` in lowest terms, q >
+1, is real only for u >= 0: SymPy's cube root of -8 is ``1 + sqrt(3) i``.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -22,19 +20,16 @@ __all__ = ["Need", "assumptions_of", "fits_assumptions", "is_leaf", "leaves_of",
 
 @dataclass(frozen=True)
 class Need:
-    """A condition such as ``x >= 0``, without which a formula that contains ``sqrt(x)`` has no real value.
+    """A condition such as ``x >= 0``, without which a formula that contains ``sqrt(x)`` has no real value."""
 
-    ``formula`` is the left side. ``sign`` is ``">= 0"``, ``"> 0"`` or ``"!= 0"``; or ``"real"`` for a call of a
-    function that symrot does not know, whose value may not be real.
-    """
-
-    formula: Expr
-    sign: str
+    formula: Expr  # left side
+    sign: str  # ">= 0", "> 0" or "!= 0"; "real" for a function that symrot does not know
 
     def __str__(self) -> str:
         return f"{self.formula} is real" if self.sign == "real" else f"{self.formula} {self.sign}"
 
 
+# A term that SymPy cancels when it builds a formula (``0*log(x)``) is not seen here; the reader of claims records it.
 _NEEDS: dict[type, Callable[..., list[tuple[Expr, str]]]] = {
     sympy.log: lambda u: [(u, "> 0")],
     sympy.asin: lambda u: [(1 - u, ">= 0"), (1 + u, ">= 0")],
@@ -55,20 +50,14 @@ The function ``sign`` is the derivative of an absolute value, which does not exi
 
 
 def is_leaf(node: Expr) -> bool:
-    """Return whether a node of an expression is a free real number: a symbol, function of time or matrix entry.
-
-    A time derivative of a function of time is free too.
-    """
+    """Return whether a node is a free real number: a symbol, function of time, its derivative, or matrix entry."""
     if isinstance(node, sympy.Derivative):
         return isinstance(node.expr, AppliedUndef)
     return bool(node.is_Symbol) or isinstance(node, AppliedUndef | MatrixElement)
 
 
 def leaves_of(formulas: Iterable[Expr]) -> list[Expr]:
-    """Return the free real numbers in formulas (:func:`is_leaf`), each once, in the same order in every run.
-
-    They are symbols, functions of time, their derivatives, and matrix entries.
-    """
+    """Return the free real numbers in formulas (:func:`is_leaf`), each once, in the same order in every run."""
     leaves = {node for node in _pieces(formulas) if is_leaf(node)}
     return sorted(leaves, key=lambda leaf: (str(leaf), type(leaf).__name__))
 
@@ -90,13 +79,11 @@ def fits_assumptions(leaf: Expr, value: Any) -> bool:
 
 
 def needs_of(formulas: Iterable[Expr]) -> list[Need]:
-    """Return the conditions under which all ``formulas`` are real: ``x > 0`` and ``y != 0`` for ``log(x)/y``.
-
-    Conditions that follow from SymPy's assumptions on the symbols are omitted.
-    """
+    """Return the conditions under which all ``formulas`` are real: ``x > 0`` and ``y != 0`` for ``log(x)/y``."""
     needs: dict[Need, None] = {}
     for node in _pieces(formulas):
         for need in _needs(node):
+            # conditions that follow from SymPy's assumptions on the symbols are omitted
             if not _granted(need):
                 needs[need] = None
     return list(needs)
@@ -121,11 +108,9 @@ def _needs(node: Expr) -> Iterator[Need]:
 
 
 def _granted(need: Need) -> bool:
-    """Return whether a condition needs no proof, because it follows from SymPy's assumptions on the symbols.
-
-    For a number such as ``sqrt(2) - 1``, SymPy's own numerical answer is not trusted, unless the number is rational.
-    """
+    """Return whether a condition follows from SymPy's assumptions on the symbols, so that it needs no proof."""
     formula = need.formula
+    # SymPy's numerical answer for a number such as sqrt(2) - 1 is not trusted
     if need.sign == "real" or not (formula.is_Rational or formula.free_symbols):
         return False
     known = {">= 0": formula.is_nonnegative, "> 0": formula.is_positive, "!= 0": formula.is_nonzero}
@@ -133,11 +118,8 @@ def _granted(need: Need) -> bool:
 
 
 def _pieces(formulas: Iterable[Expr]) -> Iterator[Expr]:
-    """Yield every subexpression of formulas once, without recursion.
-
-    Symbols, functions of time such as f(t), their time derivatives and entries of matrices are not split
-    (:func:`is_leaf`): each is yielded as a whole, because each can have any real value.
-    """
+    """Yield every subexpression of formulas once; free real numbers such as f(t) are not split."""
+    # a stack, because recursion would be too deep for large formulas
     stack, seen = list(formulas), set()
     while stack:
         node = stack.pop()

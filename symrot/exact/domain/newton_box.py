@@ -1,9 +1,7 @@
 """Boxes that provably contain a solution of equations, by the interval Newton operator of Krawczyk.
 
-With n equations for m unknowns, m - n unknowns are fixed at the values where a search in double precision ended, as
-exact fractions. For the other n, a small box X around the end x of the search is mapped to
-``K = x - Y f(x) + (1 - Y J(X)) (X - x)``. If K lies inside X, then X contains a solution (Krawczyk, Newton-Algorithmen
-zur Bestimmung von Nullstellen mit Fehlerschranken, Computing 4, 1969).
+A box X around x is mapped to ``K = x - Y f(x) + (1 - Y J(X)) (X - x)``. If K lies inside X, X contains a solution of f
+= 0 (Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken, Computing 4, 1969).
 """
 
 from collections.abc import Mapping, Sequence
@@ -77,6 +75,7 @@ class EquationSystem:
             rows = [[float_at(slope, values, {}) for slope in row] for row in self.slopes]
         except NoValue:
             return None
+        # the unknowns of these columns are solved for, the others are fixed
         chosen = _pivots(rows)
         if chosen is None:
             return None
@@ -84,6 +83,7 @@ class EquationSystem:
         inverse = _inverted([[row[place] for place in chosen] for row in rows])
         if inverse is None:
             return None
+        # with n equations for m unknowns, m - n unknowns keep the values where the search ended, as exact fractions
         fixed = {name: Fraction(values[name]) for n, name in enumerate(names) if n not in chosen}
         for radius in RADII:
             box = self._proven([names[n] for n in chosen], inverse, fixed, values, radius)
@@ -121,15 +121,13 @@ def _point(value: Fraction) -> Any:
 
 
 def _shortest(rows: list[Row], residuals: Row) -> Row | None:
-    """Return the shortest vector ``step`` with ``rows * step = residuals``, the step of Newton's method.
-
-    If the rows are dependent, the equations are damped and hold approximately.
-    """
+    """Return the shortest vector ``step`` with ``rows * step = residuals``, or None if all rows are zero."""
     gram = [[sum(a * b for a, b in zip(p, q, strict=True)) for q in rows] for p in rows]
     size = max(gram[n][n] for n in range(len(gram)))
     if not size:
         return None
     for n, row in enumerate(gram):
+        # damping: with dependent rows the equations hold approximately
         row[n] += 1e-13 * size
     inverse = _inverted(gram)
     if inverse is None:
@@ -157,10 +155,7 @@ def _inverted(rows: list[Row]) -> list[Row] | None:
 
 
 def _pivots(rows: list[Row]) -> list[int] | None:
-    """Return the indices of independent columns of a matrix, as many as it has rows, the best pivot first.
-
-    The unknowns of these columns are solved for, the others are fixed. Return None if there are too few.
-    """
+    """Return the indices of independent columns of a matrix, sorted, one per row; None if there are too few."""
     work = [list(row) for row in rows]
     chosen: list[int] = []
     for step in range(len(work)):

@@ -1,7 +1,6 @@
 """Groebner bases by Buchberger's algorithm within a counted budget.
 
-The algorithm can need an unlimited amount of work. Here it stops after a given number of products of terms, which is
-the same on every machine.
+The algorithm can need unlimited work; it stops after a given number of products of terms, the same on every machine.
 """
 
 from collections.abc import Callable, Sequence
@@ -76,11 +75,7 @@ class _Basis:
         return self.reduced()
 
     def add(self, terms: Terms, pairs: list[tuple[Any, ...]]) -> None:
-        """Add a polynomial to the basis, and its pairs with the other members to the queue ``pairs``.
-
-        ``terms`` is the polynomial, reduced by the basis. The queue begins with the pair whose leading terms have the
-        smallest least common multiple.
-        """
+        """Add the polynomial ``terms`` to the basis, and its pairs with the other members to the queue ``pairs``."""
         if not terms:
             return
         lead = max(terms, key=self.key)
@@ -89,6 +84,7 @@ class _Basis:
         for old, other in enumerate(self.leads):
             if any(map(min, lead, other)):  # coprime leading terms reduce to zero
                 both = tuple(map(max, lead, other))
+                # the queue begins with the pair whose leading terms have the smallest least common multiple
                 heappush(pairs, (sum(both), both, old, new))
         self.members.append({mono: c * inverse for mono, c in terms.items()})
         self.leads.append(lead)
@@ -96,12 +92,10 @@ class _Basis:
             pairs.clear()  # a constant generates the whole ring
 
     def idle(self, i: int, j: int) -> bool:
-        """Return whether the pair of members i and j can be skipped by Buchberger's chain criterion.
-
-        This is so if the leading term of a third member divides the pair's least common multiple, and its pairs with i
-        and j are dealt with otherwise.
-        """
+        """Return whether the pair of members i and j can be skipped by Buchberger's chain criterion."""
         both = tuple(map(max, self.leads[i], self.leads[j]))
+        # the leading term of a third member divides the least common multiple, and its pairs with i and j are dealt
+        # with
         return any(
             k < i and _divides(lead, both) and tuple(map(max, lead, self.leads[i])) != both
             and tuple(map(max, lead, self.leads[j])) != both
@@ -132,15 +126,13 @@ class _Basis:
                 del total[place]
 
     def normal(self, terms: Terms, members: Sequence[Terms]) -> Terms:
-        """Return the remainder of a polynomial (``terms``) after division by ``members`` of a basis.
-
-        No leading term of a member divides a term of the remainder.
-        """
+        """Return the remainder of a polynomial (``terms``) after division by ``members`` of a basis."""
         leads = self.leads if members is self.members else [max(member, key=self.key) for member in members]
         left: Terms = {}
         while terms:
             lead = max(terms, key=self.key)
             self.spend(1 + len(terms) // 8 + len(leads) // 4)
+            # no leading term of a member divides a term of the remainder
             for member, divisor in zip(members, leads, strict=True):
                 if _divides(divisor, lead):
                     self.subtract(terms, member, tuple(map(int.__sub__, lead, divisor)), terms[lead])

@@ -1,8 +1,7 @@
 """Logarithms as sums of logarithms of irreducible factors: ``log(a^2 b) = 2 log|a| + log(b)``.
 
-A product is positive only where none of its factors is zero. So the logarithm of ``c f^n g^m ..`` with a positive
-rational c is the sum of ``n log|f|``, ``m log|g|`` and logarithms of primes, wherever it has a value. If ``log(f)``
-occurs too, f is positive, and ``log|f|`` is ``log(f)``.
+A product is positive only where no factor is zero. So the logarithm of ``c f^n g^m`` is ``log(c) + n log|f| + m
+log|g|`` wherever it has a value. If ``log(f)`` occurs too, f is positive and ``|f|`` is f.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -28,13 +27,10 @@ MOST_TERMS = 60
 
 @dataclass(frozen=True)
 class Product:
-    """The argument of a logarithm: ``sign * product(number^power) * product(factor^power) * exp(exponent)``.
+    """The argument of a logarithm: ``sign * product(number^power) * product(factor^power) * exp(exponent)``."""
 
-    ``sign`` is 1 or -1, or 0 if it is not known because the argument contains roots. All numbers are positive.
-    """
-
-    sign: int
-    numbers: tuple[tuple[Rational, Rational], ...]
+    sign: int  # 1 or -1; 0 if it is not known because the argument contains roots
+    numbers: tuple[tuple[Rational, Rational], ...]  # pairs (positive number, power)
     powers: Mapping[Expr, Rational]
     exponent: Expr
 
@@ -63,11 +59,7 @@ def product_of(
     content: Rational, above: PolyElement, below: PolyElement, generators: Sequence[Expr],
     roots: Mapping[int, tuple[int, PolyElement]],
 ) -> Product:  # fmt: skip
-    """Return the fraction ``content * above / below``, the argument of a logarithm, in irreducible factors.
-
-    ``generators`` are the variables of the polynomials. ``roots`` holds, for the number of a variable that is a root g,
-    the index n and the polynomial P of its relation ``g^n = P``.
-    """
+    """Return the fraction ``content * above / below``, the argument of a logarithm, in irreducible factors."""
     sign, exponent = 1, Integer(0)
     numbers = [(content, Rational(1))]
     powers: dict[Expr, Rational] = {}
@@ -86,6 +78,7 @@ def product_of(
             place = factor.leading_expv().index(1) if factor.is_generator else -1
             formula = factor.as_expr(*generators)
             if place in roots:
+                # roots maps the variable of a root g to (n, P) with g^n = P
                 index, inside = roots[place]
                 sign = 0
                 stack.append((inside, times * n / index))
@@ -99,19 +92,15 @@ def product_of(
 def sums_of_logarithms(products: Mapping[Expr, Product]) -> dict[Expr, Expr]:
     """Return, for each logarithm, an equal sum of simpler logarithms: ``2*log(|a|) + log(b)`` for ``log(a^2*b)``.
 
-    ``products`` maps each logarithm to its argument in factors. The sums are equal wherever all of the logarithms have
-    a value.
+    ``products`` maps each logarithm to its argument in factors.
     """
     signs = _known_signs(list(products.values()))
+    # equal wherever all of the logarithms have a value
     return {node: _sum(product, signs) for node, product in products.items()}
 
 
 def _known_signs(products: Sequence[Product]) -> dict[Expr, int]:
-    """Return the signs, 1 or -1, of the factors in ``products`` that follow because all products are positive.
-
-    The products are the arguments of logarithms, each split into factors. If a b and a are positive, so is b. Factors
-    whose sign does not follow are absent.
-    """
+    """Return the signs, 1 or -1, of the factors that are known because all ``products`` are positive."""
     factors = {factor for product in products for factor in product.powers}
     signs = {factor: sign for factor in factors if (sign := _sign(factor))}
     open_products = [product for product in products if product.sign]
@@ -121,6 +110,7 @@ def _known_signs(products: Sequence[Product]) -> dict[Expr, int]:
             odd = [factor for factor, power in product.powers.items() if power % 2]
             unknown = [factor for factor in odd if factor not in signs]
             if len(unknown) == 1:
+                # if a b and a are positive, so is b
                 learned[unknown[0]] = product.sign * prod(signs[factor] for factor in odd if factor in signs)
         if not learned:
             return signs

@@ -1,7 +1,7 @@
 """Radicands of square roots: extraction of squares, and roots of products as products of roots.
 
-``sqrt(x^2 y) = |x| sqrt(y)``. If the product of some radicands is a square, as with ``a``, ``b`` and ``a b``, one root
-is expressed by the others, ``sqrt(a b) = sqrt(a) sqrt(b)``, which is true wherever all of them are real.
+``sqrt(x^2 y) = |x| sqrt(y)``. If the product of some radicands is a square, as of ``a``, ``b`` and ``a b``, one root is
+expressed by the others, ``sqrt(a b) = sqrt(a) sqrt(b)``, wherever all of them are real.
 """
 
 from collections.abc import Mapping, Sequence
@@ -24,15 +24,14 @@ Outside = tuple[tuple[Root | Expr, int], ...]
 
 
 def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Expr]) -> tuple[Expr, Outside, bool]:
-    """Split the fraction above/below into P and squares of nonnegative factors; return (P, factors, loose).
+    """Return (P, [(f, n), ..], loose) with ``above/below = P * product(f^(2 n))`` and no f negative.
 
-    ``factors`` holds pairs (factor, n), and ``above/below`` is P times the product of all factor^(2 n): ``x^2 y`` gives
-    y and (|x|, 1). ``loose`` is true if a factor f may be zero where P is negative; there ``sqrt(P f^2)`` is real but
-    ``sqrt(P)`` is not.
+    ``x^2 y`` gives y and (``|x|``, 1).
     """
     whole = above.ring.clone(domain=ZZ)
     above, below = above.set_ring(whole), below.set_ring(whole)
     rest, squares = _square_part(above)
+    # where such a factor f is zero and P negative, sqrt(P f^2) is real but sqrt(P) is not
     loose = any(rest.rem([factor]) for factor, _ in squares)
     divisor, inverse = _square_part(below)
     squares += [(factor, -times) for factor, times in inverse]
@@ -70,21 +69,17 @@ def _irreducible(poly: PolyElement) -> list[tuple[PolyElement, int]]:
 class Dependence:
     """A square root expressed by others: ``sqrt(number) * product(roots) / product(factor^n)``.
 
-    ``divisors`` has the pairs (factor, n) of the denominator. sqrt(a c) is sqrt(a b) sqrt(b c) / |b|: number is 1, the
-    roots are sqrt(a b) and sqrt(b c), and the divisors are (|b|, 1). For sqrt(a b) with the roots sqrt(a) and sqrt(b),
-    there are no divisors.
+    For sqrt(a b) the roots may be sqrt(a) and sqrt(b).
     """
 
     number: Rational
     roots: tuple[Root, ...]
+    # pairs (factor, n) of the denominator: (|b|, 1) for sqrt(a c) = sqrt(a b) sqrt(b c) / |b|
     divisors: tuple[tuple[Root | Expr, int], ...]
 
 
 def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr]) -> dict[Root, Dependence]:
-    """Return the square roots that are products of other roots: a map from each to its expression by these roots.
-
-    The method is linear algebra modulo 2: a root is represented by the irreducible factors with odd exponents in its
-    radicand. The roots of ``a b`` and ``b c`` give that of ``a c``, since b has an even exponent in their product.
+    """Return a map from each square root that is a product of other roots to this product, a :class:`Dependence`.
 
     Parameters
     ----------
@@ -98,6 +93,7 @@ def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr
     candidates = [root for root in radicands if odd[root] or not isinstance(root.expression, Abs)]
     candidates.sort(key=lambda root: (-isinstance(root.expression, Abs), len(odd[root]), written(root.expression)))
     texts = {factor: str(factor) for factors in odd.values() for factor in factors}
+    # linear algebra modulo 2 on the factors with odd exponents: a b and b c give a c, as b has an even exponent
     basis: list[tuple[PolyElement, frozenset[PolyElement], frozenset[Root]]] = []
     relations: dict[Root, Dependence] = {}
     for root in candidates:
@@ -123,10 +119,10 @@ def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr
 def _factored(poly: PolyElement) -> tuple[Rational, dict[PolyElement, int]]:
     """Return (number, powers): a polynomial as a rational number times powers of irreducible factors.
 
-    ``powers`` maps each factor to its exponent. A polynomial with more than ``MOST_TERMS`` terms is not factored: it is
-    the only factor.
+    ``powers`` maps each factor to its exponent.
     """
     if poly.is_ground or len(poly) > MOST_TERMS:
+        # a long polynomial is not factored: it is the only factor
         return (_rational(poly.LC), {}) if poly.is_ground else (Rational(1), {poly: 1})
     constant, pairs = poly.factor_list()
     return _rational(constant), {factor: int(n) for factor, n in pairs}

@@ -1,11 +1,7 @@
 """Fractions of polynomials whose denominators are stored as products of factors, each factor with an exponent.
 
-Formulas of rotation divide often by a few factors (``sin(theta)``, a moment of inertia, ``1 + q0``). Each factor is
-stored once and represented by an exponent, so that a sum over equal denominators is a sum of polynomials.
-
-A formula is defined only where its divisors are not zero, and a message about this must show a divisor as the user
-wrote it. So each factor is stored together with a divisor in the formulas that contains it, the one that was read
-first.
+Formulas of rotation divide often by the same few factors, such as ``sin(theta)``; then sums of fractions are sums of
+polynomials. Each factor is stored with the divisor that contains it as the user wrote it, for messages.
 """
 
 from collections.abc import Callable, Sequence
@@ -34,14 +30,11 @@ class TooLarge(InputError):
 
 @dataclass(frozen=True)
 class Ratio:
-    """A fraction ``numerator / (constant * product of factors)`` in a polynomial ring.
-
-    ``factors`` are pairs (number of the factor in :class:`Ratios`, exponent), sorted by number.
-    """
+    """A fraction ``numerator / (constant * product of factors)`` in a polynomial ring."""
 
     numerator: PolyElement
     constant: int = 1
-    factors: tuple[tuple[int, int], ...] = ()
+    factors: tuple[tuple[int, int], ...] = ()  # pairs (index of the factor in Ratios, exponent), sorted
 
 
 class Ratios:
@@ -148,9 +141,9 @@ class Ratios:
             )
 
     def _split(self, poly: PolyElement, source: Expr) -> tuple[Fraction, tuple[tuple[int, int], ...]]:
-        """Return (constant, factors) of a polynomial as a rational constant times powers of the stored factors.
+        """Return (constant, factors): a polynomial as a rational constant times powers of the stored factors.
 
-        Factors that are new are stored with ``source``, the divisor as the formula writes it.
+        New factors are stored with ``source``, the divisor as written.
         """
         constant, poly = _primitive(poly)
         powers: dict[int, int] = {}
@@ -175,22 +168,16 @@ class Ratios:
         return constant, tuple(sorted(powers.items()))
 
     def _value(self, poly: PolyElement) -> int:
-        """Return the value of a polynomial with integer coefficients at ``self.point``, which has integer coordinates.
-
-        :meth:`_may_divide` compares such values to see quickly that one polynomial does not divide another.
-        """
+        """Return the value of a polynomial at ``self.point``; its coefficients and the coordinates are integers."""
         return sum(
             int(coefficient) * prod(base**power for base, power in zip(self.point, mono, strict=True) if power)
             for mono, coefficient in poly.items()
         )
 
     def _may_divide(self, number: int, value: int) -> bool:
-        """Return whether factor ``number`` can divide a polynomial whose value at a fixed integer point is ``value``.
-
-        The test is fast, unlike a division that fails. Both polynomials have coprime integer coefficients, so by
-        Gauss's lemma a quotient has integer coefficients too, and the value of the factor must divide the value of the
-        polynomial.
-        """
+        """Return whether factor ``number`` can divide a polynomial that has the ``value`` at ``self.point``."""
+        # Gauss's lemma: with coprime integer coefficients a quotient has integer coefficients, so the value of the
+        # factor divides the other value; this test is faster than a division that fails
         own = self.values[number]
         return own == 0 or value % own == 0
 

@@ -1,9 +1,7 @@
 """Relations between the variables of a polynomial ring, and the normal form of a polynomial modulo these relations.
 
-A relation ``g^n = P``, where g is a variable (generator) and ``P`` contains only lower variables, is a rule that
-replaces the power ``g^n``. Rules are applied from the highest variable down, in one pass each. Their leading powers
-belong to different variables and are coprime, so rules alone are a Groebner basis. With any other hypothesis
-Buchberger's algorithm computes the basis.
+A rule ``g^n = P``, where P contains only lower variables, replaces the power ``g^n``. Rules are applied from the
+highest variable down. Any other relation needs a Groebner basis, by Buchberger's algorithm.
 """
 
 from collections.abc import Sequence
@@ -24,16 +22,12 @@ MOST_TERMS = 500_000
 
 @dataclass(frozen=True)
 class Rule:
-    """A rule ``generator^power = replacement`` for a variable (generator); the replacement contains no higher variable.
-
-    The replacement does not contain the variable itself either, except if the rule is the ``minimal`` polynomial of an
-    algebraic number; then it contains no other variable.
-    """
+    """A rule ``generator^power = replacement`` for a variable; the replacement contains no higher variable."""
 
     generator: int
     power: int
-    replacement: PolyElement
-    minimal: bool = False
+    replacement: PolyElement  # without the generator, unless minimal
+    minimal: bool = False  # minimal polynomial of an algebraic number: no other variable occurs
 
     @property
     def polynomial(self) -> PolyElement:
@@ -41,6 +35,7 @@ class Rule:
         return self.replacement.ring.gens[self.generator] ** self.power - self.replacement
 
 
+# The leading powers of rules belong to different variables and are coprime, so rules alone are a Groebner basis.
 @dataclass(frozen=True)
 class Relations:
     """The relations between the variables of a polynomial ring.
@@ -69,8 +64,7 @@ class Relations:
 def relate(rules: Sequence[Rule], hypotheses: Sequence[PolyElement]) -> Relations | None:
     """Return the relations that follow from ``rules`` and ``hypotheses``, polynomials that are zero.
 
-    Return None if the ring has integer coefficients and the relations need fractions; the caller then starts again with
-    rational coefficients.
+    Return None if they need fractions and the ring has integer coefficients.
     """
     known = _ordered(rules)
     for hypothesis in hypotheses:
@@ -81,6 +75,7 @@ def relate(rules: Sequence[Rule], hypotheses: Sequence[PolyElement]) -> Relation
         if rule is not None:
             known = _ordered([*known.rules, rule])
         elif poly.ring.domain is ZZ:
+            # the caller starts again with rational coefficients
             return None
         else:
             everything = [*(rule.polynomial for rule in rules), *(p for p in hypotheses if p)]
@@ -93,15 +88,13 @@ def _ordered(rules: Sequence[Rule]) -> Relations:
 
 
 def _as_rule(poly: PolyElement, known: Relations) -> Rule | None:
-    """Return ``poly = 0`` as a rule ``g^n = ..`` for a variable g that has no rule in ``known``, or None.
-
-    It is possible if ``g^n`` is the leading term and g does not occur in the other terms.
-    """
+    """Return ``poly = 0`` as a rule ``g^n = ..`` for a variable g that has no rule in ``known``, or None."""
     lead = poly.leading_expv()
     places = [number for number, power in enumerate(lead) if power]
     if len(places) != 1 or any(rule.generator == places[0] for rule in known.rules):
         return None
     place, coefficient = places[0], poly[lead]
+    # g may occur in the leading term alone
     if any(mono[place] for mono in poly if mono != lead):
         return None
     if poly.ring.domain is ZZ and abs(coefficient) != 1:
@@ -135,11 +128,9 @@ def _replace(poly: PolyElement, rule: Rule) -> PolyElement:
 
 
 def _divide(poly: PolyElement, rule: Rule) -> PolyElement:
-    """Return the remainder of ``poly`` after division by a minimal polynomial, which ``rule`` represents.
-
-    It is the minimal polynomial of one algebraic number, such as 2 cos(pi/N); other variables count as coefficients.
-    """
+    """Return the remainder of ``poly`` after division by a minimal polynomial, which ``rule`` represents."""
     place, power = rule.generator, rule.power
+    # variables other than that of the algebraic number count as coefficients
     groups: dict[tuple[int, ...], dict[int, Any]] = {}
     for mono, coefficient in poly.items():
         groups.setdefault((*mono[:place], 0, *mono[place + 1 :]), {})[mono[place]] = coefficient

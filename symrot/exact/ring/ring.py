@@ -1,15 +1,8 @@
 """Formulas as fractions of polynomials, in a ring of polynomials made for the formulas of one problem.
 
-The generators are, highest first: roots (outer before inner), sines, symbols and functions of time, exponentials, and
-cosines. Sines, cosines and exponentials have base angles as arguments, of which all angles in the formulas are whole
-multiples: x/6 for x/2 and x/3. Inverse trigonometric functions are angles whose sine and cosine are known. The order of
-monomials is lexicographic, so each relation
-
-    root:    g^n = P           circle:    s^2 = 1 - c^2           hypothesis:    q0^2 = 1 - q1^2 - q2^2 - q3^2
-    number:  M(2 cos(pi/N)) = 0, its minimal polynomial
-
-has a power of its own generator as its leading term. Replacing leading powers gives the unique normal form
-(:mod:`symrot.exact.ring.relations`; ``docs/exact_decisions.md``, sections 2 to 4).
+The variables are, highest first: roots, sines, symbols, exponentials, and cosines. Each relation, such as ``g^n = P``
+or ``s^2 = 1 - c^2``, replaces a power of its own variable. That gives the unique normal form
+(``docs/exact_decisions.md``, sections 2 to 4).
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -72,6 +65,11 @@ def as_zero(relation: Any) -> Expr:
     if not isinstance(relation, Expr):
         raise InputError(f"expected a hypothesis that is an equation, or an expression that is zero; got {relation}")
     return relation
+
+
+# Sines, cosines and exponentials have base angles as arguments: x/6 if the formulas contain x/2 and x/3. The order of
+# monomials is lexicographic, outer roots before inner ones, so the leading term of each relation is a power of its own
+# variable. Constants have the relation M(2 cos(pi/N)) = 0, with the minimal polynomial M.
 
 
 class NeedsFractions(ArithmeticError):
@@ -191,12 +189,7 @@ class FormulaRing:
         return sympy.exp(node.args[0].xreplace(self.logarithms).expand()) if self.logarithms else node
 
     def _collect(self, expressions: Iterable[Expr]) -> None:
-        """Find what needs a variable of the ring in ``expressions``, and store it in the ring's attributes.
-
-        Symbols go into ``leaves``, roots into ``radicals``, angles into ``forms``, exponentials into ``exponents``. For
-        an angle with a constant such as x + pi/8, the square roots in cos(pi/8) and sin(pi/8) are searched and stored
-        too.
-        """
+        """Store the parts of ``expressions`` that need a variable of the ring: symbols, roots, angles, exponentials."""
         stack, seen = list(expressions), set()
         while stack:
             node = stack.pop()
@@ -217,6 +210,7 @@ class FormulaRing:
             elif type(node) in TRIGONOMETRIC:
                 form = self.forms[node.args[0]] = linear_form(node.args[0])
                 if form.half_turns:
+                    # the angle x + pi/8 needs the square roots in cos(pi/8) and sin(pi/8)
                     stack.extend(constant_cosine_sine(form.half_turns))
                 for atom, coefficient in form.terms:
                     if is_bound(atom, coefficient):
@@ -238,20 +232,14 @@ class FormulaRing:
                 self.leaves[node] = is_function_of_time(node)
 
     def _radicand(self, base: Expr, index: int) -> Radicand:
-        """Return the factors of ``base``, an expression under a root with the given ``index`` (2 for a square root).
-
-        They are factors of ``base`` as a fraction in lowest terms. Those hypotheses of this ring that contain no roots
-        are used to shorten it: with q0^2 + q1^2 = 1, the radicand 1 - q1^2 becomes q0^2.
-        """
+        """Return the factors of ``base``, an expression under a root with the given ``index`` (2 for a square root)."""
+        # hypotheses without roots shorten it: with q0^2 + q1^2 = 1, 1 - q1^2 becomes q0^2
         plain = tuple(each for each in self.hypotheses if not any(map(is_root, preorder_traversal(each))))
         radicand: Radicand = remembered(("radicand", base, index, plain), lambda: _taken_apart(base, index, plain))
         return radicand
 
     def _dependences(self) -> dict[Root, Dependence]:
-        """Return a map from each square root that is a product of other roots of the ring to its expression by these.
-
-        In a ring with the square roots of a, b and a*b, the third is the product of the other two.
-        """
+        """Return a map from each square root that is a product of other roots, as sqrt(a*b) may be, to this product."""
         places = {root: n for root, n in self.roots.items() if root.index == 2 and not root.power_expression.is_number}
         plain = [root for root in places if not isinstance(root.expression, Abs)]
         if not plain or len(places) < 2:
@@ -273,32 +261,26 @@ class FormulaRing:
         return accepted
 
     def _take_fine_constants(self) -> int:
-        """Return an even N such that the sines and cosines of constant angles are polynomials in 2 cos(pi/N), or 0.
-
-        N is as small as the constant angles of this ring allow (:func:`symrot.exact.angles.cyclotomic.order`). The
-        result is 0 if N would be too large, or if all constant angles are multiples of pi/24, whose sines and cosines
-        are square roots. If it is not 0, pi is removed from ``bases``, which lists the angles with sines and cosines of
-        their own as variables.
-        """
+        """Return an even N such that sines and cosines of constant angles are polynomials in 2 cos(pi/N), or 0."""
+        # multiples of pi/24 have square roots as sines and cosines; N may also be too large
         if pi not in self.bases or not cyclotomic.needs_cyclotomic_field(self.bases[pi].denominator):
             return 0
+        # pi then needs no sine and cosine of its own
         return cyclotomic.order(self.bases.pop(pi).denominator)
 
     @property
     def outside_scope(self) -> tuple[Expr, ...]:
-        """Functions and angles between which relations may hold that the ring does not know, such as unknown functions.
-
-        If there are any, a nonzero normal form does not prove that the formula is not zero.
-        """
+        """Functions and angles between which unknown relations may hold, such as functions without a definition."""
+        # if there are any, a nonzero normal form does not prove that a formula is not zero
         atoms = [atom for atom in self.bases if atom.is_number or atom.has(*INVERSE, sympy.log)]
         return tuple(sorted([*atoms, *(leaf for leaf, known in self.leaves.items() if not known)], key=_order))
 
     # -- the ring and its relations ---------------------------------------------------------------------------------
 
     def _relate(self, domain: Any) -> Relations | None:
-        """Build the polynomial ring over ``domain`` (the integers or the rationals); return its variables' relations.
+        """Build the ring over ``domain``, the integers or the rationals; return the relations of its variables.
 
-        Return None if the relations need fractional coefficients and the domain is the integers.
+        Return None if they need fractions over the integers.
         """
         self.ring = PolyRing([f"x{number}" for number in range(len(self.generators))], domain, lex)
         self.relations = Relations()
@@ -336,13 +318,7 @@ class FormulaRing:
         return above.quo_ground(below.LC)
 
     def _tangled_numbers(self, rules: Sequence[Rule]) -> dict[int, Number]:
-        """Return the algebraic numbers among the ring's variables, such as sqrt(2), by the index of the variable.
-
-        They are needed if the relations of the ring (``rules``) do not show all equations between these numbers, such
-        as sqrt(2)*sqrt(3) = sqrt(6). The caller then removes terms whose coefficient is zero by such an equation. The
-        result is {} where nothing is to remove: for fewer than two numbers, or if all are square roots of primes. It is
-        also {} if one of them is imaginary.
-        """
+        """Return the ring's algebraic numbers, as sqrt(2), by index, if some equations between them are not known."""
         known: dict[int, Number] = {}
         if self.fine:
             known[self.fine_place] = cosine_number(self.fine_place, cyclotomic.degree(self.fine), self.fine)
@@ -351,6 +327,8 @@ class FormulaRing:
             if root.power_expression.is_number and all(n in known for n in _occurring(inside[place])):
                 known[place] = root_number(place, root.index, inside[place], known)
         simple = all(number.index == 2 and not number.needs for number in known.values())
+        # sqrt(2)*sqrt(3) = sqrt(6) is such an equation; square roots of primes satisfy none
+        # {} also for an imaginary number, because the proofs need real numbers
         return {} if simple or len(known) < 2 or I in self.generators else known
 
     def reduce(self, poly: PolyElement) -> PolyElement:
@@ -359,16 +337,14 @@ class FormulaRing:
         return self._without_zeros(poly) if self.numbers and poly else poly
 
     def _without_zeros(self, poly: PolyElement) -> PolyElement:
-        """Return a polynomial without the terms whose coefficients are proven to be zero.
-
-        A coefficient here is a sum of algebraic numbers, which may be zero in ways that the relations do not show.
-        """
+        """Return a polynomial without the terms whose coefficients are proven to be zero."""
         groups: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
         for mono, coefficient in poly.items():
             free = tuple(0 if n in self.numbers else power for n, power in enumerate(mono))
             number = tuple(power if n in self.numbers else 0 for n, power in enumerate(mono))
             groups.setdefault(free, {})[number] = coefficient
         for free, terms in groups.items():
+            # a sum of algebraic numbers, which may be zero although the relations do not show it
             coefficient = poly.new(terms)
             if vanishes(coefficient, self.numbers):
                 poly = poly - coefficient.mul_monom(free)
@@ -377,11 +353,11 @@ class FormulaRing:
     # -- reading ----------------------------------------------------------------------------------------------------
 
     def ratio(self, expression: Expr) -> Ratio:
-        """Return an expression as a fraction of polynomials of the ring.
+        """Return an expression as a fraction of polynomials of the ring, not in lowest terms.
 
-        It is not in lowest terms, so equal expressions may give different fractions. Raise ``InputError`` if a divisor
-        is zero everywhere.
+        Raise ``InputError`` if a divisor is zero everywhere.
         """
+        # equal expressions may give different fractions
         known = self._read_already.get(expression)
         if known is None:
             known = self._read_already[expression] = self._read(expression)
@@ -436,9 +412,8 @@ class FormulaRing:
         return self.ratios.multiply([number, *map(self._root, (*primes, *dependence.roots)), *divisors])
 
     def _outside(self, factors: Iterable[tuple[Root | Expr, int]]) -> Iterator[Ratio]:
-        """Yield the element factor^n of the ring for each pair (factor, n) of ``factors``.
+        """Yield factor^n for each pair (factor, n) of ``factors``, as fractions of the ring.
 
-        The pairs come from a root from which powers were taken out: sqrt(x^4 y) is x^2 sqrt(y), with the pair (|x|, 2).
         n is negative for a factor below the fraction bar.
         """
         for factor, times in factors:
@@ -530,22 +505,18 @@ class FormulaRing:
         return constant * above / below
 
     def lowest_terms(self, value: Ratio) -> tuple[Rational, Expr, Expr]:
-        """Return (c, P, Q) with value = c*P/Q in lowest terms, as expressions; c is a rational number >= 0.
-
-        The coefficients of P, and those of Q, are integers without a common divisor.
-        """
+        """Return (c, P, Q) with value = c*P/Q in lowest terms, as expressions; c is a rational number >= 0."""
+        # the coefficients of P, and those of Q, are integers without a common divisor
         constant, above, below = self.lowest_polynomials(value)
         return constant, above.as_expr(*self.generators), below.as_expr(*self.generators)
 
     def lowest_polynomials(self, value: Ratio) -> tuple[Rational, PolyElement, PolyElement]:
-        """Return (c, P, Q) with value = c*P/Q in lowest terms, with P and Q as polynomials of the ring.
-
-        c is a rational number >= 0; the coefficients of P, and those of Q, are integers without a common divisor.
-        """
+        """Return (c, P, Q) with value = c*P/Q in lowest terms; c is a rational number >= 0, P and Q are polynomials."""
         numerator = self.reduce(value.numerator)
         if not numerator:
             return Integer(0), self.ring.zero, self.ring.one
         pair = numerator.cancel(self.reduce(self.ratios.denominator(value)))
+        # the coefficients of P, and those of Q, become integers without a common divisor
         scales, parts = zip(*(poly.clear_denoms() for poly in pair), strict=True)
         contents, (above, below) = zip(*(poly.primitive() for poly in parts), strict=True)
         constant = Rational(int(contents[0]) * int(scales[1]), int(contents[1]) * int(scales[0]))
@@ -573,10 +544,8 @@ def _is_of_real(logarithm: Expr) -> bool:
 
 
 def _named(dependence: Dependence | None) -> list[Root]:
-    """Return the roots by which a dependent root is expressed: sqrt(a) and sqrt(b) for sqrt(a*b).
-
-    ``dependence`` is this expression. It is None if the root is independent; the result is then empty.
-    """
+    """Return the roots by which a dependent root is expressed: sqrt(a) and sqrt(b) for sqrt(a*b)."""
+    # the root is independent
     if dependence is None:
         return []
     return [*dependence.roots, *(factor for factor, _ in dependence.divisors if isinstance(factor, Root))]

@@ -1,14 +1,7 @@
 """Roots: each fractional power as a rational factor times variables ``g`` of the ring with a relation ``g^n = P``.
 
-``sqrt(P/Q)`` is written ``g/|Q|`` with ``g^2 = P*Q``, and square roots of rational numbers as products of square roots
-of primes. So the generator g of a square root is never negative. (For other roots, ``(P/Q)^(1/n) = g/Q``.) Squares
-leave a root as absolute values, ``sqrt(x^2 y) = |x| sqrt(y)``. If the formulas have sqrt(a), sqrt(b) and sqrt(a*b), the
-third gets no generator: it is written as the product of the other two (:mod:`symrot.exact.ring.radicands`).
-
-Roots that depend on each other in other ways, such as nested roots, have one generator each. An equation that follows
-from the relations of these generators is true. One that does not follow may still be true, because a root is only one
-of the branches that its relation allows; :func:`symrot.exact.decide.decide` returns "undecided" for such an equation
-unless it finds a counterexample.
+``sqrt(P/Q)`` is written ``g/|Q|`` with ``g^2 = P*Q``, and squares leave a root as absolute values, ``sqrt(x^2 y) = |x|
+sqrt(y)``. So the variable of a square root is never negative. For other roots, ``(P/Q)^(1/n)`` is ``g/Q``.
 """
 
 from collections.abc import Callable, Iterable
@@ -39,6 +32,8 @@ MOST_TERMS = 4000
 """Largest number of terms of the radicand of a root, which is ``P Q^(n-1)`` for a root of P/Q."""
 
 
+# Roots that depend on each other, such as nested roots, have one variable each. An equation that follows from their
+# relations is true; another one may be true too, because a root is only one branch of its relation.
 @lru_cache(maxsize=20_000)
 def written(node: Expr) -> str:
     """Return the text of an expression, used as a sort key that is the same in every run."""
@@ -47,58 +42,44 @@ def written(node: Expr) -> str:
 
 @dataclass(frozen=True)
 class Root:
-    """A root as a variable of the ring, with ``expression^index = power_expression``; sqrt(x + 1) has the index 2.
-
-    ``depth`` counts how many roots are nested in it, itself included. Absolute values are roots too: ``|x|^2 = x^2``.
-    """
+    """A root as a variable of the ring, with ``expression^index = power_expression``; sqrt(x + 1) has the index 2."""
 
     expression: Expr
     power_expression: Expr
-    index: int
-    depth: int
+    index: int  # also 2 for an absolute value: |x|^2 = x^2
+    depth: int  # how many roots are nested in it, itself included
 
 
 @dataclass(frozen=True)
 class Radicand:
-    """A radicand split into factors: ``content * above / below * product(factor^(2 n) of outside)``.
+    """A radicand split into factors: ``content * above / below * product(factor^(2 n) of outside)``."""
 
-    ``content`` is a rational >= 0; ``above`` and ``below`` are primitive polynomials over the integers in canonical
-    form, and ``below`` is 1 under a square root. ``outside`` has the pairs (factor, n), whose factors are never
-    negative and leave the root. ``loose`` is True if one of these factors may be zero where ``above`` is negative:
-    there the radicand is zero and its root is real, although the root of ``above`` is not.
-    """
-
-    content: Rational
-    above: Expr
-    below: Expr
-    outside: tuple[tuple[Root | Expr, int], ...] = ()
+    content: Rational  # >= 0
+    above: Expr  # a primitive polynomial over the integers, like below
+    below: Expr  # 1 under a square root
+    outside: tuple[tuple[Root | Expr, int], ...] = ()  # pairs (factor, n) that leave the root; no factor is negative
+    # whether such a factor may be zero where above is negative: there the root is real, but the root of above is not
     loose: bool = False
 
 
 @dataclass(frozen=True)
 class Radical:
-    r"""A fractional power in factors: ``(rational * product(roots) * product(factor^n of outside) / below)^power``.
-
-    ``roots`` are the roots that stay, ``below`` is the denominator, and ``outside`` has pairs (factor, n): the factor
-    is an absolute value, which is a root too, or an expression that is never negative. In sqrt(x^2 y), sqrt(y) is a
-    root and (\|x\|, 1) is outside. ``loose`` is True if a factor of ``outside`` may be zero where one of ``roots`` is
-    not real, as at x = 0, y = -1: there the whole power is real.
-    """
+    """A fractional power in factors: ``(rational * product(roots) * product(factor^n of outside) / below)^power``."""
 
     base: Expr
     rational: Rational
-    roots: tuple[Root, ...]
+    roots: tuple[Root, ...]  # sqrt(y) for sqrt(x^2 y)
     below: Expr
     power: int
-    outside: tuple[tuple[Root | Expr, int], ...] = ()
+    outside: tuple[tuple[Root | Expr, int], ...] = ()  # pairs (factor, n): (|x|, 1) for sqrt(x^2 y)
+    # whether such a factor may be zero where a root is not real, as at x = 0, y = -1: there the whole power is real
     loose: bool = False
 
     @property
     def generators(self) -> tuple[Root, ...]:
         """All roots for which the ring needs a variable to express this fractional power.
 
-        These are the ``roots`` that stay, and the absolute values in ``outside``: |x| counts as the root sqrt(x^2). For
-        sqrt(x^2 y) they are sqrt(y) and |x|.
+        sqrt(x^2 y) needs sqrt(y) and the absolute value ``|x|``.
         """
         return (*self.roots, *(factor for factor, _ in self.outside if isinstance(factor, Root)))
 
@@ -160,10 +141,7 @@ def radical(node: Expr, radicand: Callable[[Expr, int], Radicand]) -> Radical:
 
 
 def absolute(value: Expr) -> Root | Expr:
-    """Return the absolute value of a real expression.
-
-    It is ``value`` or ``-value`` if the sign is known, otherwise a root ``|x|``, whose square is ``x^2``.
-    """
+    """Return the absolute value of a real expression, as a root ``|x|`` if the sign of x is not known."""
     sign = sign_of(value)
     return sign * value if sign else Root(Abs(value), (value**2).expand(), 2, 1 + _nesting([value]))
 
@@ -176,10 +154,8 @@ def sign_of(value: Expr) -> int:
 
 
 def is_positive_where_defined(value: Expr) -> bool:
-    """Return whether a formula consists of exponentials and positive numbers, so that it is positive.
-
-    SymPy does not call an exponential positive, because its exponent might be infinite.
-    """
+    """Return whether a formula consists of exponentials and positive numbers, so that it is positive."""
+    # SymPy does not call it positive, because its exponent might be infinite
     if isinstance(value, exp):
         return True
     if value.is_Add or value.is_Mul:
@@ -203,9 +179,9 @@ def _imaginary_unit() -> Root:
 
 
 def square_root_of_number(value: Rational) -> tuple[Rational, list[Root]]:
-    """Return (rational, roots): the square root of a positive rational number as a product with square roots of primes.
+    """Return (r, roots): the root of a positive rational is r times ``roots`` of primes.
 
-    For 12/5 it is 2/5 and the roots of 3 and 5.
+    12/5 gives 2/5, sqrt(3) and sqrt(5).
     """
     powers = factorint(int(value.p) * int(value.q))
     outside = prod(prime ** (power // 2) for prime, power in powers.items())

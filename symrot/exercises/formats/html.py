@@ -104,15 +104,15 @@ def _inline_display(latex: str) -> str:
 
 
 def _data(exercises: Sequence[Exercise]) -> dict[str, Any]:
-    """Return what the script of the page needs to grade numbers: for each question (``1a``) answer, unit and slips.
-
-    A slip is the wrong number that a typical mistake gives, with a hint at this mistake.
+    """Return what the page needs to grade numbers: for each question (``1a``) the answer, unit and typical wrong
+    numbers.
     """
     questions = {
         f"{number}{question.key}": {
             "value": question.decimal,
             "unit": question.unit,
             **_unit_facts(question.unit),
+            # each with a hint at the mistake
             "slips": [
                 [value, SLIPS[code.split()[0]].format(code.split()[1])] for code, value in question.slips.items()
             ],

@@ -79,10 +79,7 @@ def mark_formula(key: str, answer: str, question: Question) -> Mark:
 
 
 def _misfit(own: str, truth: str, question: Question) -> str:
-    """Return a sentence that says how the units of an answer differ from the right units; empty if they agree.
-
-    ``own`` is the student's formula, ``truth`` the right one; ``question`` has the units of the symbols.
-    """
+    """Return a sentence that says how the units of an answer differ from the right units; empty if they agree."""
     try:
         dimension = _verdict(own, truth, question, repair=False, units=question.symbols).dimension
     except InputError:  # LaTeX in which the names of the units do not occur
@@ -99,14 +96,11 @@ def _is_right(verdict: Verdict) -> bool:
 def _verdict(
     own: str, truth: str, question: Question, repair: bool = True, units: dict[str, str] | None = None
 ) -> Verdict:
-    """Return the checker's verdict on the claim that a student's formula ``own`` equals the right formula ``truth``.
-
-    With ``repair``, the checker also looks for a change that makes the formula right. ``units`` maps symbols to their
-    units. By default the checker is not told the units, so that it also finds other errors in a formula whose units are
-    wrong.
-    """
+    """Return the checker's verdict on the claim that a student's formula ``own`` equals the right formula ``truth``."""
     latex = "\\" in own
     assume = [f"{name} > 0" for name in question.positive if not latex]
+    # Without units, the checker also finds other errors in a formula whose units are wrong. With repair it looks for a
+    # change that makes the formula right.
     return check(f"{truth} = {own}" if latex else f"{truth} == {own}", assume=assume, units=units, repair=repair)
 
 
@@ -153,11 +147,7 @@ def _plain(text: str) -> str:
 
 
 def _split(match: re.Match[str], known: Collection[str]) -> str:
-    """Return a ``known`` name unchanged; write several names without a space as a product, ``mgl`` -> ``m*g*l``.
-
-    ``match`` is a name in the student's formula, with a division sign before it or a power after it, if any. The power
-    belongs to the last name, and a divisor is put in brackets: ``/mgl^2`` -> ``/(m*g*l^2)``.
-    """
+    """Return a known name unchanged, others as a product: ``mgl`` gives ``m*g*l``, ``/mgl^2`` gives ``/(m*g*l^2)``."""
     name, power, divided = match["name"], match["power"] or "", match["divided"] or ""
     spelled = re.sub(r"(?<=[A-Za-z])(\d)", r"_\1", name)
     for single in (name, spelled, name.replace("_", "")):
@@ -178,9 +168,8 @@ def _partitions(name: str, known: Collection[str]) -> Iterator[tuple[str, ...]]:
 
 
 def _code(own: str, truth: str, verdict: Verdict, question: Question) -> str:
-    """Return the code of the student's error, such as ``"inverse"`` for 1/x instead of x, a key of ``FORMULA_FAULTS``.
-
-    ``verdict`` is the checker's verdict on the claim that the formula ``own`` equals the right formula ``truth``.
+    """Return the code of the student's error, such as ``"inverse"`` for 1/x instead of x, a key of
+    ``FORMULA_FAULTS``.
     """
     if "\\" not in own:
         if _holds(f"1/({own})", truth, question):
@@ -207,11 +196,8 @@ def _letters(formula: str, question: Question) -> set[str]:
 
 
 def _code_without_units(own: str, truth: str, question: Question) -> str:
-    """Return the checker's code for the error, other than wrong units, in the formula ``own``; ``truth`` is right.
-
-    The checker stops at wrong units. So the symbols are renamed to names without a conventional unit, and it looks for
-    other errors.
-    """
+    """Return the checker's code for the error, other than wrong units, in the formula ``own``; ``truth`` is right."""
+    # The checker stops at wrong units, so the symbols get names without a conventional unit.
     letters = {name: f"x_{place}" for place, name in enumerate(question.symbols, 1)}
     plain = {letters[name]: "1" for name in question.symbols}
     renamed = replace(question, symbols=plain, positive=tuple(letters[name] for name in question.positive))
@@ -220,14 +206,13 @@ def _code_without_units(own: str, truth: str, question: Question) -> str:
 
 
 def _holds(own: str, truth: str, question: Question) -> bool:
-    """Return whether ``own``, a modified form of the student's formula, equals the right formula ``truth``.
-
-    ``own`` is, for example, the inverse of what the student wrote. If the result is True, the mark can tell the student
-    what was confused. It is False also if ``own`` has no value, such as 1/0.
+    """Return whether ``own``, a modified form of the student's formula such as its inverse, equals the right
+    formula.
     """
     try:
         return _is_right(_verdict(own, truth, question, repair=False))
     except InputError:
+        # no value, such as 1/0
         return False
 
 

@@ -44,10 +44,8 @@ def _condition() -> Expr:
 
 
 def _is_possible(values: Mapping[Symbol, Expr]) -> bool:
-    """Return whether a body can have the moments of inertia A and C about its tip that ``values`` gives, by symbol.
-
-    By the parallel axis theorem, A is ``m h^2`` plus the moment about the centre of mass, which is at least C/2.
-    """
+    """Return whether a body can have the moments of inertia A and C about its tip that ``values`` gives, by symbol."""
+    # parallel axes: A is m h^2 plus the moment about the centre of mass, which is at least C/2
     across = values.get(A, oo)
     return bool(across > values.get(m, 0) * values.get(h, 0) ** 2 + values.get(C, 0) / 2)
 

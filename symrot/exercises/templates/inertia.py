@@ -20,10 +20,10 @@ RADIUS = quantity(R, RADII, "mm", "radius")
 
 
 def _about(body: Solid, point: tuple[Expr, ...], axis: int, distance: Expr) -> tuple[Expr, tuple[Line, ...]]:
-    """Return a body's moment of inertia about an axis through a point, and the solution lines that derive it.
-
-    The axis has the direction ``axis`` (0, 1 or 2 for x, y, z) and the ``distance`` from the centre of mass.
+    """Return a body's moment of inertia about the axis in direction 0, 1 or 2 through a point, and its
+    solution lines.
     """
+    # distance: from the centre of mass to the axis
     moment = body.inertia_about(point)[axis, axis]
     law = "The parallel axis theorem, from the centre of mass to the axis."
     return moment, chain("I_O", law, moment, written_sum(body.inertia[axis, axis], m * distance**2), moment, ADD)

@@ -1,9 +1,7 @@
 r"""Reader of the LaTeX on a page, so that a displayed formula can be proven equal to the derived formula.
 
-A page may write a side of an equation as a person would, such as ``R\,[\omega_b]_\times``, where the derivation has
-nine entries. With the declared meanings of the names on the page, the text is parsed by the usual rules of notation and
-proven equal to the derived expression. Text that contains a name without a declared meaning is only a label; it raises
-:class:`Unread`.
+A page may write ``R\,[\omega_b]_\times`` where the derivation has nine entries. The text is parsed with the declared
+meanings of the names on the page. A text with another name is only a label, and raises :class:`Unread`.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -34,30 +32,22 @@ UNMARKED = str.maketrans("", "", "{} \t\n\r\f\v")
 
 
 class Unread(InputError):
-    """Raised if LaTeX on a page has a name without a declared meaning, or a notation that is not supported.
-
-    The LaTeX is then only a label: nothing is proven about it.
-    """
+    """Raised if LaTeX on a page has a name without a declared meaning, or a notation that is not supported."""
 
 
 def key(latex: str) -> str:
-    r"""Return a LaTeX name without braces and spaces:
-
-    ``\omega_{b}`` -> ``\omega_b``, the key of its meaning in a map.
-    """
+    r"""Return a LaTeX name without braces and spaces, such as ``\omega_b`` for ``\omega_{b}``, as a key of a map."""
     return latex.translate(UNMARKED)
 
 
 def parts(latex: str) -> list[list[str]]:
-    r"""Return the equations in a LaTeX text as lists of their sides: ``a = b, \quad c`` -> a and b; c.
-
-    A comma before ``\quad`` outside brackets separates equations. The sides are text, with the blanks around them.
-    """
+    r"""Return the equations in a LaTeX text as lists of their sides: ``a = b, \quad c`` gives a and b; c."""
     equations: list[list[str]] = [[""]]
     depth = 0
     for token, following in pairwise(tokens(latex)):
         depth += token.text in ("{", "(") or token.kind in ("left", "begin")
         depth -= token.text in ("}", ")") or token.kind in ("right", "close")
+        # a comma before \quad outside brackets separates equations
         if depth == 0 and token.text == "," and following.text == "\\quad":
             equations.append([""])
         elif depth == 0 and token.text == "=":
@@ -194,18 +184,13 @@ class _Interpreter(Cursor):
         return values[0] if len(values) == 1 else Matrix.vstack(*map(_as_matrix, values))
 
     def at_skew(self) -> bool:
-        r"""Return whether the next item is the index ``\times``, which marks a cross-product matrix:
-
-        ``[\omega]_\times``.
-        """
+        r"""Return whether the next item is ``\times``, the index of a cross-product matrix ``[\omega]_\times``."""
         item = self.peek()
         return isinstance(item, Script) and item.text == "_" and alone(item.inside).text == "\\times"
 
     def evaluated(self, dot: Node) -> Any:
-        r"""Return the value of ``\left. X \right|_{a = b, ...}``: the formula X with ``a`` replaced by ``b``.
-
-        ``dot`` is the item ``\left.``, which has been read; its position is used in error messages.
-        """
+        r"""Return the value of ``\left. X \right|_{a = b, ...}``: the formula X with ``a`` replaced by ``b``."""
+        # ``dot``, the item \left., has been read
         value = self.barred(self.sum, "|")
         script = self.script("_")
         if script is None:
@@ -234,12 +219,10 @@ class _Interpreter(Cursor):
         return _multiplied(self.value(above), _inverted(self.value(below)))
 
     def differentiated(self, operand: Row | None) -> Any:
-        r"""Return the formula to differentiate: ``x`` in ``\frac{d x}{dt}`` as in ``\frac{d}{dt} x``.
-
-        The ``operand`` is the numerator after its d; if it is empty, the term after the fraction is differentiated.
-        """
+        r"""Return the formula to differentiate: ``x`` in ``\frac{d x}{dt}`` as in ``\frac{d}{dt} x``."""
         if operand is None:
             raise self.fail("d or \\partial in the numerator of a derivative")
+        # the numerator after its d or, if it is empty, the term after the fraction
         return self.value(operand) if operand.items else self.term()
 
     def root(self, root: Root) -> Any:
@@ -248,15 +231,11 @@ class _Interpreter(Cursor):
         return sqrt(self.value(root.inside))
 
     def font(self, font: Font) -> Any:
-        r"""Return the value of a name that LaTeX prints in a special font, such as ``\mathbf{1}``, the identity matrix.
-
-        The name may also be a function of the matrix after it, such as the trace ``\operatorname{tr}``, or any name
-        with a
-        declared meaning.
-        """
+        r"""Return the value of a name that LaTeX prints in a special font: the identity matrix for ``\mathbf{1}``."""
         word, place = _text(font.inside), self.index
         if word == "1":
             return Integer(1)
+        # a function of the matrix after it, such as the trace \operatorname{tr}
         if word in MATRIX_FUNCTIONS and isinstance(argument := self.power(), MatrixBase):
             return MATRIX_FUNCTIONS[word](argument)
         self.index = place - 1
@@ -333,10 +312,8 @@ READERS: dict[str, Callable[[_Interpreter, Any], Any]] = {
 
 
 def _text(node: Node) -> str:
-    r"""Return a part of a name, given as parsed LaTeX, as text without braces: ``\dot{x}`` -> ``\dotx``.
-
-    Names are looked up by texts of this form, see :func:`key`.
-    """
+    r"""Return a part of a name, given as parsed LaTeX, as text without braces: ``\dot{x}`` gives ``\dotx``."""
+    # names are looked up by such texts, see ``key``
     if isinstance(node, Row):
         return "".join(map(_text, node.items))
     if isinstance(node, Scripts):
@@ -347,10 +324,7 @@ def _text(node: Node) -> str:
 
 
 def _after(node: Node, mark: str) -> Row | None:
-    """Return what follows ``mark`` in a group:
-
-    ``x`` in ``{d x}`` after the mark ``d``; None if it begins with another item.
-    """
+    """Return the items after ``mark`` in a group, such as ``x`` in ``{d x}`` after ``d``; None without the mark."""
     row = node if isinstance(node, Row) else Row((node,), node.start, node.start)
     return Row(row.items[1:], row.start, row.end) if row.items and row.items[0].text == mark else None
 

@@ -1,8 +1,7 @@
 """Translation of LaTeX formulas into native MathML, for the part of LaTeX that the pages of derivations use.
 
-The translation is used for HTML and for breaking lines. A formula becomes a row of items; an item is one symbol,
-fraction, bracketed group or the like. It has its LaTeX, its MathML, an estimate of its width in letters, and a kind,
-which says whether a line may be broken before it. Unknown LaTeX raises InputError.
+A formula becomes a row of items, such as a symbol, a fraction or a bracketed group. The same items serve to break long
+formulas into lines. Unknown LaTeX raises InputError.
 """
 
 from collections.abc import Callable, Iterator
@@ -49,14 +48,12 @@ SMALL = 0.75  # scripts, relative to the line
 
 
 class Item(NamedTuple):
-    r"""One part of a formula in a row, such as a symbol or a fraction: its MathML, its width in letters, and its LaTeX.
-
-    ``kind`` is "relation" for ``=`` or ``<``, "sign" for a plus or minus between two terms, "function" for a name such
-    as ``\sin``, and "" for everything else. Lines are broken before relations and signs.
-    """
+    """One part of a formula, such as a symbol or a fraction: its MathML, its width in letters, and its LaTeX."""
 
     mathml: str
     width: float
+    # "relation" for = or <, "sign" for a plus or minus between two terms, "function" for a name such as \sin; lines are
+    # broken before relations and signs
     kind: str = ""
     latex: str = ""
 
@@ -124,10 +121,7 @@ class _Translation:
         return _joined(self.argument(node))
 
     def item(self, node: Node, after_operand: bool = False) -> Item:
-        """Return the item of one node of parsed LaTeX: its MathML and width.
-
-        A plus or minus sign is binary if ``after_operand`` is true (an operand is to its left), otherwise a prefix.
-        """
+        """Return the item of one node of parsed LaTeX: its MathML and width."""
         if not isinstance(node, Token):
             return self.scripted(node, after_operand) if isinstance(node, Scripts) else ITEMS[type(node)](self, node)
         text = node.text
@@ -138,6 +132,7 @@ class _Translation:
         if node.kind == "number":
             return Item(f"<mn>{text}</mn>", 0.6 * len(text))
         if text in SIGNS:
+            # an operand is to the left of the sign, which is then binary, otherwise a prefix
             if after_operand:
                 return Item(f"<mo>{SIGNS[text]}</mo>", 1.2, "sign")
             return Item(f'<mo form="prefix">{SIGNS[text]}</mo>', 0.7)
@@ -221,10 +216,8 @@ def _fence(mark: str, form: str) -> str:
 
 
 def _letter(letter: str, variant: str) -> str:
-    """Return the Unicode character of a letter or digit in a font: ("R", "script") -> "ℛ"; other characters unchanged.
-
-    ``variant`` is the font: "script", "bold", .. Browsers no longer support the attributes of MathML for most fonts.
-    """
+    """Return the Unicode character of a letter or digit in a font, such as "ℛ" for ("R", "script")."""
+    # browsers no longer support the attributes of MathML for most fonts; other characters are unchanged
     if not (letter.isascii() and letter.isalnum()):
         return letter
     if variant == "script":
@@ -258,10 +251,8 @@ def read(latex: str) -> list[Item]:
 
 
 def rows(latex: str, width: float) -> list[list[Item]]:
-    """Return the lines of a LaTeX formula, each a list of items, at most ``width`` letters wide if possible.
-
-    Lines are broken before relations such as ``=``, and if that is not enough, before plus and minus.
-    """
+    """Return the lines of a LaTeX formula, each a list of items, at most ``width`` letters wide if possible."""
+    # broken before relations such as =, and if that is not enough, before plus and minus
     return _broken(read(latex), width)
 
 
@@ -289,9 +280,9 @@ def _stacked(items: list[Item]) -> Item:
 
 
 def _pieces(items: list[Item], kind: str) -> Iterator[list[Item]]:
-    """Yield the items in consecutive lists, the second and later of which begin with an item of ``kind``.
+    """Yield the items in consecutive lists, each but the first beginning with an item of ``kind``.
 
-    For the kind "relation", ``a = b + c = d`` gives ``a``, ``= b + c`` and ``= d``.
+    For "relation", ``a = b + c = d`` gives ``a``, ``= b + c`` and ``= d``.
     """
     piece: list[Item] = []
     for item in items:
@@ -303,12 +294,9 @@ def _pieces(items: list[Item], kind: str) -> Iterator[list[Item]]:
 
 
 def mathml(latex: str, *, display: bool = False, width: float = WIDEST) -> str:
-    """Return a LaTeX formula as the text of a MathML element ``<math>``.
-
-    If ``display`` is true the formula has lines of its own, and is broken if it is wider than ``width`` letters;
-    otherwise it stands inside a sentence and is never broken.
-    """
+    """Return a LaTeX formula as the text of a MathML element ``<math>``."""
     start = '<math xmlns="http://www.w3.org/1998/Math/MathML"' + (' display="block"' if display else "") + ">"
+    # a displayed formula is broken if it is wider than ``width`` letters; within a sentence it never is
     lines = rows(latex, width) if display else [read(latex)]
     if len(lines) == 1:
         return f"{start}{_joined(lines[0]).mathml}</math>"

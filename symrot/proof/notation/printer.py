@@ -42,10 +42,7 @@ class PagePrinter(LatexPrinter):  # type: ignore[misc]
     _print_tanh = _print_sech = _print_of_angle
 
     def _print_MatrixBase(self, matrix: MatrixBase) -> str:
-        """Return the LaTeX of a matrix; a denominator that all entries have in common is printed in front as 1/D.
-
-        The zero matrix is printed as 0, and the identity matrix as a bold 1.
-        """
+        """Return the LaTeX of a matrix; a denominator that all entries have in common is printed in front as 1/D."""
         if matrix.is_zero_matrix:
             return "0"
         if matrix.is_square and matrix.is_Identity:
@@ -73,15 +70,13 @@ class PagePrinter(LatexPrinter):  # type: ignore[misc]
 
 
 def _common_scale(matrix: MatrixBase) -> Any:
-    """Return 1/D if all nonzero entries of a matrix have the same denominator D; otherwise return 1.
-
-    Return 1 too if an entry has a fraction in its numerator or denominator.
-    """
+    """Return 1/D if all nonzero entries of a matrix have the same denominator D; otherwise return 1."""
     denominators = {entry.as_numer_denom()[1] for entry in matrix if entry != 0}
     if len(denominators) != 1 or len(matrix) < 2:
         return 1
     (denominator,) = denominators
     scale = 1 / denominator
+    # no entry has a fraction in its numerator or denominator
     clean = not any(
         part.is_Pow and part.exp.is_negative for entry in matrix for part in preorder_traversal(entry / scale)
     )

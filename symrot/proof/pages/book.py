@@ -1,6 +1,6 @@
 """Printer of all pages as a book in HTML: contents in reading order, links between pages, and a search.
 
-The book needs no network and no server: its pages open from a folder. The same pages always give the same bytes.
+The book needs no network and no server. The same pages always give the same bytes.
 """
 
 import json
@@ -105,20 +105,15 @@ def _contents(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) ->
 
 
 def _turning(before: Page | None, after: Page | None) -> str:
-    """Return a line of HTML with links to the page ``before``, the table of contents and the page ``after``.
-
-    ``before`` is None on the first page of the book, and ``after`` on the last: then that link is missing.
-    """
+    """Return a line of HTML with links to the page ``before``, the table of contents and the page ``after``."""
+    # no page before the first, none after the last
     back = f'<a rel="prev" href="{before.name}.html">← {prose(before.title)}</a>' if before else "<span></span>"
     on = f'<a rel="next" href="{after.name}.html">{prose(after.title)} →</a>' if after else "<span></span>"
     return f'<nav class="book">{back}<a href="{CONTENTS}">Contents</a>{on}</nav>'
 
 
 def _mentions(page: Page, pages: Sequence[Page]) -> Iterator[str]:
-    """Yield one paragraph in HTML, "Pages that refer to this one: ..", with a link to each page that links to ``page``.
-
-    ``pages`` are all pages of the book. Nothing is yielded if no other page links to ``page``.
-    """
+    """Yield one paragraph in HTML, "Pages that refer to this one: ..", if other pages link to ``page``."""
     link = f"]({page.name}.md)"
     others = [other for other in pages if other is not page and any(link in text for _, _, text in _words(other))]
     if others:
@@ -127,11 +122,8 @@ def _mentions(page: Page, pages: Sequence[Page]) -> Iterator[str]:
 
 
 def _words(page: Page) -> Iterator[tuple[str, str, str]]:
-    """Yield (anchor, title, text) for each text on a page that the search of the book finds.
-
-    The anchor is the end of the text's address, such as ``#step-3``, or ``""`` for the top of the page. Titles and
-    texts are Markdown.
-    """
+    """Yield (anchor, title, text), such as ``"#step-3"``, for each text on a page that the book's search finds."""
+    # the anchor is empty for the top of the page; titles and texts are Markdown
     yield "", page.title, page.about
     for opening in page.opening:
         if isinstance(opening, Figure):

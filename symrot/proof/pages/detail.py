@@ -1,7 +1,6 @@
 """One step of a derivation as a page of its own.
 
-With the option for details, the page also shows how the checker decides the step: the chain of rewritings that turns
-the left side minus the right side into zero.
+With details, the page also shows the chain of rewritings that turns left minus right side into zero.
 """
 
 from sympy import MatrixBase, factor
@@ -67,10 +66,8 @@ def _in_detail(step: Step) -> list[Passage]:
 
 
 def _on_board(step: Step) -> list[Passage]:
-    """Return ``step.board``, the proof as a teacher writes it, as paragraphs: a reason, and the next expression.
-
-    The first equation begins with the left side of the step, the others with ``=``.
-    """
+    """Return the proof of a step as a teacher writes it, as paragraphs: a reason, and the next expression."""
+    # the first equation begins with the left side, the others with =
     left = step.named or formula(step.left)
     passages = []
     for words, text in step.board:
@@ -80,10 +77,7 @@ def _on_board(step: Step) -> list[Passage]:
 
 
 def _on_one_screen(passages: list[Passage]) -> list[Passage]:
-    """Return the first of the paragraphs, as many as fit on a screen.
-
-    If some do not fit, the last paragraph says how many expressions are left out.
-    """
+    """Return the first paragraphs, all that fit on one screen."""
     screen: list[Passage] = []
     lines = letters = 0
     for passage in passages:
@@ -95,6 +89,7 @@ def _on_one_screen(passages: list[Passage]) -> list[Passage]:
         if lines > LINES - (2 if passage is not passages[-1] else 0):  # 2 for the sentence on what is left out
             break
         screen.append(passage)
+    # a last paragraph says how many expressions are left out
     if len(screen) < len(passages):
         screen.append(Passage(f"{'The rest' if screen else 'The calculation'} {LEFT_OUT}"))
     return screen
@@ -139,12 +134,9 @@ def _chain(chain: Chain) -> list[Passage]:
 
 
 def _subtracted_multiples(link: Link) -> tuple[tuple[str, str], ...]:
-    """Return the multiples of hypotheses that the rewriting ``link`` subtracts, to display below it.
-
-    Each is a pair (multiple, "0"), an equation: a hypothesis is an expression that is zero, so its multiples are zero
-    too. The result is empty if the multiples are so short that the sentence about the rewriting contains them.
-    """
+    """Return the multiples of hypotheses that the rewriting ``link`` subtracts, as equations (multiple, "0")."""
     terms = _terms(link)
+    # a hypothesis is an expression that is zero; short multiples are in the sentence about the rewriting
     return () if _short(terms) else tuple((term, "0") for term in terms)
 
 

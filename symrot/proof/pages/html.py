@@ -59,12 +59,9 @@ a { color: inherit; }
 
 
 def html_document(page: Page, top: str = "", bottom: str = "", style: str = "", font: str = "") -> str:
-    """Return a page as the text of an HTML document.
-
-    ``top`` and ``bottom`` are HTML above and below the page, such as links of a book, and ``style`` is CSS after the
-    usual rules. ``font`` is the address of the file of the mathematical font; if it is empty, the font is embedded, and
-    the document is self-contained.
-    """
+    """Return a page as the text of an HTML document, with HTML ``top`` above and ``bottom`` below it."""
+    # ``style`` is CSS after the usual rules; ``font`` is the address of the font's file, which is embedded if it is
+    # empty
     parts = [*filter(None, [top]), f"<h1>{prose(page.title)}</h1>"]
     for opening in page.opening:
         parts += [_figure(opening)] if isinstance(opening, Figure) else _passage(opening)
@@ -111,13 +108,11 @@ def _figure(figure: Figure) -> str:
 
 
 def _table(table: Table, number: int) -> str:
-    """Return a table of a page in HTML; ``number`` is the number of the last step before the table.
-
-    A row with steps has the anchor ``step-N``, where N is the number of its first step, so that a link can lead to it.
-    """
+    """Return a table of a page in HTML; ``number`` is the number of the last step before the table."""
     head, *rows = table_rows(table, number)
     lines = [f"<tr>{''.join(f'<th>{prose(cell)}</th>' for cell in head)}</tr>"]
     for cells, (_, steps) in zip(rows, table.rows, strict=True):
+        # a link can lead to the first step of a row
         anchor = f' id="step-{number + 1}"' if steps else ""
         number += len(steps)
         lines.append(f"<tr{anchor}>{''.join(f'<td>{prose(cell)}</td>' for cell in cells)}</tr>")

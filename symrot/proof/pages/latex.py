@@ -66,8 +66,6 @@ def latex_document(page: Page) -> str:
 def latex_book(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) -> str:
     r"""Return pages as one LaTeX book with a table of contents and links between its pages.
 
-    LaTeX must run twice, because the table of contents and the links need the numbers of the first run.
-
     Parameters
     ----------
     title, about : str
@@ -82,6 +80,7 @@ def latex_book(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) -
     """
     below = rf"\date{{\parbox{{0.8\linewidth}}{{\normalsize {_prose(about)}}}}}"
     head = rf"\title{{{_prose(title)}}}" + f"\n{below}\n\\begin{{document}}\n\\maketitle"
+    # LaTeX must run twice: contents and links need the numbers of the first run
     parts = [BOOK + head, r"\tableofcontents"]
     for chapter, pages in chapters.items():
         parts += [rf"\part{{{_prose(chapter)}}}"] if chapter else []
@@ -125,25 +124,21 @@ def _body(page: Page) -> Iterator[str]:
 
 
 def _figure(figure: Figure) -> str:
-    """Return a figure in LaTeX: its caption, and above it the picture.
-
-    The picture is the PDF file in ``figures``; it is left out if that file does not exist when LaTeX runs.
-    """
+    """Return a figure in LaTeX: its caption, and above it the picture."""
     path = figure.file.removesuffix(".svg")
     size = r"width=0.7\linewidth,height=0.35\textheight,keepaspectratio"
+    # a PDF file in ``figures``, left out if it does not exist when LaTeX runs
     included = rf"\IfFileExists{{{path}.pdf}}{{\centerline{{\includegraphics[{size}]{{{path}.pdf}}}}}}{{}}"
     return f"{included}\n\n" + rf"\emph{{Figure:}} {_prose(figure.caption)}"
 
 
 def _table(table: Table, number: int) -> str:
-    """Return a table of a page in LaTeX, which may go over several sheets of paper.
-
-    ``number`` is the number of the last step before the table.
-    """
+    """Return a table of a page in LaTeX; ``number`` is the number of the last step before the table."""
     cells = [*table_rows(table, number)]
     wide = sum(max(map(len, column)) > LONGEST_INLINE for column in zip(*cells, strict=True))
     share = f"{SHARE_OF_WIDE / max(wide, 1):.2f}"
     head, *rows = (" & ".join(_cell(cell, share) for cell in row) + r" \\[4pt]" for row in cells)
+    # the table may go over several sheets of paper
     columns = "l" * len(cells[0])
     body = "\n".join(rows)
     return (

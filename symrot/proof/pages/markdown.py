@@ -64,13 +64,11 @@ MARKED = re.compile(r"\\[^A-Za-z]|[\])}]_|\*")
 
 
 def host_safe(part: str) -> str:
-    """Return a paragraph of Markdown whose inline formulas survive on a code-hosting site.
-
-    There Markdown would read characters such as ``_`` or ``*`` in a formula ``$...$`` as emphasis; such formulas are
-    quoted as ``$`...`$``. Displayed formulas, which begin with ``$$``, are unchanged.
-    """
+    """Return a paragraph of Markdown whose inline formulas survive on a code-hosting site."""
+    # displayed formulas are unchanged
     if part.startswith("$$"):
         return part
+    # Markdown would read _ or * in a formula $...$ as emphasis, so that such formulas are quoted as $`...`$
     return re.sub(r"\$([^$]+)\$", lambda m: f"$`{m[1]}`$" if MARKED.search(m[1]) else m[0], part)
 
 

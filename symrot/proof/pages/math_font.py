@@ -1,7 +1,4 @@
-"""The mathematical font of pages in HTML: a subset of STIX Math, so that brackets stretch in any browser.
-
-``font/LICENSE.txt`` has its licence, the SIL Open Font License; ``.ci/math_font.py`` builds it.
-"""
+"""The mathematical font of pages in HTML: a subset of STIX Math, so that brackets stretch in any browser."""
 
 from base64 import b64encode
 from functools import cache
@@ -9,6 +6,7 @@ from pathlib import Path
 
 __all__ = ["FILE", "characters", "content", "face"]
 
+# font/LICENSE.txt has its licence, the SIL Open Font License; .ci/math_font.py builds it
 FILE = "math.woff2"
 FOLDER = Path(__file__).parent / "font"
 
@@ -25,10 +23,7 @@ def characters() -> frozenset[str]:
 
 @cache
 def face(source: str = "") -> str:
-    """Return CSS rules by which a browser shows formulas in the font.
-
-    ``source`` is the address of the font file; if it is empty, the rules contain the font itself.
-    """
+    """Return CSS rules by which a browser shows formulas in the font; without its address they contain the font."""
     address = source or f"data:font/woff2;base64,{b64encode(content()).decode('ascii')}"
     return (
         f'@font-face {{ font-family: "symrot math"; src: url("{address}") format("woff2"); }}\n'

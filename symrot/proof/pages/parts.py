@@ -23,24 +23,20 @@ def equation(step: Step) -> str:
 
 
 def repetitions(page: Page) -> frozenset[int]:
-    """Return the numbers of the steps whose reason is not printed, since an earlier step has the same claim and reason.
-
-    A page may prove one result for many sequences of angles, or many solids. If at least :data:`MANY` steps have the
-    same reason and the same claim, apart from formulas and names of sequences such as ``ZXZ``, only the first of them
-    prints the reason.
-    """
+    """Return the numbers of the steps that repeat the claim and reason of an earlier step."""
     places: dict[tuple[str, str], list[int]] = {}
     for number, step in enumerate(page.steps, page.first):
+        # A page may prove one result for many sequences of angles, or many solids. Claims are compared without formulas
+        # and names of sequences such as ZXZ.
         claim = re.sub(r"\$[^$]*\$|\b[XYZ]{3}\b", "", step.claim)
         places.setdefault((claim, step.reason), []).append(number)
+    # the page does not print the reason of these steps
     return frozenset(number for numbers in places.values() if len(numbers) >= MANY for number in numbers[1:])
 
 
 def remarks(step: Step, is_repetition: bool = False) -> Iterator[str]:
-    """Yield the remarks on a step, each a sentence: its reason, its hypotheses, its conditions and its source.
-
-    The remarks on a repetition (see :func:`repetitions`) leave out the reason.
-    """
+    """Yield the remarks on a step, each a sentence: its reason, hypotheses, conditions and source."""
+    # a repetition leaves out the reason
     if not is_repetition:
         yield f"*Why:* {step.reason}."
     if step.hypotheses:
@@ -52,11 +48,9 @@ def remarks(step: Step, is_repetition: bool = False) -> Iterator[str]:
 
 
 def _hypothesis(zero: Expr) -> str:
-    """Return a hypothesis, an expression that is zero, as the LaTeX of an equation: ``a - b`` -> ``a = b``.
-
-    The terms with a minus sign are moved to the right.
-    """
+    """Return an expression that is zero as the LaTeX of an equation: ``a - b`` gives ``a = b``."""
     terms = zero.expand().as_ordered_terms()
+    # terms with a minus sign
     right = [-term for term in terms if term.could_extract_minus_sign()]
     left = [term for term in terms if not term.could_extract_minus_sign()]
     return f"{formula(Add(*left))} = {formula(Add(*right))}"
@@ -81,16 +75,12 @@ def units(page: Page) -> str:
 
 
 def table_rows(table: Table, number: int) -> Iterator[tuple[str, ...]]:
-    """Yield the titles of a table's columns and then its rows, each a tuple of cells in Markdown.
-
-    If the table's rows have proven steps, a first column ``Steps`` has their numbers, such as ``3`` or ``3–5``. Steps
-    are
-    counted from ``number``, the number of the last step before the table.
-    """
+    """Yield the titles of a table's columns and then its rows, each a tuple of cells in Markdown."""
     yield ("Steps", *table.head) if table.is_proven else table.head
     for cells, steps in table.rows:
         first, last = number + 1, number + len(steps)
         number = last
+        # proven rows begin with the numbers of their steps, counted from ``number``, the last step before the table
         numbers = f"{first}" if first == last else f"{first}–{last}"
         yield (numbers, *cells) if table.is_proven else cells
 

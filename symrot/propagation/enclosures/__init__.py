@@ -1,4 +1,1 @@
-"""Proven upper limits of the step length: no step passes over a short pulse of a torque formula.
-
-They follow from bounds of the formulas on discs of complex numbers (enclosures).
-"""
+"""Proven upper limits of the step length, so that no step passes over a short pulse of a torque formula."""

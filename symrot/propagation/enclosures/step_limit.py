@@ -1,14 +1,7 @@
-"""Proven upper limits of the step length, computed in Python for SciPy's steppers and as a reference for tests.
+"""Proven upper limits of the step length, so that no step misses a short pulse of a torque formula.
 
-A step is limited so that it cannot pass over a feature of a torque formula: a short part, such as a pulse, that the
-points at which the stepper evaluates the formula may not show. An enclosure is a set of terms of the rates together
-with the rules by which they are evaluated over discs of complex numbers. The radius of the resulting disc bounds the
-deviation of the term from a constant, which bounds the Taylor coefficients that a step omits.
-:mod:`symrot.codegen.enclosure.terms` explains which terms need bounds. The steppers in C use :file:`disc.h` and
-:file:`enclosure.h` for the same purpose.
-
-A disc is larger than the step: its radius in time is the length of the step times a factor called *reach*. A step
-misses at most a small fraction of the deviation on the disc; this fraction is the *missed share*.
+An enclosure evaluates terms of the rates on complex discs, which bounds the Taylor coefficients that a step omits. A
+disc's radius in time is the step times the *reach*. A step may miss a fraction of the deviation, the *missed share*.
 """
 
 import math
@@ -23,6 +16,9 @@ from symrot.formula.tree import evaluate
 
 __all__ = ["Deviations", "Disc", "deviations_of", "longest_followed"]
 
+# For SciPy's steppers, and as a reference for tests: the steppers in C use disc.h and enclosure.h instead.
+# symrot.codegen.enclosure.terms explains which terms need bounds.
+
 LARGEST_EXPONENT = 700.0  # exponent of e, well within the range of doubles
 LEAST_EXPONENT = -745.0  # exponent of e below which exp underflows to zero
 WEIGHTED = ("clock", "sum")  # rules of series that have constant coefficients
@@ -31,14 +27,14 @@ SHRINK = 0.3  # smallest factor by which a step is multiplied at once
 
 
 class Disc(NamedTuple):
-    """The disc of all complex numbers within ``radius`` of a real ``centre``: it encloses the values of a formula.
+    """Disc of complex numbers within ``radius`` of a real ``centre``; it encloses the values of a formula.
 
-    If given, ``log_size`` is an upper bound of the natural logarithm of their absolute values. It is useful where the
-    numbers themselves overflow or underflow.
+    ``log_size`` optionally bounds the logarithm of their absolute values.
     """
 
     centre: float
     radius: float
+    # useful where the numbers themselves overflow or underflow
     log_size: float | None = None
 
 
@@ -52,10 +48,8 @@ def _product(a: Disc, b: Disc) -> Disc:
 
 
 def _or_infinite(bound: float) -> float:
-    """Return the bound, or infinity if the bound is NaN, which 0 times an infinite bound gives.
-
-    Infinity is always correct as an upper bound.
-    """
+    """Return the bound, or infinity if the bound is NaN, which 0 times an infinite bound gives."""
+    # infinity is always correct as an upper bound
     return math.inf if math.isnan(bound) else bound
 
 
@@ -83,14 +77,13 @@ def _inverse(a: Disc) -> Disc:
 def _sqrt(a: Disc, whole: float) -> Disc:
     """Return a disc that contains the square roots of all numbers in a disc.
 
-    If the disc contains zero, the root has no Taylor series there, and a step may overlook all of it. The step limit,
-    however, counts only a fraction of a disc's radius, the missed share, as overlooked. Therefore the radius is made
-    larger: it is the size of the root times ``whole``, which is 1 divided by the missed share. The step limit then
-    multiplies it by the missed share and counts the whole root as overlooked.
+    Near zero, where roots have no series, ``whole`` enlarges it.
     """
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:
         return Disc(root, a.radius / (root + math.sqrt(a.centre - a.radius)))
+    # At zero the root has no Taylor series, and a step may overlook all of it. The step limit counts the missed share
+    # of this radius as overlooked: the factor makes that the whole root.
     return Disc(root, whole * (root + math.sqrt(abs(a.centre) + a.radius)))
 
 
@@ -172,14 +165,9 @@ FUNCTIONS: dict[str, Callable[..., Disc]] = {
 
 
 def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
-    """Generate and compile a Python function that bounds the deviations of rates, much faster than operations on discs.
-
-    An enclosure is a set of terms with the rules by which they are evaluated over discs. The arguments of the function
-    are (t, reach, whole, y, radii, w, a): first those of :meth:`Deviations.__call__`, then ``w``, the constant
-    coefficients in the terms, and ``a``, their absolute values. The bounds are the same as those from discs, except
-    where numbers overflow: a :class:`Disc` then continues with the logarithm of the size, which this function does not
-    compute. If a bound is infinite or NaN, the caller has to evaluate with discs.
-    """
+    """Return a compiled Python function that bounds how far rates can change, faster than with operations on discs."""
+    # Arguments: those of Deviations.__call__, then the constant coefficients w and their absolute values a. The
+    # logarithms of sizes, which help a Disc where numbers overflow, are left out.
     lines, place = ["def bounds(t, reach, whole, y, radii, w, a):"], 0
     for number in enclosure.series:
         series: Series = enclosure.system.series[number]
@@ -217,16 +205,14 @@ def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
         place += len(own_terms)
     lines.append(f" return [{', '.join(sums)}]")
     known: dict[str, Any] = {**FUNCTIONS, "Disc": Disc, "inverse": _inverse}
+    # if a bound is infinite or NaN, the caller computes it again with discs
     exec("\n".join(lines), known)
     made: Callable[..., list[float]] = known["bounds"]
     return made
 
 
 class Deviations:
-    """Function that bounds how far rates may change while time and states vary in discs around their values.
-
-    The change of a rate, its deviation, is the distance of its values from a value at the centres of the discs. The
-    discs are complex, because such a bound also limits the coefficients of a Taylor series.
+    """Function that bounds how far rates may change while time and states vary in complex discs around their values.
 
     Parameters
     ----------
@@ -241,6 +227,7 @@ class Deviations:
     def __init__(
         self, enclosure: Enclosure, parameters: Mapping[str, float], bounds: Callable[..., list[float]] | None = None
     ) -> None:
+        # complex, because such a bound also limits the coefficients of a Taylor series
         self.enclosure, self._bounds = enclosure, bounds or _one_function(enclosure)
         self.likely = 0  # index of the reach (radius in time) that proved the last step
         self.spent = 0  # evaluations so far, slow ones counted by the time they take
@@ -257,14 +244,12 @@ class Deviations:
         self._sizes = [abs(weight) for weight in self._listed]
 
     def __call__(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return, for each rate, a bound of its deviation for times within ``reach`` of t and states near y.
+        """Return, for each rate, a bound of its change for complex times within ``reach`` of t and states near y.
 
-        The deviation is the distance of the rate from its value at t and y. ``y`` and ``radii`` hold one number per
-        state: the state is within this radius of y. Times and states may be complex. A bound is infinite if a pole may
-        lie in these discs. The caller counts only a fraction of a deviation, the missed share, as overlooked by a step.
-        ``whole`` is 1 divided by this share: the deviation of a square root near zero, all of which a step may
-        overlook, is multiplied by it.
+        Each state is within its entry of ``radii``.
         """
+        # A bound is infinite if a pole may lie in the discs. The caller counts the missed share of a deviation as
+        # overlooked; of a square root near zero a step may overlook all: it is multiplied by whole, 1/missed share.
         self.spent += 1
         try:
             bounds = self._bounds(t, reach, whole, y, radii, self._listed, self._sizes)
@@ -275,12 +260,9 @@ class Deviations:
         return self.slowly(t, reach, whole, y, radii)
 
     def slowly(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return the same bounds as :meth:`__call__`, with the same arguments, computed by operations on discs.
-
-        Where numbers overflow, a bound can still be finite, because a :class:`Disc` can also hold the logarithm of the
-        size of its numbers.
-        """
+        """Return the bounds of :meth:`__call__`, computed with discs, which can stay finite where numbers overflow."""
         self.spent += SLOWER
+        # a Disc can also hold the logarithm of the size of its numbers
         discs: dict[int, Disc] = {}
         try:
             for number in self.enclosure.series:
@@ -317,11 +299,8 @@ class Deviations:
 
 
 def deviations_of(enclosure: Enclosure) -> Callable[[Mapping[str, float]], Deviations]:
-    """Return a function that takes the parameters of the rates, by name, and returns their :class:`Deviations`.
-
-    ``enclosure`` holds the terms of the rates that need bounds. The Python code of the bounds is compiled only once for
-    all parameters.
-    """
+    """Return a function from the parameters of the rates, by name, to bounds on their changes: :class:`Deviations`."""
+    # compiled once for all parameters
     bounds = _one_function(enclosure)
     return lambda parameters: Deviations(enclosure, parameters, bounds)
 
@@ -336,10 +315,7 @@ def longest_followed(
     edges: Sequence[int],
     order: int,
 ) -> float:
-    """Return the length of the longest step, at most h, that is proven not to miss more of a torque than is allowed.
-
-    A step misses a part of a torque, such as a short pulse, if its polynomial does not show it. The method is that of
-    :file:`enclosure.h`: the step is shortened until the bound is small enough.
+    """Return the length of the longest step, at most h, that is proven to miss no more of a torque than ``allowed``.
 
     Parameters
     ----------
@@ -358,6 +334,7 @@ def longest_followed(
     order : int
         Order of the polynomials.
     """
+    # the method of enclosure.h: shorten the step until the bound on what its polynomial misses is small
     length, reaches = h, REACHES[order < LOW_ORDER]
     likely = getattr(deviations, "likely", 0)  # the reach that proved the last step most often proves the next one
     in_turn = [likely, *(k for k in range(len(reaches)) if k != likely)]

@@ -1,6 +1,6 @@
 """Results of a motion with events: times of the events, states at these times, and samples up to a terminal event.
 
-A motion may run to later and to earlier times than its start; the two parts are its sides.
+A *side* of a motion is the interval before or after its start.
 """
 
 from collections.abc import Callable, Generator, Iterator, Sequence
@@ -78,23 +78,19 @@ class EventResult(NamedTuple):
 
 
 class _Side(NamedTuple):
-    """One direction of a motion from its start, for the search for events: toward later or toward earlier times.
+    """The motion toward later or toward earlier times than its start, for the search for events."""
 
-    ``pieces`` are polynomials of the states, piece by piece; ``states`` is a function from times to states. ``broken``
-    is empty, or has the error that ended the motion early in this direction.
-    """
-
+    # polynomials of the states
     pieces: Generator[Piece, None, None]
     states: Callable[[Floats], Floats]
+    # the error that ended the motion early in this direction, if any
     broken: list[PropagationError]
     cost: Callable[[], tuple[int, int, int]]
     switchings: tuple[Switching, ...] = ()
 
 
 def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]) -> EventResult:
-    """Return the samples of a motion at ``times``, and all events between its start and the outermost of the times.
-
-    ``times`` are times of the scene, s, in any order, before or after the start.
+    """Return the samples of a motion at ``times``, scene time in s, and all events between its start and these times.
 
     Raises
     ------
@@ -175,12 +171,8 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
 def _searched(
     path: Path, events: Sequence[Event], p: Sequence[float], side: "_Side", start: float, end: float, accuracy: float
 ) -> tuple[SearchResult, IntegrationStopped | ZerosNotSeparated | None]:
-    """Search one side of a motion (the part after or before its start) for events; return them, and an error or None.
-
-    The side extends from ``start`` to ``end``, s. The error is the one that ended the search early; it is None if the
-    search reached ``end`` or a terminal event. ``path`` is the library of the events, ``p`` are its parameters, and
-    ``accuracy`` is the error of the states, relative to their sizes.
-    """
+    """Return the events on one side of a motion's start, and the error that ended the search early or None."""
+    # a side is the interval before or after the start
     if end == start:
         return SearchResult([], None, []), None
     try:
@@ -196,11 +188,8 @@ def _searched(
 
 
 def _warnings(events: Sequence[Event], doubts: Sequence[tuple[int, float]]) -> Iterator[str]:
-    """Yield a warning for each event whose formula comes so close to zero that the error of the motion matters.
-
-    Each item of ``doubts`` is a pair (number of the event in ``events``, time in s): the time of an extremum at which
-    the event's formula is that close to zero.
-    """
+    """Yield a warning for each event in ``doubts``, whose formula comes nearer to zero than the motion's error."""
+    # a doubt is (number of the event, time of the extremum, s)
     for number, event in enumerate(events):
         times = [t for each, t in doubts if each == number]
         if times:
@@ -214,27 +203,21 @@ def _warnings(events: Sequence[Event], doubts: Sequence[tuple[int, float]]) -> I
 def _joined(
     before: list[tuple[EventZero, Floats]], after: list[tuple[EventZero, Floats]], t0: float
 ) -> list[tuple[EventZero, Floats]]:
-    """Return one list of all zeros of event formulas, from those before the start t0 of a motion and those after it.
-
-    Each item is a zero and the states there. A zero at the start itself is listed once. It is of kind ``"touching"`` if
-    the formula has the same sign before and after the start.
-    """
+    """Return one list of the zeros before and after the start t0 of a motion, each with the states there."""
     at_start = {each.event: each for each, _ in before if each.t == t0}
     joined = [
         pair for pair in before if pair[0].t != t0 or pair[0].event not in {e.event for e, _ in after if e.t == t0}
     ]
     for each, row in after:
         other = at_start.get(each.event) if each.t == t0 else None
+        # a zero at the start is listed once; it touches if the sign is the same before and after it
         joined.append((each._replace(kind="touching") if other and other.kind == each.kind else each, row))
     return joined
 
 
 def _side(motion: Motion, end: float) -> _Side:
-    """Return the part of a motion from its start to ``end``, s, as polynomials and as a function of times.
-
-    ``end`` may lie before the start. The search for events evaluates the polynomials, whatever the method of the
-    motion.
-    """
+    """Return the motion from its start to ``end``, s, as polynomials and as a function of times."""
+    # end may lie before the start
     plan = motion.plan
     start, y0 = motion.start, np.array(plan.initial_state, dtype=np.float64)
     broken: list[PropagationError] = []
@@ -282,12 +265,9 @@ def _side(motion: Motion, end: float) -> _Side:
 
 
 def _without_residues(pieces: Sequence[Piece], blocks: Sequence[int]) -> Generator[Piece, None, None]:
-    """Yield the pieces of a motion, with states set to zero where only rounding errors are left of them.
-
-    An example is the angular velocity of a body after friction has stopped it: its formula shall be zero there, not
-    change its sign again and again. ``blocks`` are the edges of the blocks of states (omega, attitude): a state is
-    compared with the largest value in its block.
-    """
+    """Yield the polynomials of a motion, with states that are zero up to rounding errors set to zero."""
+    # Such as the angular velocity of a body that friction has stopped, whose sign must not change again and again. A
+    # state is compared with the largest value in its block (omega, attitude).
     count = blocks[-1]
     terms = [np.abs(piece.rows[:, HEAD:]).reshape(len(piece.rows), -1, count) for piece in pieces]
     largest = np.max([each[:, 0].max(axis=0) for each in terms if len(each)], axis=0)

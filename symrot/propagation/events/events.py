@@ -1,12 +1,8 @@
 """Events: all times at which a formula of the motion is zero, located to the last bits.
 
-An event is given by a formula in t, omega_1..3, q0..q3, or by an equation between two formulas. The formula is parsed
-like the formulas of a scene and printed as C, together with bounds of its rounding errors and of its values on
-intervals. The search follows the polynomials of a motion (:file:`events.c`), which are grouped into pieces. It
-distinguishes sign changes of the formula from touches (zeros without a sign change) and locates both, even several in
-one step. It uses bounds instead of samples, so that it misses no zero. Poles, jumps past zero and zeros at the edge of
-the domain of a formula are not events. An entry is an interval of time that the C search returns since it may contain a
-zero; a doubt is an extremum whose distance from zero is less than the error of the motion.
+The search in C bounds the formula on intervals, so that it misses no zero. A *piece* is a group of consecutive
+polynomials of the motion; an *entry* is an interval that may contain a zero; a *doubt* is an extremum nearer to zero
+than the motion's error.
 """
 
 import ctypes
@@ -53,6 +49,7 @@ MOST_ENTRIES = 500_000
 STATE_ERROR = 4 * float(np.finfo(float).eps)  # relative rounding error of a state in the C source
 
 
+# Not events: poles, jumps past zero, and zeros at the edge of the domain of a formula.
 class Event(NamedTuple):
     """A formula whose zeros along the motion are located.
 
@@ -81,21 +78,14 @@ class Event(NamedTuple):
 
     @property
     def node(self) -> Node:
-        """The formula as a tree of operations: ``("-", ("symbol", "t"), ("symbol", "q0"))`` for ``t - q0``.
-
-        For an equation ``lhs == rhs`` it is the tree of lhs - rhs.
-        """
+        """The formula as a tree: ``("-", ("symbol", "t"), ("symbol", "q0"))`` for ``t - q0`` or ``t == q0``."""
         left, equals, right = self.formula.partition("==")
         node = parse(left, "event")
         return ("-", node, parse(right, "event")) if equals else node
 
 
 class ZerosNotSeparated(PropagationError):
-    """Raised if the zeros of ``formulas`` after the time ``t``, s, are not separated within the allowed operations.
-
-    ``zeros`` lists the zeros before that time, ``formulas`` the formulas as text. ``effort`` is a text that tells how
-    much was computed: "4e+08 operations and 20000 entries".
-    """
+    """Raised if the zeros of ``formulas`` after the time ``t``, s, are not separated within the allowed operations."""
 
     def __init__(self, t: float, formulas: Sequence[str], effort: str) -> None:
         named = ", ".join(map(repr, formulas))
@@ -104,23 +94,18 @@ class ZerosNotSeparated(PropagationError):
             f"not separated after {effort}"
         )
         self.t, self.formulas, self.effort = t, formulas, effort
+        # those before t
         self.zeros: list[EventZero] = []
 
     def later(self, epoch: float) -> "ZerosNotSeparated":
-        """Return the error with its time converted from the clock of the motion to time of the scene.
-
-        The clock, the time that the stepper counts, shows 0 at the scene time ``epoch``, s.
-        """
+        """Return the error with its time t converted to scene time, by adding ``epoch``, s."""
         later = ZerosNotSeparated(self.t + epoch, self.formulas, self.effort)
         later.zeros = self.zeros
         return later
 
 
 class EventZero(NamedTuple):
-    """A zero of an event's formula: the index of the event, the time, s, and the kind of zero.
-
-    The kind is ``"rising"``, ``"falling"`` or ``"touching"``.
-    """
+    """A zero of an event's formula: index of the event, time, s, and ``"rising"``, ``"falling"`` or ``"touching"``."""
 
     event: int
     t: float
@@ -188,11 +173,8 @@ def uses_attitude(events: Iterable[Event]) -> bool:
 
 
 def timed(quantities: Program, events: Iterable[Event]) -> bool:
-    """Return whether the formula of at least one event depends on the time itself, and not only through the states.
-
-    ``quantities`` is the program that computes omega and q from the states; it may contain the time too. If no formula
-    depends on time, the search may count time from the start of the motion.
-    """
+    """Return whether the formula of an event depends on time directly, not only through omega and quaternion."""
+    # if not, the search may count time from the start of the motion
     used = set().union(*(names(event.node) for event in events))
     return "t" in used or quantities.uses("t", tuple(f"{name} of t" for name in used))
 
@@ -200,12 +182,8 @@ def timed(quantities: Program, events: Iterable[Event]) -> bool:
 def event_library_source(
     quantities: Program, events: Sequence[Event], states: Sequence[str], edges: Sequence[int], scales: Sequence[float]
 ) -> str:
-    """Return the C source of a library that locates the events of a motion.
-
-    Its functions take the parameters of ``quantities``, the kernel that computes omega and q from the states.
-    ``states`` are the names of the states; ``edges`` and ``scales`` are those of
-    :func:`symrot.propagation.compiled_models.error_blocks`.
-    """
+    """Return the C source of a library that locates the events of a motion with the given states."""
+    # its functions take the parameters of quantities, the kernel that computes omega and q from the states
     return guard_library_source(quantities, [_with_pi(event.node) for event in events], states, edges, scales)
 
 
@@ -214,13 +192,12 @@ def guard_library_source(
 ) -> str:
     """Return the C source of a library that locates the zeros of formulas along a motion.
 
-    A formula may be a guard: where it is zero, a function such as sign changes its value. The formulas contain t,
-    omega, q and parameters. ``quantities`` is the program that computes omega and q from the states, with the same
-    parameters. ``states`` are the names of the states;
-    ``edges`` and ``scales`` are those of :func:`symrot.propagation.compiled_models.error_blocks`.
+    They contain t, omega, q and parameters.
     """
     from symrot.codegen.printing.event_source import event_definitions
 
+    # A formula may be a guard: where it is zero, a function such as sign changes its value. It may contain the
+    # parameters of quantities, the program that computes omega and q from the states.
     columns = {name: f"{name} of t" for name in KNOWN if name != "t"}
     columned = [rename(formula, columns) for formula in formulas]
     definitions = event_definitions(quantities, columned, states, edges, scales)
@@ -262,13 +239,10 @@ _library = cache(_Library)
 
 
 class _Search:
-    """A search for events along one motion: its state in C, and the number of its operations so far.
-
-    ``path`` is the library of the events, ``p`` are its parameters, and ``formulas`` the events as text, for messages.
-    ``error`` is the error of the states, relative to their sizes.
-    """
+    """A search for events along one motion: its state in C, and the number of its operations so far."""
 
     def __init__(self, path: Path | str, p: Sequence[float], formulas: Sequence[str], error: float = 0.0) -> None:
+        # error: of the states, relative to their sizes
         self.library, self.formulas, self.doubt = _library(str(path)), formulas, error / STATE_ERROR
         self.p = (ctypes.c_double * len(p))(*p)
         self.state = ctypes.create_string_buffer(self.library.bytes)
@@ -277,13 +251,9 @@ class _Search:
         self.again, self.spent, self.allowed = False, 0.0, MOST_OPERATIONS
 
     def entries(self, piece: Piece) -> tuple[list[list[float]], ZerosNotSeparated | None]:
-        """Return (intervals, error): the intervals of ``piece`` that may contain zeros of the events' formulas.
+        """Return the intervals of ``piece`` that may contain zeros, and an error or None.
 
-        An interval is a list [event, start, end, sign before, sign after]: the number of the event, times in s, and
-        signs of the formula, 0 where they are not known. The error is None, or a ZerosNotSeparated if the search needed
-        more operations than the limit and so ended early; it is returned, not raised, and the intervals then cover the
-        piece up to its time. An extremum that differs from zero by less than the error of the motion gives no interval;
-        (event, time) is added to the attribute ``doubts`` instead.
+        An interval is [event, start, end, sign before, sign after].
         """
         edges, rows = np.ascontiguousarray(piece.edges), np.ascontiguousarray(piece.rows)
         count, listed, answer = len(rows), [], (ctypes.c_int64 * 3)()
@@ -307,8 +277,11 @@ class _Search:
                 t = float(edges[min(answer[2], count)])
                 effort = f"{self.spent:.1g} operations and {len(listed)} entries"
                 side = 1.0 if edges[-1] >= edges[0] else -1.0
+                # not raised: the intervals cover the piece up to the time of the error
                 known = [entry[:5] for entry in listed if side * (entry[2] - t) <= 0.0 and not entry[5]]
+                # the limit of operations is exceeded
                 return known, ZerosNotSeparated(t, self.formulas, effort)
+        # an extremum nearer to zero than the motion's error gives no interval
         self.doubts += [(int(entry[0]), entry[1]) for entry in listed if entry[5]]
         return [entry[:5] for entry in listed if not entry[5]], None
 
@@ -318,10 +291,7 @@ class _Search:
         return count
 
     def sign(self, event: int, t: float, piece: Piece) -> int:
-        """Return the sign, 1 or -1, of an event's formula at the time t in a piece; 0 if rounding errors are larger.
-
-        ``event`` is the index of the event.
-        """
+        """Return the sign of an event's formula at the time t in a piece; 0 if rounding errors are larger."""
         edges, side = piece.edges, 1.0 if piece.edges[-1] >= piece.edges[0] else -1.0
         place = int(np.searchsorted(side * edges, side * t, "left")) - 1
         row = np.ascontiguousarray(piece.rows[min(max(place, 0), len(piece.rows) - 1)])
@@ -353,9 +323,6 @@ def search(
     error: float = 0.0,
 ) -> SearchResult:  # fmt: skip
     """Return the zeros of events along a motion, up to the terminal event if there is one.
-
-    A zero at the start ``t0`` is listed too, but does not end the motion. It is ``"rising"`` if the formula is
-    positive just after the start, and ``"falling"`` if the formula is negative there.
 
     Parameters
     ----------
@@ -391,6 +358,7 @@ def search(
                 searcher.arrived.add((int(entry[0]), entry[1]))
         last = float(piece.edges[-1])
         whole, held = _merged(entries, last)
+        # a zero at t0 is listed but does not end the motion; the sign just after it makes it rising or falling
         stop = _settled(searcher, piece, events, whole, t0, left, zeros)
         if stop is not None:
             before = [(event, t) for event, t in searcher.doubts if abs(t - t0) < abs(stop - t0)]
@@ -404,11 +372,8 @@ def search(
 
 
 def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: float) -> list[tuple[int, float]]:
-    """Return the doubts that remain after the search, in the order of the motion: (event, time), each only once.
-
-    A doubt is an extremum of an event's formula so close to zero that the error of the motion matters. It is removed if
-    it lies at one of ``zeros``. ``t0`` is the start of the motion, s.
-    """
+    """Return the extrema, (event, time), nearer to zero than the motion's error, without those at ``zeros``."""
+    # a doubt is an extremum so close to zero that the error of the motion matters
     settled: dict[int, list[float]] = {}
     for zero in zeros:
         insort(settled.setdefault(zero.event, []), zero.t)
@@ -416,6 +381,7 @@ def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: fl
     for event, t in sorted(doubts, key=lambda doubt: (doubt[0], abs(doubt[1] - t0))):
         times = settled.setdefault(event, [])
         place = bisect(times, t)
+        # each only once
         if all(abs(t - other) > 4 * NEAR * max(abs(t), abs(other)) for other in times[max(place - 1, 0) : place + 1]):
             times.insert(place, t)
             own.append((event, t))
@@ -425,10 +391,9 @@ def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: fl
 def signs_at_ends(
     path: Path | str, formulas: Sequence[str], p: Sequence[float], piece: Piece
 ) -> tuple[list[int], list[int]]:
-    """Return two lists: the signs of the formulas just after the start of a piece of the motion, and at its end.
+    """Return the signs of formulas just after the start of a piece of the motion, and at its end.
 
-    A sign is 1, -1, or 0 if the value is smaller than its rounding error. ``path`` is the library of the formulas, and
-    ``p`` are its parameters.
+    A sign is 0 if rounding errors are larger.
     """
     searcher, numbers = _Search(path, p, formulas), range(len(formulas))
     last = float(piece.edges[-1])
@@ -438,14 +403,11 @@ def signs_at_ends(
 
 
 def _first_sign(searcher: _Search, number: int, piece: Piece) -> int:
-    """Return the sign (1, -1, 0) of the formula with index ``number``, just after the start of a piece of the motion.
-
-    At the start itself the value may be zero. The sign is therefore taken a little later, at increasing distances,
-    until it exceeds the rounding error and stays the same at twice the distance. The result is 0 if it never does.
-    """
+    """Return the sign (1, -1, 0) of formula ``number`` just after the start of a piece of the motion."""
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     width, side = 4 * NEAR * max(abs(first), abs(last - first)), 1.0 if last >= first else -1.0
     before = 0
+    # the value may be zero at the start itself: the sign has to agree at two distances, one twice the other
     while width < abs(last - first):
         sign = searcher.sign(number, first + side * width, piece)
         if sign and sign == before:
@@ -456,11 +418,8 @@ def _first_sign(searcher: _Search, number: int, piece: Piece) -> int:
 
 
 def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]], list[list[float]]]:
-    """Join adjacent intervals of the same event that may contain zeros, and split the list at the end of a piece.
-
-    ``entries`` are lists [event, start, end, sign before, sign after] from :meth:`_Search.entries`. Return two such
-    lists: the intervals whose zeros can be located now, and those that reach the time ``last`` and may continue in the
-    next piece of the motion.
+    """Join adjacent intervals that may contain zeros; return those that end before ``last``, and those that
+    reach it.
     """
     whole: list[list[float]] = []
     open_ones: dict[float, list[float]] = {}
@@ -478,15 +437,13 @@ def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]],
             continue
         open_ones[entry[0]] = entry
         whole.append(entry)
+    # they reach the time last and may continue in the next piece of the motion
     at_end = [entry for entry in whole if entry[4] == 0 and abs(entry[2] - last) <= NEAR * abs(last)]
     return [entry for entry in whole if entry not in at_end], at_end
 
 
 def _sign_before_end(searcher: _Search, event: int, piece: Piece) -> int:
-    """Return the sign (1 or -1) of the formula of the event with index ``event``, just before the end of a piece.
-
-    It is 0 if all values there are smaller than their rounding errors.
-    """
+    """Return the sign of an event's formula just before the end of a piece; 0 if rounding errors are larger."""
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     width, side = 4 * NEAR * max(abs(last), abs(last - first)), 1.0 if last >= first else -1.0
     while width < abs(last - first):
@@ -501,20 +458,15 @@ def _settled(
     searcher: _Search, piece: Piece, events: Sequence[Event], entries: list[list[float]], t0: float, left: list[int],
     zeros: list[EventZero],
 ) -> float | None:  # fmt: skip
-    """Append the zeros in the intervals ``entries`` to ``zeros``; return the time of a terminal event, s, or None.
-
-    The entries are lists [event, start, end, sign before, sign after] of ``piece``, a part of the motion; ``event`` is
-    an index of ``events``. ``t0`` is the start of the whole motion, s. An interval gives no zero if the formula is zero
-    from its start to the end of the piece: whether it changes its sign shows in the next piece, if at all. ``left``
-    holds, for each event, the number of zeros after which it ends the motion (0: never); this function counts it down.
-    """
+    """Append the zeros in the intervals ``entries`` to ``zeros``; return the time of a terminal event, s, or None."""
+    # left counts down, for each event, the zeros after which it ends the motion (0: never)
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     side = 1.0 if last >= first else -1.0
 
     def sign(event: int, t: float, end: float, step: float) -> int:
-        """Return the sign (1, -1 or 0) of the formula of ``event`` close to t, on the side ``step`` (1 or -1).
+        """Return the sign of an event's formula just after t (``step`` = 1) or before t (``step`` = -1).
 
-        It is 0 if the value is smaller than its rounding error at all distances up to ``end``.
+        It is 0 if rounding errors are larger.
         """
         width = 4 * NEAR * max(abs(t), abs(last - first))
         while width < abs(end - t):
@@ -554,10 +506,9 @@ def _settled(
 def stepped(
     integration: Integration, end: float, broken: list[PropagationError], records: list[Floats]
 ) -> Generator[Piece, None, None]:
-    """Integrate a motion from its start to ``end``, s, and yield its polynomials, piece by piece.
+    """Integrate a motion from its start to ``end``, s, and yield its polynomials in groups of steps.
 
-    The recorded steps are appended to ``records``, from which the states can be computed later. If an error ends the
-    motion early, it is appended to ``broken`` instead of being raised.
+    ``records`` gets the steps, ``broken`` an error.
     """
     room = integration.stepper.rows_per_call
     with closing(integration.runs(end)) as runs:

@@ -1,11 +1,7 @@
 """Motions by any method as piecewise polynomials in time, for the search for events.
 
-A row is an array that holds the polynomials of all N states in one step, in the layout of :file:`taylor.c`: t, h, the
-low part of t, a unit of time, then coefficient 0 of all states, coefficient 1, and so on, of powers of
-``(time - t)/unit``. An edge is a time at which one row ends and the next begins. Steps of the Taylor stepper are such
-rows. The dense output of Dormand and Prince's method is converted to rows, exact up to rounding. Any other function of
-time is interpolated at Chebyshev points, on pieces that are halved until the polynomial agrees with the function up to
-rounding errors.
+A *row* holds the polynomials of all states in one step: t, h, the low part of t, a unit of time, then coefficient 0 of
+all states, coefficient 1, and so on, in powers of ``(time - t)/unit``. An *edge* is where two rows meet.
 """
 
 import math
@@ -33,24 +29,21 @@ MOST_PIECES = 20_000  # pieces that one call may add by cutting the motion
 FEWEST, MOST = 16, 1024  # pieces fitted at a time
 
 
+# Steps of the Taylor stepper are such rows (taylor.c). The dense output of DOP853 is converted to rows, exact up to
+# rounding. Any other motion is interpolated at Chebyshev points, on intervals that are halved until polynomial and
+# motion agree up to rounding.
 class Piece(NamedTuple):
-    """Part of a motion as consecutive polynomials, in the order of the motion.
+    """Consecutive polynomials of a motion: row i, one polynomial per state, is valid from edge i to edge i + 1, s."""
 
-    Row i is valid from edge i to edge i + 1; edges are times, s, and decrease in a motion backward in time. The layout
-    of a row is explained in :mod:`symrot.propagation.events.polynomials`.
-    """
-
+    # in the order of the motion: decreasing if it runs backward in time
     edges: Floats
     rows: Floats
 
 
 def rows_of(stepper: Any, record: Floats) -> Floats:
-    """Convert the recorded steps of a stepper (Taylor or DOP853) to rows of polynomial coefficients, one per step.
-
-    ``record`` is a result of the stepper, one row per step, in the stepper's own layout. The layout of the result is
-    explained in :mod:`symrot.propagation.events.polynomials`.
-    """
+    """Return the recorded steps of a stepper (Taylor or DOP853) as rows of polynomial coefficients, one per step."""
     if stepper.name == "taylor":
+        # the layout of a row, see the top of this file
         return record
     count = len(record)
     terms = record[:, 2:].reshape(count, -1, stepper.states)
@@ -63,11 +56,9 @@ def rows_of(stepper: Any, record: Floats) -> Floats:
 
 @cache
 def _nested(terms: int) -> Floats:
-    """Return the matrix that converts the coefficients of DOP853's dense output to coefficients of powers of s.
-
-    Dense output gives the states inside a step as a weighted sum of the ``terms`` functions 1, s, s r, s^2 r, s^2 r^2,
-    ..; here s is the fraction of the step and r = 1 - s.
-    """
+    """Return the matrix that converts the coefficients of DOP853's dense output to coefficients of powers of s."""
+    # dense output is a sum of the functions 1, s, s r, s^2 r, s^2 r^2, .., with r = 1 - s; s is the fraction of the
+    # step
     matrix = np.zeros((terms, terms))
     power = np.zeros(terms)
     power[0] = 1.0
@@ -81,11 +72,7 @@ def _nested(terms: int) -> Floats:
 
 @cache
 def _chebyshev() -> tuple[Floats, Floats, Floats]:
-    """Return the Chebyshev points on [-1, 1], shape (21,), and two conversion matrices, shape (21, 21).
-
-    The first matrix converts values at the points to coefficients of Chebyshev polynomials; the second one converts
-    these to coefficients of powers.
-    """
+    """Return the Chebyshev points on [-1, 1], and matrices from values to Chebyshev series and to powers."""
     from numpy.polynomial import chebyshev
 
     angles = (np.arange(POINTS) + 0.5) * (math.pi / POINTS)
@@ -94,6 +81,7 @@ def _chebyshev() -> tuple[Floats, Floats, Floats]:
     to_powers = np.zeros((POINTS, POINTS))
     for k, unit in enumerate(np.eye(POINTS)):
         to_powers[: k + 1, k] = chebyshev.cheb2poly(unit[: k + 1])
+    # shapes (21,), (21, 21), (21, 21); the second matrix takes the result of the first
     return np.cos(angles), to_series, to_powers
 
 
@@ -104,9 +92,7 @@ def fitted(
     states: Callable[[Floats], Floats], edges: Floats, blocks: Sequence[int], scales: Sequence[float], depth: int = 0,
     left: list[int] | None = None, accuracy: float | Floats = 0.0,
 ) -> Piece:  # fmt: skip
-    """Return polynomials that agree with a motion, up to rounding errors, between the given edges.
-
-    If one polynomial cannot fit the motion between two edges, the interval is halved by a new edge.
+    """Return polynomials that agree with a motion, up to rounding errors, between the successive times ``edges``.
 
     Parameters
     ----------
@@ -170,6 +156,7 @@ def fitted(
                 f"t = {t!r} s"
             )
         return Piece(edges, rows)
+    # if one polynomial cannot fit the motion between two edges, the interval is halved
     parts, ends = [], [edges[:1]]
     for i in range(len(half)):
         piece = Piece(edges[i : i + 2], rows[i : i + 1])
@@ -195,12 +182,9 @@ def fitted_pieces(
     blocks: Sequence[int],
     scales: Sequence[float],
 ) -> Generator[Piece, None, None]:
-    """Yield polynomials that agree with a motion in closed form from ``start`` to ``end``, s; see :func:`fitted`.
+    """Yield polynomials that agree with a motion from ``start`` to ``end``, s.
 
-    ``end`` may lie before ``start``. Each piece consists of several polynomials, one for each of successive intervals.
-    Their number doubles from piece to piece, up to MOST: the first events are found after little work, and a long
-    motion takes few calls. ``states``, ``blocks`` and ``scales`` are arguments of :func:`fitted`. ``longest``, s, is a
-    first guess of the length of time that one polynomial can fit.
+    ``longest``, s, is a first guess of the time that one polynomial fits.
     """
     side, t, most, count = math.copysign(1.0, end - start), start, 8.0 * longest, FEWEST
     while t != end:
@@ -214,4 +198,5 @@ def fitted_pieces(
             longest *= 0.5
         elif len(piece.rows) == len(edges) - 1 and not piece.rows[:, -5 * len(states(edges[:1])[0]) :].any():
             longest = min(1.25 * longest, most)
+        # the number of polynomials doubles: first events come after little work, long motions take few calls
         t, count = float(edges[-1]), min(2 * count, MOST)

@@ -1,7 +1,7 @@
 """Derivatives of the times of events by initial values and constants.
 
-At an event the formula g(t, x) is zero. If a variable v changes, the state x changes at fixed time by S dv, and the
-zero moves by dt with ``(dg/dt) dt + (grad g) S dv = 0``, where dg/dt is the derivative along the motion.
+At an event g(t, x) = 0. If a variable v changes, the state x changes by S dv, and the zero moves by dt with ``(dg/dt)
+dt + (grad g) S dv = 0``; dg/dt is the derivative along the motion.
 """
 
 from collections.abc import Sequence

@@ -1,9 +1,7 @@
-"""The variables of sensitivities: initial values and constants of a scene, and how the scene depends on them.
+"""The variables of sensitivities: initial values and constants of a scene, by which a motion is differentiated.
 
-The kernels of a scene contain constants such as moments of inertia, which follow from the numbers in the scene (masses,
-dimensions, products of them). All these numbers are exact, so that the derivative of a constant is the difference
-quotient over a step of 2^-80 of the variable: its error is below 2^-70. A second quotient, over twice the step,
-confirms it.
+The kernel's constants, such as moments of inertia, follow exactly from a scene's numbers. Their derivatives are
+difference quotients over a step of 2^-80 of a variable, with errors below 2^-70.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -99,10 +97,7 @@ def read_variables(scene: Scene, keys: Sequence[str]) -> list[Variable]:
 
 
 def groups_of(variables: Sequence[Variable]) -> dict[str, tuple[int, ...]]:
-    """Return the numbers, from 0, of the variables that belong to each requested name.
-
-    For the names omega and weight it is ``{"omega": (0, 1, 2), "weight": (3,)}``.
-    """
+    """Return the numbers of the variables for each requested name: ``{"omega": (0, 1, 2), "weight": (3,)}``."""
     groups: dict[str, tuple[int, ...]] = {}
     for place, variable in enumerate(variables):
         groups[variable.key] = (*groups.get(variable.key, ()), place)
@@ -165,10 +160,9 @@ Numbers = Mapping[str, Fraction]
 
 
 def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numbers]) -> dict[str, Fraction]:
-    """Return the derivatives, by one variable, of numbers that follow from a scene; those that are zero are left out.
+    """Return the nonzero derivatives, by one variable, of the exact numbers that ``numbers`` returns for a scene.
 
-    An example is ``{"I_xx": Fraction(2, 5), ..}`` for the inertia of a sphere of radius 1 m and the variable
-    ``"body.mass"``. The derivative is a difference quotient of exact numbers, over a step of 2^-80 of the variable.
+    ``{"I_xx": Fraction(2, 5)}`` for the mass of a unit sphere.
 
     Parameters
     ----------
@@ -194,17 +188,16 @@ def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numb
 
 
 def slopes(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> dict[str, Fraction]:
-    """Return the derivatives, by a variable, of numbers that depend on it; those that are zero are left out.
+    """Return the nonzero derivatives of numbers by a change of a variable.
 
-    ``values`` takes a change of the variable (0, or plus or minus one or two times ``step``) and returns exact numbers
-    by name. ``name`` is the variable, for messages. For ``values`` that return {"A": (3 + change)^2}, the result is
-    {"A": 6}.
+    ``values`` takes this change: if it returns {"A": (3 + change)^2}, the result is {"A": 6}.
 
     Raises
     ------
     InputError
         If a number has a kink or a jump at the variable's present value: derivatives over one and two steps differ.
     """
+    # changes by 0, and by one or two steps to either side
     first, second = (_quotient(values, size, name) for size in (step, 2 * step))
     for each, slope in first.items():
         if abs(slope - second[each]) > AGREEMENT * max(abs(slope), abs(second[each])):
@@ -216,13 +209,9 @@ def slopes(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> 
 
 
 def _quotient(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> dict[str, Fraction]:
-    """Return difference quotients of the second order, by name: central ones, or one-sided ones at a limit of validity.
-
-    ``values`` maps a change of the variable ``name`` to exact numbers by name, and ``step`` is the change. A one-sided
-    quotient uses the changes by 0, 1 and 2 steps to one side; it is needed where the scene is not valid on the other
-    side, for example for a negative mass. If neither side is valid, InputError is raised.
-    """
+    """Return difference quotients of second order: central or, where the scene is not valid on one side, one-sided."""
     schemes: tuple[dict[int, Fraction], ...] = (
+        # central, then to the right and to the left, for example where the mass would become negative
         {-1: Fraction(-1, 2), 1: Fraction(1, 2)},
         {0: Fraction(-3, 2), 1: Fraction(2), 2: Fraction(-1, 2)},
         {0: Fraction(3, 2), -1: Fraction(-2), -2: Fraction(1, 2)},

@@ -1,10 +1,7 @@
 """The derivatives of a motion by initial values and constants: variational equations, by Taylor series.
 
-The motion and its derivatives are one system, which the stepper :mod:`symrot.propagation.steppers.taylor` integrates
-in common steps. Its equations assume nothing about the numbers of the scene that a variable can change:
-a derivative by a moment of inertia needs the equations of a body without symmetry. The derivatives of all states by one
-variable are a column of the matrix of derivatives. For the integration each column is multiplied by a power of two near
-the size of its variable, so that it is about as large as the states.
+Motion and derivatives are one system, integrated in common steps. The derivatives of all states by one variable are a
+*column* of the matrix of derivatives.
 """
 
 import json
@@ -74,10 +71,7 @@ TRANSITION = ("omega", "attitude")
 
 
 def variation(scene: Scene, keys: Sequence[str], times: Floats) -> Sensitivities:
-    """Return the derivatives of a scene's motion at sample times.
-
-    The result holds one column per variable, with the derivatives of omega, of the quaternion, and of the attitude as
-    small rotations about the body axes.
+    """Return the derivatives of omega, quaternion and attitude (small rotation about the body axes) at sample times.
 
     Parameters
     ----------
@@ -110,11 +104,7 @@ def variation(scene: Scene, keys: Sequence[str], times: Floats) -> Sensitivities
 
 
 def event_slopes(scene: Scene, keys: Sequence[str], result: EventResult) -> tuple[Floats, ...]:
-    """Return the derivatives of the times of events by the variables ``keys``: for each event, shape (k, m).
-
-    ``result`` has the events of the motion of ``scene``; see
-    :func:`symrot.propagation.sensitivities.event_times.event_time_slopes`.
-    """
+    """Return the derivatives of the times of events by the variables ``keys``: for each event, shape (k, m)."""
     equations = _equations(scene, tuple(keys) if isinstance(keys, list) else keys)
     slopes = []
     for event, kinds, times in zip(result.events, result.kinds, result.t_events, strict=True):
@@ -124,12 +114,11 @@ def event_slopes(scene: Scene, keys: Sequence[str], result: EventResult) -> tupl
 
 
 def transition_matrix(scene: Scene, start: float, stop: float) -> Floats:
-    """Return the state transition matrix of a scene's motion from one time to another, shape (6, 6).
+    """Return the state transition matrix of a scene's motion from ``start`` to ``stop``, s, shape (6, 6).
 
-    It maps a small change of (omega_1, omega_2, omega_3, rotation_1, rotation_2, rotation_3) at ``start``, s, to the
-    change at ``stop``; the rotation is about the body axes. ``stop`` may be before ``start``. InputError is raised if
-    the torques have no derivatives: a table, or formulas that jump or bend.
+    The state is omega, then a small rotation about the body axes.
     """
+    # both times in s, in any order; _equations raises InputError if the torques have no derivatives
     if start != float(scene.span.start):
         values, _ = _equations(scene, TRANSITION).follow(scene, np.array([start]))
         omega, q = values[0, :RATES], values[0, RATES:] / np.linalg.norm(values[0, RATES:])
@@ -143,17 +132,16 @@ def transition_matrix(scene: Scene, start: float, stop: float) -> Floats:
 # ------------------------------------------------------------------------------------------------ columns
 
 
+# The equations assume nothing about numbers that a variable can change: a derivative by a moment of inertia needs the
+# equations of a body without symmetry.
 class Column:
-    """The dependence of a scene on one variable: derivatives, by this variable, of initial state and constants.
-
-    ``start`` is a list of 7 numbers, the derivatives of omega and quaternion at the start; ``constants`` maps the names
-    of constants of body and torques to their derivatives, without those that are zero. ``general`` is the most general
-    structure of the scene, in which every constant has a name.
-    """
+    """The dependence of a scene on one variable: derivatives of the initial state and of the constants."""
 
     def __init__(self, scene: Scene, variable: Variable, general: Structure) -> None:
         self.variable = variable
+        # by name, without those that are zero
         self.constants: Mapping[str, Fraction] = {}
+        # self.start: the derivatives of omega and quaternion, 7 numbers
         if variable.moved is None:
             self.start = self.start_from(scene.initial)
             return
@@ -162,11 +150,8 @@ class Column:
         self.constants = every
 
     def start_from(self, initial: Initial) -> list[float]:
-        """Return the derivatives of omega and quaternion at the start, by this column's variable, for ``initial``.
-
-        ``initial`` is another initial state of the scene. If the variable is a small rotation of the initial attitude,
-        the derivatives of the quaternion depend on it; otherwise the list is the same for every initial state.
-        """
+        """Return the derivatives of omega and quaternion at the start by this variable, for an initial state."""
+        # only those by a small rotation of the attitude depend on the initial state
         if self.variable.moved is not None:
             return self.start
         slopes = rotation_slopes(initial.quaternion, self.variable.axis)
@@ -174,21 +159,15 @@ class Column:
 
     @property
     def restartable(self) -> bool:
-        """Whether this column, with a new :meth:`start_from` only, also holds for other initial states of the scene.
-
-        It is false for a variable that sets the initial state in another form, such as ``initial.attitude.angle``: its
-        derivatives must be computed again.
-        """
+        """Whether only :meth:`start_from` has to be computed again for another initial state."""
+        # not for a variable that sets the initial state in another form, such as initial.attitude.angle
         variable = self.variable
         return variable.moved is None or variable.key.startswith("omega") or not any(self.start)
 
 
 def rotation_slopes(q: Any, axis: int) -> Any:
-    """Return the derivative of a quaternion by a small rotation about a body axis, with the number 0, 1 or 2.
-
-    ``q`` holds the four components, scalar first: fractions or arrays. The result, half the product of the quaternion
-    and the unit vector of the axis, is an array of four of them.
-    """
+    """Return the derivative of a quaternion by a small rotation about the body axis 0, 1 or 2."""
+    # half the product of the quaternion and the unit vector of the axis, of fractions or arrays
     q0, *v = q
     slopes = [-v[axis], *(v[i - 2] * ((i - 1) % 3 == axis) - v[i - 1] * ((i - 2) % 3 == axis) for i in range(3))]
     slopes[1 + axis] += q0
@@ -200,11 +179,8 @@ def _initial(state: str) -> str:
 
 
 def _start(scene: Scene) -> dict[str, Fraction]:
-    """Return the initial values of the seven states, by names such as ``"initial omega_1"`` and ``"initial q0"``.
-
-    The word ``initial`` keeps them apart from the constants of the scene, with which they share one dictionary:
-    constants of the scene may be called, for example, ``omega_1``.
-    """
+    """Return the initial values of the seven states, by names such as ``"initial omega_1"`` and ``"initial q0"``."""
+    # "initial" keeps them apart from the constants of the scene, of which one may be called omega_1
     return dict(zip(map(_initial, STATES), (*scene.initial.omega_b, *scene.initial.quaternion), strict=True))
 
 
@@ -214,12 +190,9 @@ def columns_of(scene: Scene, variables: Sequence[Variable]) -> list[Column]:
 
 
 def structure_of(scene: Scene, columns: Sequence[Column], varying: Collection[str] = ()) -> Structure:
-    """Return the form of the equations of motion for the derivatives by the variables of ``columns``.
-
-    A constant that one of these variables changes becomes a parameter of the equations, even if its value is zero or
-    one now, since its derivative is needed; so does each constant in ``varying``, whose values differ between the
-    motions of an ensemble. Any other constant that is zero or one simplifies the equations.
-    """
+    """Return the form of the equations in which each constant that a variable of ``columns`` changes is a parameter."""
+    # They become parameters even if they are now zero or one, since derivatives by them are needed; so do constants
+    # that differ between the motions of an ensemble (varying). Other zeros and ones simplify the equations.
     moving = {name for column in columns for name in column.constants} | set(varying)
     general, inertia = general_structure(scene), scene.body.inertia
     nonzero = {name for name, (i, j) in PRODUCTS.items() if inertia[i][j] != 0 or name in moving}
@@ -248,13 +221,9 @@ def structure_of(scene: Scene, columns: Sequence[Column], varying: Collection[st
 
 
 def rates_of(plan: Plan) -> tuple[Program, Parameters]:
-    """Return the rates of a plan as a program, and their parameters, from the cache or newly derived.
-
-    The rates are the time derivatives of the states; a program is a list of operations that can be printed as C. The
-    parameters are pairs (name, formula in the constants of the scene). If the structure of the plan has a clock, time
-    is counted from its epoch, a further constant in the formulas (:mod:`symrot.propagation.time_shift`).
-    """
+    """Return the rates (time derivatives of the states) of a plan as a program, with their parameters."""
     key = f"rates alone\n{kernel_key(plan)}"
+    # a clock counts time from an epoch, which is a further constant in the formulas
     saved = library.fetch(key)
     if saved is None and plan.structure.clock:
         from symrot.codegen.taylor.time_shift import moved
@@ -274,6 +243,7 @@ def rates_of(plan: Plan) -> tuple[Program, Parameters]:
         library.store(key, saved)
     record = json.loads(saved)
     formulas = tuple((name, node_from_json(node)) for name, node in record["parameters"])
+    # parameters: pairs of name and formula in the constants of the scene
     return Program.from_json(record["rates"]), formulas
 
 
@@ -337,10 +307,7 @@ def motion_library(plan: Plan, rates: Program, depends: Sequence[Sequence[str]])
 
 
 class _Equations:
-    """The compiled equations of a scene's motion and of its derivatives by the variables ``keys``.
-
-    They are the same for each initial state of the scene, for which :meth:`follow` integrates them.
-    """
+    """The compiled equations of a scene's motion, from any initial state, and of its derivatives by variables."""
 
     def __init__(self, scene: Scene, keys: Sequence[str]) -> None:
         require_smooth(scene)
@@ -360,10 +327,9 @@ class _Equations:
         return same and (self.restartable or own.initial == scene.initial)
 
     def follow(self, scene: Scene, times: Floats, begin: float | None = None) -> tuple[Floats, Floats]:
-        """Return the states at the times, shape (n, 7), and their derivatives, shape (n, 7, number of columns).
+        """Return the states at times, shape (n, 7), and their derivatives by each variable, shape (n, 7, variables).
 
-        A column belongs to one variable of the derivatives. ``begin`` is the time, s, at which ``scene`` has its
-        initial state; default: the start of its span.
+        ``begin``, s, is the initial time.
         """
         begin = float(scene.span.start) if begin is None else begin
         parts, epoch = self._chosen(begin, times)
@@ -394,11 +360,7 @@ _recent: list[_Equations] = []
 
 
 def _equations(scene: Scene, keys: Sequence[str]) -> _Equations:
-    """Return the equations of a scene's motion and its derivatives by the variables ``keys``.
-
-    Equations that were made for this scene and these variables are used again, if they are among the last MOST_RECENT
-    ones.
-    """
+    """Return the equations of a scene's motion and its derivatives by ``keys``; recent ones are used again."""
     equations = next((each for each in _recent if each.fit(scene, keys)), None)
     if equations is None:
         equations = _Equations(scene, keys)
@@ -407,18 +369,15 @@ def _equations(scene: Scene, keys: Sequence[str]) -> _Equations:
 
 
 def _parts(scene: Scene, columns: Sequence[Column], epoch: float = 0.0) -> "list[_Part]":
-    """Return the equations of all columns of derivatives; ``epoch`` is as for :class:`_Part`."""
+    """Return the equations of all columns of derivatives, with time counted from ``epoch``, s."""
     return [_Part(scene, columns[first : first + AT_ONCE], epoch) for first in range(0, len(columns), AT_ONCE)]
 
 
 class _Part:
-    """A compiled library that integrates the motion and its derivatives by up to :data:`AT_ONCE` variables.
-
-    A column is the vector of derivatives of all states by one variable.
-    ``epoch`` is the time of the scene, s, from which the equations count time.
-    """
+    """A compiled library that integrates the motion and its derivatives by up to :data:`AT_ONCE` variables."""
 
     def __init__(self, scene: Scene, columns: Sequence[Column], epoch: float) -> None:
+        # epoch: the scene time, s, from which the equations count time
         structure = structure_of(scene, columns)
         plan = Plan(scene, replace(structure, clock=EPOCH) if epoch else structure, ())
         rates, parameters = rates_of(plan)
@@ -437,21 +396,18 @@ class _Part:
         self._slopes = [[float(each[name]) for name in names] for each, names in zip(slopes, depends, strict=True)]
 
     def rates(self, time: float, state: Floats) -> list[float]:
-        """Return the time derivatives of the seven states at a time, s, on the clock of the equations."""
+        """Return the time derivatives of the seven states at a time, s after the epoch of the equations."""
         values = dict(zip(self._names, self._values, strict=True)) | dict(zip(STATES, state.tolist(), strict=True))
         return list(self._rates.evaluate({**values, "t": float(time)}, FLOAT_FUNCTIONS, float).values())
 
     def follow(self, scene: Scene, times: Floats, begin: float, epoch: float) -> tuple[Floats, Floats]:
-        """Return states and derivatives as :meth:`_Equations.follow` does; ``epoch`` is that of the equations.
-
-        The column of derivatives by one variable is multiplied by a power of two, its unit, near the size of the
-        variable. If all its products stay below SMALL, the control of errors, which compares errors with 1, hardly sees
-        them. The motion is then integrated again, with a unit that makes them near 1.
-        """
+        """Return the states at times and their derivatives, as :meth:`_Equations.follow` does."""
         columns, size = self.columns, len(STATES)
         start = [float(value) for value in (*scene.initial.omega_b, *scene.initial.quaternion)]
         starts = [column.start_from(scene.initial) for column in columns]
         units = [_size(scene, column) for column in columns]
+        # Each column is multiplied by its unit, a power of two near the size of its variable. If it then stays below
+        # SMALL, the control of errors hardly sees it: the motion is integrated again with a larger unit.
         for attempt in range(TRIES):
             state, p = list(start), list(self._values)
             for unit, own, slopes in zip(units, starts, self._slopes, strict=True):
@@ -476,23 +432,22 @@ class _Part:
 
 
 def _size(scene: Scene, column: Column) -> float:
-    """Return a power of two near the value of the variable by which the derivatives in ``column`` are taken.
+    """Return a power of two near the value of a column's variable, by which its derivatives are multiplied.
 
-    The column is multiplied by it before the integration. The derivatives are then about as large as the states, so
-    that one error control fits both. For a component of omega the largest component is used; for a rotation, or a
-    variable that is zero, the result is 1.
+    It is 1 for zero or a rotation.
     """
+    # a column times this number is about as large as the states, so that one error control fits both
     value = abs(float(column.variable.value))
     if column.variable.key.startswith("omega"):
+        # the largest component of omega, for each component
         value = max(abs(float(rate)) for rate in scene.initial.omega_b)
     return ldexp(1.0, frexp(value)[1]) if value and column.variable.moved is not None else 1.0
 
 
 def small_rotation(q: Floats, slopes: Floats) -> Floats:
-    """Return derivatives of the attitude as small rotations about the body axes, shape (n, 3, columns).
+    """Return derivatives of the attitude as small rotations about the body axes: ``2 * conjugate(q) * dq``.
 
-    ``q`` holds quaternions, shape (n, 4), and ``slopes`` their derivatives, shape (n, 4, columns). The rotation is the
-    vector part of ``2 * conjugate(q) * dq``.
+    Shapes: q (n, 4), dq (n, 4, columns), result (n, 3, columns).
     """
     scalar, vector = q[:, :1, None], q[:, 1:, None]
     along, across = slopes[:, :1], slopes[:, 1:]

@@ -1,15 +1,7 @@
 """Dormand-Prince 8(5,3) for an emitted kernel: Python calls the C functions of :file:`dop853.c` once per span.
 
-A kernel is the generated C function of the rates (time derivatives) of the states. A library contains one kernel and
-the stepper compiled together (:func:`translation_unit`). An :func:`integration` computes the states at sample times, or
-records every step so that the states can be computed later at any time.
-
-The tolerance limits the error of the whole trajectory, not of one step, see :func:`step_tolerance`.
-
-A double holds 53 bits of ``a*t``, so that phases of a torque lose digits as the time grows. That costs accuracy, and
-also steps, since rounding errors look like a rapidly varying torque to the step control. If a kernel can count time
-from any epoch (a :data:`Clock`), it is therefore given the time since an epoch, which is moved to the present time
-every :data:`WINDOW` steps, and when steps are short compared with the time since the epoch.
+A kernel is the generated C function of the rates (time derivatives) of the states. The *epoch* is the time from which
+a kernel counts time. The tolerance limits the error of the whole trajectory, not of one step.
 """
 
 import math
@@ -38,6 +30,9 @@ from symrot.propagation.steppers.stepping import (
 
 __all__ = ["DENSE_ORDER", "MAX_STEPS", "NO_ENCLOSURE", "Clock", "integration", "step_tolerance", "translation_unit"]
 
+# A double holds 53 bits of a phase a*t, which loses digits as the time grows; rounding errors then look like a rapidly
+# varying torque to the step control. If a kernel has a Clock, its epoch is therefore moved to the present time every
+# WINDOW steps, and when steps are short compared with the time since the epoch.
 STEP_SHARE, NATURAL_TIMES = 0.14, 0.16  # fractions of the tolerance and of the span, see step_tolerance
 TERMS = 8  # coefficients of the dense output
 DENSE_ORDER = 7  # order of the error of the dense output
@@ -49,27 +44,21 @@ MIDDLE_REACH = 3  # index of the first disc to try in symrot.codegen.enclosure.t
 Clock = Callable[[float], tuple[PathLike, Sequence[float]]]
 """Function from an epoch, s, to the library of a kernel that counts time from the epoch, and its parameters."""
 
-WINDOW = 2048
 FAR = 1e4  # steps from the epoch: farther on, the time would be rounded to more than 1e-12 of a step
+WINDOW = 2048
 """Number of steps after which the clock of a kernel is moved: phases on it stay below some 1e3 rad, and moving it costs
 a few per cent of the time. The phase errors between two moves are alike and add up: with 8192 steps they were five
 times as large."""
 
 
 def step_tolerance(tolerance: float) -> tuple[float, float]:
-    """Return the error allowed in one long step, and the length from which a step is long, as a fraction of the span.
-
-    A shorter step may cause a proportional share of this error. ``tolerance`` is the error of the whole trajectory to
-    aim for. Steps are about ``tolerance^(1/8)`` times as long as the time in which the motion changes noticeably (its
-    natural time). With this fraction, the sum of the allowed errors grows with the number of natural times in the span,
-    not with the number of steps. So the final error divided by the tolerance hardly depends on tolerance or span,
-    except where the motion amplifies errors.
-
-    The two factors in the code are calibrated against 40-digit references for free asymmetric bodies, some of which
-    flip about the intermediate axis, and for heavy tops (``tests/propagation/test_dop853.py``): errors stay below 5
-    tolerances.
-    """
+    """Return the error allowed in one long step, and the least length of a long step as a fraction of the span."""
+    # Steps are about tolerance^(1/8) natural times long (a natural time: the motion changes noticeably), and a shorter
+    # step gets a proportional share of the error. So the sum of all shares grows with the number of natural times in
+    # the span, not of steps: the final error over the tolerance hardly depends on tolerance or span.
     check_tolerance(tolerance)
+    # Both factors are calibrated against 40-digit references for free asymmetric bodies and heavy tops
+    # (tests/propagation/test_dop853.py): errors stay below 5 tolerances, unless the motion amplifies them.
     return tolerance * STEP_SHARE, tolerance**0.125 * NATURAL_TIMES
 
 
@@ -170,26 +159,22 @@ def integration(
 
 
 class _Clocked(Integration):
-    """Integration with a kernel that counts time from an epoch, which is moved repeatedly to the present time.
-
-    ``clock`` returns the library and the parameters for an epoch.
-    """
+    """Integration with a kernel that counts time from an epoch, which is moved repeatedly to the present time."""
 
     def __init__(self, clock: Clock, *arguments: Any) -> None:
         super().__init__(*arguments)
+        # takes an epoch; returns library and parameters
         self._clock = clock
 
     def step_function(self, run: Run) -> tuple[Callable[..., Any], Any, int]:
-        """Return the C function that continues a run, its parameters, and the largest number of steps per call.
-
-        The kernel counts time from an epoch; if the present time is far from the epoch, the epoch is moved there first.
-        """
+        """Return the C function that continues a run, its parameters, and the largest number of steps per call."""
         tried = self.stepper.tried(run)
         window = run.window
         if window is None:
             window = Window(self.stepper.run, self.p, -WINDOW if run.t else 0)
             run.far = FAR
         if tried - window.since >= WINDOW or abs(run.t - run.epoch) > FAR * abs(run.h) > 0.0:
+            # far from the epoch: the epoch is moved to the present time
             path, p = self._clock(run.t)
             stepper = _stepper(str(path))
             window = Window(stepper.run, stepper.new_parameters(*p), max(tried, 0))

@@ -1,15 +1,8 @@
 """SciPy as a fallback: motions stepped by any method of ``scipy.integrate.solve_ivp``.
 
-SciPy is used if there is no C compiler, or if the user chooses one of its methods, such as LSODA. The tolerance means
-the same as for the steppers in C, as far as SciPy allows: the error of every block of states (omega, attitude) is
-relative to the largest norm of the block along the motion, which a first coarse pass determines, and each step may use
-a share of the tolerance. SciPy is imported when a motion is first followed.
-
-If steps are short compared with the time, a double holds too few digits of the time. If the right-hand side can count
-time from any epoch (a :data:`Clock`), SciPy then restarts with an epoch near the present time.
-
-The right-hand side is the function of the rates, ``dy/dt``. A segment is the time between two switching times; a piece
-is the solution of SciPy on one segment.
+It is used without a C compiler, or on request. The tolerance means the same as for the steppers in C: errors are
+relative to the largest norm of each block of states (omega, attitude) along the motion, which a coarse first pass
+determines.
 """
 
 import math
@@ -48,16 +41,16 @@ Piece = tuple[float, float, Any]  # first time, last time, SciPy's solution betw
 
 
 class WholeMotion(NamedTuple):
-    """The whole motion of which SciPy computes a part: its ends, s, and the number of evaluations before the part.
-
-    The limit of evaluations holds for the whole motion.
-    """
+    """Ends, s, of the motion of which SciPy computes a part, and the evaluations before the part."""
 
     start: float
     end: float
+    # the limit of evaluations holds for the whole motion
     spent: int
 
 
+# Words used here: the right-hand side is the function of the rates, dy/dt. A segment is the time between two switching
+# times; a piece is SciPy's solution on one segment. The epoch is the time from which the right-hand side counts.
 METHODS = {"DOP853": 0.1, "RK45": 0.1, "RK23": 0.1, "Radau": 1.0, "BDF": 0.01, "LSODA": 0.001}
 """SciPy's methods, each with the share of the tolerance that one step may use, calibrated as in dop853.py."""
 
@@ -176,12 +169,7 @@ def record(
     tolerance: float,
     options: Options = Options(),
 ) -> "FallbackRecording":
-    """Return the motion over ``span`` as a function from times to states; the arguments are as for :func:`integrate`.
-
-    ``span`` is a pair of times, s; if the start ``t0`` lies outside, the motion is recorded from there. If the motion
-    stops early or is interrupted, the exception has the attribute ``recording`` with the motion before that time. It
-    has no such attribute if the motion stopped at its start.
-    """
+    """Return the motion over ``span``, s, and back to ``t0``, as a function from times to states."""
     motion = _Integration(rhs, p, y0, t0, tolerance, options)
     low, high = min(*span, motion.t0), max(*span, motion.t0)
     finished: list[Piece] = []
@@ -192,6 +180,7 @@ def record(
         finished += motion.pieces if motion.final else []
         if finished:
             ends = [time for low, high, _ in finished for time in (low, high)]
+            # the motion before the stop or interrupt; absent if it stopped at its start
             error.recording = FallbackRecording(motion, finished, min(ends), max(ends))  # type: ignore[union-attr]
         raise
     return FallbackRecording(motion, finished, low, high)
@@ -205,10 +194,7 @@ class FallbackRecording(Recording):
         super().__init__(motion.t0, motion.y0, (low, high), motion.stats())
 
     def edges(self, start: float, end: float) -> list[Floats]:
-        """Return the times at which SciPy's steps from ``start`` to ``end`` begin and end, in the order of the motion.
-
-        There is one array for each segment between switching times.
-        """
+        """Return the ends of SciPy's steps from ``start`` to ``end``, s, one array between any two switching times."""
         side = 1.0 if end >= start else -1.0
         chosen = [
             np.sort(np.asarray(solution.ts, dtype=np.float64) * side) * side
@@ -222,10 +208,7 @@ class FallbackRecording(Recording):
 
 
 def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
-    """Write the states at ``times`` into ``states``, shape (n, N), each by the piece in which its time lies.
-
-    A piece is (first time, last time, SciPy's solution).
-    """
+    """Write the states at ``times`` into ``states``, shape (n, N), by pieces (first time, last time, solution)."""
     for low, high, solution in pieces:
         chosen = (times >= low) & (times <= high)
         if chosen.any():
@@ -233,12 +216,10 @@ def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
 
 
 class _ShiftedSolution:
-    """SciPy's interpolant of one step, called with times on the motion's clock; inside, time counts from ``epoch``.
-
-    ``solution`` is the interpolant; ``epoch`` is the time, s, on the motion's clock that it calls 0.
-    """
+    """SciPy's interpolant of one step, for times that are ``epoch`` s later than its own."""
 
     def __init__(self, solution: Any, epoch: float) -> None:
+        # the interpolant counts time from the epoch, s, on the motion's clock
         self._solution, self._epoch = solution, epoch
 
     def __call__(self, t: Floats) -> Floats:
@@ -247,10 +228,7 @@ class _ShiftedSolution:
 
 
 class _Integration:
-    """Integration of one motion by SciPy: its checked arguments, and its cost so far.
-
-    The arguments are those of :func:`integrate`. After a motion has stopped early, ``pieces`` holds the part before.
-    """
+    """Integration of one motion by SciPy, with the arguments of :func:`integrate`: checked arguments, and cost."""
 
     def __init__(self, rhs: Rhs, p: ArrayLike, y0: ArrayLike, t0: float, tolerance: float, options: Options) -> None:
         self.began = perf_counter()
@@ -272,7 +250,7 @@ class _Integration:
             if low < len(self.y0)
         ]
         self.steps = self.evaluations = self.broken = 0
-        self.pieces: list[Piece] = []  # pieces of the pass that is running
+        self.pieces: list[Piece] = []  # pieces of the pass that is running, or that stopped early
         self.final = False  # whether this is the final pass, not the coarse one
         self.mark = (0, self.t0)  # work and time at the last check of the pace
         self.whole, self.before = options.whole, self.deviations.spent if self.deviations else 0
@@ -290,23 +268,17 @@ class _Integration:
         return Stats(self.steps, 0, self.evaluations, perf_counter() - self.began)
 
     def follow(self, times: Floats) -> Floats:
-        """Return the states at the times, shape (n, N).
-
-        The times all lie after t0 or all before it, and are sorted by their distance from t0.
-        """
+        """Return the states at the times, shape (n, N), which lie on one side of t0, sorted by distance from it."""
         states = np.empty((len(times), len(self.y0)))
         _evaluate(self.solutions(float(times[-1])), times, states)
         states[times == self.t0] = self.y0
         return states
 
     def partial(self, times: Floats) -> tuple[NDArray[np.intp], Floats]:
-        """Return the indices and the states of those sample times that the motion reached before it stopped early.
-
-        All ``times`` lie after t0 or all before it. A motion is integrated twice, first coarsely and then finally. If
-        it stopped in the coarse pass, there are no states to return except at t0.
-        """
+        """Return the indices and the states of those sample times that the motion reached before it stopped early."""
         pieces = self.pieces if self.final else []  # results of the coarse pass are not returned
         way = max((max(abs(low - self.t0), abs(high - self.t0)) for low, high, _ in pieces), default=0.0)
+        # all times lie on one side of t0
         inside = np.flatnonzero(np.abs(times - self.t0) <= way)
         states = np.empty((len(inside), len(self.y0)))
         _evaluate(pieces, times[inside], states)
@@ -314,14 +286,11 @@ class _Integration:
         return inside, states
 
     def solutions(self, end: float) -> list[Piece]:
-        """Return the motion from t0 to ``end`` as pieces (first time, last time, solution), one for each segment.
-
-        A coarse pass over the motion determines the sizes of the states, for the error control of the final pass. If
-        it stops early, the final pass still computes the motion up to that time before the error is raised.
-        """
+        """Return the motion from t0 to ``end`` as pieces (first time, last time, solution) between switching times."""
         self.final, self.pieces = False, []
         if end == self.t0:
             return []
+        # a coarse pass determines the sizes of the states, for the error control of the final pass
         slowest = PILOT_TURN / abs(end - self.t0)  # rad/s: a slower rotation does not count
         bars = [
             SLACK * PILOT_TOLERANCE * (scale if scale > 0.0 else max(float(np.linalg.norm(self.y0[block])), slowest))
@@ -333,6 +302,7 @@ class _Integration:
         except IntegrationStopped as error:
             if not self.pieces or self._spent >= self.max_evaluations:
                 raise
+            # the final pass still computes the motion up to here before the error is raised
             early, end = error, float(self.pieces[-1][2].ts[-1])
             self.max_evaluations = min(self.max_evaluations, self.evaluations + self.max_evaluations // EFFORT_CUT_OFF)
         way = abs(end - self.t0) * (1.0 if early is None else BEFORE_POLE)
@@ -365,14 +335,10 @@ class _Integration:
         return self.pieces
 
     def _follow_segment(self, segment: Segment, y: Floats, rtol: float, atol: Floats, bars: list[float]) -> None:
-        """Let SciPy integrate over a segment, as far as it can follow the motion; append the result to ``pieces``.
-
-        ``y`` is the state at the start of the segment; ``rtol`` and ``atol`` are SciPy's tolerances. Where bounds of
-        the rates are known, they limit SciPy's steps, so that no step passes over a short pulse: ``bars`` holds, for
-        each block of states, the largest error that a step may cause by overlooking a part of the rates.
-        """
+        """Integrate over a segment from the state ``y``, and append SciPy's solution to ``pieces``."""
         import scipy.integrate
 
+        # bars: for each block of states, the largest error by which a step may overlook a part of the rates
         earliest, latest = min(segment.first, segment.last), max(segment.first, segment.last)
         new_solver: Any = getattr(scipy.integrate, self.method)
 
@@ -388,6 +354,7 @@ class _Integration:
         interpolants: list[Any] = []
         try:
             self._steps(begin, y, segment, bars, times, interpolants)
+        # also the part of the motion before an error or interrupt
         finally:
             if interpolants:
                 lagging = self.method in ("BDF", "LSODA")  # their steps hold the end that they begin at
@@ -455,20 +422,15 @@ class _Integration:
                     solver.max_step = longest
 
     def _move_clock(self, clock: Clock, now: float) -> float:
-        """Move the epoch, from which time is counted, to the present time, which is ``now`` s after the old epoch.
-
-        Return the present time counted from the new epoch. It is not exactly zero, as the epoch is rounded to a double.
-        """
+        """Move the epoch by ``now`` s to the present time, and return the time from the new epoch to the present, s."""
         self.epoch, rest = two_sum(self.epoch, now)
         self.rhs, p = clock(self.epoch)
         self.p = np.array(p, dtype=np.float64)
+        # not exactly zero, as the epoch is rounded to a double
         return float(rest)
 
     def _judge_pace(self, t: float, stop: float) -> None:
-        """Raise IntegrationStopped if the rest of the motion would take far more evaluations than the limit.
-
-        ``t`` is the time reached and ``stop`` the end of the motion, s.
-        """
+        """Raise IntegrationStopped if the rest of the motion, from t to ``stop``, would exceed the evaluation limit."""
         work = self.work
         spent = work - self.mark[0]
         if spent >= PATIENCE:
@@ -484,13 +446,9 @@ class _Integration:
         return self.work + (self.whole.spent if self.whole else 0)
 
     def _proven(self, t: float, y: Floats, dense: Any, now: float, step: float, bars: list[float]) -> float:
-        """Return the length of the part of a step, s, that is proven not to pass over a short pulse of a torque.
-
-        The step has the length ``step`` and begins with the states y at the scene time t, at which the clock, counted
-        from the epoch, shows ``now``. ``dense`` is SciPy's interpolant of the step. ``bars`` holds, for each block of
-        states, the largest error that a step may cause by overlooking a part of the rates. The result is ``step``
-        itself if the whole step is proven.
-        """
+        """Return the length of the part of a step, s, that is proven not to pass over a short pulse of a torque."""
+        # The step begins with states y at scene time t, which is now on the clock; dense is SciPy's interpolant. bars:
+        # for each block of states, the largest error by which a step may overlook a part of the rates.
         assert self.deviations is not None
         path = np.abs(_FIT @ (dense(now + _NODES * step).T - y)).T.tolist()
         edges = [0, *(block.stop for block, _ in self.blocks)]

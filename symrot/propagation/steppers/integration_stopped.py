@@ -32,10 +32,7 @@ class IntegrationStopped(PropagationError):
         return IntegrationStopped, (self.t, self.reason, self.stop)
 
     def later(self, epoch: float) -> "IntegrationStopped":
-        """Return the error with its times converted from the clock of the motion to times of the scene.
-
-        The clock, the time that the stepper counts, shows 0 at the scene time ``epoch``, s.
-        """
+        """Return the error with its times converted to scene times, by adding ``epoch``, s."""
         later = IntegrationStopped(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
         later.samples = self.samples
         return later
@@ -62,11 +59,8 @@ class Samples(NamedTuple):
 def add_samples(
     error: BaseException, numbers: NDArray[np.intp], states: Floats, cost: Iterable[int] | None = None
 ) -> None:
-    """Store the samples computed before an error or interrupt, and their cost, as ``samples`` of the exception.
-
-    ``numbers`` are their indices among all requested samples, ``states`` the states. If the exception already has
-    samples, the new ones are put before them, and ``cost`` replaces their cost unless it is None.
-    """
+    """Store the samples computed before an error, with their indices and cost, as ``samples`` of the exception."""
+    # they are put before samples that the exception already has; cost None keeps its cost
     before: Samples | None = getattr(error, "samples", None)
     if before is not None:  # samples on the other side of the start were finished before
         numbers, states = np.concatenate([numbers, before.numbers]), np.concatenate([states, before.states])
@@ -76,12 +70,9 @@ def add_samples(
 
 
 def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
-    """Return why a stepper is stuck at the time t: adjacent doubles near t lie too far apart, or else ``reason``.
-
-    Doubles lie too far apart if fewer than about a million of them fit between ``t0`` and ``stop``, the ends of the
-    motion.
-    """
+    """Return why a stepper is stuck at the time t: doubles are too coarse there, or else ``reason``."""
     apart = math.ulp(t)
+    # too coarse: less than a million doubles between the ends of the motion
     if abs(stop - t0) > MANY_TICKS * apart:
         return reason
     advice = "choose t = 0 nearer to the motion"
@@ -89,11 +80,8 @@ def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
 
 
 def why_hopeless(steps: int, way: float, left: float, limit: int) -> str:
-    """Return a sentence that says that a motion would need far more steps than allowed, or else an empty text.
-
-    The last ``steps`` steps covered a time of ``way`` seconds; ``left`` seconds remain. ``limit`` is the largest number
-    of steps. "Far more" means more than three times ``limit``, if the steps stay as short as the last ones.
-    """
+    """Return why a motion would need over three times ``limit`` steps, or an empty text if it would not."""
+    # the last steps covered way seconds; left seconds remain
     if steps * left <= HOPELESS * limit * way:
         return ""
     more = f"{steps * left / way:.0e} steps, far" if way > 0.0 else "endlessly many steps,"

@@ -1,8 +1,7 @@
-"""Smoothness of the torques of a plan, which decides whether Taylor series can be used. This module does not use SymPy.
+"""Smoothness of the torques of a plan, which decides whether Taylor series can be used.
 
-A series needs derivatives of every order at its centre. Quotients, powers, sin, cos, exp and log have them wherever
-they are defined. The absolute value and the square root have no derivative at zero, and a motion may reach such a
-point, for example at rest. For such torques Dormand and Prince's method is used instead.
+A series needs derivatives of every order. Quotients, powers, sin, cos, exp and log have them wherever they are
+defined; absolute value and square root have none at zero, which a motion may reach. This module does not use SymPy.
 """
 
 from symrot.dynamics.structure import FormulaTorque, Pattern, TorqueStructure
@@ -36,8 +35,5 @@ def _of_torque(torque: TorqueStructure) -> str:
 
 
 def non_smooth_torque(plan: Plan) -> str:
-    """Return a sentence that says which torque of a plan is not smooth; an empty text if all torques are smooth.
-
-    A torque is smooth if its Taylor series exists at every point where it is defined.
-    """
+    """Return a sentence that says which torque of a plan has no Taylor series somewhere; empty if none."""
     return next(filter(None, map(_of_torque, plan.structure.torques)), "")

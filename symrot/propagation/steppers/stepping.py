@@ -1,12 +1,7 @@
 """Code that all steppers share: loaded libraries, integrations of motions, recordings, and error messages.
 
-:mod:`symrot.propagation.steppers.dop853` and :mod:`symrot.propagation.steppers.taylor` define their own parts in
-subclasses of :class:`Stepper`. :mod:`symrot.propagation.steppers.fallback` uses the functions that sort times and
-divide a span at switching times, and the messages.
-
-A :class:`Run` is the state of one motion in the memory of the C code. The pace is the time that a motion covers per
-step; from it the remaining number of steps is estimated. To sample is to compute the states at given times; to record
-is to store every step, so that the states can be computed later.
+A :class:`Run` is the state of one motion in the memory of the C code. The *pace* is the time that a motion covers per
+step. To *sample* is to compute the states at given times; to *record* is to store every step for later.
 """
 
 import ctypes
@@ -68,14 +63,12 @@ NOT_FINITE_SENTENCE = "its rate of change is not finite there"
 
 
 class Switching(NamedTuple):
-    """The switching of a function in a torque, such as ``sign(omega_3)``, at the time t, s.
-
-    ``how`` is ``"passed"`` if the argument of the function changes its sign, ``"held"`` if the argument stays at zero
-    from then on (dry friction holds a wheel at rest), and ``"released"`` if it leaves zero after being held there.
-    """
+    """The time t, s, at which a function in a torque, such as ``sign(omega_3)``, switches."""
 
     t: float
     function: str
+    # "passed": the argument changes its sign; "held": it stays at zero from then on (dry friction holds a wheel at
+    # rest); "released": it leaves zero after being held there
     how: str
 
 
@@ -114,10 +107,7 @@ class Stats(NamedTuple):
 
 
 def stats_of(cost: Any, seconds: float, switchings: Iterable[Switching]) -> Stats:
-    """Return the statistics of a motion; ``cost`` holds its accepted steps, rejected steps and evaluations.
-
-    ``seconds`` is the time of the computation, and ``switchings`` lists the functions that switched in the torques.
-    """
+    """Return the statistics of a motion from ``cost``: accepted steps, rejected steps and evaluations."""
     accepted, rejected, evaluations = map(int, cost)
     listed = tuple(sorted(switchings))
     times = tuple(sorted({change.t for change in listed}))  # coinciding switches count once
@@ -153,12 +143,12 @@ def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
 
 
 class Segment(NamedTuple):
-    """Part of a span, from ``start`` to ``stop``, s, without switching times inside.
+    """Interval between switching times, from ``start`` to ``stop``, s.
 
-    A torque may jump at a switching time. ``first`` and ``last`` are the times passed to the kernel at the two ends. At
-    a switching time they lie just inside the segment, so that the torque has its value inside.
+    ``first`` and ``last``, just inside, are the ends at which torques are evaluated.
     """
 
+    # first and last lie just inside a switching time, where a torque may jump
     start: float
     stop: float
     first: float
@@ -166,15 +156,14 @@ class Segment(NamedTuple):
 
 
 def segments(t0: float, end: float, breaks: Sequence[float]) -> list[Segment]:
-    """Return the segments into which switching times divide the span from t0 to ``end``, in the order of the motion.
+    """Return the segments into which switching times divide the span from t0 to ``end``, in this order.
 
-    ``breaks`` are the switching times, in increasing order; those outside the span do not count. For t0 = 0, ``end`` =
-    2 and a break at 1 the result is the segment from 0 to 1 and the segment from 1 to 2. ``end`` may lie before t0: for
-    t0 = 2 and ``end`` = 0 they are those from 2 to 1 and from 1 to 0. Without breaks inside, the result is one segment.
+    For t0 = 2, ``end`` = 0 and a break at 1: from 2 to 1, from 1 to 0.
     """
     if not breaks:
         return [Segment(t0, end, t0, end)]
     low, high = min(t0, end), max(t0, end)
+    # switching times outside the span do not count
     inside, known = [time for time in breaks if low < time < high], set(breaks)
     edges = [t0, *(inside if end >= t0 else reversed(inside)), end]
     return [
@@ -189,21 +178,15 @@ def segments(t0: float, end: float, breaks: Sequence[float]) -> list[Segment]:
 
 
 def _inside(edge: float, other: float) -> float:
-    """Return a time just inside a segment, at which the rates are evaluated instead of its end ``edge``.
-
-    A torque that jumps at the edge then has the value that it has inside. ``other`` is the other end of the segment.
-    The distance from the edge is too small to affect the choice of the first step.
-    """
+    """Return a time just inside a segment, at which a torque that jumps at ``edge`` has its value inside."""
+    # too near the edge to affect the choice of the first step
     time = edge + SLIVER * (other - edge)
     return time if time != edge else math.nextafter(edge, other)
 
 
 def split_at(times: Floats, t0: float) -> Iterator[NDArray[np.intp]]:
-    """Yield the indices of the times from t0 on, then the indices of the times before t0.
-
-    Each group is sorted by distance from t0; an empty group is left out. For the times 3, 0, 2 and t0 = 1 the groups
-    are [2, 0] and [1].
-    """
+    """Yield the indices of the times from t0 on, then of those before, sorted by distance from t0."""
+    # for the times 3, 0, 2 and t0 = 1: [2, 0], then [1]; an empty group is left out
     order = np.argsort(times, kind="stable")
     first_after = int(np.searchsorted(times[order], t0))
     for part in (order[first_after:], order[:first_after][::-1]):
@@ -215,13 +198,9 @@ def split_at(times: Floats, t0: float) -> Iterator[NDArray[np.intp]]:
 
 
 class Recording(ABC):
-    """A motion whose states can be computed at any time of its span.
+    """A motion as a function from times in ``span``, one or n, to states, shape (N,) or (n, N)."""
 
-    ``recording(t)`` returns the states at one time, shape (N,), or at an array of times, shape (n, N), and raises
-    InputError for a time outside ``span``. ``stats`` is the cost of the motion; ``epoch`` is the time of the scene, s,
-    at which the clock of the motion shows 0.
-    """
-
+    # scene time, s, at which the clock of the motion shows 0
     epoch = 0.0
 
     def __init__(self, t0: float, y0: Sequence[float] | Floats, span: tuple[float, float], stats: Stats) -> None:
@@ -248,13 +227,10 @@ class Recording(ABC):
 
 
 class SteppedRecording(Recording):
-    """A motion whose states can be computed at any time, from the recorded steps of a stepper in C.
-
-    ``task`` is the integration, and ``span`` the interval of time, s. ``backward`` and ``forward`` are its recorded
-    steps before and after the start, one per row.
-    """
+    """A motion whose states can be computed at any time, from the recorded steps of a stepper in C."""
 
     def __init__(self, task: "Integration", span: tuple[float, float], backward: Floats, forward: Floats) -> None:
+        # backward and forward: the steps before and after the start, one per row
         super().__init__(task.t0, task.y0, span, task.stats())
         self._dense, self._backward, self._forward = task.stepper.dense, backward, forward
 
@@ -268,24 +244,18 @@ class SteppedRecording(Recording):
 
 
 class Window(NamedTuple):
-    """The C function of a stepper, and the parameters of the rates that it uses until its clock is set to 0 again.
+    """The C function and the parameters that a stepper uses until it moves its epoch, the zero of its time."""
 
-    In a long motion the stepper now and then sets its clock to 0, so that times on the clock have many digits. The time
-    of the scene at such a moment is called epoch. Parameters that depend on time are computed for the present epoch.
-    """
-
+    # in a long motion the clock is set to 0 now and then, so that times on it have many digits
     step: Callable[..., Any]
     parameters: Any
     since: int  # steps tried when the epoch was moved
 
 
 class Run(ctypes.Structure):
-    """State of a motion in C: the struct ``symrot_run`` in :file:`dop853.c` and :file:`taylor.c`.
+    """State of a motion in C: the struct ``symrot_run`` in :file:`dop853.c` and :file:`taylor.c`."""
 
-    Each stepper creates a subclass with the fields of its method. The fields that Python reads and writes are listed
-    here.
-    """
-
+    # each stepper creates a subclass with the fields of its method; these are those that Python reads and writes
     t: float  # time reached so far, s
     h: float  # next step
     stop: float
@@ -311,10 +281,7 @@ class Run(ctypes.Structure):
 
 
 class Stepper(ABC):
-    """Functions of one loaded library; each subclass defines the parts that depend on its method.
-
-    The library exports ``symrot_NAME``, ``symrot_NAME_dense`` and ``symrot_NAME_sizes``, where NAME is ``name``.
-    """
+    """The C functions of one loaded library with a stepper; each subclass defines the parts of its method."""
 
     name: ClassVar[str]
     # The fields of symrot_run in C: numbers, integers, and vectors of one number per state.
@@ -350,10 +317,7 @@ class Stepper(ABC):
         self.new_parameters: Any = ctypes.c_double * self.parameters
 
     def _function(self, ending: str, result: Any, *arguments: Any) -> Callable[..., Any]:
-        """Return the library's C function ``symrot_NAME`` plus an ending such as ``_dense``, with declared types.
-
-        ``result`` and ``arguments`` are its types in ctypes. NAME is the name of the stepper, such as ``taylor``.
-        """
+        """Return the library's C function ``symrot_NAME`` plus an ending such as ``_dense``, with ctypes declared."""
         try:
             function = getattr(self._library, f"symrot_{self.name}{ending}")
         except AttributeError as error:
@@ -369,18 +333,11 @@ class Stepper(ABC):
     @staticmethod
     @abstractmethod
     def allowance(tolerance: float) -> tuple[float, float]:
-        """Return the error allowed in one step, and the least step length that may use it, as a fraction of the span.
-
-        They follow from ``tolerance``, the error of the whole trajectory. A shorter step may use only a share of this
-        error.
-        """
+        """Return the error allowed in one step, and the least length of such a step as a fraction of the span."""
 
     @abstractmethod
     def enter(self, run: Run, segment: Segment, allowed: float) -> None:
-        """Prepare a run for the next segment: set the fields of its C struct that only this stepper's method uses.
-
-        ``allowed`` is the error allowed in one step.
-        """
+        """Prepare a run for a segment: set those fields of its C struct that only this stepper uses."""
 
     @staticmethod
     @abstractmethod
@@ -396,10 +353,8 @@ class Stepper(ABC):
         """Return the numbers of accepted steps, rejected steps and evaluations of a run so far."""
 
     def dense(self, rows: Floats, times: Floats) -> Floats:
-        """Return the states, shape (n, N), at n times inside recorded steps, all after t0 or all before it.
-
-        ``rows`` are the recorded steps, one per row, in the order of the motion.
-        """
+        """Return the states, shape (n, N), at n times inside recorded steps, all on one side of t0."""
+        # one row per step, in the order of the motion
         states = np.empty((len(times), self.states))
         self._dense(rows.ctypes.data, len(rows), times.ctypes.data, len(times), states.ctypes.data)
         return states
@@ -410,22 +365,18 @@ def _no_stepper(path: str, error: Exception) -> CompilerError:
 
 
 def is_sorted(times: Floats) -> bool:
-    """Return whether the times never decrease; NaN counts as a decrease. An empty array counts as sorted.
-
-    If there are few times, they are compared one by one, which is faster than NumPy.
-    """
+    """Return whether the times never decrease; NaN counts as a decrease."""
     if len(times) > FEW:
         return b"\0" not in (times[1:] >= times[:-1]).tobytes()
+    # few times are compared one by one, which is faster than NumPy
     listed = times.tolist()
     return all(map(le, listed, listed[1:]))
 
 
 class Integration:
-    """The integration of one motion by a stepper in C: its checked arguments, and the cost of all calls of it so far.
+    """The integration of one motion by a stepper in C: its checked arguments, and the cost of all calls so far.
 
-    The cost is counted in steps, evaluations and seconds, over all calls of :meth:`sample` and :meth:`record`.
-    ``library`` is the path of a compiled C library with the rates and the stepper; ``load`` takes this path and returns
-    the stepper. The other parameters are explained in :func:`symrot.propagation.steppers.dop853.integration`.
+    Arguments: see :func:`symrot.propagation.steppers.dop853.integration`.
     """
 
     def __init__(
@@ -441,6 +392,7 @@ class Integration:
         breaks: Sequence[float] = (),
     ) -> None:
         self.began = perf_counter()
+        # library: path of rates and stepper in compiled C; load takes it and returns the stepper
         self.stepper = stepper = load(os.fspath(library))
         self.p = stepper.new_parameters(*_numbers("parameters", p, stepper.parameters))
         self.y0 = _numbers("states", y0, stepper.states)
@@ -457,10 +409,8 @@ class Integration:
         self.fields: dict[str, int] = {}  # more fields of the run in C, which a method sets
 
     def restarted(self) -> "Integration":
-        """Return a copy of the integration with all counts at zero; its arguments are not checked again.
-
-        A copy is needed for each new motion, so that its cost is counted alone.
-        """
+        """Return a copy with all counts at zero, for a new motion whose cost is counted alone."""
+        # its arguments are not checked again
         other: Integration = object.__new__(type(self))
         other.__dict__.update(self.__dict__)
         other.began = perf_counter()
@@ -484,10 +434,7 @@ class Integration:
         return Stats(self.accepted, self.rejected, self.evaluations, perf_counter() - self.began)
 
     def sample(self, times: ArrayLike) -> tuple[Floats, Stats]:
-        """Return the states at sample times, shape (n, N), and the cost of the motion.
-
-        The times, s, may be in any order, before or after ``t0``, and may repeat. The steps depend only on the earliest
-        and the latest time.
+        """Return the states at sample times, s, in any order, shape (n, N), and the cost of the motion.
 
         Raises
         ------
@@ -499,6 +446,7 @@ class Integration:
         times = np.asarray(times, dtype=np.float64, order="C")
         if times.ndim != 1:
             raise InputError(f"times: expected a sequence of sample times in s, got an array of shape {times.shape}")
+        # the steps depend only on the earliest and the latest time
         count = len(times)
         states = np.empty((count, self.stepper.states))
         if count == 0:
@@ -527,13 +475,13 @@ class Integration:
         return states, self.stats()
 
     def sample_sorted(self, times: Floats, in_order: bool) -> tuple[Floats, Stats]:
-        """Return the states at sample times and the cost, like ``restarted().sample(times)``.
+        """Return the states at sample times and the cost, as ``restarted().sample(times)`` does.
 
-        This method is faster if no time lies before t0 and the times never decrease. ``in_order`` promises that the
-        times are finite and never decrease.
+        ``in_order``: the times are finite and never decrease.
         """
         if self.breaks or not in_order or not len(times) or times.item(0) < self.t0:
             return self.restarted().sample(times)
+        # no time before t0, and no decrease: this is faster
         began, stepper, count, end = perf_counter(), self.stepper, len(times), times.item(-1)
         states = np.empty((count, stepper.states))
         run = stepper.new_run.from_buffer_copy(self._ready)
@@ -557,23 +505,18 @@ class Integration:
         return run
 
     def record(self, span: tuple[float, float]) -> SteppedRecording:
-        """Return the motion as a function of time, over the shortest interval that contains ``span`` and t0.
-
-        The steps are the same as in :meth:`sample` to the ends of the span, so that both give equal states. For N
-        states, the record of a step takes 8 N + 2 numbers with DOP853, and 21 N + 4 with Taylor series of order 20.
-        """
+        """Return the motion as a function of time, over the shortest interval that contains ``span`` and t0."""
         low, high = min(span), max(span)
         if not (math.isfinite(low) and math.isfinite(high)):
             raise InputError(f"span: expected two finite times in s, got {span}")
         span = min(low, self.t0), max(high, self.t0)
+        # The same steps as in sample() to both ends, so that both give equal states. For N states a step takes 8 N + 2
+        # numbers with DOP853, and 21 N + 4 with Taylor series of order 20.
         backward, forward = (np.concatenate(self.record_steps(end)) for end in span)
         return SteppedRecording(self, span, backward, forward)
 
     def follow(self, times: Floats, states: Floats) -> None:
-        """Write the states at ``times`` into the array ``states``.
-
-        The times lie all after t0 or all before it, and are sorted by their distance from t0.
-        """
+        """Write the states at ``times``, on one side of t0 and sorted by distance from it, into ``states``."""
         count, done, first, out = len(times), 0, address(times), address(states)
         row = 8 * self.stepper.states
         for run in self.runs(float(times[-1])):
@@ -587,18 +530,13 @@ class Integration:
             done += run.next
 
     def _cost(self, run: Run) -> tuple[int, int, int]:
-        """Return the numbers of accepted steps, rejected steps and evaluations, in this and all earlier runs.
-
-        ``run`` is the present run, which has not been added to the counts yet.
-        """
+        """Return the accepted steps, rejected steps and evaluations of all earlier runs and of the present one."""
+        # the present run has not been added to the counts yet
         accepted, rejected, evaluations = self.stepper.cost(run)
         return self.accepted + accepted, self.rejected + rejected, self.evaluations + evaluations
 
     def record_steps(self, end: float) -> list[Floats]:
-        """Return all recorded steps from t0 to ``end``, as a list of arrays with one row per step.
-
-        IntegrationStopped is raised if they take more than 2 GiB.
-        """
+        """Return all recorded steps from t0 to ``end``, as a list of arrays with one row per step, at most 2 GiB."""
         room = self.stepper.rows_per_call
         pieces = [np.empty((0, self.stepper.row))]
         for run in self.runs(end):
@@ -612,11 +550,7 @@ class Integration:
         return pieces
 
     def runs(self, end: float) -> Generator[Run, None, None]:
-        """Yield the run once for each segment between switching times, prepared so that the caller can integrate it.
-
-        A run is the state of the motion in C; the caller calls :meth:`advance` until its time is the end of the
-        segment. At the end, the cost of the run is added to the counts of the integration.
-        """
+        """Yield the run once per segment between switching times, for the caller to :meth:`advance` to its end."""
         stepper, self.goal = self.stepper, end
         pace = (self.way or abs(end - self.t0)) * self.pace
         run = stepper.new_run(t=self.t0, pace=pace, max_step=self.max_step, **self.fields)
@@ -633,24 +567,19 @@ class Integration:
             self.evaluations += evaluations
 
     def step_function(self, run: Run) -> tuple[Callable[..., Any], Any, int]:
-        """Return the C function that continues a run, the parameters of its kernel, and the most steps per call.
-
-        A subclass may return others in the course of a run.
-        """
+        """Return the C function that continues a run, the parameters of its kernel, and the most steps per call."""
+        # a subclass may return others in the course of a run
         return self.stepper.run, self.p, self.stepper.steps_per_call
 
     def advance(self, run: Run, times: int | None, count: int, states: int | None, rows: int | None, room: int) -> int:
-        """Call the stepper in C once and return its status; raise IntegrationStopped if it cannot continue.
-
-        ``times`` and ``states`` are the addresses of ``count`` sample times and of the array for their states; both are
-        None if no samples are needed, and ``count`` is then 0. ``rows`` is the address of an array for the polynomials
-        of up to ``room`` steps, one row per step, or None if they are not needed. The status is DONE at the end of the
-        segment; with any other status (the array is full, or the limit of steps per call is reached) the caller has to
-        call again.
-        """
+        """Call the stepper in C once and return its status; raise IntegrationStopped if it cannot continue."""
+        # times, states, rows are addresses: of count sample times, of an array for their states, and of an array for
+        # the polynomials of up to room steps; None and 0 if not needed
         stepper, (function, p, most) = self.stepper, self.step_function(run)
         attempts = min(most, self.max_steps - stepper.tried(run))
         status: int = function(ctypes.addressof(run), ctypes.addressof(p), times, count, states, rows, room, attempts)
+        # the end of the segment; with any other status the caller calls again: an array is full, or the limit of steps
+        # per call is reached
         if status == DONE:
             return status
         if status in (NOT_FINITE, UNDERFLOW):
@@ -666,10 +595,8 @@ class Integration:
         return status
 
     def judge_pace(self, tried: int, run: Run) -> None:
-        """Raise IntegrationStopped if the rest of the motion would take far more steps than the limit.
-
-        ``tried`` is the number of steps of the run so far; the steps since the last check show the pace.
-        """
+        """Raise IntegrationStopped if the rest of the motion would take far more steps than the limit."""
+        # the steps since the last check show the pace
         reason = why_hopeless(tried - self.mark[0], abs(run.t - self.mark[1]), abs(run.stop - run.t), self.max_steps)
         if reason:
             raise IntegrationStopped(run.t, reason, run.stop)

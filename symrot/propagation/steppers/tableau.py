@@ -1,17 +1,8 @@
 """Coefficients of Dormand and Prince's 8(5,3) pair with its dense output of order 7, as exact decimals.
 
-A pair is two Runge-Kutta methods with common stages, one of which estimates the error of the other. Stages are numbered
-from 1, as in the source; a coefficient that is not listed is zero. Stage 13 is the derivative at the end of the step,
-which is stage 1 of the next step ("first same as last"); stages 14 to 16 are used only for the dense output.
-
-:func:`c_header` prints the coefficients for :file:`dop853.c`; the printed file ``dop853_tableau.h`` is never edited,
-and a test compares it byte for byte with what is printed. Tests also check the order conditions, so that a wrong digit
-is detected.
-
-Source: P. J. Prince, J. R. Dormand, J. Comput. Appl. Math. 7 (1981) 67; error estimates and dense output: E. Hairer,
-S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., sections II.5, II.6, and ``dop853.f``.
-
-Run ``python -m symrot.propagation.steppers.tableau`` to print the header again.
+A pair is two Runge-Kutta methods with common stages, one of which estimates the error of the other. Coefficients that
+are not listed are zero. Run ``python -m symrot.propagation.steppers.tableau`` to print ``dop853_tableau.h``, which is
+never edited.
 """
 
 from collections.abc import Mapping
@@ -19,8 +10,13 @@ from pathlib import Path
 
 __all__ = ["DENSE", "ERROR_5", "HEADER", "NODES", "STAGE_WEIGHTS", "WEIGHTS", "WEIGHTS_3", "c_header"]
 
+# Source: P. J. Prince, J. R. Dormand, J. Comput. Appl. Math. 7 (1981) 67; error estimates and dense output: E. Hairer,
+# S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., sections II.5, II.6, and dop853.f.
 HEADER = Path(__file__).with_name("dop853_tableau.h")
 
+# Stages are numbered from 1, as in the source. Stage 13, the derivative at the end of the step, is stage 1 of the next
+# step ("first same as last"); stages 14 to 16 serve the dense output. Tests check the order conditions, so that a
+# wrong digit is detected.
 NODES: Mapping[int, str] = {
     1: "0.0",
     2: "0.526001519587677318785587544488e-01",
@@ -234,20 +230,13 @@ DENSE: Mapping[int, Mapping[int, str]] = {
 
 
 def _sum(row: Mapping[int, str]) -> str:
-    """Return a weighted sum of stages as C text, such as ``0.5*k(1) - 0.25*k(5)``, in the order of the stages.
-
-    ``row`` maps the numbers of the stages to their coefficients as decimal text.
-    """
+    """Return a weighted sum of stages as C text: ``{1: "0.5", 5: "-0.25"}`` gives ``0.5*k(1) - 0.25*k(5)``."""
     terms = [f"{'-' if value.startswith('-') else '+'} {value.lstrip('-')}*k({stage})" for stage, value in row.items()]
     return " ".join(terms).removeprefix("+ ")
 
 
 def c_header() -> str:
-    """Return the text of ``dop853_tableau.h``, which defines every sum of stages as a macro over ``k(stage)``.
-
-    The sum for stage s is split in two: ``DOP853_OLD_s`` is the sum over the stages before s - 1, ``DOP853_NEW_s`` the
-    coefficient of stage s - 1, which dop853.c adds separately.
-    """
+    """Return the text of ``dop853_tableau.h``, which defines every sum of stages as a macro over ``k(stage)``."""
     lines = [
         "/*",
         " * Coefficients of Dormand and Prince's 8(5,3) pair and its dense output, as sums over k(stage).",
@@ -260,6 +249,7 @@ def c_header() -> str:
         if stage > 13:
             lines.append(f"#define DOP853_SUM_{stage}(k) ({_sum(row)})")
             continue
+        # dop853.c adds the newest stage separately: OLD is the sum over the stages before it, NEW its coefficient
         older = {s: value for s, value in row.items() if s != newest}
         lines.append(f"#define DOP853_OLD_{stage}(k) ({_sum(older) or '0.0'})")
         lines.append(f"#define DOP853_NEW_{stage} ({row[newest]})")

@@ -1,12 +1,7 @@
 """Taylor series, usually of order 20: Python calls the C functions of :file:`taylor.c` once per span.
 
-The right-hand side is the function of the rates, ``dy/dt = f(t, y, p)``. A jet is the list of the Taylor coefficients
-of all states at one time, up to the order of the series; generated C code computes it. Smooth right-hand sides need
-only a few long steps. If the tolerance is small, each step is accurate up to rounding errors, and the same coefficients
-give the states at any time inside the step. A library contains the jet of one right-hand side and the stepper compiled
-together (:func:`translation_unit`). :mod:`symrot.propagation.steppers.dop853` has the same interface.
-
-The tolerance limits the error of the whole trajectory, not of one step, see :func:`step_tail`.
+The right-hand side is the function of the rates, ``dy/dt = f(t, y, p)``. A *jet* is the list of Taylor coefficients of
+all states at one time, computed by generated C code. The tolerance limits the error of the trajectory, not of steps.
 """
 
 import ctypes
@@ -39,6 +34,8 @@ from symrot.propagation.steppers.stepping import (
 
 __all__ = ["FLAGS", "integration", "order_for", "refusal", "step_tail", "translation_unit"]
 
+# Smooth motions need few long steps. With a small tolerance, each is accurate up to rounding errors, and the same
+# coefficients give the states at any time inside the step.
 FLAGS = (*compiled.FLAGS, *compiled.SCHEDULED)
 STEPS_OF_ALL = 4.0  # in a span of this many steps or fewer, each step may use the whole tolerance, see step_tail
 FILES = {
@@ -64,37 +61,28 @@ ORDERS = {  # for few and for many products: least tolerance, and the fastest or
 
 
 def step_tail(tolerance: float) -> tuple[float, float]:
-    """Return a limit for the last terms of a step's Taylor series, and the step length for which it holds.
-
-    ``tolerance`` is the error of the whole trajectory to aim for; the limit is equal to it. The length is
-    1/STEPS_OF_ALL of the span. The stepper multiplies the limit by r^(7/4) in a step that is r times as long. For n
-    equal steps, r is proportional to 1/n, and the sum of their errors grows about as n^(7/4) times the error of one: so
-    the final error hardly depends on the number of steps.
-
-    The fraction is calibrated against references of 50 digits for free asymmetric bodies, some of which flip about the
-    intermediate axis, and for heavy tops (``tests/propagation/test_taylor.py``): errors stay below 5 tolerances.
-    """
+    """Return a limit for the last terms of a step's Taylor series, and the step length for which it holds."""
+    # The stepper multiplies the limit by r^(7/4) in a step that is r times as long. For n equal steps, r is
+    # proportional to 1/n, and their errors add up to about n^(7/4) times one of them: the final error hardly depends
+    # on n.
     check_tolerance(tolerance)
+    # Calibrated against references of 50 digits for free asymmetric bodies and heavy tops
+    # (tests/propagation/test_taylor.py): errors stay below 5 tolerances.
+    # the length is a fraction of the span
     return tolerance, 1.0 / STEPS_OF_ALL
 
 
 def order_for(tolerance: float, program: Program | None = None) -> int:
-    """Return the order of the series that is fastest for a tolerance; every order is accurate enough.
-
-    The fastest order depends on the number of products in the right-hand side, ``program``; without it, few products
-    are assumed. It was measured with ``python -m symrot.bench.taylor --orders``: for tolerances below 1e-6 the times of
-    orders 16 to 24 differ by less than a tenth.
-    """
+    """Return the order of the series that is fastest for a tolerance and for the products in ``program``."""
     formulas = (*program.temporaries, *program.outputs) if program else ()
     products = sum(operations(formula)["mul"] for _, formula in formulas)
+    # measured with `python -m symrot.bench.taylor --orders`; every order is accurate enough, and below 1e-6 the times
+    # of orders 16 to 24 differ by less than a tenth
     return next(order for least, order in ORDERS[products >= MANY_PRODUCTS] if tolerance >= least)
 
 
 def refusal(program: Program) -> str:
-    """Return a sentence that says why a right-hand side has no Taylor series; an empty text if it has one.
-
-    A right-hand side has no series if it contains, for example, the absolute value of a state.
-    """
+    """Return why a right-hand side has no Taylor series, such as the absolute value of a state; empty if it has one."""
     from symrot.codegen.taylor.recurrences import recurrences
 
     try:
@@ -221,10 +209,9 @@ class _Stepper(Stepper):
         return run.accepted, run.jets - run.accepted, run.jets
 
     def jet(self, t: float, y: ArrayLike, p: ArrayLike, unit: float = 1.0) -> Floats:
-        """Return the Taylor coefficients of the states at t, shape (order + 1, N), in powers of ``unit``.
+        """Return the Taylor coefficients of the states at t, shape (order + 1, N).
 
-        Row k is the k-th derivative, times ``unit``^k, divided by k!; ``y`` is the state at t, and ``p`` are the
-        parameters of the right-hand side.
+        Row k is the k-th derivative, times ``unit``^k, over k!.
         """
         state, values = np.array(y, dtype=np.float64), np.array(p, dtype=np.float64)
         coefficients = np.empty((self.order + 1, self.states))

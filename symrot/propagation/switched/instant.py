@@ -1,8 +1,7 @@
-"""Times as sums of two doubles, and clocks that show 0 at such a time.
+"""Times as sums of two doubles with 32 digits, and clocks that show 0 at such a time.
 
-At t = 1e6 s adjacent doubles lie 1e-10 s apart. If the time of a switch is rounded to one double, a torque that
-switches there acts up to 1e-10 s too long or too short, and the error in the angular momentum is the jump of the torque
-times this time. A sum of two doubles has 32 digits.
+At t = 1e6 s adjacent doubles lie 1e-10 s apart. A torque that switches at a rounded time acts up to 1e-10 s too long,
+and the angular momentum is wrong by the jump of the torque times this time.
 """
 
 from fractions import Fraction
@@ -45,10 +44,8 @@ class Instant(NamedTuple):
         return (times - self.high) - self.low
 
     def reached(self, times: Floats, side: float) -> int:
-        """Return how many of the times the motion has reached at this instant.
-
-        The times are in the order of the motion: increasing if ``side`` is 1, decreasing if it is -1.
-        """
+        """Return how many of the times, in the order of the motion, have been reached at this instant."""
+        # side: 1 if the times increase, -1 if they decrease
         count = int(np.searchsorted(side * times, side * self.high, "right"))
         while side * self.low < 0.0 and count and times[count - 1] == self.high:
             count -= 1

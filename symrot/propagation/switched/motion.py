@@ -1,14 +1,8 @@
-"""Motions under torques that jump or bend, followed from one switch to the next; switches are located to the last bits.
+"""Motions under torques that jump or bend, followed from one switch to the next.
 
-A switching function is a function such as sign or abs in a torque; its *guard* is its argument, and its *mode* is the
-number that replaces it in the formulas, such as the sign of the guard (:mod:`symrot.formula.switches`). Between
-switches the modes are constant and the motion is smooth (a *regime*), so that any stepper can follow it, while the
-guards are searched for zeros like the formulas of events. Where a guard changes its sign, the integration ends exactly
-at that time and continues with the new mode. If the rates before and after the change both drive the guard back to zero
-(dry friction at rest, relay control), the guard is *held* at zero: the motion *slides*, and the mode takes the value
-that keeps the guard at zero, until this value leaves the range of the function.
-
-Source: A. F. Filippov, Differential Equations with Discontinuous Righthand Sides, Kluwer 1988, sections 4 and 8.
+A switching function (sign, abs, ..) has a *guard*, its argument, and a *mode*, the number that replaces it in
+formulas. Between switches the motion is smooth: a *regime*. Driven back to a switch from both sides, it *slides*: the
+guard is *held* at zero.
 """
 
 from time import perf_counter
@@ -32,6 +26,8 @@ from symrot.scene.tables import Initial
 __all__ = ["SwitchedMotion", "SwitchedPropagator"]
 
 
+# While a stepper follows a regime, the guards are searched for zeros like the formulas of events, to the last bits.
+# Where a guard changes its sign, the integration ends exactly and continues with the new mode.
 class SwitchedPropagator(Propagator):
     """Propagator of a scene with switching functions (sign, abs, ..) in its torques; see :func:`symrot.propagator`."""
 
@@ -42,27 +38,26 @@ class SwitchedPropagator(Propagator):
         return SwitchedMotion(plan, choose_method(plan, self._method), self.tolerance)
 
 
+# In sliding motion (dry friction at rest, relay control), the mode takes the value that keeps the guard at zero, until
+# this value leaves the range of the function. Source: A. F. Filippov, Differential Equations with Discontinuous
+# Righthand Sides, Kluwer 1988, sections 4 and 8.
 @final
 class SwitchedMotion(MotionInParts):
-    """Motion under torques with switching functions (sign, abs, ..), computed part by part between the switches.
-
-    In each smooth part, time is counted from the start of the part.
-    """
+    """Motion under torques with switching functions (sign, abs, ..), computed in smooth intervals between switches."""
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
         start = float(plan.scene.span.start)
+        # in each smooth interval, time is counted from its start
         super().__init__(Setup(plan, choice, tolerance, start, lambda: scene_kernel(plan)), plan)
         self.system = SwitchedSystem(plan, choice, tolerance)
         self.system.regime(frozenset(), self.system.initial_modes())
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at the times of the scene, shape (n, N), and the cost of the motion with its switches.
-
-        ``in_order`` is not used: the times are sorted in any case.
-        """
+        """Return the states at scene times, s, shape (n, N), and the cost of the motion with its switches."""
         began, states = perf_counter(), np.empty((len(times), len(self.plan.states)))
         cost, done = np.zeros(3, dtype=np.int64), np.empty(0, dtype=np.intp)
         changes: dict[tuple[float, str], str] = {}
+        # sorts the times, so that in_order is not used
         for part in split_at(times, self.start):
             sorted_times = times[part]
             count = int((sorted_times == self.start).sum())
@@ -90,25 +85,20 @@ class SwitchedMotion(MotionInParts):
         return states, stats_of(cost, perf_counter() - began, _switchings(changes))
 
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
-        """Return the motion from its start to ``end``, s: a list of polynomials, and a function from times to states.
-
-        If an error ends the motion early, it is appended to ``broken`` and the motion before it is returned.
-        """
+        """Return the motion from its start to ``end``, s, as polynomials and as a function from times to states."""
         chunks: list[Chunk] = []
         run = SwitchedRun(self, self.system, end)
         try:
             run.follow(chunks.append)
         except IntegrationStopped as error:
+            # the motion before the error is returned
             broken.append(error)
         stats = stats_of(run.cost, 0.0, _switchings(run.changes))
         states = SwitchedRecording(self.start, self.plan.initial_state, (self.start, end), stats, chunks)
         return [chunk.piece() for chunk in chunks], states
 
     def dense(self, span: tuple[float, float]) -> Recording:
-        """Return a function that takes n times, s, within ``span`` and returns the states, shape (n, N).
-
-        The motion is followed through all switches from its start to both ends of ``span``.
-        """
+        """Return a function from n times, s, within ``span`` to the states, shape (n, N), through all switches."""
         chunks: list[Chunk] = []
         cost, began, changes = np.zeros(3, dtype=np.int64), perf_counter(), dict[tuple[float, str], str]()
         for end in {min(*span, self.start), max(*span, self.start)} - {self.start}:
@@ -125,10 +115,7 @@ def _switchings(changes: dict[tuple[float, str], str]) -> list[Switching]:
 
 
 class SwitchedRecording(Recording):
-    """A function from time to states for a motion under torques with switching functions, made of its smooth parts.
-
-    ``chunks`` are the parts; beyond the last one, where a motion stopped early, the states are NaN.
-    """
+    """A function from times to states, made of smooth intervals of a motion; NaN after a motion that stopped early."""
 
     def __init__(
         self, t0: float, y0: tuple[float, ...], span: tuple[float, float], stats: Stats, chunks: list[Chunk]

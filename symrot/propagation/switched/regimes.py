@@ -1,7 +1,7 @@
 """Regimes: the smooth motions between switches of a torque, and the guards whose zeros end them.
 
-A guard is the argument of a function such as sign or abs; a mode is the number that replaces the function, such as the
-sign of the guard. See :mod:`symrot.propagation.switched.motion`.
+A *guard* is the argument of a function such as sign or abs; a *mode* is the number that replaces the function in
+formulas, such as the sign of the guard. If a guard is *held* at zero, the motion *slides*.
 """
 
 import math
@@ -33,45 +33,33 @@ Modes = dict[str, int]
 
 
 class Guard(NamedTuple):
-    """A formula at whose zero a switching function (sign, floor, ..) switches: it is positive before, negative after.
+    """A formula that turns negative where a switching function (sign, floor, ..) changes its value."""
 
-    ``mode`` is the name of the number that replaces the function in the equations. ``change`` tells how this number
-    changes at the switch. For floor, 1 or -1 is added to it. For a sign, ``change`` is 0: the number changes from 1 to
-    -1 or back. While the motion slides, a sign is held at zero; then ``change`` is 1 or -1, the value that replaces the
-    sign when the sliding ends at this guard, or 0 for the guard that shows that the motion no longer slides back.
-    ``where`` lists the conditions under which the function affects the motion.
-    """
-
+    # name of the number that replaces the function in the equations
     mode: str
     formula: str
-    change: int  # 0: the mode changes to the opposite sign; 1 or -1: it changes to that sign, or by that number
-    # 0 for a held mode: motions near the switch no longer return to it
+    # 0: the mode changes to the opposite sign; 1 or -1: it changes to that sign, or by that number (floor). For a held
+    # mode: the value with which it leaves the sliding motion here, or 0 if nearby motions no longer return to it.
+    change: int
+    # conditions under which the function affects the motion
     where: Conditions
 
 
 class RegimeParameters(NamedTuple):
-    """Parameters of the equations of a smooth motion between switches, as functions of the epoch.
+    """Parameters of the equations of a smooth motion between switches, as functions of the zero of time."""
 
-    The epoch is the scene time at which the clock of the motion shows 0. ``rates``, ``guards`` and ``quantities`` are
-    the parameters of the time derivatives of the states, of the formulas whose zeros end the motion, and of the output.
-    ``invariants`` are the parameters of conserved quantities, as pairs of doubles that do not depend on the epoch; only
-    the Taylor stepper uses them.
-    """
-
+    # the epoch is the scene time at which the clock of the motion shows 0
     rates: ShiftedParameters
+    # of the formulas whose zeros end the motion
     guards: ShiftedParameters
+    # of the output quantities
     quantities: ShiftedParameters
+    # of conserved quantities, as pairs of doubles that do not depend on the epoch: for the Taylor stepper
     invariants: list[float]
 
 
 class Regime:
-    """A smooth motion between two switches: its rates, and the guards (arguments of sign, abs, ..) that end it.
-
-    The regime ends when a guard becomes zero. If the motion slides, the arguments of the functions ``held`` are zero
-    throughout; they do not end the regime. Time is counted from the instant at which the motion enters the regime, and
-    this instant is a parameter of rates and guards. ``constants`` are the exact constants of the equations, by name.
-    ``all_switches`` are the switching functions of the scene, ``switches`` those that affect this regime.
-    """
+    """A smooth motion between two switches: its rates, and the guards (arguments of sign, abs, ..) that end it."""
 
     def __init__(
         self,
@@ -81,10 +69,13 @@ class Regime:
         held: frozenset[str],
         switches: Sequence[Switch],
     ) -> None:
+        # the guards of the functions in held stay at zero and do not end the regime: the motion slides
         self.motion, self.plan, self.held = motion, motion.plan, held
+        # constants: exact, by name; all_switches: of the scene; switches: those that affect this regime
         self.constants, self.switches = constants, all_switches
         modes = [switch.mode for switch in switches]
         distances = [_distance(switch) for switch in switches]
+        # time is counted from the instant at which the motion enters the regime, which becomes a parameter
         formulas, parameters = moved_formulas(distances, {*self.constants, *modes})
         names_of_clock = {name: f"since_{name}" for name, _ in parameters if name not in {*self.constants, *modes}}
         self.parameters = tuple((names_of_clock.get(name, name), formula) for name, formula in parameters)
@@ -127,11 +118,7 @@ class Regime:
             yield Guard(mode, f"1 - ({guard})", 1, where)
 
     def _parameters_under(self, modes: Modes) -> RegimeParameters:
-        """Return the parameters of the equations for given modes, as functions of the epoch.
-
-        ``modes`` maps the names of the switching functions (sign, floor, ..) to their present values. The epoch is the
-        scene time at which the clock of the motion shows 0.
-        """
+        """Return the equations' parameters, as functions of the epoch, for given values of the switching functions."""
         key = tuple(modes.values())
         if key not in self._parameters:
             values = {name: Fraction(value) for name, value in modes.items()}
@@ -149,12 +136,8 @@ class Regime:
         return self._parameters[key]
 
     def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
-        """Return the values, by name, of all numbers that occur in :attr:`formulas`: modes and parameters.
-
-        The formulas are the arguments of the switching functions (sign, floor, ..). ``modes`` maps the name of each
-        function's mode, the number that replaces the function, to its value. Parameters may depend on ``zero``, the
-        instant from which time is counted.
-        """
+        """Return the values, by name, of all numbers in :attr:`formulas`, the arguments of the switching functions."""
+        # parameters may depend on zero, the instant from which time is counted
         numbers = self._parameters_under(modes).guards.parameters(zero.exact)
         return {name: number for (name, _), number in zip(self.parameters, numbers, strict=True)} | {
             name: float(mode) for name, mode in modes.items()
@@ -163,8 +146,7 @@ class Regime:
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
         """Return two lists of parameters: for the stepper, and for the library that searches for switches.
 
-        They hold for the given values ``modes`` of the switching functions, with time counted from the instant
-        ``zero``.
+        They hold for the values ``modes`` of sign, abs, .. and the zero of time.
         """
         rates, guards, quantities, invariants = self._parameters_under(modes)
         fixed = rates.fixed and guards.fixed and quantities.fixed
@@ -177,51 +159,36 @@ class Regime:
         return self._bound[place]
 
     def zeros(self, modes: Modes, zero: Instant, y: Floats) -> set[str]:
-        """Return the names of those states, and those parameters of output quantities, whose value is zero.
-
-        With these names one can decide whether the argument x of a sign(x) stays zero by itself, as in a body at rest.
-        ``y`` holds the states; ``modes`` are the values of the switching functions, and ``zero`` is the instant from
-        which time is counted.
-        """
+        """Return the names of the states, and of the parameters of output quantities, that are zero."""
+        # with these names one decides whether x in sign(x) stays zero by itself, as in a body at rest
         return {name for name, value in self._inputs(modes, zero, y).items() if value == 0.0}
 
     def attraction(self, modes: Modes, zero: Instant, t: float, y: Floats) -> list[float]:
-        """Return one number per held function, all positive if nearby motions are driven back to the sliding motion.
-
-        While the motion slides, the arguments of the held functions (sign, ..) stay at zero. The numbers belong to the
-        state ``y`` at the time t, s, counted from the instant ``zero``, for the given values ``modes`` of the other
-        functions.
-        """
+        """Return one number per function sign(x) with x held at zero, all positive if nearby motions return there."""
+        # sliding: the arguments of the held functions (sign, ..) stay at zero; t is counted from the instant zero
         names = [f"attraction {k} of t" for k in range(len(self.held))]
         values = {**self._inputs(modes, zero, y), "t": t}
         quantities = self.quantities.evaluate(values, FLOAT_FUNCTIONS, float, names)
         return [float(quantities[name]) for name in names]
 
     def _inputs(self, modes: Modes, zero: Instant, y: Floats) -> dict[str, float]:
-        """Return the values, by name, of the states and of the parameters of the output quantities.
-
-        ``modes`` and ``zero`` are explained in :meth:`bound`; ``y`` holds the states.
-        """
+        """Return the values, by name, of the states ``y`` and of the parameters of the output quantities."""
         numbers = self._parameters_under(modes).quantities.parameters(zero.exact)
         values = zip((name for name, _ in self.quantity_parameters), numbers, strict=True)
         return dict((*values, *zip(self.plan.states, y.tolist(), strict=True)))
 
     def rates_since(self, modes: Modes, zero: Instant) -> Callable[[float], list[float]] | None:
-        """Return a function that computes the parameters of the rates for an epoch, s after the instant ``zero``.
+        """Return a function from an epoch, s after ``zero``, to the parameters of the rates for times since the epoch.
 
-        With these parameters the rates count time from the epoch. Return None if the rates do not depend on time.
-        ``modes`` maps the switching functions to their values.
+        None if rates do not depend on time.
         """
         rates = self._parameters_under(modes).rates
         return None if rates.fixed else lambda since: rates.parameters(zero.exact + Fraction(since))
 
     @cached_property
     def _with_constants(self) -> tuple[Parameters, Parameters, Parameters]:
-        """Return the parameters of rates, guards and output quantities: three tuples of pairs (name, formula).
-
-        The scene's constants are inserted into the formulas. They then contain only the epoch and the modes (values of
-        the switching functions).
-        """
+        """The parameters of rates, guards and output quantities, as pairs (name, formula) with constants inserted."""
+        # the formulas then contain only the epoch and the modes, values of the switching functions
         modes = {switch.mode for switch in self.switches}
         known = {name: value for name, value in self.constants.items() if name not in modes}
         kernel = self.motion.kernel
@@ -232,32 +199,24 @@ class Regime:
         return rates, guards, quantities
 
     def active(self, modes: Modes) -> list[bool]:
-        """Return, for each guard of the regime, whether its zero ends the smooth motion.
-
-        A guard is a formula whose zero makes a function such as sign switch. It does not end the motion if the function
-        has no effect for the given values ``modes``, as in an unused branch of ``where(condition, u, v)``.
-        """
+        """Return, for each guard (argument of sign, abs, ..), whether its zero ends the smooth motion."""
         key = tuple(modes.values())
         if key not in self._active:
+            # it does not if its function has no effect, as in an unused branch of where(condition, u, v)
             self._active[key] = [hold(guard.where, modes, self.held) for guard in self.guards]
         return self._active[key]
 
 
 def _distance(switch: Switch) -> Node:
-    """Return a formula that is zero where a switching function (sign, floor, ..) changes its value.
-
-    For a sign it is the argument. For ``floor(x)`` it is x - n, where n is the present value of floor(x): x leaves the
-    interval from n to n + 1 where the formula is 0 or 1. n is subtracted exactly, before the formula is rounded: far
-    from t = 0 the difference has far fewer digits than x.
-    """
+    """Return a formula that is zero where a switching function changes: x for sign(x), x - n for ``floor(x)``."""
+    # n, the present value of floor(x), is subtracted exactly, before rounding: far from t = 0 the difference has far
+    # fewer digits than x. Where it is 0 or 1, x leaves the interval from n to n + 1.
     return switch.guard if switch.kind == "sign" else ("-", switch.guard, ("symbol", switch.mode))
 
 
 def _with_parameters(program: Program, more: list[str]) -> Program:
-    """Return the program of the output quantities with the additional parameters ``more``, at the end of its array p.
-
-    Only the search for switches uses them.
-    """
+    """Return the program of the output quantities with additional parameters ``more`` at the end of its array p."""
+    # only the search for switches uses them
     arguments = list(program.signature.arguments)
     place = next((k for k, argument in enumerate(arguments) if argument.name == "p"), None)
     extra = tuple((name, "", "") for name in more)

@@ -1,9 +1,8 @@
 """A motion under torques with switching functions (sign, abs, ..), followed through all switches to one end.
 
-The words guard, mode, regime, held and slide are explained in :mod:`symrot.propagation.switched.motion`: in short, a
-guard is the argument of a switching function, its mode is the number that replaces the function, and the regime is the
-smooth motion for given modes. While the motion slides, a guard is held at zero. Modes whose guards are zero together
-are twins.
+The *guard* of a function is its argument; its *mode* is the number that replaces it in formulas. For given modes the
+motion is smooth: a *regime*. In *sliding* motion a guard is *held* at zero. *Twins* are modes of guards that are zero
+together.
 """
 
 import math
@@ -48,14 +47,12 @@ SwitchState = tuple[frozenset[tuple[str, int]], frozenset[str]]
 
 
 class Chunk(NamedTuple):
-    """Part of a motion from ``start`` to ``stop``, as a function from times to states and as polynomials.
-
-    ``own_states`` and ``own_piece`` take the time since the instant ``zero``; the methods take times of the scene.
-    """
+    """Interval of a motion from ``start`` to ``stop``, as a function from times to states and as polynomials."""
 
     start: Instant
     stop: Instant
     zero: Instant
+    # these take the time since the instant zero; the methods take scene time
     own_states: Callable[[Floats], Floats]
     own_piece: Piece
 
@@ -73,15 +70,11 @@ class Chunk(NamedTuple):
 
 
 class SwitchedRun(RunState):
-    """The computation of one motion under torques with switching functions (sign, abs, ..), from its start to its end.
-
-    ``system`` holds the switching functions of the motion. The argument ``end`` is the scene time, s, up to which the
-    motion is computed, after or before the start. The attributes ``t``, the present time, and ``end`` are times, s, on
-    a clock that shows 0 at the last switch, whose time is known to twice the digits of a double.
-    """
+    """The computation of a motion under torques with switching functions, from its start to scene time ``end``, s."""
 
     def __init__(self, motion: Motion, system: SwitchedSystem, end: float) -> None:
         super().__init__(motion, end, system.initial_modes())
+        # t and end are times on a clock that shows 0 at the last switch, an instant of twice the digits
         self.system, self._end = system, Instant(end)
         self.by_name = {switch.mode: switch for switch in system.switches}
         self.held = frozenset[str]()
@@ -99,10 +92,7 @@ class SwitchedRun(RunState):
         self.settled, self.hopped = 0, False
 
     def follow(self, consume: Consumer) -> None:
-        """Compute the motion to its end; call ``consume`` with each part (a :class:`Chunk`) as soon as it is known.
-
-        IntegrationStopped is raised if the motion cannot be followed; the parts before that time have been passed on.
-        """
+        """Compute the motion to its end, and pass each :class:`Chunk` of it to ``consume`` as soon as it is known."""
         with progress.within(self.motion.start, self._end.high, lambda: self.zero.high):
             try:
                 self._check_start()
@@ -119,6 +109,7 @@ class SwitchedRun(RunState):
                     if guard is not None:
                         self._switch(regime, guard)
             except IntegrationStopped as error:
+                # the parts before that time have been passed on
                 raise error.later(self.zero.high) from None
 
     @property
@@ -130,25 +121,19 @@ class SwitchedRun(RunState):
         return self._end if t == self.end else self.zero.after(t)
 
     def _move_clock(self, zero: Instant) -> None:
-        """Set the clock to 0 at the present time of the motion, which is the instant ``zero``.
-
-        The attributes ``t`` and ``end``, times on this clock, change too.
-        """
+        """Set the clock to 0 at the instant ``zero``, the present time of the motion."""
         self.zero, self.t, self.end = zero, 0.0, float(zero.since(self._end.high))
         if self.side * self.end < 0.0:  # within rounding of the end
             self.end = 0.0
 
     def _check_start(self) -> None:
-        """Raise IntegrationStopped if the start allows two motions.
-
-        This is so if the argument of a function such as sign is zero at the start, and if it becomes positive with sign
-        = 1 and negative with sign = -1.
-        """
+        """Raise IntegrationStopped if the start allows two motions."""
         for switch in self.system.switches:
             mode = switch.mode
             if mode not in self.system.undecided or not hold(switch.where, self.modes) or self.t == self.end:
                 continue
             leaving = 0
+            # two motions: x in sign(x) is zero, and becomes positive with sign = 1 and negative with sign = -1
             for sign in (1, -1):
                 modes = self.system.beside_start(mode, sign)
                 regime = self._regime(modes)
@@ -166,12 +151,8 @@ class SwitchedRun(RunState):
                 )
 
     def _segment(self, regime: Regime, consume: Consumer) -> Guard | None:
-        """Compute the motion up to its next switch, and return the guard of the function that switches there, or None.
-
-        ``regime`` holds the equations until then, and ``consume`` is called with each part of the motion. None means
-        that the motion has reached its end, or that the value of a function such as sign was corrected and the motion
-        has to be computed again from the present time.
-        """
+        """Compute the motion up to its next switch, and return the guard that is zero there; None without a switch."""
+        # a guard is the argument of a function such as sign or abs
         if self.t != 0.0:
             self._move_clock(self._at(self.t))
         rates, values = regime.bound(self.modes, self.zero)
@@ -252,6 +233,7 @@ class SwitchedRun(RunState):
         if violated:  # an argument that jumped with another function is corrected before others cross zero
             return min(violated, key=lambda guard: not self._inside(guard.mode) & set(self.order))
         if left:
+            # a sign left zero: the motion is computed again from there
             return None
         if stop is None:
             self.t = self.end if current else self.t  # a mode was settled: repeat from here
@@ -270,15 +252,9 @@ class SwitchedRun(RunState):
         return guard
 
     def _coincident(self, regime: Regime, active: list[bool], values: list[float], most: int) -> Guard | None:
-        """Return a guard whose function has to switch at the present time, or None.
-
-        A guard is a formula that is negative once its function (sign, floor, ..) has to switch. Several functions may
-        switch at one time; they do so one after the other, and this method returns the next one. The rates may have no
-        value until the last one has switched: a root may have a negative argument. ``most`` is the largest sign that
-        the guard may have just after the present time: -1 for a guard that becomes negative, 0 if one that stays zero
-        counts too. ``active`` says, for each guard, whether it can end the regime; ``values`` are the parameters of the
-        guards.
-        """
+        """Return the guard of another function (sign, floor, ..) that has to switch at the present time, or None."""
+        # Functions that switch at one time do so one after the other; the rates may have no value until the last one
+        # has, such as a root of a negative argument.
         h = self.side * SHORT * self.span
         row = np.concatenate([[self.t, h, 0.0, h], self.y, np.zeros_like(self.y)])
         formulas = [guard.formula for guard in regime.guards]
@@ -286,15 +262,13 @@ class SwitchedRun(RunState):
         guards = [
             (sign, guard)
             for guard, on, sign in zip(regime.guards, active, signs, strict=True)
+            # most: -1 for guards that become negative, 0 if those that stay zero count too
             if on and sign <= most and guard.mode not in self.held and not self.flipped.get(guard.mode)
         ]
         return min(guards, key=lambda pair: pair[0])[1] if guards else None
 
     def _arrive(self, instant: Instant) -> None:
-        """Set the clock to 0 at the present time, the instant of a switch, unless the motion ends there.
-
-        The lists of functions that switched at an earlier time are cleared.
-        """
+        """Set the clock to 0 at the instant of a switch, unless the motion ends there, and forget earlier switches."""
         if self.t != self.end:
             self._move_clock(instant)
         self._forget_changes()
@@ -308,16 +282,10 @@ class SwitchedRun(RunState):
     def _hop(
         self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: IntegrationStopped
     ) -> tuple[Piece, Callable[[Floats], Floats], Guard | None] | None:
-        """Return a short linear piece of motion (a hop) past a time where a stepper is stuck; None if inaccurate.
-
-        Steps shrink to zero where a torque has no derivative, though its impulse is finite. Examples are sqrt(1 - t)
-        before a switch at 1 s, and sqrt(t - 1) after it. As long as the impulse is less than the tolerance, the states
-        may change linearly: up to a nearby switch, or away from the last switch. The hop starts at the time t, s, with
-        the states y; ``rates`` are the parameters of the rates, and ``error`` is the stepper's error.
-
-        The hop is a tuple of its polynomial, a function from times to states, and the guard that becomes zero at its
-        end; this guard is None if the hop does not end at a switch.
-        """
+        """Return a short linear motion (a hop) past a time where a stepper is stuck; None if it would be inaccurate."""
+        # Steps shrink to zero where a torque has no derivative, though its impulse is finite: sqrt(1 - t) before a
+        # switch at 1 s, sqrt(t - 1) after it. If the impulse is less than the tolerance, the states may change
+        # linearly.
         kernel, motion = regime.motion.kernel, regime.motion
         p = np.array(rates[: len(kernel.rate_parameters)])
         edges, scales = error_blocks(regime.plan)
@@ -337,12 +305,14 @@ class SwitchedRun(RunState):
             row = np.concatenate([[t, h, 0.0, h], y, change])
             return Piece(np.array([t, t + h]), row[None]), lambda times: y + np.outer((times - t) / h, change)
 
+        # away from the last switch; below: up to a nearby switch
         if t == 0.0:
             for halvings in () if self.hopped or abs(error.t) > 0.0 else AWAY:
                 h = self.side * math.ldexp(self.span, -halvings)
                 early, late = rate(0.25 * h), rate(0.75 * h)
                 if slight(h * early) and slight(h * late):
                     self.hopped = True
+                    # this hop does not end at a switch
                     return *straight(h, 0.5 * h * (early + late)), None
             return None
         for bits in range(HOP_BITS + 1):
@@ -357,30 +327,26 @@ class SwitchedRun(RunState):
         return None
 
     def _crosses(self, regime: Regime, guard: Guard, *places: tuple[float, Floats]) -> bool:
-        """Return whether a function (sign, floor, ..) switches between two points (time, states) of the motion.
-
-        It does if the formula of its guard falls from >= 0 to <= 0; it does not if the formula has no value at a point.
-        """
+        """Return whether a function (sign, floor, ..) switches between two points (time, states) of the motion."""
         try:
             before, after = (
                 float(evaluate(parse(guard.formula), self._values(regime, place), FLOAT_FUNCTIONS, float))
                 for place in places
             )
         except (ArithmeticError, ValueError, IntegrationStopped):
+            # the formula has no value at a point
             return False
+        # the guard falls from >= 0 to <= 0
         return before >= 0.0 >= after and before > after
 
     def _chunk(self, start: float, stop: float, states: Callable[[Floats], Floats], piece: Piece) -> Chunk:
         return Chunk(self._at(start), self._at(stop), self.zero, states, piece)
 
     def _located(self, regime: Regime, guard: Guard, t: float) -> Instant:
-        """Return the time of a switch near t, at which the formula of a guard is zero, as an :class:`Instant`.
-
-        A guard is a formula at whose zero a function such as sign switches. If the formula depends on time alone, one
-        step of Newton's method from t gives the zero to twice the digits of a double. Otherwise t itself is returned.
-        """
+        """Return the time near t at which a guard (argument of sign, abs, ..) is zero, as an :class:`Instant`."""
         instant = self.zero.after(t)
         if guard.mode in self.held or guard.mode not in regime.of_time:
+            # only if the guard depends on time alone, a Newton step gives its zero to twice the digits
             return instant
         switch, aside = self.by_name[guard.mode], NEARBY * abs(t)
         goal = 0.0 if switch.kind == "sign" else max(guard.change, 0)
@@ -399,13 +365,9 @@ class SwitchedRun(RunState):
         return self._past(regime, guard, instant.after(correction))
 
     def _past(self, regime: Regime, guard: Guard, instant: Instant) -> Instant:
-        """Return a time at, or just after, a switch at which its guard, a formula of time alone, is no longer positive.
-
-        A guard is a formula that becomes negative where a function such as sign switches. At ``instant``, the computed
-        time of the switch, it may still be slightly positive by rounding errors, and the function would switch back at
-        once. So ``instant`` and later times are tried, at growing distances of a few units in the last place. If the
-        formula is positive at all of them, ``instant`` is returned.
-        """
+        """Return a time at or just after ``instant`` at which a guard (argument of sign, abs, ..) is not positive."""
+        # By rounding, the guard may still be positive at the computed time, and the function would switch back at
+        # once. Later times are tried, at growing distances of a few units in the last place.
         formula, later = parse(guard.formula), instant
         step = self.side * math.ulp(math.ulp(instant.high))
         while abs(step) <= MOST_ULPS * math.ulp(instant.high):
@@ -416,13 +378,10 @@ class SwitchedRun(RunState):
         return instant
 
     def _is_rounding(self, regime: Regime, guard: Guard) -> bool:
-        """Return whether a guard is negative, just after its function has switched, only because time is rounded.
-
-        The function then must not switch again. The formula of the guard must depend on time alone; for other formulas
-        the result is False.
-        """
+        """Return whether a guard (where sign, abs, .. switches) is negative again only because time is rounded."""
         if guard.mode in self.held or guard.mode not in regime.of_time or not self.flipped.get(guard.mode):
             return False
+        # the function then must not switch again; decided only for guards that depend on time alone
         later = self.t + self.side * MOST_ULPS * math.ulp(self.zero.high)
         values = {**regime.values(self.modes, self.zero), "t": later}
         return float(evaluate(parse(guard.formula), values, FLOAT_FUNCTIONS, float)) > 0.0
@@ -430,13 +389,9 @@ class SwitchedRun(RunState):
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
     ) -> tuple[list[Guard], list[Guard]]:
-        """Return two lists of guards: those that are negative just after the start of ``piece``, and at its end.
-
-        A guard is a formula that becomes negative when its function (sign, floor, ..) has to switch. One in the first
-        list should have switched before the piece, one in the second within it. ``active`` says, for each guard,
-        whether it can end the regime. ``values`` are the parameters of the guards' formulas for the present modes.
-        """
+        """Return the guards, where functions switch, that are negative after the start of ``piece``, and at its end."""
         formulas = [guard.formula for guard in regime.guards]
+        # such a function should have switched before the piece or within it; active: guards that can end the regime
         first, last = (
             [guard for guard, on, sign in zip(regime.guards, active, signs, strict=True) if on and sign < 0]
             for signs in signs_at_ends(regime.path, formulas, values, piece)
@@ -444,12 +399,7 @@ class SwitchedRun(RunState):
         return first, last
 
     def _settle(self, regime: Regime, active: list[bool], piece: Piece, states: Callable[[Floats], Floats]) -> bool:
-        """Set each function such as sign(x) to its value at zero if x stays at zero; return whether a value changed.
-
-        Whether x stays at zero is seen at the start and the end of ``piece``, the next part of the motion, whose states
-        the function ``states`` computes. A sign that was set to 0 in this way gets the sign of x as soon as x is not
-        zero.
-        """
+        """Set each function such as sign(x) to its value at zero if x stays zero; return whether a value changed."""
         formulas, settled = [guard.formula for guard in regime.guards], dict(self.modes)
 
         def signs_under(modes: Modes) -> list[int]:
@@ -472,7 +422,9 @@ class SwitchedRun(RunState):
                     settled[mode] = self.modes[mode] + 1
                 continue
             if sign and self.modes[mode] == 0:
+                # a sign that was set to 0 gets the sign of x as soon as x is not zero
                 settled[mode] = sign
+            # zero at the start and at the end of piece, the next interval of the motion
             elif not sign and self._guard_value(mode) == 0.0 == self._guard_value(mode, later):
                 settled[mode] = switch.at_zero
         changed = [mode for mode, value in settled.items() if value != self.modes[mode]]
@@ -485,11 +437,11 @@ class SwitchedRun(RunState):
         return bool(changed)
 
     def _guard_value(self, mode: str, place: tuple[float, Floats] | None = None) -> float:
-        """Return the argument of the switching function that a mode replaces, now or at ``place`` = (time, states).
+        """Return the argument of a switching function, now or at ``place``, (time, states).
 
-        For floor(x) the result is x - n, where n is the value of floor(x) in the present equations; floor(x) changes
-        its value where x - n is 0 or 1.
+        For floor(x) it is x minus the present floor.
         """
+        # the floor is its value n in the present equations: it changes where x - n is 0 or 1
         regime = self._regime(self.modes)
         return float(
             evaluate(regime.formulas[mode], self._values(regime, place or (self.t, self.y)), FLOAT_FUNCTIONS, float)
@@ -505,17 +457,13 @@ class SwitchedRun(RunState):
         return {**values, **regime.values(self.modes, self.zero), "t": t}
 
     def _switch(self, regime: Regime, guard: Guard) -> None:
-        """Switch the function (sign, floor, ..) whose guard has become zero: change its mode, its value in formulas.
-
-        If the rates before and after the change both drive the argument of a sign back to zero, it is held at zero: the
-        motion slides. IntegrationStopped is raised if the motion cannot go on in exactly one way.
-        """
+        """Change the value of the function (sign, floor, ..) whose guard has become zero, or hold its guard at zero."""
         mode, kind = guard.mode, self.by_name[guard.mode].kind
         if mode in self.held and (guard.change == 0 or not self._still_attracts(regime)):
             raise IntegrationStopped(
                 self.t,
                 f"the motion slides along the jump of {self._names_of_held()}, but from this time on nearby motions "
-                "lead away from the jump to either side, so its continuation is not unique; end the motion here",
+                "lead away from it: its continuation is not unique; end the motion here",
                 self.end,
             )
         self.left.add((mode, self.modes[mode]))
@@ -523,6 +471,7 @@ class SwitchedRun(RunState):
         again = self.flipped.get(mode, 0)
         if again and self._jumped(mode):  # a mode in its guard changed too: the motion does not return
             again = 0
+        # the rates before and after the change both drive the argument of a sign back to zero
         slides = kind == "sign" and again > 0 and mode not in self.held and self._returns(mode)
         self.order.append(mode)
         if len(self.order) > MOST_AT_ONCE or (slides and self._state(hold=mode) in self.visited):
@@ -560,62 +509,45 @@ class SwitchedRun(RunState):
             self._wake(other)
 
     def _returns(self, mode: str) -> bool:
-        """Return whether the motion slides: the argument of the sign with the mode ``mode`` must be held at zero.
-
-        A mode is the number that replaces a function in the equations. The motion slides if changing this sign again
-        would lead back to a state that was already visited at the present time: one in which all switching functions
-        had the same values. The same changes would then repeat without end. A function with only a kink, such as abs,
-        is not held if a function with a jump has switched since that state.
-        """
+        """Return whether x in sign(x) must be held at zero, because another change of sign(x) would repeat a state."""
+        # a state is the values of all switching functions: the same changes would repeat without end
         first = self.visited.get(self._state(flip=mode))
         if first is None:
             return False
+        # a function with only a kink, such as abs, is not held if one with a jump has switched since
         jumps = any(not is_continuous(self.by_name[other]) for other in self.order[first:])
         return not (jumps and is_continuous(self.by_name[mode]))
 
     def _state(self, flip: str = "", hold: str = "") -> SwitchState:
-        """Return the values of all switching functions and the set of held ones, for comparison with earlier states.
-
-        A function such as sign is held while its argument stays at zero. If a name is given, the state is the one after
-        ``flip`` has changed its sign, or after ``hold`` becomes held.
-        """
+        """Return the values of all switching functions and the names of those held at zero, for comparison."""
+        # after flip has changed its sign
         modes = {**self.modes, flip: -self.modes[flip]} if flip else self.modes
+        # after hold becomes held: its argument stays at zero
         held = self.held | {self.system.twins[hold][0][0]} if hold else self.held
         return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether, at the present time, a function inside the argument of ``mode`` switched after ``mode``.
-
-        ``mode`` names the outer function, such as abs in abs(x + sign(y)), where sign is the inner function. If sign
-        switched after abs, the argument of abs has jumped since, and abs may switch once more.
-        """
+        """Return whether a function inside the argument of ``mode``, as sign in abs(x + sign(y)), switched after it."""
+        # in abs(x + sign(y)), if sign switched after abs, the argument of abs has jumped: abs may switch again
         last = len(self.order) - self.order[::-1].index(mode)
         return bool(self._inside(mode) & set(self.order[last:]))
 
     def _inside(self, mode: str) -> set[str]:
-        """Return the names in the argument of the switching function that ``mode`` replaces in the formulas.
-
-        For abs(x + sign(y)) they are x and the name of the mode that replaces sign(y).
-        """
+        """Return the names in the argument of ``mode``: x and the mode of sign(y), for abs(x + sign(y))."""
         return set(names(self.by_name[mode].guard))
 
     def _asleep(self) -> set[str]:
-        """Return the switching functions, by mode, that have no effect at present: in unused branches of ``where``.
-
-        An example is the sign in ``where(omega_1 > 0, sign(omega_2), 0)`` while omega_1 < 0.
-        """
+        """Return the names of the switching functions without effect now: those in unused branches of ``where``."""
+        # such as the sign in where(omega_1 > 0, sign(omega_2), 0) while omega_1 < 0
         return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
-        """Set the number that replaces a function such as sign(x), its mode, to the present value of the function.
-
-        This is done when the motion begins to use the branch of ``where(condition, u, v)`` that contains the function;
-        while the branch was unused, changes of the function were not followed. If x has no value now, the number is
-        left as it is.
-        """
+        """Set the mode of a function such as sign(x), the number that replaces it, to its present value."""
+        # the motion begins to use the branch of where(..) with this function, whose changes were not followed before
         try:
             guard = self._guard_value(mode)
         except (ArithmeticError, ValueError, IntegrationStopped):
+            # x has no value now: the mode stays
             return
         if self.by_name[mode].kind == "floor":
             self.modes[mode] += math.floor(guard)
@@ -638,12 +570,9 @@ class SwitchedRun(RunState):
         self._regime(self.modes)
 
     def _comes_to_rest(self, regime: Regime) -> bool:
-        """Release each held sign(x) whose x stays zero without being held; return whether there are any.
-
-        While the motion slides, x is held at zero: the equations contain a value of sign(x) between -1 and 1 for which
-        x remains zero. If x remains zero with sign(x) = sign(0) as well, as for a body at rest that no torque drives,
-        holding it is needless. The number for sign(x) in the equations is then set to the value at zero.
-        """
+        """Set sign(x) to sign(0) where x was held at zero but stays zero by itself; return whether any was set."""
+        # Held: the equations contain the value of sign(x) between -1 and 1 for which x remains zero. If x remains zero
+        # with sign(0) too, as for a body at rest that no torque drives, sign(0) replaces it.
         resting = [mode for mode in sorted(self.held - self.rested) if self.system.matters_at_zero(mode)]
         if resting:
             zeros = regime.zeros(self.modes, self.zero, self.y)
@@ -656,19 +585,14 @@ class SwitchedRun(RunState):
         return bool(resting)
 
     def _still_attracts(self, regime: Regime) -> bool:
-        """Return whether nearby motions return to the sliding motion faster than numerical errors drive them away.
-
-        If they do not, numerical errors would decide to which side the motion leaves the switching surface.
-        """
+        """Return whether nearby motions return to the sliding motion faster than numerical errors drive them away."""
+        # if not, errors would decide to which side the motion leaves the switching surface
         now, least = regime.attraction(self.modes, self.zero, self.t, self.y), ERRORS * regime.motion.tolerance
         return all(value > least * first for value, first in zip(now, self.attraction[1], strict=True))
 
     def _leaves_zero(self, regime: Regime, active: list[bool], piece: Piece) -> bool:
-        """Set each sign(x) that is 0 to the sign of x at the end of ``piece``; return whether one was changed.
-
-        The piece is the next part of the motion. ``active`` says, for each guard of the regime, whether it can end the
-        regime; the functions of other guards are left as they are.
-        """
+        """Set each sign(x) that is 0 to the sign of x at the end of ``piece``; return whether one was changed."""
+        # only functions whose guard can end the regime (active)
         numbers = [
             n
             for n, (guard, on) in enumerate(zip(regime.guards, active, strict=True))
@@ -684,17 +608,14 @@ class SwitchedRun(RunState):
         return any(signs[n] for n in numbers)
 
     def _regime(self, modes: Modes) -> Regime:
-        """Return the regime (smooth motion between switches) for given values ``modes`` of the switching functions.
-
-        If the motion slides, the regime keeps the arguments of the functions in :attr:`held` at zero.
-        """
+        """Return the smooth motion for given values of sign, abs, .., with the arguments of :attr:`held` at zero."""
         try:
             return self.system.regime(self.held, modes)
-        except InputError:
+        except InputError:  # the equations have no such motion or several
             raise IntegrationStopped(
                 self.t,
-                f"the motion would slide along the jump of {self._names_of_held()}, but not in exactly one way: the "
-                "equations have no such motion or several; change the torque, or end the motion here",
+                f"the motion would slide along the jump of {self._names_of_held()}, but not in exactly one way; change "
+                "the torque, or end the motion here",
                 self.end,
             ) from None
 
@@ -702,12 +623,9 @@ class SwitchedRun(RunState):
         return " and ".join(self._name(mode) for mode in sorted(self.held))
 
     def _check_held_alone(self) -> None:
-        """Raise IntegrationStopped if x, held at zero for sign(x), also keeps the argument of another jump at zero.
-
-        In sliding motion the equations determine a value between -1 and 1 for the sign of the held argument. In
-        sign(omega_1) + sign(omega_1 + omega_1^3), both arguments are zero together, and the equations determine one of
-        the two values only.
-        """
+        """Raise IntegrationStopped if x, held at zero for sign(x), also keeps the argument of another jump at zero."""
+        # The equations determine one value between -1 and 1 for a held sign, not the two values in sign(omega_1) +
+        # sign(omega_1 + omega_1^3), whose arguments are zero together.
         y = self.y.tolist()
         steps = [PERTURBATION * max(abs(self.t), self.span), *(PERTURBATION * max(1.0, abs(x)) for x in y)]
 
@@ -742,9 +660,8 @@ class SwitchedRun(RunState):
                 functions = f"{self._names_of_held()} and {self._name(mode)} at once"
                 raise IntegrationStopped(
                     self.t,
-                    f"the motion would slide along the jumps of {functions}, but not in exactly one way: the "
-                    f"equations do not determine the value of {self._name(mode)}; change the torque, or end the motion "
-                    "here",
+                    f"the motion would slide along the jumps of {functions}, but not in exactly one way: the value of "
+                    f"{self._name(mode)} is not determined; change the torque, or end the motion here",
                     self.end,
                 )
 

@@ -18,9 +18,6 @@ CHATTER = 50  # number of recent switches whose times are stored
 class RunState:
     """Present state of a motion that is followed to one end; time is counted from the last switch.
 
-    A switch is the time at which a function such as sign changes its value in a torque; ``modes`` maps the names of
-    these functions to their present values.
-
     Attributes
     ----------
     zero : Instant
@@ -43,6 +40,7 @@ class RunState:
     """
 
     def __init__(self, motion: Motion, end: float, modes: Modes) -> None:
+        # a switch: a function such as sign changes its value, which modes holds by name
         self.motion, self.modes, self.span = motion, modes, abs(end - motion.start)
         self.side = 1.0 if end >= motion.start else -1.0
         self.zero = Instant(motion.start)
@@ -57,11 +55,11 @@ class RunState:
         return Instant(self.motion.start) - self.zero
 
     def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
-        """Return a function from an epoch, s, to (rates, parameters), or None if the rates do not depend on time.
+        """Return a function from an epoch, s after the last switch, to (rates, parameters) for times since the epoch.
 
-        The epoch is the time, in s after the last switch, at which the stepper sets its clock to 0. ``stepped`` are the
-        rates of the smooth motion ``regime``, a compiled library or a Python function; the function returns them
-        unchanged, with the parameter values that they need for times on this clock.
+        None if rates do not depend on time.
         """
+        # the epoch: time, s after the last switch, at which the stepper sets its clock to 0
         parameters = regime.rates_since(self.modes, self.zero)
+        # stepped, the rates as library or Python function, is the same for all epochs
         return (lambda since: (stepped, parameters(since))) if parameters else None

@@ -1,6 +1,6 @@
 """Pieces of a smooth motion up to the next switch, by any stepper: polynomials, and functions from times to states.
 
-A window is the interval of time that SciPy follows before the search for a switch.
+A *window* is the interval of time that SciPy follows before the search for a switch.
 """
 
 from collections.abc import Callable, Iterator
@@ -46,11 +46,7 @@ class SteppedPieces:
         self.integration.way, self.end = run.span, run.end
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
-        """Yield each piece in the order of the motion: its polynomials, and a function from times to states.
-
-        The function is valid only within the piece. IntegrationStopped is raised after the last piece if the stepper is
-        stuck.
-        """
+        """Yield each piece in the order of the motion: its polynomials, and a function from its times to states."""
         integration, room = self.integration, ROOM
         for run in integration.runs(self.end):
             while run.t != run.stop:
@@ -69,6 +65,7 @@ class SteppedPieces:
 
                     yield Piece(np.append(rows[:, 0], run.t), rows_of(integration.stepper, rows)), states
                 if stuck is not None:
+                    # after the last piece
                     raise stuck
                 room = min(2 * room, integration.stepper.rows_per_call)
 
@@ -86,11 +83,7 @@ class SciPyPieces:
         self.clock = run.clock(regime, motion.rates)
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
-        """Yield each piece in the order of the motion: its polynomials, and a function from times to states.
-
-        The function is valid only within the piece. If SciPy stops with an error or is interrupted, the part of the
-        motion before that is yielded as a last piece, and then the exception is raised.
-        """
+        """Yield each piece in the order of the motion: its polynomials, and a function from its times to states."""
         from symrot.propagation.steppers import fallback
 
         run, t, y = self.run, self.run.t, self.run.y
@@ -122,28 +115,24 @@ class SciPyPieces:
                 accuracy = JOIN * run.motion.tolerance * share
                 yield fitted(recording, edges, *error_blocks(self.motion.plan), accuracy=accuracy), recording
             if ended is not None:
+                # an error or interrupt, after the motion before it was yielded
                 raise ended
             y, t, length = recording(stop), stop, min(2.0 * length, run.span / FEWEST)
 
     def _first_length(self) -> float:
-        """Return the length, s, of the first window: the interval that SciPy computes before the search for a switch.
-
-        It is twice the longest recent smooth part or twice the time of a few rotations, whichever is shorter, within
-        limits. If the window were longer, the work beyond the next switch would be wasted.
-        """
+        """Return the length, s, of the first window: the interval that SciPy follows before the search for a switch."""
         run = self.run
         (_, rates, *_), _ = error_blocks(self.motion.plan)
         turning = float(np.linalg.norm(run.y[:rates]))  # rad/s, or 1 if omega is not a state
         instants = [Instant(run.motion.start), *run.recent][-RECENT - 1 :]
+        # twice the longest recent smooth interval, or the time of a few rotations; in a longer window, the work beyond
+        # the next switch would be wasted
         longest = max((abs(after - before) for before, after in pairwise(instants)), default=run.span)
         likely = min(longest, FIRST_ANGLE / max(turning, FIRST_ANGLE / run.span))
         return min(max(2.0 * likely, SHORTEST * run.span), run.span / WINDOWS)
 
     def _judge_pace(self, t: float) -> None:
-        """Raise IntegrationStopped if the rest of the whole motion would take far more evaluations than the limit.
-
-        ``t`` is the present time, s. The pace since the last check decides.
-        """
+        """Raise IntegrationStopped if the motion after time t would exceed the limit of evaluations by far."""
         from symrot.propagation.steppers.fallback import MAX_EVALUATIONS, PATIENCE
 
         run = self.run
@@ -163,10 +152,8 @@ class SciPyPieces:
 
 
 def smooth_pieces(run: RunState, regime: Regime, rates: list[float]) -> SteppedPieces | SciPyPieces:
-    """Return an iterator over pieces of the smooth motion that begins at the present state of a run, up to a switch.
-
-    ``regime`` contains the compiled formulas of the rates; ``rates`` are the numbers to use as their parameters.
-    """
+    """Return an iterator over pieces of the smooth motion ``regime``, from the present state of a run."""
+    # rates: the parameters of the rates
     motion = regime.motion
     if isinstance(motion, SteppedMotion):
         return SteppedPieces(run, regime, motion, rates)

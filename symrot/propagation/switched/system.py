@@ -1,8 +1,7 @@
 """All switching functions (sign, abs, ..) of the torques of a motion, and the smooth motions (regimes) in between.
 
-A guard is the argument of a switching function; its mode is the number that replaces the function in the formulas, such
-as the sign of the guard. While a motion slides, guards are held at zero. See
-:mod:`symrot.propagation.switched.motion`.
+A *guard* is the argument of a switching function; its *mode* is the number that replaces the function in the formulas.
+While a motion *slides*, guards are *held* at zero.
 """
 
 import math
@@ -30,23 +29,18 @@ CONTINUOUS = ("abs(", "max(", "min(", "clip(", "sqrt(")  # first characters of l
 
 
 class SwitchedSystem:
-    """All switching functions (sign, abs, ..) in the torques of a plan, and the equations between switches.
-
-    Between two switches the motion is smooth; its equations, in which numbers replace the switching functions, are a
-    regime. While the motion slides, the arguments of some functions stay at zero, and these functions are unknowns:
-    each set of such functions has a regime of its own. The empty set has one too.
-    """
+    """All switching functions (sign, abs, ..) in the torques of a plan, and the smooth motions between switches."""
 
     def __init__(self, plan: Plan, choice: Choice, tolerance: float) -> None:
+        # Numbers replace the functions between switches. While the motion slides, the arguments of some functions stay
+        # at zero and their values are unknowns: each set of them, also the empty one, has its own regimes.
         self.plan, self.choice, self.tolerance = plan, choice, tolerance
         self.start = float(plan.scene.span.start)
 
     @cached_property
     def switches(self) -> list[Switch]:
-        """The switching functions (sign, abs, ..) of all torques, each with its argument and the name of its mode.
-
-        The mode is the number that replaces the function in the formulas; it is one of the plan's constants.
-        """
+        """The switching functions (sign, abs, ..) of all torques, each with its argument and its mode."""
+        # the mode, a constant of the plan, is the number that replaces the function in the formulas
         return [switch for switches in self._switches_by_torque for switch in switches]
 
     @cached_property
@@ -55,19 +49,18 @@ class SwitchedSystem:
 
     @cached_property
     def twins(self) -> dict[str, list[tuple[str, int]]]:
-        """A map from each sign or abs to its twins: functions of the same torque that switch at the same time.
+        """The functions that switch together with each sign or abs, as in sign(omega_3) and abs(2*omega_3).
 
-        Two functions are twins if their arguments are multiples of each other, as in sign(omega_3) and abs(2*omega_3).
-        A function is named by its mode, the number that replaces it in the formulas. Its twins, itself included, are a
-        list of pairs (mode, 1 or -1), functions that jump first: -1 says that the argument of this function and that of
-        the first one in the list have opposite signs.
+        A map from mode to pairs (mode, 1 or -1).
         """
+        # -1: the argument has the opposite sign of the first argument in the list
         numbers: dict[str, Node] = {name: ("number", value) for name, value in self.constants.items()}
         for mode in self.switches:
             numbers.pop(mode.mode, None)
         twins: dict[str, list[tuple[str, int]]] = {}
         for switches in self._switches_by_torque:
             alike: dict[Any, list[tuple[str, int]]] = {}
+            # functions that jump come first
             for switch in sorted(switches, key=_bends):
                 if switch.kind == "sign":
                     key, sign = on_line(placed(switch.guard, numbers))
@@ -77,33 +70,27 @@ class SwitchedSystem:
         return twins
 
     def tied(self, held: frozenset[str]) -> dict[str, tuple[str, int]]:
-        """Return the modes (values of sign, abs, ..) that follow from held modes, as mode -> (held mode, 1 or -1).
+        """Return the functions that switch together with held ones, as name -> (name of a held one, 1 or -1).
 
-        A mode is held while the argument of its function stays at zero. A mode of a function that switches at the same
-        time equals the held mode (1) or its negative (-1).
+        -1: their arguments have opposite signs.
         """
+        # held: the argument of the function stays at zero; a function that switches at the same time follows
         return {twin: (mode, sign) for mode in held for twin, sign in self.twins[mode] if twin != mode}
 
     def matters_at_zero(self, mode: str) -> bool:
-        """Return whether a motion along a switching surface, where the argument x of sign(x) stays zero, needs sign(0).
-
-        It does if another function jumps on the same surface, or if a torque is not linear in sign(x). Otherwise the
-        mean of +1 and -1 that keeps x at zero determines the motion. Functions that take the value of one side at zero,
-        such as abs(x) and step(x), never need it. ``mode`` is the name of the number that replaces sign(x) in the
-        formulas.
-        """
+        """Return whether a motion in which the argument x of sign(x) stays zero needs sign(0)."""
         if next(switch for switch in self.switches if switch.mode == mode).at_zero != 0:
+            # functions with the value of one side at zero, such as abs and step, never need it
             return False
         names_of = {twin for twin, _ in self.twins[mode]}
         others = any(switch.mode in names_of - {mode} and not _bends(switch) for switch in self.switches)
+        # another function jumps there too, or a torque is nonlinear in sign(x); otherwise the mean of 1 and -1 that
+        # keeps x at zero determines the motion
         return others or any(_is_mixed(torque, mode) for torque in self.plan.structure.formula_torques)
 
     @cached_property
     def settled(self) -> set[str]:
-        """The modes of the switching functions that never switch, because their arguments are constant.
-
-        A mode is the name of the number that replaces a function, such as sign, in the formulas.
-        """
+        """The names of the switching functions that never switch, because their arguments are constant."""
         settled = set[str]()
         for switch in self.switches:
             if names(switch.guard) <= self.constants.keys() - ({each.mode for each in self.switches} - settled):
@@ -115,19 +102,14 @@ class SwitchedSystem:
         return {"pi": PI, **self.plan.constants}
 
     def initial_modes(self) -> Modes:
-        """Return the values of all switching functions (sign, floor, ..) at the start of the motion, by mode name.
-
-        A mode is the number that replaces the function in the formulas. If the argument of a sign is zero at the start,
-        the sign counts as 1 until the motion determines it.
-        """
+        """Return the values of all switching functions (sign, floor, ..) at the start, by name; sign(0) counts as 1."""
+        # the motion determines later whether sign(0) becomes 1 or -1
         return dict(self._initial_modes[0])
 
     @property
     def undecided(self) -> set[str]:
-        """The switching functions, named by their modes, whose arguments depend on states and are zero at the start.
-
-        Whether such a function starts with 1 or -1 follows from the motion, not from the initial state alone.
-        """
+        """The names of the switching functions whose arguments depend on states and are zero at the start."""
+        # whether they start with 1 or -1 follows from the motion, not from the initial state alone
         return self._initial_modes[1]
 
     @cached_property
@@ -135,12 +117,8 @@ class SwitchedSystem:
         return self._modes_at_start({})
 
     def beside_start(self, mode: str, sign: int) -> Modes:
-        """Return the values of all switching functions just after the start, if that of ``mode`` is ``sign``.
-
-        A mode is the name of the number that replaces a function such as sign(x) in the formulas; the result maps modes
-        to values. x is zero at the start, so that both ``sign`` = 1 and ``sign`` = -1 are possible. Functions inside
-        whose arguments sign(x) occurs, such as floor(sign(x) + y), have different values in the two cases.
-        """
+        """Return the values of all switching functions just after the start, if ``mode`` has the value ``sign``."""
+        # functions that contain this one, such as floor(sign(x) + y), differ for 1 and -1
         return self._modes_at_start({mode: sign})[0]
 
     def _modes_at_start(self, chosen_modes: Modes) -> tuple[Modes, set[str]]:
@@ -167,11 +145,8 @@ class SwitchedSystem:
         return modes, undecided
 
     def regime(self, held: frozenset[str], modes: Modes) -> Regime:
-        """Return the regime (smooth motion) in which the arguments of the switching functions ``held`` stay at zero.
-
-        It is derived on first use. The values ``modes`` of the other functions only choose between the branches of
-        each ``where(condition, u, v)``.
-        """
+        """Return the smooth motion in which the arguments of the switching functions ``held`` stay at zero."""
+        # the values of the other functions only choose branches of where(condition, u, v)
         key = held, tuple(modes.values()) if self._chooses else ()
         if key not in self._regimes:
             tied = self.tied(held)
@@ -189,9 +164,8 @@ class SwitchedSystem:
                 for switch in switches:
                     if names(switch.guard) & (held | tied.keys()):
                         raise InputError(
-                            f"torque: the motion slides along the jump of a function that occurs inside "
-                            f"{switch.label}, and {switch.label} has no value there; write the torque so that no "
-                            "function with a jump occurs inside another one"
+                            f"torque: the motion slides along the jump of a function inside {switch.label}, which has "
+                            "no value there; write the torque without functions with a jump inside other ones"
                         )
                 own = on_own_clock(plan, self.choice, self.tolerance)
                 self._regime_of[content] = Regime(self.constants, self.switches, own, held, switches)
@@ -200,10 +174,7 @@ class SwitchedSystem:
 
     @cached_property
     def _chooses(self) -> bool:
-        """Whether a torque has a ``where(condition, u, v)`` of which a branch has a value only where it applies.
-
-        An example is ``where(omega_1 > 0, 1/omega_1, 0)``.
-        """
+        """Whether a branch in a torque is not defined everywhere, as in ``where(omega_1 > 0, 1/omega_1, 0)``."""
         return any(torque.has_choices for torque in self.plan.structure.formula_torques)
 
     @cached_property
@@ -216,11 +187,8 @@ class SwitchedSystem:
 
 
 def _switches(torque: FormulaTorque) -> list[Switch]:
-    """Return the switching functions (sign, abs, ..) of a torque, as conditions on time and states.
-
-    Each function is replaced by a number, its mode, which is a constant of the torque. A plan with several torques
-    gives the constants of each a prefix, such as ``torque2_``, so that names differ; the names in the result have it.
-    """
+    """Return the switching functions (sign, abs, ..) of a torque, as conditions on time and states."""
+    # the name of a mode in the plan: with the prefix of its torque, such as torque2_
     own = {name: f"{torque.prefix}{name}" for name in torque.parameters}
     return [
         Switch(
@@ -236,11 +204,8 @@ def _switches(torque: FormulaTorque) -> list[Switch]:
 
 
 def _is_mixed(torque: FormulaTorque, mode: str) -> bool:
-    """Return whether a formula of the torque is nonlinear in a mode, the number that replaces sign, abs, .. in it.
-
-    ``mode`` is its name among the plan's constants. The mean of the formula's values at 1 and -1 is then not its value
-    at 0.
-    """
+    """Return whether a formula of the torque is nonlinear in ``mode``, a number that stands for sign, abs, .."""
+    # the mean of the formula's values at 1 and -1 is then not its value at 0
     own = mode.removeprefix(torque.prefix)
     nodes = [parse(formula, switching=True) for formula in torque.choices or torque.formulas]
     return own in torque.parameters and any(between_sides(node, own) != node for node in nodes)
@@ -252,26 +217,20 @@ def is_continuous(switch: Switch) -> bool:
 
 
 def _bends(switch: Switch | TorqueSwitch) -> bool:
-    """Return whether a function only has a kink where it switches, as abs has, and no jump, as sign has.
-
-    At the switch itself, both values of its mode (1 and -1, the sign of its argument) then give the right result.
-    """
+    """Return whether a function only has a kink where it switches, as abs has, and no jump, as sign has."""
+    # at the switch, both values of its mode, 1 and -1, then give the right result
     return switch.at_zero == 1
 
 
 def _chosen(
     torque: TorqueStructure, modes: Modes, held: frozenset[str], tied: Mapping[str, tuple[str, int]]
 ) -> TorqueStructure:
-    """Return a torque with formulas reduced to the branches that apply for the given values of its switching functions.
-
-    A branch is u or v in ``where(condition, u, v)``. ``modes`` holds the values; a function that has no effect for
-    these values is left out. ``held`` contains the functions whose arguments stay at zero: their values are unknowns,
-    in which the formulas become linear. ``tied`` maps a function that switches together with a held one to (held
-    function, 1 or -1): it is replaced by the held function, or by its negative. A torque without formulas is returned
-    unchanged.
-    """
+    """Return a torque reduced to the branches of ``where(condition, u, v)`` that apply for given values of sign, .."""
     if not isinstance(torque, FormulaTorque):
+        # no formulas
         return torque
+    # held functions become unknowns, in which the formulas become linear; tied maps a function to the held function
+    # with which it switches, and to 1, or -1 for its negative
     prefix, names = torque.prefix, torque.parameters
     own = tuple(sorted(name for name in names if prefix + name in held))
     torque = torque._replace(held=own)
@@ -300,6 +259,7 @@ def _chosen(
             [
                 switch._replace(guard=read(switch.choices or switch.guard), choices="")
                 for switch in torque.switches
+                # a function that has no effect for these values is left out
                 if hold([(parse(share), value) for share, value in switch.where], values, own)
             ]
         ),

@@ -17,10 +17,9 @@ Survey = list[tuple[Document, list[Finding]]]
 def survey(
     names: Sequence[str] = DOCUMENTS, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Survey:
-    """Check the claims (printed formulas) of textbooks and courses; return (document, findings) for each of ``names``.
+    """Check the claims (printed formulas) of documents; return a pair (document, findings with verdicts) for each name.
 
-    A finding has the verdict on one claim. ``repair`` says whether to search for corrections of claims that do not
-    hold; ``progress`` is called with lines of text.
+    ``repair`` asks for corrections of false claims.
     """
     documents = []
     for name in names:
@@ -65,18 +64,16 @@ class Entry:
 
 
 def entries(findings_of_document: Sequence[Finding]) -> list[Entry]:
-    """Return one entry for each error of a document; the argument holds the findings about its claims.
-
-    Most entries are errata that a person wrote, each about one or several faulty formulas. A faulty formula that no
-    erratum describes gets its own entry, with the reason that the checker gives.
-    """
+    """Return one entry for each error of a document, from the findings about its claims."""
     failing = {item.claim["id"]: item for item in findings_of_document if item.outcome == "fails"}
+    # errata that a person wrote, each about one or several faulty formulas
     listed = [
         _entry(erratum, [failing[formula.claim] for formula in erratum.formulas if formula.claim in failing])
         for erratum in errata()
         if any(formula.claim in failing for formula in erratum.formulas)
     ]
     described = {formula.claim for erratum in errata() for formula in erratum.formulas}
+    # a faulty formula without an erratum gets its own entry, with the checker's reason
     others = [
         _entry(Erratum(name, f"{item.reason}.", (PrintedFormula(name, "@left@", "@left@", {}, {}),)), [item])
         for name, item in failing.items()
@@ -103,12 +100,9 @@ def _entry(erratum: Erratum, items: Sequence[Finding]) -> Entry:
 
 
 def _correction(item: Finding, formula: PrintedFormula) -> Correction:
-    """Return a faulty formula as printed and as corrected, in LaTeX, with boxes around what differs.
-
-    ``item`` is the finding about it: the parts that the checker read, and what corrects them. ``formula`` is the
-    printed LaTeX as a template: each of these parts is replaced by a name, which this function replaces by the LaTeX of
-    the printed or the corrected part.
-    """
+    """Return a faulty formula as printed and as corrected, in LaTeX, with boxes around what differs."""
+    # The template is the printed LaTeX with names in place of the parts that the checker read; the finding has these
+    # parts and their corrections.
     where = item.claim["where"]
     if not item.parts:
         digits = {"printed": item.claim["printed_value"]}
@@ -159,9 +153,8 @@ def _proof(item: Finding, letters: Mapping[str, str]) -> str:
 
 
 def _example(item: Finding, letters: Mapping[str, str]) -> str:
-    """Return the end of a sentence: a point at which the formula and its reference differ, and both values there.
-
-    The text is empty if the checker gave no such point. ``letters`` is as for :func:`_proof`.
+    """Return the end of a sentence: a point at which formula and reference differ, with both values; empty without a
+    point.
     """
     witness = item.verdict.counterexample
     if witness is None:

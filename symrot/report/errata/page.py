@@ -90,10 +90,8 @@ def _of_entry(number: int, entry: Entry) -> Iterator[Block]:
 
 
 def _of_conditions(document_name: str, items: Sequence[Finding]) -> Iterator[Block]:
-    """Yield the blocks of the page about formulas that hold only under a condition which the document does not state.
-
-    ``items`` are the findings about these formulas. The name of a formula is the id of its claim without the document's
-    name: ``chen-velocity-2d`` -> "velocity 2d".
+    """Yield the blocks of the page about formulas that hold only under a condition which the document does
+    not state.
     """
     if not items:
         return
@@ -104,6 +102,7 @@ def _of_conditions(document_name: str, items: Sequence[Finding]) -> Iterator[Blo
         joint = " or " if item.verdict.verdict == "conditional" else " and "
         words = item.words or joint.join(map(condition_words, item.conditions))
         grouped.setdefault(words, {}).setdefault(item.claim["where"], []).append(
+            # chen-velocity-2d -> "velocity 2d"
             str(item.claim["id"]).removeprefix(f"{document_name}-").replace("-", " ")
         )
     for words, places in grouped.items():
@@ -112,15 +111,12 @@ def _of_conditions(document_name: str, items: Sequence[Finding]) -> Iterator[Blo
 
 
 def _of_extraction(items: Sequence[Finding]) -> Iterator[Block]:
-    """Yield the blocks of the page about formulas that do not hold as extracted, but may be right in the document.
-
-    ``items`` are the findings about them. Their faults may come from characters that were lost when the text was
-    extracted from its PDF file.
-    """
+    """Yield the blocks of the page about formulas that do not hold as extracted, but may be right in the document."""
     if not items:
         return
     yield Block("entry", "What the extraction may have lost")
     for item in items:
+        # characters that were lost when the text was extracted from its PDF file
         lost = ", ".join(item.claim["lost"])
         printed, right = (text.partition(" == ")[0] for text in (item.verdict.text, item.right))
         place = f"{item.claim['where']}, `{item.claim['id']}`"

@@ -65,9 +65,8 @@ def _mark(node: Node) -> Node:
 
 
 def _marked_members(old: Node, new: Node) -> tuple[Node, Node]:
-    """Return two sums with marks on the terms that only one of them has; or two products, with marks on factors.
-
-    LaTeX shows a mark as a box. ``old`` is the formula as printed, ``new`` the corrected one.
+    """Return the printed and the corrected sum or product, with a mark (a box) on the members that only one of them
+    has.
     """
     only_old, only_new = _places_of_others(old, new), _places_of_others(new, old)
     befores, afters = list(old.args), list(new.args)
@@ -113,9 +112,8 @@ def filled(template: str, parts: Mapping[str, Node], letters: Mapping[str, str],
 
 
 class _Typesetter(Writer):
-    """Writer of LaTeX as a book prints it: with integrals, fractions, and the letters of the document that is quoted.
-
-    A part of a formula that an erratum corrects is marked; marked parts are in boxes.
+    """Writer of LaTeX as a book prints it: with integrals, fractions, and the letters of the document that
+    is quoted.
     """
 
     def __init__(self, letters: Mapping[str, str], functions: Collection[str]) -> None:
@@ -123,6 +121,7 @@ class _Typesetter(Writer):
         self.letters = letters
 
     def formula(self, node: Node, binding: int = 0) -> str:
+        # a part that an erratum corrects
         if node.kind == MARK:
             return f"\\boxed{{{self.formula(node.args[0])}}}"
         written = super().formula(node, binding)
@@ -180,11 +179,8 @@ class _Typesetter(Writer):
         return (inner.kind == "call" and inner.value in ("Matrix", "diag")) or letter.startswith(("\\vec", "\\mathbf"))
 
     def _row(self, factors: list[Node], alone: bool = True) -> str:
-        """Return ``factors`` side by side as LaTeX; a single one gets no brackets if ``alone`` is true.
-
-        ``alone`` is false if the factors are followed or preceded by other parts of the same product, such as a
-        fraction.
-        """
+        """Return the product of ``factors`` as LaTeX; a single factor gets no brackets if ``alone``."""
+        # false if other parts of the same product, such as a fraction, precede or follow
         alone = alone and len(factors) == 1
         written = ""
         after_function = False

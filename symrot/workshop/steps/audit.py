@@ -50,9 +50,6 @@ def audit_step(
 ) -> list[str]:
     """Audit the certificate of a step; return the statements that were checked and hold, one line each.
 
-    Files, C text and bounds are compared with the rates that the certificate states; for a shipped scene these must be
-    the rates that symrot derives.
-
     Parameters
     ----------
     path : Path
@@ -91,6 +88,7 @@ def audit_step(
         ) from None
     source = texts[f"{name}.c"]
     check_header(texts[f"{name}.h"], source, name)
+    # files, C text and bounds are compared with the rates that the certificate states
     method, rates = _method(path, data), rates_of(data)
     progress("proving ..")
     if formula_section(name, rates, method, source) != data["formula"]:
@@ -102,6 +100,7 @@ def audit_step(
         f"{name}: {len(texts)} hashes agree; the C text of symrot_{name} and symrot_{name}f, and of their batch "
         f"functions, computes the {method.formula}"
     ]
+    # for a shipped scene these must be the rates that symrot derives
     report.append(_of_scene(path, data, method))
     if "bounds" in data:
         progress("bounding ..")
@@ -112,11 +111,7 @@ def audit_step(
 
 
 def _files(path: Path, name: str, data: Data) -> dict[str, str]:
-    """Return a map from the name of each file of a step to its text; each hash is compared with the certificate first.
-
-    ``data`` is the content of the certificate at ``path``, ``name`` the step. CertificateError is raised for a changed
-    file.
-    """
+    """Return the text of each file of a step, by name; its hash must be that in the certificate."""
     expected = {f"{name}.c", f"{name}.h", f"{name}_test.c"}
     parameters = [(symbol, value) for symbol, _, value in data["rates"]["parameters"]]
     expected |= {parameters_file(name)} if parameters else set()
@@ -152,15 +147,12 @@ def _method(path: Path, data: Data) -> Method:
 
 
 def _of_scene(path: Path, data: Data, method: Method) -> str:
-    """Compare a step's certificate with the one that symrot makes for the same shipped scene; return a sentence.
-
-    The sentence says that they agree, or that nothing was compared, because the certificate names no shipped scene.
-    CertificateError is raised if they differ.
-    """
+    """Compare a step's certificate with symrot's own for the same shipped scene; return a sentence about it."""
     options = r" --step \w+(?: --order \d+)?(?: --jacobian [\w,]+)?"
     match = re.fullmatch(rf"symrot emit (\S+){options} --target c", str(data["regenerate"]))
     scene = match[1] if match else ""
     if scene not in shipped_names():
+        # the certificate names no shipped scene
         return (
             "the rates of the motion were not compared with a scene, because symrot has no scene of the name in the "
             "certificate"
@@ -177,10 +169,7 @@ def _of_scene(path: Path, data: Data, method: Method) -> str:
 
 
 def _bounds(path: Path, data: Data, method: Method, source: str, rerun: bool) -> str:
-    """Compute the error bounds of a step's certificate again; return a sentence that says that they agree.
-
-    ``source`` is the C text; ``rerun`` says whether to search for the bounds of rounding errors again.
-    """
+    """Compute the error bounds of a step's certificate again; return a sentence that says that they agree."""
     name, rates = data["kernel"], rates_of(data)
     try:
         section = data["bounds"]["rounding"]
@@ -189,6 +178,7 @@ def _bounds(path: Path, data: Data, method: Method, source: str, rerun: bool) ->
             place: (Fraction(float.fromhex(low)), Fraction(float.fromhex(high)))
             for place, (low, high) in section["box"].items()
         }
+        # ``rerun``: search for the bounds of rounding errors again
         check_section(section, operations, None, rerun)
         for index, (symbol, _, value) in enumerate(data["rates"]["parameters"]):
             low, high = box.get(f"p[{index}]", (Fraction(0), Fraction(0)))

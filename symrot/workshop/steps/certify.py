@@ -61,10 +61,8 @@ def certify_step(
 
 
 def _bounds(step: StepText, data: Data, ranges: Sequence[str]) -> Data:
-    """Return the section ``bounds`` of a step's certificate: bounds of rounding and truncation on the box ``ranges``.
-
-    ``data`` is the rest of the certificate, which states the rates ``dy/dt`` of the motion.
-    """
+    """Return the section ``bounds`` of a step's certificate: rounding and truncation on the box ``ranges``."""
+    # ``data`` is the rest of the certificate, which states the rates dy/dt of the motion
     rates, name = rates_of(data), f"symrot_{step.name}"
     operations = replace(read_kernel(step.c()[0], name, f"{step.name}.c"), name=step.name)
     inputs = replace(step.rates.inputs, arguments=step_signature(rates, step.name).arguments)

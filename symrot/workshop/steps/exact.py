@@ -1,9 +1,7 @@
 """One time step of a motion in closed form as C99: the state after any dt, without truncation, heap or loop over time.
 
-The text consists of the C files by which symrot itself propagates the motion, and of a function with the arguments of a
-step. The constants of the motion are computed from the state in every call, in numbers of 31 digits, so that a step
-costs the same for any dt. The parameters p are those of the closed form: moments of inertia, pull (weight times the
-distance of the centre of mass, in N m), momentum of a rotor.
+The text has the C files by which symrot itself propagates the motion. Every call computes the constants of the motion
+from the state, in numbers of 31 digits; the cost does not depend on dt.
 """
 
 import re
@@ -29,22 +27,23 @@ SHARES = (Fraction(1, 16), Fraction(-3, 2), Fraction(5))  # sizes of the test ve
 Motions = Callable[[Sequence[Fraction], Sequence[Fraction]], Any]
 
 
+# The parameters p are those of the closed form: moments of inertia, pull (weight times the distance of the centre of
+# mass, in N m), momentum of a rotor.
 class _Form(NamedTuple):
-    """The parts of the C text of a step that depend on which closed form the motion has.
-
-    ``parameters`` holds (name, unit and meaning, value) of each number in p, the array of parameters that the C step
-    takes, and ``tables`` the C definitions of constants. ``arguments`` are the arguments of the C function that
-    prepares a motion. ``named`` holds the indices of the body axes that the closed form calls e1, e2, e3. ``motion`` is
-    a function that returns the motion for an initial omega and quaternion and for parameters that are doubles.
-    """
+    """The parts of the C text of a step that depend on which closed form the motion has."""
 
     library: str
     title: str
     derivation: str
+    # (name, unit and meaning, value) of each number in p
     parameters: tuple[tuple[str, str, Fraction], ...]
+    # definitions of constants, in C
     tables: tuple[str, ...]
+    # arguments of the C function that prepares a motion
     arguments: tuple[str, ...]
+    # indices of the body axes that the closed form calls e1, e2, e3
     named: tuple[int, int, int]
+    # returns the motion for an initial omega and quaternion, and for parameters that are doubles
     motion: Motions
 
 
@@ -52,7 +51,7 @@ def _form(scene: Scene) -> _Form:
     known = exact_form(scene)
     if known is None or known.library not in _FORMS:
         raise InputError(
-            f"{scene.name}: expected a free body, a symmetric heavy top or a symmetric gyrostat for the step 'exact', "
+            f"{scene.name}: expected a free body, symmetric heavy top or symmetric gyrostat for the step 'exact', "
             "got a scene without such a closed form; use the step 'rk4', 'taylor' or 'dop853'"
         )
     if not scene.body.principal.given_axes:

@@ -12,11 +12,9 @@ __all__ = ["StepFiles", "constant_table"]
 
 
 class StepFiles(KernelText):
-    """The texts of a time step, of any method.
+    """The texts of a time step, of any method."""
 
-    The comments in its C files state no error bounds; those of rk4 and taylor are in the certificate alone.
-    """
-
+    # comments in the C files state no error bounds; those of rk4 and taylor are in the certificate alone
     folders: ClassVar[Mapping[str, str]] = {}
 
     @property
@@ -50,12 +48,10 @@ class StepFiles(KernelText):
 
 
 def constant_table(declared: str, values: Any) -> str:
-    """Return the C definition of a constant table of doubles, such as ``static const double x[2] = {1.0, 2.0};``.
-
-    ``declared`` is the name with its sizes, ``x[2]``; ``values`` are nested lists of numbers.
-    """
+    """Return the C definition of a constant table of doubles, such as ``static const double x[2] = {1.0, 2.0};``."""
 
     def text(value: Any) -> str:
+        # ``declared`` is the name with its sizes, "x[2]"; ``values`` are nested lists of numbers
         return f"{{{', '.join(map(text, value))}}}" if isinstance(value, list) else repr(value)
 
     return f"static const double {declared} = {text(values)};"

@@ -24,7 +24,7 @@ TEXT_KEYS = (
 )  # fmt: skip
 LIST_KEYS = ("symbols", "functions", "given", "alternatives", "lost", "editable")
 OTHER_KEYS = ("where", "define", "units")
-"""The keys of a claim, by the type of their value."""
+"""The keys of a claim in a file: texts, lists of texts, and other values."""
 
 FILE_KEYS = ("schema", "claim", "document", "title", "kind", "lost", "note")
 """The keys of a file; the last five describe the document from which its claims come."""
@@ -169,10 +169,9 @@ def _claim(entry: dict[str, Any], number: int, label: str) -> Claim:
 
 
 def _names_for_latex(claim: Claim) -> Names:
-    """Return the names that a claim declares, sorted by kind, for the reader of LaTeX.
+    """Return the names that a claim declares, sorted into symbols, functions, matrices, vectors and defined scalars.
 
-    That reader needs the kind of each name: symbols, functions of time, matrices, those matrices that have one column
-    (vectors), and scalars with a definition.
+    The reader of LaTeX needs them.
     """
     values = claim.definitions.values
     defined = [name for name, _ in claim.define]
@@ -222,9 +221,8 @@ def _names(entry: dict[str, Any], key: str, place: str) -> tuple[str, ...]:
 
 
 def _editable(entry: dict[str, Any], define: Sequence[tuple[str, Node]], place: str) -> tuple[str, ...]:
-    """Return the parts of a claim that repairs may change: those that ``editable`` lists, by default both sides.
-
-    ``entry`` is the table of the claim in the file, ``define`` are its definitions, and ``place`` is for messages.
+    """Return the parts of a claim that repairs may change: those listed by its key ``editable``, by default both
+    sides.
     """
     parts = tuple(entry.get("editable", SIDES))
     known = (*SIDES, *(name for name, _ in define))

@@ -17,22 +17,19 @@ from symrot.errors import InputError
 __all__ = ["claims_of_reading"]
 
 MOST_EQUATIONS = 30
-"""The most equations in one text, lines and links of chains."""
+"""The most equations in one text; ``a = b = c`` counts as two."""
 
 
 def claims_of_reading(
     reading: Reading, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None,
     stated: Context = NO_CONTEXT,
 ) -> list[list[Claim]]:  # fmt: skip
-    """Return the claims of one reading (interpretation) of a text: a list per line, with one claim per equals sign.
-
-    A line that only gives a name to a formula is a definition for the lines after it. ``stated`` is the context:
-    what the user says in words about names and the body.
-    """
+    """Return the claims of one reading (interpretation) of a text: for each line, one claim per equals sign."""
     define: list[tuple[str, Node]] = []
     lines = []
     if sum(len(chain.links) for chain in reading.lines) > MOST_EQUATIONS:
         raise InputError(f"expected at most {MOST_EQUATIONS} equations in one text; a file of claims may have more")
+    # ``stated`` is what the user says in words about names and the body
     names = {str(n.value) for chain in reading.lines for side in chain.sides for _, n in walk(side)}
     check_units(dict(units or {}), names, "claim")
     units = {**stated.units(names - {*reading.vectors}, units or {}), **(units or {})}
@@ -65,6 +62,7 @@ def claims_of_reading(
             stated = with_sign(stated, first, sign)
             continue
         reserved = ("pi", "t", *(name for name, _ in define))
+        # a line that only names a formula defines this name for the lines after it
         is_name = first.kind == "name" and chain.signs[0] == "==" and first.value not in reserved
         if is_name and not chain.both_signs and first not in [node for _, node in walk(chain.sides[1])]:
             define.append((str(first.value), chain.sides[1]))
@@ -72,14 +70,14 @@ def claims_of_reading(
 
 
 def _with_signs_of_products(assume: Sequence[str], stated: Context) -> tuple[list[str], Context]:
-    """Return the hypotheses without those such as ``I_xy = ∫ x y dm``, and the context with what they state.
-
-    ``assume`` are the hypotheses. One like this says only whether products of inertia are defined with the minus sign.
+    """Return the hypotheses without those such as ``I_xy = ∫ x y dm``, and the context with the sign that these
+    state.
     """
     others = []
     for source in assume:
         readings = latex_readings(source) if is_latex(source) else readings_of(source, "given")
         left, right = readings[0].lines[0].sides[:2]
+        # such a hypothesis says only whether products of inertia have the minus sign
         if sign := sign_by_integral(left, right):
             stated = with_sign(stated, left, sign)
         else:
@@ -88,10 +86,7 @@ def _with_signs_of_products(assume: Sequence[str], stated: Context) -> tuple[lis
 
 
 def _complex_numbers(lines: Sequence[Chain], formulas: Sequence[Node]) -> dict[str, Node]:
-    """Return the formula of each complex number z: the one of a line ``z = x + i*y``, else ``Re_z + i*Im_z``.
-
-    ``lines`` are the equations of the text, ``formulas`` all their sides.
-    """
+    """Return the formula of each complex number z: ``x + i*y`` if a line defines z so, else ``Re_z + i*Im_z``."""
     unit = imaginary_unit(formulas)
     if unit is None:
         return open_numbers(formulas)

@@ -49,11 +49,11 @@ ON_PAULI = "sigma_x, sigma_y and sigma_z are Pauli's matrices, and i is the imag
 
 
 def claim_of_text(source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None) -> Claim:
-    """Return the claim of a text ``left == right``. Text with a backslash, a brace or a dollar sign is read as LaTeX.
+    """Return the claim of a text ``left == right``, which may be LaTeX.
 
-    Names, also those in hypotheses, become real symbols, or functions of time if they are written ``f(t)``. An
-    ambiguous text is refused; :func:`symrot.checker.claim.source.lines.claims_of_reading` accepts such texts.
+    An ambiguous text raises InputError.
     """
+    # claims_of_reading accepts ambiguous texts
     vectors: tuple[Vector, ...] = ()
     if isinstance(source, str) and is_latex(source):
         equation = read_latex(source, names=Names(functions=functions_of_time(assume)))
@@ -66,10 +66,9 @@ def claim_of_relation(
     define: Sequence[tuple[str, Node]] = (), notes: Sequence[str] = (), context: Sequence[Node] = (),
     vectors: Sequence[Vector] = (),
 ) -> Claim:  # fmt: skip
-    """Return the claim of an equation that was read from a text.
+    """Return the claim of an equation in a text.
 
-    ``define`` are the definitions on earlier lines of the text, ``context`` are its other formulas, and ``vectors`` are
-    names with three components.
+    ``define`` and ``context`` are the definitions and the other formulas of the same text.
 
     Raises
     ------
@@ -156,10 +155,7 @@ def claim_of_relation(
 
 
 def _with_own_name(relation: Relation) -> tuple[Relation, str]:
-    """Rename the left side of ``I = n.T*I*n`` to I_n, since it is a number and the I on the right a tensor.
-
-    Return the equation and a note on it; return any other equation unchanged, with an empty note.
-    """
+    """Return ``I = n.T*I*n`` with the left side renamed to I_n, and a note on it; other equations unchanged."""
     sign, left, right = relation
     first, *rest = right.args if right.kind == "product" else (right,)
     is_form = first.kind == "transpose" and len(rest) > 1 and rest[-1] == first.args[0] and rest[-1].kind == "name"
@@ -167,53 +163,44 @@ def _with_own_name(relation: Relation) -> tuple[Relation, str]:
         return relation, ""
     name = f"{left.value}_{rest[-1].value}"
     note = f"{left.value} on the left is the moment {name} about the axis {rest[-1].value}, on the right the tensor"
+    # the left side is a number, the I on the right a tensor
     return (sign, Node("name", name), right), note
 
 
 def _of_one_time(hypotheses: Sequence[Relation]) -> tuple[Relation, ...]:
-    """Return hypotheses that agree on which names are functions of time.
-
-    If one hypothesis has ``f(t)`` or a time derivative of f, each f in the others becomes ``f(t)``.
-    """
+    """Return hypotheses with ``f(t)`` for f, if one of them has ``f(t)`` or a time derivative of f."""
     nodes = [node for hypothesis in hypotheses for side in hypothesis[1:] for _, node in walk(side)]
     rates = {str(node.value) for node in nodes if node.kind == "call" and node.args == (TIME,)} - {*BUILT_IN}
     return tuple((sign, with_time(left, rates), with_time(right, rates)) for sign, left, right in hypotheses)
 
 
 def _matrix_given(source: str, words: Collection[str]) -> tuple[str, Node] | None:
-    """Return the name and the formula of a matrix if a hypothesis defines one: ``R == R_z(psi)*R_y(theta)``.
-
-    Return None for any other hypothesis. ``words`` are the names of the claim, which are not split into letters.
-    """
+    """Return R and its formula if a hypothesis defines a matrix, as ``R == R_z(psi)*R_y(theta)`` does, or None."""
+    # ``words`` are the names of the claim, which are not split into letters
     sign, left, right = read_hypothesis(source, "given", words=words)
     is_definition = sign == "==" and left.kind == "name" and shape_of(right, {}) not in (None, (1, 1))
     return (str(left.value), right) if is_definition else None
 
 
 def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> Iterator[tuple[str, Node]]:
-    """Yield the definitions of matrices that hypotheses give, then those of the entries that an equation names.
-
-    An entry of R may be written R_31, R31 or r_31; its definition is ``R[2, 0]``.
-    """
+    """Yield the definitions of matrices, and of the entries that an equation names: ``R[2, 0]`` for R_31."""
     names = dict.fromkeys(str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind == "name")
     for matrix, tree in matrices:
         yield matrix, tree
         for name in names:
             if entry := re.fullmatch(rf"(?:{matrix}|{matrix.lower()})_?([1-3])_?([1-3])", name):
                 places = [number_node(int(digit) - 1) for digit in entry.groups()]
+                # R_31, R31 or r_31
                 yield name, Node("index", None, (Node("name", matrix), *places))
 
 
 def _with_vectors(
     relation: Relation, vectors: list[Vector], define: Sequence[tuple[str, Node]]
 ) -> tuple[Relation, list[Vector], bool]:
-    """Return a relation, a list of the vectors and tensors in it, and whether it contains unit matrices.
-
-    The list that is returned is a new one: the known ``vectors`` first, then each name that must be a vector or tensor.
-    A name must be a vector if it is added to a vector or is an argument of a cross product; the name of an inertia must
-    be a tensor if it is added to a matrix. ``define`` has the definitions of the claim, pairs of a name and a formula;
-    these names are not added. In the relation, each unit matrix is written ``eye(n)``.
+    """Return a relation with unit matrices as ``eye(n)``, its vectors and tensors, and whether it has unit
+    matrices.
     """
+    # defined names are no new vectors
     named = {name for name, _ in define} | {vector.name for vector in vectors}
     vectors = [*vectors, *map(Vector, dict.fromkeys(n for n in gyroscopic_tensors(relation[1:]) if n not in named))]
     shapes = _shapes(vectors, define)
@@ -221,6 +208,7 @@ def _with_vectors(
     vectors = [*vectors, *map(Vector, operands)]
     shapes |= operands
     with_units = with_unit_matrices(relation, shapes)
+    # a name that is added to a vector is one, as is the name of an inertia that is added to a matrix
     while new := {
         name: shape
         for name, shape in (*added_names(with_units, shapes).items(), *multiplied_names(with_units, shapes).items())
@@ -240,9 +228,8 @@ def _shapes(vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> di
 
 
 def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> Quaternions:
-    """Return the quaternions, matrices and columns in a relation, with their definitions and the changed relation.
-
-    In the changed relation, products of columns are scalar products.
+    """Return the quaternions, matrices and columns in a relation, and the relation with ``dot(a, b)`` for columns
+    a and b.
     """
     known = {name for name, _ in define}
     names = {vector.name for vector in vectors}
@@ -316,11 +303,10 @@ def _with_rotated_axes(relation: Relation) -> Relation:
 
 
 def read_hypothesis(source: str, where: str, declared: Declared | None = None, words: Collection[str] = ()) -> Relation:
-    """Return the hypothesis that a text states, such as ``x > 0``, as (sign, left, right).
-
-    ``where`` is its place, for messages. ``declared`` are the names that the claim declares, if it does so; otherwise
-    ``words`` are the names of the claim, which are not split into letters.
+    """Return a hypothesis such as ``x > 0`` as (sign, left, right), without splitting the names in ``words`` into
+    letters.
     """
+    # ``declared`` are the names of a claim that declares its names
     if declared is None and isinstance(source, str) and is_latex(source):
         relation = read_latex(source, where).relation
     elif declared is None:

@@ -1,7 +1,7 @@
 """Claims that mix rates of Euler angles with components of the angular velocity: ``psi' = omega_3 - phi' cos theta``.
 
-Each of them follows from ``omega = B(q) dq/dt`` or contradicts it, whatever it is solved for. So the components are
-replaced by their formulas in the angles and rates, which are independent, and the result must be an identity.
+Each follows from ``omega = B(q) dq/dt`` or contradicts it. With the components replaced by their formulas in the
+independent angles and rates, a true claim is an identity.
 """
 
 import re
@@ -23,17 +23,15 @@ __all__ = ["substitutions_of_entries", "substitutions_of_rates"]
 
 FRAMES = ("body", "space")
 COMPONENT = re.compile(r"(?:omega|w|Omega)_?([1-3xyz])(?:_prime)?|([pqr])")
-"""A component of the angular velocity; its groups are the index and the letter of an aircraft's rate."""
+"""A component of the angular velocity, with the groups index, and letter of an aircraft's rate."""
 
 AXES = {letter: axis for axis, letters in enumerate(("1xp", "2yq", "3zr")) for letter in letters}
 USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 
 
 def substitutions_of_rates(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the ways to read a claim as one about Euler angles, their rates, and the angular velocity's components.
-
-    A way fixes the sequence, the frame, and which letter is which angle, as far as the context leaves them open. There
-    is none if the claim has a letter of another kind, no rate, or no component. ``sides`` are those of the claim.
+    """Yield the interpretations of a claim as one about Euler angles, their rates and components of the angular
+    velocity, if any.
     """
     names = {atom: _plain(atom) for atom in sorted(atoms_of(sides) - {TIME}, key=str)}
     components = {atom: match for atom, name in names.items() if (match := COMPONENT.fullmatch(name))}
@@ -42,11 +40,13 @@ def substitutions_of_rates(context: Context, sides: Sequence[Expr]) -> Iterator[
     angles = {atom: name for atom, name in others.items() if atom not in rates}
     letters = list(dict.fromkeys([*rates.values(), *angles.values()]))
     if not components or not rates or not all(map(letter_of_angle, letters)):
+        # a letter of another kind, no rate, or no component
         return
     is_of_aircraft = not context.sequence and any(match[2] for match in components.values())
     frames = _frames(context, names, components)
     rest = [name for name in SEQUENCES if name not in USUAL_SEQUENCES]
     sequences = [context.sequence] if context.sequence else [*USUAL_SEQUENCES, *rest]
+    # each fixes the sequence, the frame, and the angle of each letter, as far as the context leaves them open
     for sequence, frame in product([name for name in sequences if is_usual_for_body(context, name)], frames):
         for order in orders(context, letters, sequence):
             if is_of_aircraft and not are_roll_pitch_yaw(sequence, order.places):
@@ -75,11 +75,7 @@ def _plain(atom: Expr) -> str:
 
 
 def _frames(context: Context, names: dict[Expr, str], components: dict[Expr, re.Match[str]]) -> tuple[str, ...]:
-    """Return the frames to which the components in a claim may belong: the stated frame, or both if none is stated.
-
-    ``names`` are the names of the claim's symbols and rates. ``components`` are those among them that are components of
-    the angular velocity; p, q and r belong to the body.
-    """
+    """Return the frames to which the components in a claim may belong: those stated, or both if none is stated."""
     stated = {meaning.frame for atom in components if (meaning := context.meaning_of(names[atom])) and meaning.frame}
     stated |= {context.frame} if context.frame else set()
     if not stated and any(match[2] for match in components.values()):
@@ -88,12 +84,9 @@ def _frames(context: Context, names: dict[Expr, str], components: dict[Expr, re.
 
 
 def _coordinates(places: dict[str, int]) -> tuple[list[Symbol], list[Symbol]]:
-    """Return symbols for the three angles of a sequence, and for their rates, with the letters of the claim.
-
-    ``places`` maps a letter of the claim to the place (0, 1 or 2) of its angle; angles without a letter are called q_1,
-    q_2 and so on.
-    """
+    """Return symbols for the three angles of a sequence and for their rates, named by the claim's letters."""
     names = {place: name for name, place in places.items()}
+    # angles without a letter in the claim
     unused = iter(name for name in ("q_1", "q_2", "q_3") if name not in places)
     letters = [names.get(place) or next(unused) for place in range(3)]
     return [Symbol(name, real=True) for name in letters], [Symbol(f"d{name}", real=True) for name in letters]
@@ -104,10 +97,8 @@ ENTRY = re.compile(r"[RACQT]_?([1-3])_?([1-3])")
 
 
 def substitutions_of_entries(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the ways to read a claim as one about an entry of the stated sequence's rotation matrix: ``R_31 = ..``.
-
-    The matrix takes body components to space components in the first way, and is transposed in the second. There is
-    none if no sequence is stated, or if the claim has other letters than one entry and angles.
+    """Yield the interpretations of a claim as one about an entry of the stated sequence's rotation matrix:
+    ``R_31 = ..``.
     """
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides) - {TIME}, key=str)}
     entries = {atom: match for atom, name in names.items() if (match := ENTRY.fullmatch(name))}
@@ -120,6 +111,7 @@ def substitutions_of_entries(context: Context, sides: Sequence[Expr]) -> Iterato
     for order in orders(context, letters, context.sequence):
         q, _ = _coordinates(order.places)
         matrix = dcm(context.sequence, q)
+        # the claim does not say whether the matrix takes body components to space components, or is the transpose
         for words, value in (("body to space", matrix[row, column]), ("space to body", matrix[column, row])):
             name = f"entry {row + 1}{column + 1} of the rotation matrix of {context.sequence}, {words}"
             guess = ", ".join(filter(None, [words, order.guess]))

@@ -1,7 +1,7 @@
-"""Claims about a free symmetric body, whose axis, angular momentum and angular velocity lie in one plane.
+"""Claims about the angles from the axis of a free symmetric body to its angular momentum and its angular velocity.
 
-The tangents of the two angles to the axis have the ratio of the moments of inertia. Claims may be solved for either
-angle, and books use the same letters for both.
+The ratio of their tangents is that of the moments of inertia. Claims may be solved for either angle, and books use
+the same letters for both.
 """
 
 import re
@@ -27,21 +27,15 @@ NAME = "relation for the angles of momentum and angular velocity to the axis of 
 
 
 def is_stated(context: Context) -> bool:
-    """Return whether words of the context name the angle from the axis to the angular momentum or angular velocity.
-
-    The axis is the symmetry axis of the body. Books use the same letters for both angles, so only words can tell them.
+    """Return whether the context names the angle from a body's symmetry axis to its angular momentum or angular
+    velocity.
     """
+    # books use the same letters for both angles, so that only words can tell them apart
     return any(meaning.quantity.title in (OF_MOMENTUM, OF_VELOCITY) for meaning in context.meanings)
 
 
 def substitutions_of_axis_angles(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the substitutions that may turn a claim into ``tan(theta) = A/C tan(gamma)``, for a free symmetric top.
-
-    theta is the angle from the axis to the angular momentum, gamma that to the angular velocity. Each Substitution maps
-    the claim's two angles to theta and to gamma as a formula of theta, and its two moments of inertia to A and C; one
-    is yielded for each assignment of the letters. ``sides`` are those of the claim. Nothing is yielded if the claim has
-    other letters, or if the context names another body.
-    """
+    """Yield the interpretations of a claim as ``tan(theta) = A/C tan(gamma)`` for a free symmetric top, if any."""
     if context.body is not None and "free symmetric" not in context.body.kind.title:
         return
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}
@@ -49,6 +43,7 @@ def substitutions_of_axis_angles(context: Context, sides: Sequence[Expr]) -> Ite
     moments = [atom for atom in names if atom not in angles]
     if len(angles) != 2 or len(moments) != 2 or not {side.func for side in sides} & {tan}:
         return
+    # theta is the angle from the axis to the angular momentum, gamma that to the angular velocity
     velocity = (symbols.omega_1, symbols.omega_3)
     momentum = diag(A, C) * diag(*velocity)
     # the angle of a vector to the axis has its components across and along the axis as sine and cosine

@@ -1,7 +1,7 @@
 """Claims that give moments and products of inertia as integrals over a body: ``I_xy = integral of x y dm``.
 
-The integrals of products of coordinates are independent; each entry of the inertia tensor is a sum of them. A product
-of inertia is defined with or without the minus sign, and words may say which.
+The integrals are independent, and each entry of the inertia tensor is a sum of them. A product of inertia has the
+minus sign or not, and words may say which.
 """
 
 import re
@@ -37,11 +37,8 @@ SIGNS = {"minus": 1, "plus": -1}
 
 
 def substitutions_of_integrals(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the ways to read a claim as one about entries of the inertia tensor and integrals over the body.
-
-    ``sides`` are those of the claim. Nothing is yielded if they contain a letter that is neither such an entry nor such
-    an integral. Unless the context says whether products of inertia have the minus sign, they have it in the first way,
-    and not in the second.
+    """Yield the interpretations of a claim as one about entries of the inertia tensor and integrals over the body,
+    if any.
     """
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}
     entries = {atom: match for atom, name in names.items() if (match := ENTRY.fullmatch(name))}
@@ -51,6 +48,7 @@ def substitutions_of_integrals(context: Context, sides: Sequence[Expr]) -> Itera
         return
     places = {atom: (AXES[match[1]], AXES[match[2] or match[1]]) for atom, match in entries.items()}
     has_products = any(i != j for i, j in places.values())
+    # if nothing is stated, products of inertia with the minus sign are tried first
     for sign in [context.sign_of_products] if context.sign_of_products else [*SIGNS] if has_products else ["minus"]:
         values = {atom: (1 if i == j else SIGNS[sign]) * _entry(i, j) for atom, (i, j) in places.items()}
         words = f", products of inertia with{'out' * (sign == 'plus')} the minus sign" if has_products else ""
@@ -60,10 +58,8 @@ def substitutions_of_integrals(context: Context, sides: Sequence[Expr]) -> Itera
 
 
 def is_tensor_of_integrals(sides: Sequence[Any]) -> bool:
-    """Return whether a claim equates the letter I or J to the inertia tensor, in integrals over a body.
-
-    The letter may have a subscript, as I_O. The other side must be a 3 x 3 matrix with the right integral in each
-    entry. ``sides`` are in any order.
+    """Return whether a claim equates I or J, perhaps with a subscript, to the inertia tensor as a matrix of
+    integrals.
     """
     matrices = [side for side in sides if is_matrix(side) and side.shape == (3, 3)]
     names = [side for side in sides if not is_matrix(side) and re.fullmatch("[IJ](_[A-Za-z])?", as_text(side))]
@@ -74,9 +70,8 @@ def is_tensor_of_integrals(sides: Sequence[Any]) -> bool:
 
 
 def _entry(row: int, column: int) -> Expr:
-    """Return an entry of the inertia tensor, ``integral_yy + integral_zz`` for row 0 and column 0.
-
-    Each term is a symbol for the integral of a product of two coordinates over the body's mass.
+    """Return an entry of the inertia tensor as a sum of integrals: ``integral_yy + integral_zz`` for row 0 and
+    column 0.
     """
     terms = Poly(inertia_of_point(1, position)[row][column], *position).terms()
     return Add(*(factor * Symbol(f"integral_{_product(powers)}", real=True) for powers, factor in terms))
@@ -93,11 +88,7 @@ MOMENT_OF_AXIS, MASS, GYRATION = (
 
 
 def substitutions_of_gyration(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the Substitution by which a claim becomes ``m k^2 = m k^2`` if it is ``I = m k^2`` in any letters.
-
-    ``I = m k^2`` defines the radius of gyration k. Nothing is yielded if the claim, whose sides are ``sides``, has
-    other letters than one for the moment, one for the mass and one for the radius.
-    """
+    """Yield the substitution of ``m k^2`` for I if a claim is ``I = m k^2`` in any letters: the definition of k."""
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}
     patterns = (MOMENT_OF_AXIS, MASS, GYRATION)
     if len(names) != len(patterns):

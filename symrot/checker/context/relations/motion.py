@@ -1,7 +1,7 @@
 """Verdicts on claims about rates of Euler angles, about tops, and about integrals over a body.
 
-For each of these three subjects symrot derives relations, such as the angular velocity from the angle rates. Their
-formulas are substituted in the claim, which is true if it then is an identity.
+For each subject symrot derives relations, such as the angular velocity from the angle rates. A claim is true if their
+formulas make it an identity.
 """
 
 from dataclasses import replace
@@ -24,9 +24,8 @@ __all__ = ["by_motion"]
 
 
 def by_motion(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim by the relations between angle rates, angular velocity, momenta and energies.
-
-    Where these relations do not decide the claim, return ``verdict``, the verdict so far.
+    """Return the verdict on a claim by relations between its rates, momenta and energies; ``verdict`` if none
+    decides it.
     """
     equation, context = claim.equation, claim.context
     sides = equation.left, equation.right

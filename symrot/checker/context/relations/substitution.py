@@ -1,7 +1,6 @@
 """Deciding claims by substitution: each quantity is replaced by its formula in independent coordinates of a motion.
 
-Whatever quantity a claim is solved for, it follows from these formulas if and only if the result of the substitution is
-an identity.
+A claim follows from these formulas if and only if it becomes an identity, whatever it is solved for.
 """
 
 from collections.abc import Iterable, Sequence
@@ -25,7 +24,7 @@ __all__ = ["Substitution", "by_substitution", "decided"]
 MOST_SUBSTITUTIONS = 200
 MOST_READINGS = 4
 OPEN = ("definition", "doubtful", "false", "undecided")
-"""Verdicts that a true reading overrules."""
+"""Verdicts that a true interpretation of a claim overrules."""
 GUESSED = "guessed, not stated"
 
 
@@ -61,9 +60,8 @@ class Substitution:
 
 
 def decided(equation: Equation, substitution: Substitution) -> Decision | None:
-    """Return the decision on an equation with the formulas of ``substitution`` in place of its letters; or None.
-
-    It is None if the equation with these formulas cannot be decided.
+    """Return the decision on an equation whose letters ``substitution`` replaces by formulas; None if there is
+    none.
     """
     try:
         return decide_equation(Equation(*_sides(equation, substitution)))
@@ -72,10 +70,10 @@ def decided(equation: Equation, substitution: Substitution) -> Decision | None:
 
 
 def may_be_true(equation: Equation, substitution: Substitution) -> bool:
-    """Return whether an equation holds nearly at some points, with the formulas of ``substitution`` for its letters.
-
-    This quick test by numbers leaves out readings of a claim before they are decided exactly.
+    """Return whether an equation seems to hold at sample points, once ``substitution`` replaces its letters by
+    formulas.
     """
+    # a quick test by numbers, before an exact decision
     left, right = _sides(equation, substitution)
     return seems_zero(left - right)
 
@@ -89,11 +87,9 @@ def _sides(equation: Equation, substitution: Substitution) -> tuple[Any, Any]:
 def by_substitution(
     claim: Claim, verdict: Verdict, substitutions: Iterable[Substitution], is_complete: bool
 ) -> Verdict:
-    """Return the verdict on a claim by ``substitutions``, the possible ways to read its letters; or ``verdict``.
+    """Return the verdict on a claim by possible interpretations of its letters; ``verdict`` if these decide nothing.
 
-    The claim is true or recognised if it holds in one of these ways. If ``is_complete``, the context rules out any
-    other way: then the claim is false if it holds in none of them. Otherwise the result is ``verdict``, the verdict so
-    far.
+    If ``is_complete``, no other interpretation is possible.
     """
     if not is_complete and verdict.verdict not in OPEN:
         return verdict
@@ -106,6 +102,7 @@ def by_substitution(
     is_stated = is_complete and any(not way.guess for way in true)
     if true and (verdict.verdict in OPEN or (is_stated and verdict.verdict == "recognised")):
         return _recognised(claim.context, verdict, true, is_complete)
+    # only a complete list of interpretations can refute a claim
     false = [(way, decision) for way, decision in decisions if decision is not None and decision.verdict == "false"]
     if not is_complete or not decisions or len(false) < len(decisions) or verdict.verdict in ("false", "refused"):
         return verdict
@@ -118,10 +115,8 @@ def by_substitution(
 
 
 def _recognised(context: Context, verdict: Verdict, true: Sequence[Substitution], is_complete: bool) -> Verdict:
-    """Return the verdict on a claim that holds in the readings ``true``: "true" if everything is stated.
-
-    Otherwise it is "recognised", with a note on what was guessed. ``is_complete`` says that the context rules out other
-    readings; ``verdict`` is the verdict so far, whose notes are used.
+    """Return the verdict on a claim that holds in the interpretations ``true``: "recognised", or "true" if all is
+    stated.
     """
     stated = [way for way in true if not way.guess]
     readings = tuple(way.identification for way in (stated or true)[:MOST_READINGS])
@@ -129,5 +124,6 @@ def _recognised(context: Context, verdict: Verdict, true: Sequence[Substitution]
         notes = tuple(note for note in verdict.notes if not note.startswith(GUESSED))
         return Verdict("true", recognised_as=readings, notes=notes)
     guess = true[0].guess if not stated else ""
+    # the user learns what was guessed
     notes = (*verdict.notes, f"{GUESSED}: {guess}") if guess else verdict.notes
     return Verdict("recognised", recognised_as=readings, notes=notes)

@@ -1,8 +1,7 @@
 """Claims about a symmetric top that mix spin, momenta and rates: ``p_phi = I_1 phi' sin^2 theta + S cos theta``.
 
-The angle of the axis, the rates of the angles, the moments and the weight are independent; momenta, spin and energies
-are formulas in them, derived from the angular velocity in the angles of ZXZ. A letter such as n or s, which books use
-both for the spin along the axis and for the rate of the spin angle, is tried as either.
+Momenta, spin and energies are formulas in the independent quantities: angles, their rates, moments and weight. Books
+use n and s both for the spin along the axis and for the rate of the spin angle: either is tried.
 """
 
 import re
@@ -34,7 +33,7 @@ COORDINATES: tuple[tuple[str, Expr], ...] = (
     (r"A|I|[IJ]_?([012tx]|xx|yy|perp)|I_prime", A), (r"C|[JI]|[IJ]_?([3sz]|zz)", C),
     ("m|M", MASS), ("g", GRAVITY), (r"l|ell|h|a|R|d|r|[lrh]_?(G|cm|C)|z_?(G|C|cm)", ARM), ("W|mg", WEIGHT),
 )  # fmt: skip
-"""Pattern of a letter -> the independent quantity that it can be."""
+"""Patterns of letters, each with the independent quantity that the letter can be."""
 MOMENT_LETTERS = {symbol: letters for letters, symbol in COORDINATES if symbol in (A, C)}
 
 QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
@@ -46,7 +45,7 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("dE|E_prime|E_?1", ("energy without the energy of the spin",)), ("L", ("Lagrangian",)),
     ("[VU]_?eff", ("effective potential", "effective potential without the energy of the spin")),
 )  # fmt: skip
-"""Pattern of a letter -> the quantities of a top that it can be."""
+"""Patterns of letters, each with the quantities of a top that the letter can be."""
 
 EVIDENT = ("momentum of precession", "momentum of spin", "effective potential", "spin along the axis")
 """Quantities that, next to the angle theta, only a top has."""
@@ -54,11 +53,7 @@ CONJUGATE = re.compile("p_?(phi|varphi|theta|vartheta|psi)")
 
 
 def substitutions_of_tops(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the ways to read a claim as one about a symmetric top; ``sides`` are those of the claim.
-
-    There is none if a letter of the claim means nothing for a top, if the claim has no moment of inertia, or none of
-    the derived quantities (momenta, spin and energies), or if the context names another body.
-    """
+    """Yield the interpretations of a claim as one about a symmetric top, if any."""
     if context.body is not None and context.body.kind.formulas != TOPS:
         return
     atoms = sorted(atoms_of(sides) - {Symbol("t", real=True)}, key=str)
@@ -66,6 +61,7 @@ def substitutions_of_tops(context: Context, sides: Sequence[Expr]) -> Iterator[S
     for load in (MASS * GRAVITY, WEIGHT):
         formulas = _formulas(load)
         choices = [[*_choices(context, name, formulas, load)] for name in names.values()]
+        # a letter that means nothing for a top
         if not all(choices):
             continue
         for chosen in islice(product(*choices), MOST_CHOICES):
@@ -84,15 +80,12 @@ def _substitution(names: Mapping[Expr, str], values: dict[Expr, Expr], own: Sequ
 
 
 def _is_fitting(names: Mapping[Expr, str], values: Mapping[Expr, Expr], own: Sequence[str], has_body: bool) -> bool:
-    """Return whether an interpretation of a claim's letters makes sense: no two mean the same, and a top is meant.
-
-    ``names`` gives the text of each letter, ``values`` the quantity that it stands for. ``own`` are the titles of those
-    quantities that are derived, such as "momentum of spin". That a top is meant follows if the context names one
-    (``has_body``), from a letter such as p_theta, or from certain titles in ``own``.
-    """
+    """Return whether an interpretation of a claim's letters makes sense for a top."""
     letters: dict[Expr, str] = {}
+    # no two letters mean the same quantity
     same = all(letters.setdefault(value, names[atom]) == names[atom] for atom, value in values.items())
     moments = {A, C} & {*values.values()}
+    # a top is meant: the context, a letter such as p_theta, or titles of derived quantities (``own``) imply it
     is_evident = has_body or (any(title in EVIDENT for title in own) and THETA in values.values())
     is_evident = is_evident or any(map(CONJUGATE.fullmatch, names.values()))
     is_evident = is_evident or {"momentum of spin", "energy without the energy of the spin"} <= {*own}
@@ -100,16 +93,13 @@ def _is_fitting(names: Mapping[Expr, str], values: Mapping[Expr, Expr], own: Seq
 
 
 def _choices(context: Context, name: str, formulas: Mapping[str, Expr], load: Expr) -> Iterator[tuple[str, Expr]]:
-    """Yield (title, formula) for each quantity of a top that the letter ``name`` can mean.
-
-    For s, one of them is ("spin along the axis", ``dpsi + dphi*cos(theta)``). A coordinate such as theta has an empty
-    title. ``formulas`` are the formulas by title, and ``load`` is the weight.
-    """
+    """Yield (title, formula) for each quantity of a top that a letter can mean: "spin along the axis" for s."""
     meaning = context.meaning_of(name)
     pattern = meaning.quantity.symbols if meaning is not None else ""
     for letters, symbol in COORDINATES:
         is_used = symbol not in (MASS, GRAVITY, WEIGHT) or symbol in load.free_symbols
         if is_used and re.fullmatch(letters, name) and (not pattern or re.fullmatch(pattern, symbol.name)):
+            # a coordinate such as theta has no title
             yield "", symbol
     for letters, titles in QUANTITIES:
         if re.fullmatch(letters, name):
@@ -123,18 +113,16 @@ SYMBOL_OF = {
     "spin along the axis": "omega_3", "momentum of precession": "p_phi", "momentum of spin": "p_psi",
     "momentum of nutation": "p_theta", "kinetic energy": "E_k", "energy": "E_k", "potential energy": "E_k",
 }  # fmt: skip
-"""Title of a quantity -> the symbol that derived formulas use for it."""
+"""Maps the title of a quantity to the symbol that derived formulas use for it."""
 
 
 @cache
 def _formulas(load: Expr) -> dict[str, Expr]:
-    """Return the formulas of a top's quantities, such as "kinetic energy", in its angles and their rates, by title.
-
-    ``load`` is the weight, ``m*g`` or one symbol. Momenta are derived from the kinetic energy.
-    """
+    """Return the formulas of a top's quantities by title, such as "kinetic energy", in its angles and their rates."""
     omega = (Matrix(rate_jacobian("ZXZ")) * Matrix(symbols.angle_rates)).subs(symbols.psi, 0)
     kinetic = expand(omega.dot(diag(A, A, C) * omega) / 2)
     potential = load * ARM * cos(THETA)
+    # the momenta are derivatives of the kinetic energy by the rates
     precession, nutation, spin = (kinetic.diff(rate) for rate in symbols.angle_rates)
     energy_of_spin = spin**2 / (2 * C)
     effective = kinetic + potential - nutation**2 / (2 * A)
@@ -156,12 +144,8 @@ def _formulas(load: Expr) -> dict[str, Expr]:
 def _of_steady_precession(
     names: Mapping[Expr, str], values: Mapping[Expr, Expr], sides: Sequence[Expr], load: Expr
 ) -> Iterator[Substitution]:
-    """Yield the condition of steady precession of a top, if a claim gives a formula for the rate of precession.
-
-    The condition is Lagrange's equation for a top with constant theta, as an expression that must be zero. The claim's
-    formula, such as m g l/(C omega_3), is inserted in it for the rate of precession. ``sides`` are those of the claim;
-    ``names`` and ``values`` are its letters and the quantities that they mean; ``load`` is the weight, m g or one
-    symbol.
+    """Yield the condition of steady precession with a claim's formula for the rate of precession, such as m g l/(C
+    omega_3).
     """
     for side, formula in (sides, sides[::-1]):
         if values.get(side) != DPHI or side in atoms_of([formula]):
@@ -174,6 +158,7 @@ def _of_steady_precession(
         kinetic = _formulas(load)["kinetic energy"].diff(THETA).subs(DTHETA, 0).subs(DPSI, spin - DPHI * cos(THETA))
         # Lagrange's equation for theta at rest, divided by sin(theta)
         condition = expand(expand(kinetic - (load * ARM * cos(THETA)).diff(THETA)) / sin(THETA))
+        # the condition is zero if the claim holds
         own = formula.xreplace(mine)
         condition = condition.subs(DPHI, own)
         mapping = {str(value): names[atom] for atom, value in mine.items()

@@ -1,7 +1,6 @@
 """Formulas of kinematics in books: rotated vectors, points of a body, angles from matrices and quaternions.
 
-Each is derived from the rotation matrix, the quaternion, or the rates of Euler angles and other rotation parameters. An
-angle is stored by its sine, cosine or tangent, and its name ends with the inverse function: "angle of rotation of a
+An angle is stored by its sine, cosine or tangent, and its name ends with the inverse function: "angle of rotation of a
 unit quaternion, 2 acos" has the formula q0.
 """
 
@@ -86,10 +85,8 @@ def _vector_parts() -> Iterator[Named]:
 
 
 def _rates_of_the_matrix() -> Iterator[Named]:
-    """Yield the rates of the rotation matrix and of its transpose, in terms of their entries and omega in either frame.
-
-    They are proven for the matrix of a quaternion, whose rates are known.
-    """
+    """Yield the rates of the rotation matrix and of its transpose, from their entries and omega in either frame."""
+    # proven for the matrix of a quaternion, whose rates are known
     matrix = Matrix(quaternion.quaternion_to_dcm(Q, "homogeneous"))
     for frame, omega in (("body", Matrix(symbols.omega_b)), ("space", Matrix(symbols.omega_s))):
         rates = quaternion.quaternion_rates(frame) * omega
@@ -124,19 +121,13 @@ def _rotation_matrices() -> Iterator[tuple[str, Matrix]]:
 
 
 def _with_unit_axis(rotation: Matrix) -> Matrix:
-    """Return a rotation matrix about an axis n in its form for a unit axis: n n^T - 1 replaces the square of skew(n).
-
-    ``rotation`` is the matrix with that square.
-    """
+    """Return a rotation matrix about an axis n with n n^T - 1 in place of the square of skew(n)."""
     excess = (1 - cos(ANGLE)) * (AXIS.dot(AXIS) - 1)
     return (rotation + excess * eye(3)).applyfunc(expand)
 
 
 def along_axes() -> Iterator[Named]:
-    """Yield formulas such as ``omega = omega_1 b_1 + omega_2 b_2 + omega_3 b_3``, with unit vectors b_1, b_2, b_3.
-
-    They are for angular momenta and velocities, along the principal axes or the axes of Euler rotations.
-    """
+    """Yield angular velocities and momenta along unit vectors: ``omega = omega_1 b_1 + omega_2 b_2 + omega_3 b_3``."""
     vectors = Matrix(3, 3, [Symbol(f"b_{n}{axis}", real=True) for axis in "xyz" for n in (1, 2, 3)])
     momentum = diag(symbols.A, symbols.B, symbols.C) * OMEGA
     directions = Matrix(1, 3, [Symbol(f"b_{n}", real=True) for n in (1, 2, 3)])  # any component of the vectors
@@ -252,11 +243,7 @@ def _euler_angles() -> Iterator[Named]:
 
 
 def _with_words(name: str, source: str, column: Matrix) -> Iterator[Named]:
-    """Yield each component of the vector ``column``, named with a word, such as "first component of the ..".
-
-    ``name`` is that of the vector. The formula of a component is short: only a claim that names the component can be
-    recognised by it.
-    """
+    """Yield each component of the vector ``column`` with a name such as "first component of the .."."""
     for word, component in zip(WORDS, column, strict=True):
         yield f"{word} component of the {name}", source, component
 

@@ -1,7 +1,6 @@
 """Formulas of mechanics in books: tops, wheels, free symmetric bodies, rotation about one axis.
 
-Each is derived from angular velocity in Euler angles, kinetic energy and Euler's equations. The symbols are those of
-:mod:`symrot.symbols`; a weight on the axis is written as ``W c_3`` and as ``m g c_3``.
+A weight on the axis is written as ``W c_3`` and as ``m g c_3``.
 """
 
 from collections.abc import Iterator
@@ -60,13 +59,11 @@ def tops() -> Iterator[Named]:
 
 
 def _steady(effective: Expr, spin: Expr, weight: Expr) -> Iterator[Named]:
-    """Yield the rates of steady precession of a heavy top, and the torque that a given precession needs.
-
-    They follow from the minimum of the potential ``effective`` of the top, in which ``weight`` is W or m g. ``spin`` is
-    the angular velocity about the axis of the top, in terms of the rates of the angles.
-    """
+    """Yield the rates of steady precession of a heavy top, and the torque that a given precession needs."""
+    # effective is the effective potential, spin omega_3 in terms of the rates of the angles, weight W or m g
     rate = symbols.n
     held = {P_PHI: P_PSI * cos(THETA) + A * rate * sin(THETA) ** 2}
+    # steady at the minimum of the effective potential
     condition = expand(effective.diff(THETA).subs(held) / sin(THETA))
     roots = solve(condition, rate)
     by_spin = {P_PSI: C * symbols.omega_3}

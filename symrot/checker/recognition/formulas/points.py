@@ -1,7 +1,4 @@
-"""Formulas of first courses: the torque of a force, the angular momentum of a point mass, speeds on a rotating body.
-
-Each follows from the cross product of the position with a force, a momentum or a velocity.
-"""
+"""Formulas of first courses, from cross products: torque of a force, angular momentum of a point, speed of a point."""
 
 from collections.abc import Iterator
 from typing import Any
