@@ -53,9 +53,9 @@ class Samples(ABC):
         return conversions.quaternion_to_dcm(self.quaternion)
 
     def euler(self, sequence: str, degrees: bool = False) -> Floats:
-        """Return Euler angles in order of application, shape (..., 3), rad.
+        """Return Euler angles in order of application, shape (..., 3), rad or degrees.
 
-        At gimbal lock, see :func:`symrot.kinematics.conversions.quaternion_to_euler`.
+        At gimbal lock the third angle is 0.
         """
         return conversions.quaternion_to_euler(self.quaternion, sequence, degrees=degrees)[0]
 

@@ -73,7 +73,7 @@ def step_tail(tolerance: float) -> tuple[float, float]:
 
 
 def order_for(tolerance: float, program: Program | None = None) -> int:
-    """Return the order of the series that is fastest for a tolerance and for the products in ``program``."""
+    """Return the order at which Taylor series take the least time for a tolerance; ``program`` computes the rates."""
     formulas = (*program.temporaries, *program.outputs) if program else ()
     products = sum(operations(formula)["mul"] for _, formula in formulas)
     # measured with `python -m symrot.bench.taylor --orders`; every order is accurate enough, and below 1e-6 the times
