@@ -56,7 +56,7 @@ Effects = tuple[Values, dict[int, Values]]
 
 
 def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
-    """Return left minus right at the first test point, and the amount by which each edit reduces it, by its index."""
+    """Return left - right at the first test point, and {number of an edit: how much this edit reduces left - right}."""
     point = numeric.points[0]
     whole = tuple(numeric.differences(point, ()))
     effects: dict[int, Values] = {}
@@ -73,9 +73,9 @@ def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 
 
 def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
-    """Return (left/right,) at the first test point, and the factor by which each edit divides it, by its index.
+    """Return left/right at the first test point, and {number of an edit: the factor by which it divides left/right}.
 
-    Empty if a side is zero.
+    Both are empty for matrices, and if a side is zero.
     """
     point = numeric.points[0]
     left, right = (entries_of(side) for side in numeric.sides(point, ()))
@@ -96,7 +96,7 @@ def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 
 
 def _completing(effects: Effects, rest: Callable[[float, float], float]) -> Iterator[tuple[int, int]]:
-    """Yield pairs of indices of edits that together make both sides equal.
+    """Yield the numbers of two edits that together make both sides equal.
 
     ``effects`` is the result of `_differences` or `_quotients`.
     """
