@@ -484,7 +484,7 @@ def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
 
 
 def _substituted(tree: Node, old: Node, new: Node, inside: Collection[str] | None = None) -> Node:
-    """Return a tree with ``new`` for each ``old``; with ``inside``, only for arguments of the functions in ``inside``."""
+    """Return a tree with ``new`` for each ``old``; with ``inside``, only for arguments of the functions named there."""
     if tree == old and inside is None:
         return new
     direct = inside is not None and tree.kind == "call" and tree.value in inside and tree.args[0] == old

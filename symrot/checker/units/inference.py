@@ -157,7 +157,7 @@ class UnitInference:
     # -- equations --------------------------------------------------------------------------------------------------
 
     def same(self, first: Value, second: Value, words: str) -> Value:
-        """Return the dimension of ``first``; if that of ``second`` differs, add the sentence ``words`` to the faults."""
+        """Return the dimension of ``first``; if ``second`` has another one, add the sentence ``words`` to faults."""
         if isinstance(first, tuple) or isinstance(second, tuple):
             return self.same_matrices(first, second, words)
         if first is ZERO or second is ZERO:
