@@ -10,9 +10,10 @@ from fractions import Fraction
 import numpy as np
 
 from symrot.dynamics.structure import PrincipalInertia
+from symrot.ensemble.enclosed import Enclosed, exact
 from symrot.ensemble.variation import PRINCIPAL, Variation
 from symrot.formula import exact_numbers as number
-from symrot.formula.tree import Node, names
+from symrot.formula.tree import Node, evaluate, names
 from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import EPOCH, Parameters
 from symrot.propagation.binding import folded, value_of
@@ -51,10 +52,12 @@ class Numbers:
         """Return all constants of trajectory ``chosen[k]`` as exact fractions, by name, such as ``weight`` or ``A``."""
         return Plan(self._variation.scene_of(self._chosen[k]), self._plan.structure, ()).constants
 
-    def bound(self, parameters: Parameters, epoch: float = 0.0) -> Floats:
-        """Return the values of k kernel parameters for each trajectory, shape (n, k), each rounded only once."""
+    def values_of(self, parameters: Parameters, epoch: float = 0.0) -> Floats:
+        """Return the values of k kernel parameters for each trajectory, shape (n, k), each rounded only once.
+
+        ``epoch`` is the scene's time, s, at which the time t of the kernel is 0.
+        """
         scene = Plan(self._variation.scene, self._plan.structure, ()).constants
-        # epoch, s: the time at which the kernel's clock shows 0
         known = {"pi": number.PI, EPOCH: Fraction(epoch), **scene}
         fixed = {name: value for name, value in known.items() if name not in self._columns}
         values = np.empty((len(self._chosen), len(parameters)))
@@ -77,12 +80,11 @@ class Numbers:
         parameters : pairs of name and formula
             The parameters; those that do not depend on the variable are left out of the result.
         moved : mapping
-            The derivatives, by the variable, of the constants of the plan, such as ``{"weight": 1}``; the same for all
-            trajectories.
+            The derivative of each constant by the variable, such as ``{"weight": 1}``, the same for all trajectories.
         variable : str
             The name of the variable, for messages.
         epoch : float
-            As for :meth:`bound`.
+            As for :meth:`values_of`.
 
         Raises
         ------
@@ -111,28 +113,41 @@ class Numbers:
                 continue
             table = np.stack([self._columns[key] for key in own], axis=1)
             rows, places = np.unique(table, axis=0, return_inverse=True)
-            exact = [fixed | dict(zip(own, map(Fraction, row), strict=True)) for row in rows.tolist()]
-            values = np.array([float(_slope(node, constants, moved, variable)) for constants in exact])
+            constants = [fixed | dict(zip(own, map(Fraction, row), strict=True)) for row in rows.tolist()]
+            values = np.array([float(_slope(node, each, moved, variable)) for each in constants])
             result[name] = values[places.ravel()]
         return result
 
-    def _each(self, node: tuple[object, ...], used: set[str]) -> Floats:
-        """Return the values of the formula ``node``, one for each trajectory."""
+    def _each(self, node: Node, used: set[str]) -> Floats:
+        """Return the values of the formula ``node``, which contains the names ``used``, rounded once."""
         columns = {name: column for name, column in self._columns.items() if name in used}
-        table = np.stack(list(columns.values()), axis=1)
-        # evaluated once for trajectories with equal constants
-        rows, places = np.unique(table, axis=0, return_inverse=True)
-        exact = [dict(zip(columns, map(Fraction, row), strict=True)) for row in rows.tolist()]
-        values: Floats = np.array([float(value_of(node, constants)) for constants in exact])[places.ravel()]
+        try:
+            with np.errstate(all="ignore"):
+                symbols = {name: exact(column) for name, column in columns.items()}
+                enclosed: Enclosed = evaluate(node, symbols, None, exact)
+                values, certain = enclosed.rounded()
+        except KeyError:  # a function, which has no enclosure
+            values, certain = np.empty(len(self._chosen)), np.zeros(len(self._chosen), dtype=bool)
+        if not certain.all():
+            values[~certain] = _in_fractions(node, {name: column[~certain] for name, column in columns.items()})
         return values
 
 
-def _slope(node: Node, constants: Mapping[str, Fraction], moved: Mapping[str, Fraction], variable: str) -> Fraction:
-    """Return the derivative of the formula ``node`` by a variable on which its constants depend.
+def _in_fractions(node: Node, columns: Mapping[str, Floats]) -> Floats:
+    """Return the values of the formula ``node`` in exact arithmetic; ``columns`` are the values of its symbols."""
+    table = np.stack(list(columns.values()), axis=1)
+    # evaluated once for trajectories with equal constants
+    rows, places = np.unique(table, axis=0, return_inverse=True)
+    constants = [dict(zip(columns, map(Fraction, row), strict=True)) for row in rows.tolist()]
+    values: Floats = np.array([float(value_of(node, each)) for each in constants])[places.ravel()]
+    return values
 
-    For ``A*B`` with A = 2, B = 3 and ``moved = {"A": 1}`` it is 3.
+
+def _slope(node: Node, constants: Mapping[str, Fraction], moved: Mapping[str, Fraction], variable: str) -> Fraction:
+    """Return the derivative of the formula ``node`` by a variable; ``moved`` are the derivatives of the constants.
+
+    ``A*B`` with A = 2, B = 3 and ``moved = {"A": 1}`` gives 3.
     """
-    # moved: the derivatives of the constants by the variable
     ratios = [abs(constants[name] / slope) for name, slope in moved.items() if slope and name in constants]
     size = min((ratio for ratio in ratios if ratio), default=Fraction(1))
 
