@@ -455,7 +455,7 @@ def quantity_name(named: NamedFormula) -> str:
 
 
 def _misplaced(name: str, known: str) -> int:
-    """Return how often a formula's name ``known`` contradicts the quantity ``name``: in the component, and in the frame.
+    """Return how often a formula's name ``known`` contradicts the quantity ``name``: in the component, or in the frame.
 
     "first component in the space frame" contradicts omega_3 in both.
     """

@@ -141,7 +141,7 @@ def _added(first: tuple[int, int], second: tuple[int, int]) -> tuple[int, int]:
 
 @dataclass(frozen=True)
 class Fingerprint:
-    """The atoms (symbols, functions, derivatives) of a formula, each with its signature (see the heading of the file)."""
+    """The atoms (symbols, functions, derivatives) of a formula, each with its signature (see the file's heading)."""
 
     atoms: tuple[Expr, ...]
     signatures: tuple[Values, ...]

@@ -1,7 +1,7 @@
 """Known formulas that differ from a claim by one fault: a numeric search, whose results are not yet proven.
 
-For each known formula for the claim's quantity, the search computes the values that the claim's formula should have. It
-then looks for a single part whose change gives these values.
+For each formula that symrot derives for the claim's quantity, the search computes the values that the claim's formula
+should have. It then looks for a single part whose change gives these values.
 """
 
 import math

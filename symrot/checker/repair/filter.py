@@ -179,7 +179,7 @@ class NumericFilter:
         return replace(point, definitions={**point.definitions, name: tree}, known=known, lifted={})
 
     def _dependent_on(self, name: str) -> set[int | str]:
-        """Return what depends on the definition of ``name``: names of definitions, and ids of trees in the claim."""
+        """Return the names of definitions, and the ids of trees, that depend on the definition of ``name``."""
         names = {name}
         for other, tree in self.definitions.items():
             if any(node.kind == "name" and node.value in names for _, node in walk(tree)):

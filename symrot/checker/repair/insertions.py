@@ -153,7 +153,7 @@ def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def _term(residual: Any, piece: Node | None) -> Node | None:
-    """Return the difference of two sides as the tree of one short term such as ``m*r**2``; None if it is none."""
+    """Return the difference of two sides as the tree of one short term such as ``m*r**2``; None if it is longer."""
     above, below = residual.as_numer_denom()
     if not below.is_number or not residual.free_symbols:
         return None

@@ -1,8 +1,7 @@
-"""Pairs of edits that make a claim true together, by joining their numeric effects instead of trying all pairs.
+"""Pairs of edits that make a claim true together, found by their numeric effects instead of trying all pairs.
 
-At a point, edits of different terms change the difference of the sides by independent amounts, and edits of different
-factors change the quotient of the sides by independent factors. A look-up of the missing amount gives the second
-edit.
+If left - right is 5 at a test point, and one edit of a term reduces it by 2, an edit that reduces it by 3 completes the
+pair. Edits of factors likewise change left/right by factors.
 """
 
 from collections.abc import Callable, Iterator, Sequence

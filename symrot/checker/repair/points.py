@@ -1,6 +1,6 @@
-"""Values of trees at test points in double precision, which take milliseconds and rule out most wrong repairs.
+"""Values of parsed formulas (trees) at test points in double precision, to rule out most wrong repairs in milliseconds.
 
-A function of time is represented by its value and its first derivatives, which are independent numbers.
+At a test point, a function of time and each of its derivatives have values that are independent of each other.
 """
 
 import math
