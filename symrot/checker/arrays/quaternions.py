@@ -203,7 +203,7 @@ def _quaternion_names(
                     add(factor)
         elif node.kind == "call" and node.value == CONJUGATE:
             add(node.args[0])
-    for factor in _turned(sides):
+    for factor in _turning_quaternion(sides):
         add(factor)
     used = {str(node.value) for node in everything if node.kind == "name"}
     for node in everything:
@@ -226,7 +226,7 @@ def _quaternion_names(
     return tuple(names)
 
 
-def _turned(sides: Sequence[Node]) -> Sequence[Node]:
+def _turning_quaternion(sides: Sequence[Node]) -> Sequence[Node]:
     """Return [q] for an equation of a quaternion q such as ``q' = 1/2 omega q``; () for other equations."""
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         factors = [_bare(factor) for factor in other.args if factor.kind != "number" and factor.kind != "inv"]
