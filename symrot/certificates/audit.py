@@ -124,7 +124,7 @@ def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[
 
 
 def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | None]) -> list[str]:
-    """Check header, C text and statements of a certificate against symrot's derivation; return the findings."""
+    """Check the header, the C text and the statements of a certificate; return a sentence for each check."""
     name = data["kernel"]
     # CertificateError is raised at the first check that fails
     source, header = ((path.parent / f"{name}{end}").read_text(encoding="utf-8") for end in (".c", ".h"))
@@ -165,15 +165,18 @@ def _check_others(path: Path, data: Data, source: str) -> list[str]:
 
 
 def _unchecked_objects(data: Data) -> list[str]:
-    """Return one sentence, that verdicts on object code were not checked; an empty list without verdicts."""
+    """Return a list with the sentence "its verdicts on object code were not checked: ..".
+
+    The list is empty if the certificate has no verdicts on object code.
+    """
     # a verdict holds only for the machine where it was made
     finding = "its verdicts on object code were not checked: --object compares an object file of yours"
     return [finding] if data.get("objects") else []
 
 
 def _compare(path: Path, data: Mapping[str, Any], statement: Mapping[str, Any]) -> None:
-    """Raise CertificateError if a section of the certificate ``data`` differs from that section of ``statement``."""
-    # ``statement`` holds the sections that symrot derives now
+    """Raise CertificateError unless each section in ``statement`` equals the section of that name in ``data``."""
+    # ``data``: the certificate; ``statement``: the sections that symrot derives now
     for name, value in statement.items():
         if json.dumps(data[name]) != json.dumps(value):
             raise CertificateError(
@@ -182,7 +185,7 @@ def _compare(path: Path, data: Mapping[str, Any], statement: Mapping[str, Any]) 
 
 
 def _bounds(path: Path, data: Data, source: str) -> str:
-    """Return a sentence that says what was checked about the certificate's bounds of rounding errors."""
+    """Check a certificate's bounds of rounding errors; return a sentence that says what was checked."""
     section = data.get("rounding")
     own = library_section(data["kernel"], source) if is_kernel(data["kernel"]) else None
     if section is None:

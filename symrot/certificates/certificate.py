@@ -89,7 +89,10 @@ class KernelUnderTest:
 
 
 def _places(argument: Argument) -> list[tuple[str, tuple[str, str, str]]]:
-    """Return each component of an argument as its name in C, such as ``"q[1]"``, and (symbol, unit, description)."""
+    """Return pairs (C name, (symbol, unit, description)), one for each component of an argument.
+
+    The C name of a component is, for example, ``"q[1]"``.
+    """
     if argument.is_scalar:
         return [(argument.name, argument.components[0])]
     return [(f"{argument.name}[{i}]", component) for i, component in enumerate(argument.components)]
@@ -173,7 +176,10 @@ def _functions(formulas: Sequence[Expr]) -> list[list[str]]:
 
 
 def proven_statement(kernel: KernelUnderTest) -> Data:
-    """Prove all statements about a kernel, and return them as the data of a certificate without its seal."""
+    """Return the content of a kernel's certificate, with all proofs, but without the entry ``"seal"``, a checksum.
+
+    CertificateError is raised if a proof fails.
+    """
     # an audit compares the data with a certificate's file; they have no optional sections (bounds, object code)
     return {key: value for key, value in json.loads(certificate_text(kernel)).items() if key != "seal"}
 

@@ -107,7 +107,7 @@ class Evaluator:
     def parsed(self, text):
         """Return the syntax tree of the formula or C expression ``text``.
 
-        Its decimal numbers are strings there, so that they stay exact.
+        Decimal numbers are strings in the tree, so that they stay exact.
         """
         require(
             text.isascii() and not re.search(r"//|\+\+|--|['\"\\#]", text), f"expected a formula, got {text[:60]!r}"
@@ -163,8 +163,10 @@ class Evaluator:
         return self.functions[name, *values]
 
     def run(self, body, places, targets=()):
-        """Evaluate C statements; return the value of ``return``, or else a map from each target to its value."""
-        # ``places``: inputs that may be read -> values; ``targets``: outputs to assign, such as "q[1]"
+        """Evaluate the statements ``body`` of a C function, with values of its inputs from the map ``places``.
+
+        Return the value after ``return``, or a map from each of ``targets``, such as ``"q[1]"``, to the assigned value.
+        """
         self.names, results, statements = dict(places), {}, body.split(";")
         require(not statements.pop().strip(), f"expected a semicolon at the end, got {body[-60:]!r}")
         for place, statement in enumerate(statements, 1):
@@ -227,7 +229,10 @@ class KernelCheck:
         self.constants = dict(map(self.constant, self.readback["constants"]))
 
     def constant(self, pair):
-        """Check that a constant of the C text is an exact number, such as 1/3 or pi/2, rounded; return both."""
+        """Check that a constant of the C text is the rounded value of an exact number, such as 1/3 or pi/2.
+
+        Return both numbers; ``pair`` has them as text.
+        """
         written, exact = Fraction(pair[0]), Fraction(pair[1].removesuffix("*pi"))
         times_pi = pair[1].endswith("*pi")
         require(
@@ -237,12 +242,14 @@ class KernelCheck:
         return written, exact * self.symbols["pi"] if times_pi else exact
 
     def run(self, body, places, targets=(), tested=()):
-        """Return the values that the body of a C function assigns or returns, at given inputs."""
+        """Evaluate the statements ``body`` of a C function as :meth:`Evaluator.run` does, and return the same.
+
+        ValueError is raised if a function of limited range has an argument that is not in ``tested``.
+        """
         reader = Evaluator({}, self.functions, self.real, self.calls, self.constants if targets else ())
         computed = reader.run(body, places, targets)
         require(
             # functions such as symrot_sin are accurate only for small angles: the C text must test the angle
-            # (``tested``)
             reader.limited_angles <= set(map(reader.read, tested)),
             f"{self.name} calls a function of limited range for an angle that the C text does not test",
         )
@@ -308,7 +315,8 @@ class KernelCheck:
             )
 
     def check_own(self, function, bare):
-        """Check that a ``function`` defined in the C file computes ``bare``, such as sinc, or its accurate series."""
+        """Check that a C ``function``, such as ``symrot_sinc``, computes the function ``bare``, such as ``sinc``."""
+        # near x = 0 the C text may compute a Taylor series instead, whose error the certificate states
         (explicit, case), (_, _, arguments, body) = SAFE[bare], self.c_functions[function]
         for _, split, coefficients, rest in (each for each in self.readback["series"] if each[0] == bare):
             taylor = [(-1) ** k * TAYLOR[bare](k) for k in range(len(coefficients) + 1)]
@@ -354,7 +362,7 @@ def hypotheses(values):
 
 
 def prove(law, case, formulas):
-    """Check the stored proof of a law in one case; raise ValueError if it is wrong."""
+    """Raise ValueError if the proof of a law is wrong for ``case``, one choice of a branch of each conditional."""
     witness = {name: Fraction(text) for name, text in law["witness"].items()} | {"pi": PI}
     there, reader = (
         Evaluator(witness, FloatFunctions(), cases={}),
@@ -444,7 +452,7 @@ def complete(cases):
 
 
 def functions_of(text, name, files):
-    """Return the functions in a C text, by name: tuples (is it static, type, arguments, body)."""
+    """Return a map from the name of each function in a C text to (whether it is static, type, arguments, body)."""
     odd = re.search(r"\\|\?\?|//|[\0-\x09\x0b-\x1f]", text)
     require(not odd, f"expected no backslash, trigraph, // comment or control character, got {odd and odd[0]!r}")
     # the certified files decide the includes that the text may have

@@ -1,4 +1,8 @@
-"""The kernels that can be certified: library kernels, and the equations of motion of a scene, each with its laws."""
+"""The kernels that can be certified: library kernels, and the equations of motion of a scene.
+
+A law is a property of a kernel's outputs that the certificate proves, such as "the norm is 1". It is a list of
+expressions in inputs and outputs that must be zero.
+"""
 
 from collections.abc import Mapping, Sequence
 from functools import reduce
@@ -52,12 +56,23 @@ def scene_kernel_under_test(
     outputs: Mapping[str, Expr],
     named: Sequence[tuple[Symbol, Expr]],
 ) -> KernelUnderTest:
-    """Return the kernel of a scene's equations of motion with all that its certificate states.
+    """Return the kernel of a scene's equations of motion, with all that its certificate states.
 
-    ``outputs`` maps components to formulas of rates and their derivatives.
+    Parameters
+    ----------
+    equations : Equations
+        The equations of motion.
+    program : Program
+        The operations of the kernel, with the names of its arguments.
+    parameters : sequence of (str, Node)
+        Inputs that stand for formulas in physical constants, such as (B - C)/A, with these formulas.
+    description, files
+        As for :func:`library_kernel_under_test`.
+    outputs : mapping of str to Expr
+        A map from the name of each output to its formula: ``domega_1``, or its derivative ``domega_1_by_A``.
+    named : sequence of (Symbol, Expr)
+        Symbols for parts of the formulas, with their own formulas.
     """
-    # ``parameters`` are arguments that stand for formulas in physical constants; ``named`` are quantities in the
-    # formulas
     inputs = tuple(a for a in program.signature.arguments if a.role == "in" and a.size)
     targets = (a for a in program.signature.arguments if a.role == "out")
     results = tuple((a, tuple(outputs[component] for component, *_ in a.components)) for a in targets)
@@ -74,7 +89,10 @@ def _expression(node: Node) -> Expr:
 
 
 def _derivative_laws(equations: Equations, outputs: Sequence[str]) -> tuple[Law, ...]:
-    """Return one law: outputs that are derivatives, such as ``domega_1_by_A``, equal the exact derivatives."""
+    """Return the law that each output such as ``domega_1_by_A`` is the derivative of ``domega_1`` by ``A``.
+
+    The result is empty if no output is a derivative.
+    """
     rates = {f"d{state}": rate for state, rate in zip(equations.states, equations.explicit_rates, strict=True)}
     vanishing = []
     for output in outputs:
@@ -84,7 +102,6 @@ def _derivative_laws(equations: Equations, outputs: Sequence[str]) -> tuple[Law,
             symbols = {str(symbol): symbol for symbol in formula.free_symbols}
             slope = exact_derivative(formula, symbols[variable]) if variable in symbols else 0
             vanishing.append(constant(output) - slope)
-    # no law if no output is a derivative
     return (Law("the derivatives are those of the rates", tuple(vanishing)),) if vanishing else ()
 
 
@@ -96,7 +113,7 @@ class _ConstantsByName(dict[str, Symbol]):
 
 
 def scene_laws(equations: Equations) -> tuple[Law, ...]:
-    """Return the laws that the rates (time derivatives of a scene's states) obey, as implicit equations."""
+    """Return laws that the time derivatives of a scene's states obey, such as "dq/dt is q (0, omega) / 2"."""
     # the equations of motion before they are solved for the rates, so that the laws also check the solution
     motion = equations.motion
     rate = {state: constant(f"d{state}") for state in equations.states}

@@ -61,7 +61,7 @@ COMPARISONS = {"<": operator.lt, "==": operator.eq, ">=": operator.ge}
 
 
 def need(holds, sentence):
-    """Raise ValueError with a sentence, by which the certificate is refused, unless a condition holds."""
+    """Raise ValueError with the message ``sentence``, so that the certificate is refused, unless ``holds`` is true."""
     if not holds:
         raise ValueError(sentence)
 
@@ -114,7 +114,7 @@ class Negative(NamedTuple):
 
 
 class Chain(NamedTuple):
-    """A node of an expression tree: a sum or a product, as ``first [(operation, operand), ..]``."""
+    """A node of an expression tree: a sum or a product; ``rest`` is [("-", b), ("+", c)] for ``a - b + c``."""
 
     first: object
     rest: list
@@ -243,7 +243,7 @@ class AnyFunctions(Arithmetic):
         return x**exponent
 
     def short(self, x, times=1):
-        """Return a number unchanged; raise ValueError if its power of exponent ``times`` has too many digits."""
+        """Return the number ``x``; raise ValueError if ``x**times`` would have too many digits."""
         digits = max(x.numerator.bit_length(), x.denominator.bit_length()) * times
         need(digits <= LONGEST_NUMBER, f"expected numbers of at most {LONGEST_NUMBER} binary digits, got longer ones")
         return x
@@ -351,7 +351,10 @@ class Names(dict):
 
 
 def at_a_point(compute):
-    """Return the value of ``compute()``, which draws a random point; call it again if its value is undefined there."""
+    """Return the value of ``compute()``, which draws a random point.
+
+    If the point is unsuitable (division by zero), ``compute`` is called again.
+    """
     for _ in range(200):
         try:
             return compute()
@@ -467,7 +470,7 @@ class Reader:
         return Chain(first, rest) if rest else first
 
     def factor(self):
-        """Read a number, a variable, a call or a sum in parentheses, with an exponent if allowed; return its node."""
+        """Read a factor, such as ``2``, ``x``, ``sin(x)``, ``(a + b)`` or, in a formula, ``x**2``; return its node."""
         if self.accept("-"):
             return Negative(self.factor())
         if self.token.kind == "number":
@@ -671,7 +674,7 @@ def split_includes(text, name, files):
 # Each name is declared once, before its use, and each component is assigned once. Formulas of certificates have the
 # same expressions, and powers such as ``x**2`` and ``x**(3/2)``; their numbers are whole numbers or decimals.
 class CReader(Reader):
-    """A parser of the functions of a C file, by the grammar above."""
+    """A parser of the functions of a C file; the comment above this class states the grammar."""
 
     def __init__(self, text, name, files, sizes):
         included, text = split_includes(without_comments(text, f"{name}.c"), name, files)
@@ -732,7 +735,7 @@ class CReader(Reader):
         return int(self.advance())
 
     def use(self, real):
-        """Prepare to read a function for ``real`` numbers, "double" or "float"."""
+        """Prepare to read a function whose numbers have the C type ``real``: "double" or "float"."""
         self.real, end = real, REALS[real]
         # the functions that such a text may call: its own, those of <math.h> and symrot_math.h if they are included
         self.own = self.inline[real]
@@ -909,7 +912,7 @@ class CReader(Reader):
 
 
 def run(body, numbers, inputs):
-    """Run a C function's body at given inputs; return its outputs, and the angles that it tests for their range."""
+    """Run the ``body`` of a C function; return a map of its outputs, and the angles that it tests for their range."""
     names, outputs = dict(inputs), {}
     for target, expression in body.statements:
         value = expression.value(numbers, names)
@@ -976,7 +979,7 @@ def without_repetition(pairs):
 
 
 def certified(path):
-    """Return the certificate in a file, after checking its seal and the hash of every file that it names."""
+    """Check a certificate's checksum (the entry ``seal``) and the hashes of its files; return the other entries."""
     try:
         data = json.loads(content(path), object_pairs_hook=without_repetition)
     except RecursionError:
@@ -1033,7 +1036,7 @@ def defined_functions(definitions):
 
 
 class Specification:
-    """The formulas of a certificate, parsed with a given set of functions."""
+    """The formulas of a certificate as expression trees, which may call ``functions``."""
 
     def __init__(self, data, functions):
         spec = data["spec"]
@@ -1065,8 +1068,8 @@ class Specification:
         return FormulaReader(text, place, self.functions).whole()
 
     def set_values(self, names):
-        """Add all named quantities and outputs at a point to ``names``, and return the values of the inputs."""
-        # ``names`` maps symbols to values; the result maps inputs of the C function, such as q[2], to values
+        """Add the value of each formula to ``names``; return the values of the C inputs, such as q[2]."""
+        # ``names`` maps symbols to values, and draws a random value for a symbol without one
         inputs = {place: expression.value(names.numbers, names) for place, expression in self.inputs}
         for symbol, expression in self.named:
             names.define(symbol, expression.value(names.numbers, names))
@@ -1131,7 +1134,7 @@ LEAST = {"double": Fraction(1, 2**55), "float": Fraction(1, 2**26)}  # a quarter
 
 
 def check_series(series, functions, real):
-    """Check the polynomial that replaces a function near x = 0, and return ``functions`` with it."""
+    """Check the polynomial that replaces a function near x = 0; return ``functions`` with the function so replaced."""
     name, split_text, coefficient_texts, rest_text = series
     place = f"series of {quoted(name)}"
     split, rest = constant(split_text, place), constant(rest_text, place)
@@ -1179,7 +1182,7 @@ def constants_of(readback, real):
 
 
 def component_of(place):
-    """Return ("q", 2) for a place such as ``q[2]``; a single number, such as ``t``, gives ("t", 0)."""
+    """Return the component that a text names: ("q", 2) for ``q[2]``, and ("t", 0) for a single number ``t``."""
     match = re.fullmatch(r"([A-Za-z]\w*)(?:\[(0|[1-9]\d{0,2})\])?", place, re.ASCII)
     need(match, f"{quoted(place)}: expected an argument of a function, such as W or q[2]")
     return match[1], int(match[2] or 0)
@@ -1453,7 +1456,7 @@ def check_banner(data, text):
 
 
 def has_choices(data):
-    """Return whether formulas or laws contain conditionals, of which one random point tests only one branch."""
+    """Return whether formulas or laws contain conditionals; a random point tests only one branch of each."""
     return bool(re.search(r"select_|Abs|copysign|\?", json.dumps([data["spec"], data["laws"]])))
 
 

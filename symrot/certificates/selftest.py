@@ -38,7 +38,10 @@ CHECKS: tuple[tuple[str, str], ...] = (
 
 @dataclass(frozen=True)
 class _CheckedFunction:
-    """A function of libm to test: name, allowed error, and a generator of test arguments (y, x)."""
+    """A function of libm to test: name, allowed error, and a generator of test arguments (y, x).
+
+    Only atan2 uses y, which is 0 for the other functions.
+    """
 
     name: str
     allowed: Fraction  # ulp
@@ -56,7 +59,7 @@ class _CheckedFunction:
 
 
 def _angles(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Yield test angles x for sine and cosine, up to 1e6 rad, as pairs (0, x) of ``digits`` binary digits."""
+    """Yield test arguments (0, x) for sine and cosine: angles x of ``digits`` binary digits, up to 1e6 rad."""
     from mpmath import mp, mpf
 
     # near multiples of pi/2 the reduction of an angle loses digits
@@ -71,7 +74,7 @@ def _angles(random: Random, digits: int) -> Iterator[tuple[float, float]]:
 
 
 def _sides(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Yield random arguments (y, x) with ``digits`` binary digits that test atan2; y has many magnitudes."""
+    """Yield random test arguments (y, x) for atan2, of ``digits`` binary digits; y has many magnitudes."""
     from mpmath import mpf
 
     for size in (1e-12, 1e-6, 1e-3, 0.3, 1.0, 1.0, 3.0, 1e3, 1e6, 1e12):
@@ -83,7 +86,7 @@ def _sides(random: Random, digits: int) -> Iterator[tuple[float, float]]:
 
 
 def _radicands(random: Random, digits: int) -> Iterator[tuple[float, float]]:
-    """Yield pairs (0, x) that test the square root, with x random, positive, and of ``digits`` binary digits."""
+    """Yield test arguments (0, x) for the square root: random positive x of ``digits`` binary digits."""
     from mpmath import mpf
 
     for _ in range(POINTS):

@@ -297,8 +297,8 @@ def _with_intended_constants(rates: Program, method: Method) -> Method:
         for own, factor in fractions:
             if own is not None and own != coefficient * factor:
                 raise CertificateError(
-                    f"{method.name}: expected the constant of the coefficient {float(value)!r} to stand for it, got "
-                    f"one that stands for {own}"
+                    f"{method.name}: expected the constant {float(value * factor)!r} in the C text to stand for "
+                    f"{factor} times the coefficient {float(value)!r}, got one that stands for {own}"
                 )
         return coefficient
 
@@ -311,7 +311,7 @@ def _with_intended_constants(rates: Program, method: Method) -> Method:
 
 
 def _intended(value: Fraction) -> Fraction | None:
-    """Return the fraction that the reader of C text recovers from a number rounded to a double; None if it is none."""
+    """Return the exact number, such as 1/3, for which ``value`` rounded to a double stands; None if there is none."""
     try:
         constant = intended_value(Fraction(float(value)), "binary64")
     except CertificateError:
@@ -356,7 +356,10 @@ def _proof(step: str, rates: Program, method: Method, source: str, suffix: str) 
 def _degree(
     file: str, rates: Program, method: Method, places: Mapping[str, str], operations: Operations, point: int
 ) -> int:
-    """Compare the C text with the formula of the step at one random point; return the largest degree of an output."""
+    """Return the largest degree of an output, as a rational function of the inputs, computed at a random point.
+
+    CertificateError is raised if an output of the C text differs there from the step's formula.
+    """
     values = {symbol: _Residue(_digest_number(operations.digest(), point, symbol), 1) for symbol in places.values()}
     number = _exact(operations.precision)
     computed = operations.evaluate({place: values[symbol] for place, symbol in places.items()}, _RANDOM, number)

@@ -167,14 +167,17 @@ class _Power:
         return result if exponent >= 0 else 1 / result
 
     def integrated(self, start: Any, slope: "_Power") -> "_Power":
-        """Return the power series f(x(h)) of the function f with value ``start`` at x(0) and derivative ``slope``."""
+        """Return the series f(x(h)): x is this series, ``start`` is f(x(0)), and ``slope`` is the series f'(x(h))."""
         # for example, ``slope`` is 1/x if f is the logarithm
         rates = self.rates
         return _Power((start, *(_dot(slope.terms[: n + 1], rates[n::-1]) / (n + 1) for n in range(len(rates)))))
 
 
 class _Majorant(_Power):
-    """A power series that bounds the absolute values of another one's coefficients; differences are sums for it."""
+    """A power series whose coefficients are bounds of another series' coefficients, in absolute value.
+
+    So ``a - b`` is computed as ``a + b``, and ``-a`` as ``a``.
+    """
 
     @staticmethod
     def of(value: Any, count: int) -> "_Majorant":
@@ -209,7 +212,8 @@ def _is_zero(value: Any) -> bool:
 
 
 def _turning(x: _Power, sign: int, functions: tuple[str, str]) -> tuple[_Power, _Power]:
-    """Return sine and cosine of the power series x, or hyperbolic sine and cosine if ``sign`` is 1."""
+    """Return the power series (sin x, cos x) if ``sign`` is -1, or (sinh x, cosh x) if ``sign`` is 1."""
+    # ``functions``: the names of the two, for the first coefficients
     rates = x.rates
     s, c = ([_SCALAR[name](iv.mpf(x.terms[0]))] for name in functions)
     for n in range(len(rates)):
@@ -260,7 +264,7 @@ Tree = tuple[Any, ...]  # a rooted tree: the subtrees of its root, in order
 
 
 def _trees(size: int) -> list[Tree]:
-    """Return all rooted trees with ``size`` nodes; each gives one condition for a method to have an order."""
+    """Return all rooted trees with ``size`` nodes; each gives one order condition of a Runge-Kutta method."""
     if size == 1:
         return [()]
     trees: set[Tree] = set()
@@ -292,14 +296,14 @@ def _weight(tree: Tree, method: RungeKutta) -> list[Fraction]:
 
 
 def require_order(method: Method) -> tuple[Fraction, ...]:
-    """Return the largest defects of a method's order conditions: for the trees with 1, 2, .. nodes, up to its order.
+    """Raise CertificateError unless a method has its order; return the largest defects of its order conditions.
 
+    Entry k is the largest defect of trees with k + 1 nodes, 0 unless the method's coefficients are rounded decimals.
     Source: Hairer, Norsett, Wanner, Solving ODEs I, 2nd ed., theorem II.2.13.
     """
     method = method.plain if isinstance(method, WithDerivatives) else method
     if isinstance(method, TaylorSeries):
         return (Fraction(0),) * method.order
-    # a defect is zero unless the coefficients are rounded decimals; a larger one raises CertificateError
     most = DEFECT if method.rounded else Fraction(0)
     for node, stage in zip(method.nodes, method.stages, strict=True):
         if abs(sum(stage.values(), Fraction(0)) - node) > most:
@@ -431,7 +435,8 @@ def _problem(rates: Program, method: Method, states: Sequence[str], box: Box) ->
 
 
 def _require_polynomial(rates: Program) -> None:
-    """Raise InputError unless the rates are polynomials without the time, as a step of rounded coefficients needs."""
+    """Raise InputError unless the rates are polynomials in the states that do not contain the time."""
+    # only then can the effect of a method's rounded coefficients be bounded
     formulas = [node for _, node in (*rates.temporaries, *rates.outputs)]
     if not all(map(_is_polynomial, formulas)) or any("t" in names(node) for node in formulas):
         raise InputError(
@@ -450,7 +455,7 @@ def _is_polynomial(node: Node) -> bool:
 
 
 def _terms(polynomial: Any) -> Terms:
-    """Return the terms of a polynomial of SymPy's ring, in its order."""
+    """Return the terms of a polynomial as pairs (coefficient, powers): (2, (("x", 3),)) for ``2*x**3``."""
     names = [str(symbol) for symbol in polynomial.ring.symbols]
     return [
         (Fraction(int(value.numerator), int(value.denominator)),
@@ -521,7 +526,7 @@ class _Problem:
             return [inf] * len(self.states)
 
     def _defective(self, values: Mapping[str, Any], size: Any) -> list[Any]:
-        """Return, for each state, a bound of the terms that only the defects of the order conditions contribute."""
+        """Return, for each state, a bound of the error that the method's defects cause (see ``require_order``)."""
         # valid for all states in the box ``values`` and all sizes up to ``size``
         count = len(self.defects) + 1
         largest = {name: _Majorant.of(iv.mpf(abs(value).b), count) for name, value in values.items()}
@@ -555,7 +560,8 @@ class _Problem:
         return None
 
     def _step_coefficients(self, values: Mapping[str, Any], span: Any, order: int) -> list[Any]:
-        """Return, for each state, an interval of the Taylor coefficient ``order``, in the step size, of the step."""
+        """Return, for each state, an interval with the coefficient of h^``order`` in the series of the step."""
+        # h is the step size; ``span`` is the range of its values
         # the coefficients of a Taylor method above its own order are zero
         if isinstance(self.method, TaylorSeries):
             return [0] * len(self.states)
@@ -563,7 +569,7 @@ class _Problem:
         size = _Power((span, iv.mpf(1), *(0,) * (count - 2)))
         start = {name: _Power.of(value, count) for name, value in values.items() if name != SIZE}
         functions = _Functions({name: _of_any(name) for name in _OF_SERIES})
-        # valid for all states of the box and all step sizes of ``span``
+        # valid for all states of the box
         after = stepped(
             self.rates, self.method, start, size, functions, lambda value: _Power.of(_number(value), count)
         )  # fmt: skip

@@ -53,7 +53,7 @@ def attitudes(quaternions: Floats) -> Floats:
 
 
 def turned(frame: Frame, quaternions: Floats) -> Floats:
-    """Return attitudes converted to the axes ``frame`` of a heavy top's formulas, shape (n, 8): pairs hi, lo."""
+    """Return attitudes, shape (n, 4), in the axes ``frame`` of a heavy top's formulas, as double-double numbers."""
     # the same numbers as from Frame.start for each attitude
     attitudes = _units(quaternions)
     if frame.before is not None:
@@ -109,11 +109,11 @@ def _product(constant: Sequence[Fraction], before: bool, q: dd.Pair) -> dd.Pair:
 
 
 def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], Sequence[float]]) -> Floats:
-    """Return double-double numbers rounded as :func:`symrot.closed_form.arithmetic.pairs.on_grid` rounds exact ones.
+    """Return the sums ``high + low`` of n quaternions as doubles hi, lo, hi, lo, .., shape (n, 8), with lo rounded.
 
-    ``exactly(i)`` computes a row i whose rounding is in doubt.
+    If the errors of the sums leave the rounding of quaternion i in doubt, ``exactly(i)`` computes its 8 doubles.
     """
-    # low becomes a multiple of a grid step, which is GRID times the last bit of high
+    # as in arithmetic.pairs.on_grid, lo becomes a multiple of a grid step, GRID times the last bit of hi
     last = np.where(abs(high) > _SPREAD, np.spacing(abs(high)), 1.0)
     part, steps = abs(low) / last, low / (last * GRID)
     # high + low may differ from the exact number by error plus _DOUBT/4 grid steps
@@ -129,14 +129,14 @@ def _on_grid(high: Floats, low: Floats, error: float, exactly: Callable[[int], S
 
 
 def _pairs(values: Floats) -> Floats:
-    """Return doubles as double-double numbers: a row a, b, .. becomes a, 0, b, 0, .."""
+    """Return doubles as double-double numbers: ``[a, b]`` gives ``[a, 0, b, 0]``."""
     pairs = np.zeros((*values.shape[:-1], 2 * values.shape[-1]))
     pairs[..., ::2] = values
     return pairs
 
 
 def _columns(values: Sequence[Column], n: int) -> Floats:
-    """Return k constants of n motions as double-double numbers, shape (n, 2 k): hi, lo, hi, lo, .. in each row."""
+    """Return k constants of n motions as double-double numbers, shape (n, 2 k): hi and lo of each constant."""
     columns = np.zeros((n, 2 * len(values)))
     for k, value in enumerate(values):
         if isinstance(value, Fraction):
@@ -152,11 +152,11 @@ def _together(values: Sequence[Column], n: int) -> Floats:
 
 
 def usual(omega: Floats) -> NDArray[np.bool_]:
-    """Return for each angular velocity, shape (n, 3), whether the functions below accept its size.
+    """Return for each angular velocity, shape (n, 3), whether a batch can compute its motion.
 
-    Other motions must be computed one by one.
+    The largest component must be zero or from SMALLEST to LARGEST.
     """
-    # the largest component is zero or from SMALLEST to LARGEST
+    # other motions must be computed one by one
     largest = abs(omega).max(axis=1)
     is_usual: NDArray[np.bool_] = (largest <= LARGEST) & ((largest >= SMALLEST) | (largest == 0))
     return is_usual
@@ -171,8 +171,9 @@ def _noticed(omega: Floats) -> Floats:
 def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
     """Return the motions of one free body from n initial states as a batch, which one call of C computes.
 
-    The angular velocities must be :func:`usual`; ``start`` has the shape (8,) or (n, 8).
+    ``omega`` are angular velocities that pass :func:`usual`, ``start`` is the result of :func:`attitudes`.
     """
+    # start: shape (n, 8), or (8,) if all motions share the attitude
     exact = np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
     if body.axes is None:
@@ -233,19 +234,23 @@ def _integers(values: list[float]) -> list[int]:
 def tops(
     across: Column, own: Column, pull: Floats, frame: Frame, omega: Floats, start: Floats,
 ) -> Batch:  # fmt: skip
-    """Return the motions of symmetric heavy tops from n initial states as a batch, which one call of C computes.
+    """Return the motions of n symmetric heavy tops as a batch, which one call of C computes.
 
-    ``pull`` is weight times height of the centre of mass, N m, as hi and lo.
+    ``start`` is the result of :func:`turned` for ``frame``, the axes of the formulas.
     """
-    # start: attitudes in the axes of frame, see turned
+    # across, own: moments of inertia about an axis normal to the symmetry axis and about the symmetry axis;
+    # pull: weight times distance of the centre of mass from the fixed point, N m, as hi and lo
     rates = _pairs(np.ascontiguousarray(omega[:, frame.named]))
     axes = None if frame.axes is None else np.array(frame.axes)
     return Batch("heavy_top", (_together([across, own], len(omega)), pull, rates, start, np.array(frame.space), axes))
 
 
 def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of symmetric gyrostats, with the rotor along ``axis``, as a batch for one call of C."""
-    # across, own: moments of inertia across and about the axis; rotor: the rotor's angular momentum
+    """Return the motions of n symmetric gyrostats as a batch, which one call of C computes.
+
+    ``rotor`` is the angular momentum of the rotor along the body axis ``axis`` (0, 1 or 2).
+    """
+    # across, own: moments of inertia about an axis normal to the symmetry axis and about the symmetry axis
     named = [(axis + 1) % 3, (axis + 2) % 3, axis]
     rates = _pairs(np.ascontiguousarray(omega[:, named]))
     constants = [_together([across, own], len(omega)), _together([rotor], len(omega))]
@@ -253,8 +258,11 @@ def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floa
 
 
 def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of symmetric bodies under a constant torque about ``axis`` as a batch for one call of C."""
-    # across, own: moments of inertia across and about the axis
+    """Return the motions of n symmetric bodies, each under a constant torque about its body axis ``axis``, as a batch.
+
+    ``across`` and ``own`` are moments of inertia about an axis normal to ``axis`` and about ``axis``.
+    """
+    # omega and start have one row for each motion
     numbers = np.empty((len(omega), 20))
     numbers[:, :6] = _columns([across, own, torque], len(omega))
     numbers[:, 6:12] = _pairs(omega[:, [axis - 2, axis - 1, axis]])
@@ -263,8 +271,10 @@ def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floa
 
 
 def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Floats) -> Batch:
-    """Return the motions of bodies driven about one axis, from n initial states, as a batch for one call of C."""
-    # one body for all initial states, or a list with one body for each
+    """Return the motions of n bodies driven about one axis as a batch, which one call of C computes.
+
+    ``constants`` is one body for all motions, or a list with one body for each.
+    """
     bodies = [constants] * len(omega) if isinstance(constants, Constants) else constants
     axis = bodies[0].axis
     turned: NDArray[np.bool_] = (omega[:, [axis - 2, axis - 1]] != 0).any(axis=1)

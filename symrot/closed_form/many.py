@@ -21,7 +21,7 @@ AT_ONCE = 1024  # motions per call of C, about 10 ms, after which Python can rea
 
 
 class Batch(NamedTuple):
-    """A batch of n motions of the closed form ``name``, described by the arguments of its C function `prepare`."""
+    """Arguments for the C function `prepare` of the closed form ``name``, for n motions at once."""
 
     name: str
     # shape (k,) if all motions share it, or (n, k); for axial, all members of the C struct `axial`; for spin_up, the 20
@@ -29,13 +29,13 @@ class Batch(NamedTuple):
     arguments: tuple[Floats | None, ...]
 
     def of(self, chosen: NDArray[np.bool_]) -> "Batch":
-        """Return a batch of those motions of this batch whose entry in the Boolean array ``chosen`` is true."""
+        """Return the batch of the motions i for which ``chosen[i]`` is true."""
         own = (values[chosen] if values is not None and values.ndim == 2 else values for values in self.arguments)
         return Batch(self.name, tuple(own))
 
 
 class _Motions(ctypes.Structure):
-    """The C struct ``symrot_many_motions`` of many.c: the constants, times and arrays of samples of a batch."""
+    """The C struct ``symrot_many_motions`` of many.c: constants and times of many motions, arrays for the samples."""
 
     _fields_ = (
         ("prepare", ctypes.c_void_p), ("at", ctypes.c_void_p), ("record", ctypes.c_void_p), ("table", ctypes.c_void_p),
@@ -50,7 +50,7 @@ def _place(function: Any) -> int:
 
 
 def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | None, workers: int = 1) -> list[int]:
-    """Write the samples of n motions into arrays, and return the indices of the motions to compute one by one.
+    """Write the samples of n motions into arrays, and return the indices of the motions whose samples are not valid.
 
     Parameters
     ----------
@@ -61,8 +61,9 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
     omega, quaternion : arrays, shapes (n, m, 3) and (n, m, 4), or None
         The arrays to fill, contiguous for each motion; without an array for quaternions, no attitudes are computed.
     workers : int
-        Number of threads; each computes a part of the motions.
+        Number of threads; each computes some of the motions.
     """
+    # motions that are not valid exceed the range of the batch; the caller computes them one by one
     run, prepare, at, record, table = _linked(batch)
     arguments = [None if values is None else np.ascontiguousarray(values) for values in batch.arguments]
     times = np.ascontiguousarray(times)

@@ -27,10 +27,7 @@ _bound: dict[str, _Functions] = {}
 
 
 class ExactMotion(ABC):
-    """The base class of closed forms: one body's motion from one initial state, evaluated at any time.
-
-    Times, s, are counted from the initial state.
-    """
+    """One body's motion from one initial state, computed by a closed form at any time."""
 
     regime: str
     """One of :data:`REGIMES`."""
@@ -100,9 +97,11 @@ class _Portable(ExactMotion):
 
 
 def functions(name: str, arguments: int) -> _Functions:
-    """Return the two C functions of the closed form ``name``, and the ctypes type of the constants that they share."""
+    """Return the C functions `prepare` and `at` of the closed form ``name``, and the ctypes type of their constants.
+
+    `prepare` computes the constants of a motion from ``arguments`` arrays; `at` computes samples.
+    """
     if name not in _bound:
-        # prepare computes the constants of a motion from arrays of doubles, evaluate loops over its samples
         constants, samples = load(name)
         prepare, length = (getattr(constants, f"symrot_{name}_{part}") for part in ("prepare", "length"))
         evaluate = getattr(samples, f"symrot_{name}_at")
@@ -115,7 +114,7 @@ def functions(name: str, arguments: int) -> _Functions:
 
 
 def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Callable[[], str]) -> ExactMotion:
-    """Return the motion whose constants the C function `prepare` of ``name.c`` computes from ``arguments``.
+    """Return a motion of the closed form ``name``; ``arguments`` are the arrays for its C function `prepare`.
 
     ``refusal`` returns the error message for numbers outside the domain.
 
@@ -149,6 +148,6 @@ _packing = {length: Struct(f"{length}d").pack for length in (2, 4, 6, 8, 26)}
 
 
 def _packed(values: list[float]) -> bytes:
-    """Return the bytes of a list of doubles, in the machine's format, as an argument of a C function."""
+    """Return a list of doubles as bytes, in the machine's format, for a C function."""
     # takes a fifth of the time of making a ctypes array
     return _packing[len(values)](*values)

@@ -22,14 +22,14 @@ __all__ = ["FORMS", "ClosedForm", "Exact", "exact_form", "torque_and_damping"]
 
 
 class Exact(Protocol):
-    """The type of a motion that is computed by a closed form; times, s, are counted from the initial state."""
+    """A motion that is computed by a closed form."""
 
     def evaluate(
         self, t: ArrayLike, omega: bool = True, quaternion: bool = True
     ) -> tuple[Floats | None, Floats | None]:
-        """Return angular velocity (n, 3), body components, rad/s, and attitude (n, 4), body to space, at times t, s.
+        """Return angular velocity (n, 3), rad/s, body components, and attitude (n, 4), body to space, at times ``t``.
 
-        A result that is not requested is None.
+        A result that is not requested is None. Times, s, are counted from the initial state.
         """
 
 
@@ -38,7 +38,7 @@ Starts = Callable[[Initial], Exact]
 
 
 class ClosedForm(NamedTuple):
-    """One row of the table of closed forms: its name, its condition on a scene, and a function that returns motions."""
+    """A closed form: its name, its condition on a scene, and a function that returns the motions of a scene."""
 
     name: str  # such as "symmetric gyrostat, two steady rotations"
     applies: Callable[[Scene], bool]
@@ -74,9 +74,9 @@ def _symmetric_about(scene: Scene, axis: int) -> bool:
 
 
 def _only_axis(vector: tuple[Fraction, ...]) -> int | None:
-    """Return the index (0, 1 or 2) of the only nonzero component of a vector: ``(0, 0, 2)`` gives 2.
+    """Return the index (0, 1 or 2) of the only nonzero component of a vector: ``(0, 0, 5)`` gives 2.
 
-    None if there is not exactly one.
+    None if no component, or more than one, is nonzero.
     """
     along = [axis for axis, component in enumerate(vector) if component != 0]
     return along[0] if len(along) == 1 else None
@@ -139,7 +139,7 @@ def _is_driven(scene: Scene) -> bool:
 
 
 def _driven_axis(scene: Scene) -> int | None:
-    """Return the index of the principal axis about which the body rotates at all times, or None if there is none."""
+    """Return the index of the principal axis about which the body rotates at all times; None if there is none."""
     if not _is_driven(scene):
         return None
     push, turning = torque_and_damping(scene)[0], _only_axis(scene.initial.omega_b)
@@ -152,7 +152,10 @@ def _driven_axis(scene: Scene) -> int | None:
 
 
 def _driven_symmetry_axis(scene: Scene) -> int | None:
-    """Return the index of the symmetry axis about which a constant torque drives the body, or None."""
+    """Return the index of the symmetry axis about which a constant torque drives the body.
+
+    None if the motion has no closed form.
+    """
     if not _is_driven(scene):
         return None
     push, drag = torque_and_damping(scene)
@@ -185,7 +188,10 @@ def _axial(scene: Scene) -> Starts:
 
 
 def _field_axis(name: str) -> Callable[[Scene], int | None]:
-    """Return a function from a scene to the body axis (0, 1 or 2) along the vector ``name`` of its torque, or None."""
+    """Return a function from a scene to the body axis (0, 1 or 2) along the vector ``name`` of the scene's torque.
+
+    That function returns None if the vector is along none of the three axes.
+    """
     return lambda scene: _only_axis(scene.torques[0].vector(name))
 
 

@@ -315,8 +315,8 @@ def audit(
     flags : str, optional
         Compiler and flags, such as ``"gcc -O3 -mfma"``; the audit fails if these flags void the certificate.
     rerun_bounds : bool
-        Whether to compute the bounds of rounding errors again. If not, the bounds in the certificate are compared with
-        bounds computed before, if there are any.
+        Whether to compute all bounds of rounding errors again. If not, bounds that symrot has stored are used, and only
+        the others are computed.
     coq : bool
         Whether Coq must check the theorem about the kernel.
     progress : callable

@@ -89,8 +89,8 @@ def audit_file(
     object_file : Path, optional
         The compiled NAME.c; each rounding in its code is compared with the C text.
     rerun : bool
-        Whether to compute the bounds of rounding errors again. If not, the bounds in the certificate are compared with
-        bounds computed before, if there are any.
+        Whether to compute all bounds of rounding errors again. If not, bounds that symrot has stored are used, and only
+        the others are computed.
     coq : bool
         Whether Coq must check the theorem about the kernel.
 

@@ -1,7 +1,7 @@
 """The texts of one kernel of the library or of one scene: C, NumPy, JavaScript, JAX and its certificate.
 
-Each text is printed at its first use and at most once. Only a scene's C comment depends on ``bounds``, bounds of
-rounding errors, which the methods of kernels take.
+Each text is printed at its first use and at most once. The argument ``bounds`` of the methods has the bounds of a scene
+kernel's rounding errors; only the kernel's C comment and certificate depend on it. Library kernels ignore it.
 """
 
 import re
@@ -164,8 +164,7 @@ class LibraryText(KernelText):
         return jax_source(kernel_program(self.name), kernel_description(self._definition, "jax"))
 
     def rounding(self, bounds: Bounds | None) -> Bounds | None:
-        """Return the bounds of rounding errors that come with symrot for this kernel, or None if there are none."""
-        # ``bounds`` are for a scene's kernel, which has no bounds of its own
+        """Return the bounds of this kernel's rounding errors that come with symrot; None if there are none."""
         return self._section if isinstance(self._section, dict) else None
 
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:

@@ -67,7 +67,7 @@ class CoqResult:
 
 
 def coqc() -> str | None:
-    """Return the path of Coq's compiler (named by the variable ``COQC``, or coqc); None if it is not installed."""
+    """Return the path of Coq's compiler, ``coqc`` or what the variable ``COQC`` names; None if it is not installed."""
     return shutil.which(os.environ.get("COQC") or "coqc")
 
 
@@ -168,9 +168,9 @@ def _required(text: str) -> set[str]:
 
 
 def _levels(sources: Mapping[str, str]) -> list[list[str]]:
-    """Return Coq files in groups, such that each file requires only files of earlier groups.
+    """Return Coq files in groups, in the order in which Coq must check the groups.
 
-    ``sources`` maps each name to its text.
+    A file requires only files of earlier groups. ``sources`` maps the name of each file to its text.
     """
     # the files of one group can be checked in parallel
     levels: list[list[str]] = []
@@ -188,7 +188,7 @@ def _levels(sources: Mapping[str, str]) -> list[list[str]]:
 
 
 def _compile(compiler: str, place: Path, name: str, seconds: float) -> tuple[str | None, str]:
-    """Return Coq's error message about ``NAME.v``, or None if it accepts the file, and what Coq prints."""
+    """Compile the file ``NAME.v`` with Coq; return Coq's error message (None if there is none) and Coq's output."""
     # Coq writes files of its own into the folder ``place``
     command = [compiler, "-q", "-R", ".", "symrot", f"{name}.v"]
     try:

@@ -1,7 +1,7 @@
 """Coq theorems about Euler angles in 24 sequences: the angle rates agree with the rotation matrix's derivative.
 
-The matrix is the product of three rotations. Its angular velocity is the sum of theirs, carried into one frame (proven
-in ``rotation.v``). It remains to prove that the printed rate Jacobian gives that sum.
+The matrix is a product of three rotations. ``rotation.v`` proves that its angular velocity is the sum of the three
+rotations' angular velocities, in one frame. The theorems here prove that the printed rate Jacobian gives this sum.
 """
 
 from sympy import cos, sin

@@ -76,7 +76,7 @@ def _short(line: str) -> str:
 
 
 def derivatives(functions: Sequence[str], rates: Sequence[str]) -> str:
-    """Return Coq hypotheses that functions have these rates at the time t, such as ``derivable_pt_lim x t v ->``."""
+    """Return Coq hypotheses, each about one function and its derivative at time t: ``derivable_pt_lim x t v ->``."""
     pairs = zip(functions, rates, strict=True)
     return folded("  " + " ".join(f"derivable_pt_lim {each} t {rate} ->" for each, rate in pairs), 2)
 

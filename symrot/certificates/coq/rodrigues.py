@@ -36,12 +36,15 @@ def rodrigues_file(name: str) -> CoqFile:
 
 
 def _norm(parameters: tuple[str, ...], at: str = "") -> str:
-    """Return the Coq text of 1 plus the squared ``parameters``, such as ``p1 t ^ 2 + 1`` if ``at`` is a space and t."""
+    """Return the Coq text of 1 plus the squared ``parameters``, such as ``p1 ^ 2 + p2 ^ 2 + 1``.
+
+    With ``at`` = ``" t"`` the parameters are functions of time: ``p1 t ^ 2 + p2 t ^ 2 + 1``.
+    """
     return " + ".join(f"{each}{at} ^ 2" for each in parameters) + " + 1"
 
 
 def _positive(parameters: tuple[str, ...], at: str = "") -> str:
-    """Return the Coq tactic which proves that 1 plus the squared ``parameters`` (see ``_norm``) is positive."""
+    """Return a Coq tactic that proves that the sum of :func:`_norm`, with the same arguments, is positive."""
     return "(" + "; ".join(f"pose proof (pow2_ge_0 ({each}{at}))" for each in parameters) + "; lra)"
 
 

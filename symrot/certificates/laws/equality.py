@@ -141,9 +141,9 @@ class _EqualityProver:
         return {place: self.values[index] for place, index in self.operations.outputs}
 
     def _below(self, index: int, leaf: int) -> set[int]:
-        """Return the operations by which node ``index`` is computed, as a polynomial, from node ``leaf``.
+        """Return the operations that compute node ``index`` from node ``leaf``.
 
-        CertificateError is raised if it is no polynomial in the leaf.
+        CertificateError is raised if they do not compute a polynomial in node ``leaf``.
         """
         if index == leaf:
             return set()
@@ -257,8 +257,11 @@ class _EqualityProver:
         return product
 
     def _truncated(self, name: str, split: Fraction, written: list[Fraction]) -> Truncation:
-        """Check the coefficients ``written`` of a series in the C text; return the series with an error bound."""
-        # the C text uses the series where x^2 < ``split``; each coefficient must be the exact one, rounded
+        """Return the Taylor series of the function ``name``, as the C text has it, with a bound of its error.
+
+        CertificateError is raised if the text's coefficients, ``written``, are not the exact ones, rounded.
+        """
+        # the C text uses the series where x^2 < ``split``
         exact = REMOVABLE[name].taylor(len(written) + 1)
         for value, true in zip(written, exact, strict=False):
             if not IntendedConstant(value, true, False).rounds(self.operations.precision):

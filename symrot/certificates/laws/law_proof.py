@@ -132,7 +132,7 @@ class LawProver(FormulaReader):
         return CaseProof(tuple(decided), tuple(self.steps), relations, tuple(entries))
 
     def step(self, *step: Any) -> None:
-        """Record a fact that the rest of the proof uses, such as ``sin^2 + cos^2 = 1``, as in :class:`CaseProof`."""
+        """Add a step to the proof, such as ``("circle", "x")``; :class:`CaseProof` lists the kinds of steps."""
         self.steps.setdefault(step)
 
     # --- expressions --------------------------------------------------------------------------------------------------
@@ -293,7 +293,8 @@ class LawProver(FormulaReader):
             )
             if unit == 1:
                 raise CertificateError(
-                    f"{self.name}: expected angles and multiples of pi as the argument of a sine or cosine, got {above}"
+                    f"{self.name}: expected a sum of angles and of multiples of pi as the argument of a sine or "
+                    f"cosine, got {above}"
                 )
             if unit == self.fractions.generators["pi"]:
                 right_angles = 2 * multiple
@@ -304,7 +305,7 @@ class LawProver(FormulaReader):
             angle_so_far, result = angle_so_far + coefficient * unit, self._sum_of_angles(result, pair)
         if right_angles.denominator != 1:
             raise CertificateError(
-                f"{self.name}: expected angles and integer multiples of pi/2 as the argument of a sine "
+                f"{self.name}: expected a sum of angles and of integer multiples of pi/2 as the argument of a sine "
                 f"or cosine, got {above}"
             )
         for _ in range(abs(int(right_angles))):
@@ -337,7 +338,10 @@ class LawProver(FormulaReader):
         return result if times > 0 else (result[0], (-result[1][0], result[1][1]))
 
     def _base(self, unit: PolyElement, coefficient: Fraction) -> Fraction:
-        """Return the coefficient of the base angle for ``unit``: 1/2 if the law contains the angles x/2 and x."""
+        """Return b, where ``b*unit`` is the base angle for the angle ``unit``: 1/2 if the law contains x/2 and x.
+
+        BaseAngleTooLarge is raised if ``coefficient*unit`` is no integer multiple of the base angle.
+        """
         if unit in self.angle_functions and unit in self.arcs.values():
             if coefficient.denominator != 1:
                 raise CertificateError(

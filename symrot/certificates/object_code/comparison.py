@@ -130,7 +130,7 @@ def compare_function(text: Operations, function: CFunction, listing: Listing) ->
 def _compare(
     text: Operations, function: CFunction, listing: Listing, start: tuple[str, int], top: int
 ) -> ObjectVerdict:
-    """Compare a C function with its machine code at address ``start``, for one alignment of the stack at the call."""
+    """Return the verdict on a C function and its machine code at ``start``, for one alignment of the stack."""
     width, terms = WIDTH[text.precision], Terms()
     expected = _terms_from_operations(text, terms, width)
     # ``top``, the stack offset of the return address, fixes the alignment by its remainder modulo 64
@@ -193,9 +193,9 @@ def _outputs(path: ExecutionPath, text: Operations, terms: Terms, width: int) ->
 
 
 def _unfused(terms: Terms, got: list[int], known: Known) -> tuple[list[int], Known, str]:
-    """Split each fused multiply-add in the outputs ``got`` into a rounded product and a rounded sum.
+    """Return the outputs ``got`` and comparisons ``known`` with each fused a*b + c split into product and sum.
 
-    Return outputs, outcomes of comparisons, and a product whose split is invalid (or ``""``).
+    The third result is ``""``, or a term that makes this split invalid, so that the code is rejected.
     """
     pairs = [operand for pair in known for operand in pair]
     if not any(terms.kind(index) in ("fma", "fnma") for index in terms.order(got + pairs)):

@@ -237,7 +237,7 @@ def _flags(name: str, x: int, y: int, value: int, bits: int) -> tuple[int, int, 
 
 
 def _one(name: str, number: int) -> Callable[[MachineState, Instruction], None]:
-    """Return the function that executes ``inc`` or ``dec``: ``name`` (add, sub) with the constant ``number``."""
+    """Return the function that executes ``inc`` (``name`` "add") or ``dec`` ("sub"); ``number`` is 1."""
 
     def step(state: MachineState, instruction: Instruction) -> None:
         (target,) = operands_of(instruction, 1)

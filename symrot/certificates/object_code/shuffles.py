@@ -14,7 +14,7 @@ Shuffle = Callable[[MachineState, list[Words], int], Words]
 
 
 def _pick(places: Sequence[int]) -> Shuffle:
-    """Return the function that picks the words numbered ``places`` from each 128 bits of the two sources."""
+    """Return the function that picks the words numbered ``places`` from each block of 128 bits of two sources."""
 
     def shuffle(_: MachineState, sources: list[Words], __: int) -> Words:
         picked: Words = []
@@ -27,7 +27,7 @@ def _pick(places: Sequence[int]) -> Shuffle:
 
 
 def _by_constant(places: Callable[[int, int], Sequence[int]]) -> Shuffle:
-    """Return the function that picks the words numbered ``places(constant, k)`` for part k of 128 bits."""
+    """Return the function that picks the words ``places(constant, k)`` from block k, of 128 bits, of each source."""
 
     def shuffle(state: MachineState, sources: list[Words], constant: int) -> Words:
         picked: Words = []

@@ -50,9 +50,8 @@ def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
 
 
 def _kernel_head(names: list[str], model: CFunction, where: str) -> str:
-    """Return the C head of a kernel, if ``names`` are the arguments of its C function ``model``."""
+    """Return the head of the C function ``model``; raise CertificateError unless ``names`` are the arguments."""
     expected = [parameter.name for parameter in model.parameters]
-    # otherwise raise CertificateError
     if names != expected:
         raise CertificateError(f"{where}: expected the arguments {', '.join(expected)}, got {', '.join(names)}")
     return kernel_head(model)

@@ -372,7 +372,7 @@ def read_batch(text: str, name: str, where: str = "kernel") -> Operations:
 
 
 def _samples(cursor: Cursor, scope: _Scope, start: str, end: str) -> tuple[Token, ...]:
-    """Read the head of a loop over the samples from ``start`` to ``end``, two names; return the tokens of its body."""
+    """Move past a loop over samples, from the C variable ``start`` to ``end``; return the tokens of its body."""
     if cursor.peek() == "SYMROT_INDEPENDENT":
         cursor.next()
     cursor.expect("for", "(", "size_t")
@@ -396,7 +396,10 @@ def _parts(cursor: Cursor, reader: _BodyReader, scope: _Scope) -> None:
 
 
 def _heads(cursor: Cursor, scope: _Scope, size: str) -> None:
-    """Read the head of a loop over blocks of ``size`` samples, and the line that computes the end of a block."""
+    """Move past the two lines that begin a loop over blocks of samples; raise CertificateError for other text.
+
+    ``size`` is the C macro for the number of samples in a block, such as ``"SYMROT_BLOCK"``.
+    """
     cursor.expect(*f"for ( size_t start = 0 ; start < {scope.count} ; start + = {size} ) {{".split())
     cursor.expect(*f"const size_t end = {scope.count} - start < {size} ? {scope.count} : start + {size} ;".split())
 

@@ -114,7 +114,8 @@ def _constant(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple
 
 @cache
 def _constant_error(written: Fraction, precision: str, use_intended: bool) -> float:
-    """Return a bound of the distance between a constant of the C text and the exact number for which it stands."""
+    """Return a bound of the distance between a constant of the C text, such as 0.3333, and its exact number, 1/3."""
+    # without ``use_intended``: to any number that rounds to the constant
     if is_short(written):
         return 0.0
     try:
@@ -256,12 +257,14 @@ GAP_CELLS = 8192
 
 @cache
 def _gap_errors(own: OutputGraph, libm_ulp: float) -> tuple[Array, ...]:
-    """Return error bounds of a function such as (x - sin x)/x^3 on runs of 1, 2, 4, .. cells of its range."""
+    """Return error bounds of a function such as (x - sin x)/x^3 for 0 <= x <= GAP_END, cut into equal cells.
+
+    Entry i of array k is the bound on 2^k cells, from cell i on.
+    """
     ends = np.linspace(0.0, GAP_END, GAP_CELLS + 1)
     boxes = np.stack([ends[:-1], ends[1:]])[:, None]
     sides = [evaluate(own, boxes, np.full((1, GAP_CELLS), side, np.int8), libm_ulp=libm_ulp).bound for side in (0, 1)]
     # two entries cover any range within [0, GAP_END]
-    # entry i of an array is the bound on the run that begins with cell i
     levels = [np.maximum(*sides)]
     while levels[-1].size > 1:
         step = 2 ** (len(levels) - 1)
@@ -477,7 +480,7 @@ def _forward_pass(state: _ErrorPass, computed: _ErrorPass, node: Node) -> Array 
 
 
 def _backward_pass(state: _ErrorPass) -> tuple[Array, NDArray[np.int64], NDArray[np.bool_]]:
-    """Return, for each box, the sum of errors times derivatives, its obstacle, and whether an angle may jump."""
+    """Return, for each box, the error bound, the node that makes it infinite, and whether an atan2 may jump by 2 pi."""
     nodes = state.graph.nodes
     count = state.boxes.shape[2]
     adjoints: list[Array | None] = [None] * len(nodes)
@@ -496,7 +499,6 @@ def _backward_pass(state: _ErrorPass) -> tuple[Array, NDArray[np.int64], NDArray
             bound = bound + np.where(here & (error != 0), intervals.magnitude(adjoint) * error, 0.0)
         kind = nodes[index][0]
         if index in state.cuts:
-            # the derivative must be 1 or -1, so that the error of the output is meant modulo 2 pi
             # the output's error is then meant modulo 2 pi, so its derivative must be 1 or -1
             jumps = here & state.cuts[index]
             turns |= jumps
@@ -516,7 +518,7 @@ def _backward_pass(state: _ErrorPass) -> tuple[Array, NDArray[np.int64], NDArray
             part = np.where(active, part, 0.0)
             adjoints[place] = part if known is None else combine(known, part)
     whole = bound * (1 + 2.0**-52 * (2 * len(nodes) + 4)) + 1e-320 * len(nodes) * (bound > 0)
-    # the node that makes the sum infinite, or -1
+    # -1 if the bound is finite; the bound is the sum of local errors times derivatives
     obstacle = np.where(of_value >= 0, of_value, np.where(np.isfinite(whole), -1, of_slope))
     obstacle = np.where((obstacle < 0) & ~np.isfinite(whole), len(nodes) - 1, obstacle)
     return np.where(of_value >= 0, inf, whole), obstacle, turns

@@ -319,6 +319,14 @@ def _alike(a: object, b: object) -> bool:
     return json.dumps(a, sort_keys=True) == json.dumps(b, sort_keys=True)
 
 
+def _differing(section: Mapping[str, Any], own: Mapping[str, Any]) -> str | None:
+    """Return the first name, in order of the alphabet, whose entries differ; None if the mappings are equal."""
+    names = sorted({*section, *own})
+    return next(
+        (name for name in names if not (name in section and name in own and _alike(section[name], own[name]))), None
+    )
+
+
 def _plain_output(bound: OutputBound, unit: float) -> dict[str, Any]:
     return {
         "output": bound.output, "absolute": bound.bound.hex(), "units": _units(Fraction(bound.bound) / Fraction(unit)),
@@ -377,10 +385,11 @@ def check_section(
             f"got bounds for {' and '.join(precisions) or 'no precision'}"
         )
     head = _section_head(box, region, budget, libm_ulp)
-    if not _alike({name: value for name, value in section.items() if name != "precisions"}, head):
+    name = _differing({name: value for name, value in section.items() if name != "precisions"}, head)
+    if name is not None:
         raise CertificateError(
-            "expected the entries for the box and the assumptions (all except 'precisions') as symrot prints them: "
-            "these names, and numbers in hexadecimal form; got other names or forms"
+            f"expected the entry {name!r} of the section 'rounding' as symrot prints it, got another text; certify the "
+            "kernel again"
         )
     if rerun:
         check_bounds(section, operations_double, operations_float, fresh=True)
@@ -389,9 +398,9 @@ def check_section(
 def check_bounds(
     section: Mapping[str, Any], operations_double: Operations, operations_float: Operations | None, fresh: bool = False
 ) -> None:
-    """Check every bound of a section that :func:`check_section` accepted, by computing it again.
+    """Check every bound of a section that :func:`check_section` accepted, against symrot's own bound.
 
-    With ``fresh``, bounds in the store are not used.
+    A bound that symrot has stored for the same task is used unless ``fresh`` is true; otherwise it is computed.
 
     Raises
     ------
@@ -411,10 +420,11 @@ def check_bounds(
         if operations is None:
             continue
         unit, libm_ulp = 2.0 ** -DIGITS[operations.precision], float.fromhex(section["libm_ulp"])
-        if not _alike({**part, "outputs": []}, _precision_part(operations, [])):
+        name = _differing({**part, "outputs": []}, _precision_part(operations, []))
+        if name is not None:
             raise CertificateError(
-                f"{operations.name}: expected an entry of 'precisions' with the names and values that symrot prints "
-                "apart from its 'outputs', got others"
+                f"{operations.name}: expected the entry {name!r} in 'precisions' as symrot prints it, got another "
+                "text; certify the kernel again"
             )
         tasks_by_output = bound_tasks(operations, box, region, section["budget"], libm_ulp)
         for item, (place, task) in zip(part["outputs"], tasks_by_output.items(), strict=True):

@@ -1,7 +1,8 @@
 """Branch and bound for the largest rounding error on a box: split the worst parts until the bound is tight.
 
 A part is a sub-box. It is split into the two branches of a condition, or halved in the input that lowers the bound
-most. It is finished when its bound is close to the largest error at a point.
+most. It is finished when its bound is close to the largest error at a point. Its obstacle is the operation that
+prevents a bound, such as a division by a range that contains zero.
 """
 
 from dataclasses import dataclass, replace
@@ -165,7 +166,7 @@ class _BoundSearch:
         return np.concatenate(boxes, axis=2), np.concatenate(decided, axis=1)
 
     def cut(self, parts: _Parts, branch: int) -> Array:
-        """Return the boxes of ``parts``, restricted to points where the undecided condition has this branch."""
+        """Return the boxes of ``parts``, cut down to where their undecided condition takes ``branch``, 0 or 1."""
         boxes = parts.boxes.copy()
         for number, (relation, i, j) in enumerate(self.graph.conditions):
             left, right = self.graph.nodes[i], self.graph.nodes[j]
@@ -191,7 +192,8 @@ class _BoundSearch:
     def best(
         self, parts: _Parts, relative: Array, otherwise: NDArray[np.int64]
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return, for each part, the input whose range, when shrunk, lowers the bound most, and the next one or -1."""
+        """Return, for each part, the input that it is best to halve, and the second best (-1 if not worth it)."""
+        # the best: shrinking its range lowers the bound most; ``relative``: widths relative to the whole box
         inputs, count = parts.boxes.shape[1:]
         middle = parts.boxes.mean(axis=0) + (parts.boxes - parts.boxes.mean(axis=0)) / SHRUNK
         shrunk = np.repeat(parts.boxes, inputs, axis=2).reshape(2, inputs, count, inputs)
@@ -261,7 +263,7 @@ def search(
 
 
 def _run_search(run: _BoundSearch, budget: int, target: float | None) -> SearchResult:
-    """Return the result of a search of at most ``budget`` evaluations, with mean value forms or plain intervals."""
+    """Return the result of a search that ends when the bound is tight, or after ``budget`` evaluations."""
     graph, box = run.graph, run.box
     conditions = len(graph.conditions)
     parts = run.parts(box[:, :, None].copy(), np.full((conditions, 1), -1, np.int8))
@@ -300,8 +302,8 @@ def _narrow(run: _BoundSearch, parts: _Parts) -> NDArray[np.bool_]:
 
 
 def _spread(run: _BoundSearch, parts: _Parts) -> Array:
-    """Return, for each part, its largest relative width in the inputs of the operation that prevents a bound."""
-    # an obstacle is an operation that prevents a finite bound, such as a division by an interval that contains zero
+    """Return, for each part, its width relative to the whole box, in the inputs on which its obstacle depends."""
+    # the largest of these widths
     width = np.where(run.width > 0, run.width, 1.0)
     relative = (parts.boxes[1] - parts.boxes[0]) / width[:, None]
     return np.asarray((relative * run.depends[np.maximum(parts.obstacle, 0)].T).max(axis=0, initial=0.0))

@@ -78,7 +78,8 @@ class CentredForms:
         )  # fmt: skip
 
     def close(self, node: Node, places: Sequence[int], error: Array | None) -> None:
-        """Store the mean value form of a node, with the node's own rounding error added."""
+        """Append the mean value form of a node, with ``error``, the bound of the node's own rounding error, added."""
+        # ``places``: the indices of the node's operands; ``error`` is None for a node that is exact
         form = self.waiting
         inputs, count = self.middle.shape
         zero = np.zeros(count)

@@ -35,9 +35,9 @@ _NOT_LESS = {  # relation -> the branch in which left >= right, the branch in wh
 def decide_branches(
     relation: str, a: Array, b: Array, decision: NDArray[np.int8]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Write the branch of ``a relation b`` into ``decision`` for each box where only one branch is possible.
+    """Set ``decision`` to 1 on boxes where ``a relation b`` holds everywhere, and to 0 where it holds nowhere.
 
-    Return where this contradicts an earlier decision, and where both branches are possible.
+    Return two Boolean arrays: where this contradicts an earlier decision, and where both branches remain possible.
     """
     # ``decision``: 1 if the condition is assumed to hold on a box, 0 if not to hold, -1 if nothing is assumed
     holds, fails = _POSSIBLE[relation](a, b)

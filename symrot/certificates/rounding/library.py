@@ -135,9 +135,10 @@ def largest_box(
     operations: Operations, box: Box, target: float, places: Sequence[str] | None = None, region: Region = EVERYWHERE,
     budget: int = BUDGET, libm_ulp: float = LIBM_ULP,
 ) -> tuple[float, dict[str, tuple[Fraction, Fraction]]]:  # fmt: skip
-    """Return (size, box): the largest multiple of ``box`` on which every rounding error is at most ``target``.
+    """Return (size, box): the box whose ranges are ``size`` times as wide, as far as ``target`` allows.
 
-    For size 2, the range 1 to 3 becomes 0 to 4.
+    Only the inputs ``places`` (default: all) are resized, about the middles of their ranges: for size 2, 1 to 3 becomes
+    0 to 4. No rounding error on the returned box exceeds ``target``.
 
     Raises
     ------
@@ -175,7 +176,7 @@ def largest_box(
         low, high = (middle, high) if holds(middle) else (low, middle)
     if not low:
         raise InputError(
-            f"{operations.name}: expected a target error that the bounds meet on a small box about the middle, "
-            f"got {target:g}; choose a larger target"
+            f"{operations.name}: expected a target error that the bounds meet at least close to the middle of each "
+            f"range, got {target:g}; choose a larger target"
         )
     return low, resized(box, low, chosen)

@@ -126,7 +126,8 @@ class OutputGraph:
         return f"{node[0]}({', '.join(operands)})"
 
     def singular_operand(self, index: int) -> int:
-        """Return the node whose value 0 makes node ``index`` infinite, its divisor or radicand, or else ``index``."""
+        """Return the divisor of a quotient or the radicand of a root; for any other node, ``index`` itself."""
+        # where it is 0, the value of the quotient or the derivative of the root is infinite
         node = self.nodes[index]
         return int({"div": node[-1], "sqrt": node[-1]}.get(node[0], index))
 

@@ -1,7 +1,7 @@
-"""Usual faults in formulas of vectors, matrices and quaternions, each undone in turn, with values at some points.
+"""Usual faults in formulas of vectors, matrices and quaternions, and the edits that undo them.
 
 A wrong order of factors or a missing transpose changes all entries at once. The search for one wrong part of a formula
-does not see such faults; so whole edited formulas are compared here.
+does not see such faults; so this module edits the whole formula and computes its values at random test points.
 """
 
 from bisect import bisect_left
@@ -30,7 +30,7 @@ LEFT_OUT = ("extra_term", "two_faults", "overall_sign")
 
 
 class ArrayFault(NamedTuple):
-    """A possible fault of a formula: the edit that undoes it, and the values after the edit at the test points."""
+    """A possible fault of a formula: the edit that undoes it, and the edited formula's values at the test points."""
 
     # the sum of the entries of values[0], by which faults are sorted and looked up
     total: float
@@ -39,7 +39,7 @@ class ArrayFault(NamedTuple):
 
 
 def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
-    """Return whether a formula has the name of a vector, matrix or quaternion, or calls an operation on vectors."""
+    """Return whether a formula contains a vector, matrix or quaternion, or an operation such as ``cross``."""
     return any(
         (node.kind == "name" and numeric.is_matrix(node)) or (node.kind == "call" and node.value in OPERATIONS)
         for _, node in walk(formula)
@@ -47,7 +47,7 @@ def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
 
 
 def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> list[ArrayFault]:
-    """Return the edits that undo a usual fault of a formula, each with the values of the edited formula."""
+    """Return the edits that may undo a fault of a formula, each with the values of the edited formula."""
     # other faults of scalar formulas are sought part by part, in the module `parts`
     edits = _edits(formula, numeric, letters) if has_arrays(formula, numeric) else _brackets(formula)
     faults = []
@@ -59,7 +59,7 @@ def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> lis
 
 
 def matching(faults: Sequence[ArrayFault], needed: Values) -> Iterator[Edit]:
-    """Yield those edits of ``faults`` after which the formula has the values ``needed`` at the test points."""
+    """Yield the edits in ``faults`` that give the formula the values ``needed`` at the test points."""
     total = _total(needed)
     slack = CLOSE * (abs(total) + max(map(abs, entries_of(needed[0]))))
     for fault in islice(faults, bisect_left(faults, total - slack, key=lambda fault: fault.total), None):
@@ -107,7 +107,7 @@ def _always(node: Node) -> Callable[[Node], Node]:
 
 
 def _powers(formula: Node, numeric: NumericFilter) -> Iterator[Edit]:
-    """Yield edits of a formula that square one of its matrices, or remove the square of one."""
+    """Yield edits of a formula that put ``R^2`` for a matrix ``R``, or ``R`` for ``R^2``."""
     kinds = {path: node.kind for path, node in walk(formula)}
     for path, node in walk(formula):
         if node.kind in ("name", "call") and numeric.is_matrix(node) and kinds.get(path[:-1]) != "power":
@@ -119,7 +119,7 @@ def _powers(formula: Node, numeric: NumericFilter) -> Iterator[Edit]:
 
 
 def _conjugates(formula: Node) -> Iterator[Edit]:
-    """Yield edits of a formula that add or remove the conjugate of one factor in a quaternion product."""
+    """Yield edits of quaternion products: ``qmul(conjugate(q), p)`` for ``qmul(q, p)``, or the reverse."""
     for path, node in walk(formula):
         for place, factor in enumerate(node.args if node.kind == "call" and node.value == "qmul" else ()):
             is_conjugate = factor.kind == "call" and factor.value == "conjugate"
@@ -144,7 +144,7 @@ def _factors(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterato
 
 
 def _products(formula: Node, numeric: NumericFilter) -> Iterator[Edit]:
-    """Yield edits that put one more factor before a vector v: ``R*v`` for a matrix R, or ``cross(a, v)``."""
+    """Yield edits that multiply a vector v by a matrix R or another vector a: ``R*v`` or ``cross(a, v)`` for v."""
     shapes = {node: _shape(node, numeric) for _, node in walk(formula) if numeric.is_matrix(node)}
     names = sorted({*numeric.matrix_names})
     named = {name: _shape(Node("name", name), numeric) for name in names}
@@ -172,7 +172,7 @@ def _shape(node: Node, numeric: NumericFilter) -> tuple[int, int] | None:
 
 
 def _scalars(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterator[Node]:
-    """Yield the scalars that may be missing as a factor, such as sin(phi), with their squares and reciprocals."""
+    """Yield scalars by which a term may have to be multiplied, such as sin(phi), sin(phi)^2 and 1/sin(phi)."""
     made: dict[Node, None] = dict.fromkeys([LACKING] if LACKING in letters.atoms else [])
     for angle in letters.angles:
         for function in ("sin", "cos", "tan"):

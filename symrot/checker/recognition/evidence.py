@@ -151,39 +151,40 @@ USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 
 
 def says_too_little(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether a claim ``I = ..`` or ``J = ..`` may be right for a body that symrot has no formula for."""
+    """Return whether a claim ``I = ..`` names no body, so that it may be right for a body that symrot does not know."""
     # a letter without an axis, and no body in the context: the claim may be for any body
     is_bare = re.fullmatch("[IJ]", named.name) is not None
     return is_bare and claim.context.body is None and is_of_body(near.code, near.known.name)
 
 
 def has_diameter(known: Identification) -> bool:
-    """Return whether d or D, the letters of diameters, would stand for the radius of a known formula."""
+    """Return whether a claim has d or D, letters of diameters, where the known formula has a radius."""
     return any(old in ("R", "R_1", "R_2") and new[:1] in ("d", "D") for old, new in known.mapping.items())
 
 
 def is_of_body(code: str, known: str) -> bool:
-    """Return whether a fault such as a wrong factor may only mean that a moment of inertia is for another body."""
+    """Return whether the fault ``code`` is a wrong factor or term, and ``known`` names a moment of inertia."""
+    # such a formula may be right for another body
     return code in ("factor", "missing_term", "extra_term") and known.startswith("moment of inertia of")
 
 
 def misfit_of(name: str, known: str) -> float:
-    """Return a number that is larger the worse a known formula's name fits the name of a quantity."""
+    """Return how badly a known formula's name ``known`` fits the quantity ``name``: a larger number is worse."""
     sequence = _rank_of_sequence(known) / (2 * len(USUAL_SEQUENCES))
     # "first component .." does not fit to omega_3
     return _misplaced(name, known) + any(body in known for body in RARE) + sequence
 
 
 def has_word(known: str, words: Sequence[str] | None) -> bool:
-    """Return whether ``known``, the name of a known formula, has one of several words. True if ``words`` is None."""
+    """Return whether ``known``, the name of a known formula, contains one of ``words``. True if ``words`` is None."""
     # "velocity" does not stand for "angular velocity"
     return words is None or any(re.search(f"(?<!angular ){re.escape(word)}", known) for word in words)
 
 
 def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether a claim's formula is more likely a known formula with a fault than another formula that is right.
+    """Return whether a formula is more likely a known one with a fault than a right formula that symrot does not know.
 
-    Only then is it "doubtful".
+    Only evident faults give the verdict "doubtful".
     """
     letters, words = names_in(named.formula), words_of(named)
     quantities = len(quantities_in(named.formula))
@@ -238,13 +239,13 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
 
 
 def _is_stated(claim: Claim, named: NamedFormula, near: Near) -> bool:
-    """Return whether the context of a claim says that its quantity is the one for which ``near`` is a formula."""
+    """Return whether the context of a claim states what its quantity is, and ``near`` is a formula for this meaning."""
     meaning = claim.context.meaning_of(quantity_name(named))
     return meaning is not None and any(phrase in near.known.name for phrase in meaning.quantity.formulas)
 
 
 def _are_letters_stated(claim: Claim, letters: set[str]) -> bool:
-    """Return whether the context states the meanings of at least two letters, and all others are moments of inertia."""
+    """Return whether the context states the meanings of two or more letters, and the others are moments of inertia."""
     stated = {letter for letter in letters if claim.context.meaning_of(letter) is not None}
     return len(stated) > 1 and all(map(MOMENT.fullmatch, letters - stated))
 
@@ -256,22 +257,19 @@ def _is_of_stated_body(claim: Claim, near: Near) -> bool:
 
 
 def _is_of_axis(named: NamedFormula, near: Near) -> bool:
-    """Return whether the name of a quantity states an axis, as I_x does, and ``near`` is the formula for this axis."""
+    """Return whether a quantity's name ends with an axis, as I_x does, and ``near`` is a formula for the same axis."""
     axis, own = re.search(r", ([xyz]) axis$", near.known.name), re.search("[xyz]+$", quantity_name(named))
     return axis is not None and own is not None and {*own[0]} == {axis[1]}
 
 
 def _is_of_stated_flat_body(claim: Claim, near: Near) -> bool:
-    """Return whether the context of a claim states a flat body, and ``near`` is the sum of its moments in its plane."""
+    """Return whether the context states a flat body, and ``near`` is the theorem I_z = I_x + I_y for flat bodies."""
     body = claim.context.body
     return body is not None and "a flat body" in body.formulas and "of a flat body about the axis" in near.known.name
 
 
 def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
-    """Return whether a component of a quaternion has a wrong angle or function, as in beta_1 = e_1 sin(phi).
-
-    The right formula is e_1 sin(phi/2).
-    """
+    """Return whether a quaternion component has a wrong angle or function: beta_1 = e_1 sin(phi) for e_1 sin(phi/2)."""
     place = re.fullmatch(r"(beta|eta|epsilon|q)_?([0-4])", named.name)
     word, _, rest = near.known.name.partition(" component of the quaternion of axis")
     return (
@@ -283,14 +281,14 @@ def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
 
 
 def _is_entry_of_matrix(named: NamedFormula, near: Near) -> bool:
-    """Return whether the name of a quantity, such as R_12, is that matrix entry for which ``near`` is the formula."""
+    """Return whether a claim's quantity is named as a matrix entry, such as R_12, and ``near`` is a formula for it."""
     # a single product may be an entry of another matrix
     own, entry = re.fullmatch(ENTRY, named.name), re.match(r"entry ([1-3]{2}) of the rotation matrix", near.known.name)
     return own is not None and entry is not None and own[1] == entry[1] and has_terms(named.formula)
 
 
 def _only_in_sines(formula: Node) -> set[str]:
-    """Return the letters that a formula has only inside sines and cosines."""
+    """Return the letters that occur in a formula only inside sines and cosines."""
     inside = {name for _, node in walk(formula) if node.kind == "call" and node.value in ("sin", "cos")
               for name in names_in(node)}  # fmt: skip
     return inside - _outside_of_sines(formula)
@@ -307,7 +305,7 @@ def has_terms(formula: Node) -> bool:
 
 
 def quantities_in(formula: Node) -> set[Node]:
-    """Return the symbols, functions of time and rates in a formula: phi and its rate are two of them."""
+    """Return the symbols, functions of time and rates in a formula; phi and its rate count as two."""
     if is_atom(formula):
         return set() if formula.value in ("pi", "t") else {formula}
     return {quantity for part in formula.args for quantity in quantities_in(part)}
@@ -323,7 +321,7 @@ def names_in(formula: Node) -> set[str]:
 
 
 def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> bool:
-    """Return whether a claim may mean a known formula, judged by its quantity's name and the units of its symbols."""
+    """Return whether a claim may mean a known formula, judged by the quantity's name and the units of the symbols."""
     words = words_of(named)
     if words is None and "inertia" in known.name and named.name[:1].islower():
         return False  # books call moments of inertia by capital letters
@@ -343,7 +341,7 @@ def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> b
 
 
 def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
-    """Return whether a formula for an aircraft's rate p, q or r has an angle that is no roll, pitch or yaw."""
+    """Return whether a formula for an aircraft's rate p, q or r has other Euler angles than roll, pitch and yaw."""
     sequence = re.search(r"angular velocity of (\w{3}) ", known.name)
     if named.name not in RATES_OF_AIRCRAFT or sequence is None:
         return False
@@ -357,7 +355,7 @@ def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
 
 
 def is_unusual(known: Identification) -> bool:
-    """Return whether a claim is a known formula only if its omega_1 or p is a component in the space frame."""
+    """Return whether a claim's formula is known for the space frame, but has omega_1 or p, names for the body frame."""
     # books use omega_1, and p, q, r, for components in the body frame
     components = [new for old, new in known.mapping.items() if old in COMPONENTS_OF_OMEGA]
     return "space frame" in known.name and any(
@@ -366,7 +364,7 @@ def is_unusual(known: Identification) -> bool:
 
 
 def keeps_places(named: NamedFormula, known: Identification) -> bool:
-    """Return whether a claim's names agree with a known formula in axis, matrix entry, angle and reference point."""
+    """Return whether a claim agrees with a known formula in axis, entry, angle and point: R_12 contradicts entry 13."""
     momentum = re.match(r"momentum of (\w+)", known.name)
     angle = re.fullmatch(r"[pP]_?(?:var)?(phi|theta|psi)", named.name)
     if momentum and angle and MOMENTA[angle[1]] != momentum[1]:
@@ -409,16 +407,13 @@ def keeps_places(named: NamedFormula, known: Identification) -> bool:
 
 
 def _is_reversed(name: str, known: Identification) -> bool:
-    """Return whether a claim says v = r x omega, although velocities are omega x r.
-
-    ``name`` is the name of v.
-    """
+    """Return whether a claim gives the velocity ``name`` as r x omega in place of omega x r."""
     second = {new.rpartition("_")[0] for old, new in known.mapping.items() if old.startswith("n")}
     return re.fullmatch(r"v(_?[a-zA-Z0-9]+)?", name) is not None and bool(second & {"omega", "w", "Omega"})
 
 
 def _is_component_of_rate(named: NamedFormula) -> bool:
-    """Return whether the quantity is a component of an angular velocity: omega_2 in a formula that has omega_1 too."""
+    """Return whether a claim's quantity is one component of an angular velocity, as omega_2 in a claim with omega_1."""
     stem = re.fullmatch(r"(omega|w|Omega)_?[1-3xyzif]", named.name)
     return stem is not None and any(
         re.fullmatch(rf"{stem[1]}_?[0-3xyzif]", other) and other != named.name for other in names_in(named.formula)
@@ -426,9 +421,9 @@ def _is_component_of_rate(named: NamedFormula) -> bool:
 
 
 def fits_context(context: Context, named: NamedFormula, known: Identification, letters: set[str]) -> bool:
-    """Return whether a known formula agrees with what the context of a claim states about its quantity and ``letters``.
+    """Return whether a known formula agrees with what the context states of a claim's quantity and ``letters``.
 
-    Without a context, it always does.
+    True without a context.
     """
     if not context:
         return True
@@ -438,9 +433,9 @@ def fits_context(context: Context, named: NamedFormula, known: Identification, l
 
 
 def words_of(named: NamedFormula) -> tuple[str, ...] | None:
-    """Return words such as "moment of inertia" for I_zz, one of which names of known formulas for it contain.
+    """Return words in the names of all known formulas for a claim's quantity: ("product of inertia",) for I_xy.
 
-    None if any will do.
+    None if the quantity's name has no usual meaning.
     """
     words = next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, quantity_name(named))), None)
     if words and any(node.kind == "call" and node.value == "cross" for _, node in walk(named.formula)):
@@ -450,15 +445,15 @@ def words_of(named: NamedFormula) -> tuple[str, ...] | None:
 
 
 def quantity_name(named: NamedFormula) -> str:
-    """Return the name of the quantity of a claim: L for ``L = ..``, dL for its time derivative ``L' = ..``."""
+    """Return the name of a claim's quantity: L for ``L = ..``, dL for ``L' = ..``."""
     name, dots = re.subn("_?dot$", "", re.sub("_(plus|minus)$|(_prime)+$", "", named.name))
     return f"d{name}" if named.is_rate or dots else name
 
 
 def _misplaced(name: str, known: str) -> int:
-    """Return how often the name of a quantity contradicts that of a known formula.
+    """Return how many of component and frame disagree between a quantity ``name`` and the name ``known`` of a formula.
 
-    omega_3 contradicts "first component in the space frame" twice.
+    omega_3 and "first component in the space frame" disagree in both.
     """
     words = known.replace(",", "").split()
     places = [COMPONENTS[word] for word, after in pairwise([*words, ""]) if word in COMPONENTS and
@@ -471,7 +466,7 @@ def _misplaced(name: str, known: str) -> int:
 
 
 def strangeness_of(named: NamedFormula, known: Identification) -> tuple[int, int, int]:
-    """Return a sort key of a known formula, larger if a claim less probably means it."""
+    """Return a sort key for known formulas, smallest for the one that a claim most probably means by its names."""
     axes = [[next((n for n, axis in enumerate(AXES) if name[-1] in axis), None) for name in pair]
             for pair in known.mapping.items()]  # fmt: skip
     moved = sum(None not in pair and pair[0] != pair[1] for pair in axes)
@@ -480,18 +475,18 @@ def strangeness_of(named: NamedFormula, known: Identification) -> tuple[int, int
 
 
 def rarity_of(known: Identification) -> tuple[bool, int]:
-    """Return a sort key of a known formula, smaller if a claim more probably means it."""
+    """Return a sort key for known formulas, smallest for those that books print most often."""
     # equal formulas before transposed ones or multiples; usual Euler sequences before others
     return bool(known.how), _rank_of_sequence(known.name)
 
 
 def is_in_usual_sequence(known: str) -> bool:
-    """Return whether a known formula's name has no Euler sequence, or one that books use often."""
+    """Return whether a known formula's name has no sequence of Euler angles, or one that books often use."""
     return _rank_of_sequence(known) < len(USUAL_SEQUENCES)
 
 
 def _rank_of_sequence(known: str) -> int:
-    """Return the rank of the Euler sequence in a known formula's name: 0 for the sequence that books use most."""
+    """Return how rare the Euler sequence in a known formula's name is: 0 for the most usual one, or for none."""
     sequences = [word for word in known.split() if word in SEQUENCES]
     usual = [USUAL_SEQUENCES.index(name) if name in USUAL_SEQUENCES else len(USUAL_SEQUENCES) for name in sequences]
     return max(usual, default=0)

@@ -33,7 +33,7 @@ Values = tuple[int, ...]
 
 
 class NotInField(Exception):
-    """Exception for a formula that has no value in the finite field, at some point or at every point."""
+    """Exception for a formula that has no value in the finite field, for example after a division by zero."""
 
 
 def values_at(entries: Sequence[Expr], point: Mapping[Expr, int]) -> Values:
@@ -90,8 +90,8 @@ def _inverse(value: int) -> int:
 
 
 def _root(value: int) -> int:
-    """Return the smaller square root of ``value`` modulo ``PRIME``, or of its negative if ``value`` is no square."""
-    # always the same one of two roots, so that equal formulas under roots have equal values
+    """Return a square root of ``value`` modulo ``PRIME``, or of ``-value`` if ``value`` is no square."""
+    # always the smaller root, so that equal formulas under roots have equal values
     root = pow(value % PRIME, (PRIME + 1) // 4, PRIME)
     return min(root, PRIME - root)
 
@@ -110,7 +110,7 @@ def _pseudorandom(value: int) -> int:
 
 
 def _circle_point(argument: Expr, known: dict[Expr, int]) -> tuple[int, int]:
-    """Return numbers (c, s) modulo ``PRIME``, with c^2 + s^2 = 1, as cosine and sine of an angle."""
+    """Return (c, s) with c^2 + s^2 = 1 modulo ``PRIME``, used as cosine and sine of the angle ``argument``."""
     # the angle is a sum of multiples of symbols; the theorems for sums and multiples of angles hold
     total = (1, 0)
     for term in sympy.Add.make_args(sympy.expand(argument)):
@@ -148,14 +148,14 @@ class Fingerprint:
     idle: tuple[Expr, ...] = ()  # atoms in the formula that do not change its value
 
     def rows(self, order: Sequence[int]) -> list[Values]:
-        """Return the signatures with values in the given order, scaled: multiples of a formula have the same ones."""
+        """Return the signatures with entries in ``order``, all divided by one number: the same for x and 2*x."""
         total = [sum(column) % PRIME for column in zip(*self.signatures, strict=True)]
         # the first entry whose values have a nonzero sum
         below = _inverse(next((total[n] for n in order if total[n]), 1))
         return [tuple(values[n] * below % PRIME for n in order) for values in self.signatures]
 
     def key(self, shape: tuple[int, int] | None, order: Sequence[int]) -> str:
-        """Return the hash under which a formula is looked up; it does not depend on names or on a constant factor."""
+        """Return a formula's hash, which other names of symbols or a constant factor do not change."""
         return sha256(repr((shape, sorted(self.rows(order)))).encode()).hexdigest()[:16]
 
 
@@ -168,7 +168,7 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
         For a formula without symbols, or one that cannot be evaluated modulo ``PRIME``.
     """
     written = sorted(atoms_of(entries), key=str)
-    if (alike := _alike(entries, written)) is not None:
+    if (alike := _from_one_draw(entries, written)) is not None:
         return alike
     atoms = _active(entries, written)
     if not atoms:
@@ -190,8 +190,11 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
     return Fingerprint(tuple(atoms), tuple(rows), tuple(atom for atom in written if atom not in atoms))
 
 
-def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | None:
-    """Return the fingerprint of a formula for the first two numbers in ``DRAWS``, or None if a value is undefined."""
+def _from_one_draw(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | None:
+    """Return the fingerprint of the formula ``entries`` with the atoms ``written``, from one pair of numbers.
+
+    None if other numbers must be tried.
+    """
     raised, others = DRAWS[0]
     point = dict.fromkeys(written, others)
     here = _defined(entries, point)  # 1/(x - y) has no value here
@@ -207,7 +210,7 @@ def _alike(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | No
 
 
 def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], written: Sequence[Expr]) -> Values:
-    """Return the signature of ``atom`` in a formula such as x/(A - B), undefined where two atoms are equal."""
+    """Return the signature of ``atom`` for a formula that is undefined where two atoms are equal, such as x/(A - B)."""
     raised, others = DRAWS[0]
     second, _ = DRAWS[1]
     # one point for each other atom: it has the second number, all the rest the third
@@ -220,7 +223,7 @@ def _sum_over_pairs(entries: Sequence[Expr], atom: Expr, atoms: Sequence[Expr], 
 
 
 def _active(entries: Sequence[Expr], atoms: Sequence[Expr]) -> list[Expr]:
-    """Return those of ``atoms`` on which the value of a formula depends: x, but not y, in ``x*y/y``."""
+    """Return the ``atoms`` that change the value of a formula: x, but not y, for ``x*y/y``."""
     for first, _ in DRAWS:
         point = {atom: pow(first, n * n + 2, PRIME) for n, atom in enumerate(atoms)}  # no cross product is zero
         here = _defined(entries, point)

@@ -1,7 +1,8 @@
 """Identification of a formula: a look-up by fingerprint among the formulas that symrot derives, then a proof.
 
-A formula is recognised whatever its symbols are called, transposed or not, with either sign, and for either order of a
-quaternion's components. Every match has been proven by the exact engine.
+A formula is recognised whatever its symbols are called, transposed or not, with either sign, and with the scalar part
+of a quaternion first or last. Every match is proven by the exact engine. Symbols with equal signatures are paired; a
+signature is a hash of a symbol's part in a formula (see the module ``fingerprint``).
 """
 
 import re
@@ -143,7 +144,7 @@ def _value(formula: Any) -> Any:
 
 
 def _in_new_names(tree: Node, source: str, define: Sequence[tuple[str, Node]] = ()) -> Any:
-    """Return the SymPy value of a tree: names become symbols, functions of time, or their values in ``define``."""
+    """Return the SymPy value of a tree, with the names in ``define`` replaced by the formulas that define them."""
     # a name becomes a function of time if its rate occurs; define has names with their formulas, such as vectors
     tree = with_natural_base(tree) if has_natural_base([tree]) else tree
     quantities: dict[str, Any] = {letter: Symbol(letter, real=True) for letter in letters_of_quantities([tree])}
@@ -153,7 +154,7 @@ def _in_new_names(tree: Node, source: str, define: Sequence[tuple[str, Node]] = 
 
 
 def named_parts(claim: Claim) -> tuple[str, ...]:
-    """Return notes such as "R is the rotation matrix .." on the known matrices in a claim and its definitions."""
+    """Return notes on the known matrices in a claim and its definitions, such as "R is the rotation matrix .."."""
     return tuple(
         f"{place} is the {identification}"
         for place, value in _parts(claim)
@@ -163,7 +164,7 @@ def named_parts(claim: Claim) -> tuple[str, ...]:
 
 
 def _parts(claim: Claim) -> Iterator[tuple[str, Any]]:
-    """Yield the sides of a claim and the definitions that it uses, each with words for it, such as "the left side"."""
+    """Yield (words for it, value) for each side of a claim, such as "the left side", and each definition in use."""
     assert claim.relation is not None
     sides = claim.relation[1:]
     values = (claim.equation.left, claim.equation.right)
@@ -230,16 +231,13 @@ def identified(
 
 
 def _changes(match: Identification) -> tuple[int, int, int]:
-    """Return the sort key of a match: numbers of rearrangements, renamed symbols, symbols with another first letter."""
+    """Return the sort key of a match: the numbers of rearrangements, renamed symbols, and other first letters."""
     others = sum(mine.lstrip("d")[0].lower() != new[0].lower() for mine, new in match.mapping.items())
     return bool(match.how) + match.how.count(" and "), len(match.mapping), others
 
 
 def _views(shape: tuple[int, int] | None, count: int) -> Iterator[View]:
-    """Yield the arrangements of a formula's entries to look up: plain, transposed, a quaternion's scalar part last.
-
-    ``count`` is the number of entries.
-    """
+    """Yield the ways to read ``count`` entries: as they are, transposed, or as a quaternion with its scalar last."""
     plain = tuple(range(count))
     yield View("", shape, plain)
     if shape is None or shape == (1, 1):
@@ -273,7 +271,7 @@ def _permuted(entries: Sequence[Expr], shape: tuple[int, int] | None) -> Iterato
 
 @cache
 def known_value(text: str) -> Any:
-    """Return the SymPy value of a known formula from its text; names become real symbols."""
+    """Return the SymPy value of a known formula's text, whose names become real symbols."""
     tree = read_expression(text)
     names = {str(node.value) for _, node in walk(tree) if node.kind == "name" and node.value != "pi"}
     interpreter = Interpreter(values={name: Symbol(name, real=True) for name in names}, implied=True)
@@ -343,14 +341,14 @@ def _matched(
     return None
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=4096)  # thousands of renamings of one claim need the same texts
 def _name(atom: Expr) -> str:
-    """Return the text of a symbol or rate; thousands of renamings of one claim need it."""
+    """Return the text of a symbol or rate, such as ``omega_1`` or ``diff(phi(t), t)``."""
     return as_text(atom)
 
 
 def _keeps_names(pairs: Sequence[tuple[str, str]]) -> bool:
-    """Return whether names that a known formula shares with a claim mean the same quantity in both."""
+    """Return whether a name that occurs in both formulas is paired with itself: False for (I, J) and (J, I)."""
     # pairs (I, J) and (J, I) exchange two names
     names = [(plain_name(mine), plain_name(other)) for mine, other in pairs]
     new = {other for _, other in names}
@@ -368,7 +366,7 @@ def _keeps_rates(pairs: Sequence[tuple[str, str]]) -> bool:
 
 
 def _keeps_units(pairs: Sequence[tuple[str, str]]) -> bool:
-    """Return whether books use each letter of a claim for quantities with the unit of its known symbol."""
+    """Return whether, in each of ``pairs``, books use the claim's letter with the unit of the known symbol."""
     # a symbol without unit may have any letter; x, y, z may be the components of any vector
     with_unit = [(mine, other) for mine, other in pairs if UNIT_OF_NAME.get(mine) != "1"]
     return all(agree_in_unit(mine, other) for mine, other in with_unit) and all(
@@ -376,19 +374,19 @@ def _keeps_units(pairs: Sequence[tuple[str, str]]) -> bool:
     )
 
 
-def _is_usual(mine: Expr, own: Expr) -> bool:
-    """Return whether books use the letter ``own`` for quantities with the unit of the known symbol ``mine``."""
-    return _has_usual_letter(as_text(mine), as_text(own))
+def _is_usual(known: Expr, own: Expr) -> bool:
+    """Return whether books use the claim's letter ``own`` with the unit of ``known``, a symbol of a known formula."""
+    return _has_usual_letter(as_text(known), as_text(own))
 
 
-def _has_usual_letter(mine: str, own: str) -> bool:
-    pattern = LETTERS.get(UNIT_OF_NAME.get(mine, ""))
+def _has_usual_letter(known: str, own: str) -> bool:
+    pattern = LETTERS.get(UNIT_OF_NAME.get(known, ""))
     return pattern is None or re.fullmatch(pattern, plain_name(own)) is not None
 
 
 @lru_cache(maxsize=20_000)
 def plain_name(name: str) -> str:
-    """Return the name of a symbol, a function of time or its rate: x for x(t), dx and ddx for its derivatives."""
+    """Return the plain name of a quantity: x for ``x(t)``, dx for ``diff(x(t), t)`` and ``x_dot``."""
     rate = re.fullmatch(r"diff\((\w+)(\(t\))?((, t)+)\)", name)
     if rate is None and (dots := re.fullmatch(r"(\w+?)_(d*)dot", name)) is not None:
         return f"d{dots[2]}{dots[1]}"
@@ -405,10 +403,11 @@ def _factor_text(factor: Rational) -> str:
 
 
 def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Iterator[dict[Expr, Expr]]:
-    """Yield dictionaries from the symbols of the known formula ``theirs`` to those of ``own`` with equal signatures.
+    """Yield the ways to pair all symbols of a known formula ``theirs`` with those of ``own``, as dictionaries.
 
-    Pairs with equal names come first.
+    ``order`` is the order in which the entries of ``own`` are compared.
     """
+    # symbols are paired if their signatures are equal; pairs with equal names come first
     mine: dict[Values, list[Expr]] = {}
     for atom, row in zip(own.atoms, own.rows(order), strict=True):
         mine.setdefault(row, []).append(atom)
@@ -430,7 +429,7 @@ def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Ite
 
 
 def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, ...]]:
-    """Return orders of the symbols ``others`` in which to pair them with ``atoms``, the most plausible orders first."""
+    """Return ``others`` in several orders, to be paired one by one with ``atoms``; the most plausible order first."""
     known = {atom: (as_text(atom), unit_of(as_text(atom))) for atom in (*atoms, *others)}
 
     def differences(order: tuple[Expr, ...]) -> tuple[int, int, int]:
@@ -474,7 +473,7 @@ def unit_of(name: str) -> str | None:
 
 
 def agree_in_unit(known: str, own: str) -> bool:
-    """Return whether the symbol ``own`` of a claim may have the unit of the symbol ``known`` of a formula."""
+    """Return whether a claim's symbol ``own`` may have the unit of ``known``, a symbol of a known formula."""
     unit, conventional = UNIT_OF_NAME.get(known), unit_of(own)
     # books use some letters for different quantities
     return unit is None or conventional is None or conventional == unit
@@ -487,7 +486,7 @@ def _factor(
     idle: Sequence[Expr],  # symbols in own that do not change its value
     factors: Sequence[Rational],
 ) -> Rational | None:
-    """Return the factor k with own = k * theirs at a random point, or None if there is none among ``factors``."""
+    """Return the first k in ``factors`` with own = k * theirs at a random point, or None if there is none."""
     for draw in range(MOST_DRAWS):
         point = {mine: pow(7 + 2 * draw, 40 + n * n, PRIME) for n, mine in enumerate(pairing)}
         try:

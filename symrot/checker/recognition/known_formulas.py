@@ -1,4 +1,4 @@
-"""The formulas that symrot derives, with names and fingerprints; running this module prints ``known_formulas.toml``."""
+"""The formulas that symrot derives, with names and fingerprints; running this module writes ``known_formulas.toml``."""
 
 import json
 import re
@@ -57,7 +57,7 @@ class Known:
 
     @property
     def is_placed(self) -> bool:
-        """Whether the formula is for one certain axis or matrix entry, so that its axes must not be exchanged."""
+        """Whether the formula is for one certain axis or matrix entry; other axes must not take its place."""
         return self.name.startswith(("yaw", "pitch", "roll", "entry"))
 
     @property
@@ -242,7 +242,8 @@ def _torques() -> Iterator[Named]:
 
 
 def _letters_of_books(torque: Matrix) -> list[dict[Symbol, Symbol]]:
-    """Return the letters of books for the torque of the gravity gradient, as substitutions; [{}] for other torques."""
+    """Return dictionaries from a torque's symbols to letters of books, such as {mean_motion: n, radius_1: n1, ..}."""
+    # only the torque of the gravity gradient has other letters in books
     named = {symbol.name: symbol for symbol in torque.free_symbols}
     if "mean_motion" not in named:
         return [{}]
@@ -254,7 +255,7 @@ def _letters_of_books(torque: Matrix) -> list[dict[Symbol, Symbol]]:
 
 
 def stated() -> Iterator[Named]:
-    """Yield the formulas of kinematics, inertia and dynamics in a fixed order, then the components of vectors."""
+    """Yield the formulas of kinematics, inertia and dynamics in a fixed order, then the components of the vectors."""
     columns: list[Named] = []
     for group in (
         _axes,
@@ -310,7 +311,7 @@ def _solved() -> Iterator[Named]:
 
 
 def _related() -> Iterator[Named]:
-    """Yield the relations of mechanics, each with its name and source, as a difference that must be zero."""
+    """Yield each relation of mechanics as (name, source, left side minus right side)."""
     for relation in relations():
         yield f"relation for {relation.title}", relation.source, primitive(relation.difference)
 
@@ -325,10 +326,7 @@ def _selected(
     longest: int,
     is_relation: bool = False,  # stored too: relations are looked up for equations only
 ) -> Iterator[tuple[str, Known]]:
-    """Yield (fingerprint key, formula) for the formulas that ``known_formulas.toml`` is to contain.
-
-    They have ``least`` symbols or more, and at most ``longest`` characters.
-    """
+    """Yield (key, formula) for formulas with at least ``least`` symbols and at most ``longest`` characters."""
     of_letters = {*(name for name, *_ in along_axes()), GYROSCOPE, *SCALAR_PRODUCTS, *ANY_VECTORS, *GENERAL}
     seen, few = set(), {name for name, *_ in (*tops(), *one_axis(), *_solved(), *rotations(), *bodies(), *points())}
     for name, source, value in formulas:
@@ -351,14 +349,14 @@ def _selected(
 
 
 def ending_of(name: str) -> str:
-    """Return the end of a known formula's name that names a function, such as ", squared" or ", acos"; otherwise ""."""
+    """Return the end ", squared" or ", acos" of a known formula's name, or "" if the name has no such end."""
     # the formula then is a function of the quantity: its square, cosine, or half angle's cosine
     ending = re.search(r", (squared|(\S+ )?(acos|asin|atan2))$", name)
     return ending[0] if ending else ""
 
 
 def relation_key(key: str, is_relation: bool) -> str:
-    """Return the key of a formula in the table: its fingerprint, with ``=`` in front for a relation."""
+    """Return the key of a formula in the file: its fingerprint ``key``, with ``=`` in front for a relation."""
     return f"={key}" if is_relation else key
 
 
@@ -402,7 +400,7 @@ def _quoted(text: str) -> str:
 
 @cache
 def by_fingerprint() -> dict[str, list[Known]]:
-    """Return the known formulas by their key, a hash that does not depend on the names of symbols."""
+    """Return {key: known formulas}; formulas with one key differ only in the names of symbols or by a factor."""
     # values that `page` prints are JSON too, which is read in a fraction of the time of TOML
     formulas: dict[str, list[Known]] = {}
     _, *entries = FILE.read_text(encoding="utf-8").split("\n[[formula]]\n")

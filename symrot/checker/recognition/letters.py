@@ -1,6 +1,6 @@
 """The letters of a formula that may have a fault: symbols, rates and angles, with random values at some points.
 
-The values obey the claim's hypotheses. A name that stands for a formula, such as c1 for cos(alpha), has its value.
+The values obey the claim's hypotheses. A name with a definition, such as c1 for cos(alpha), has the definition's value.
 """
 
 from collections.abc import Mapping
@@ -15,7 +15,7 @@ from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.repair.points import points
 from symrot.checker.repair.rows import is_matrix
 
-__all__ = ["POINTS", "is_atom", "letters_of_formula", "nodes_of", "pieces_of", "text_of"]
+__all__ = ["POINTS", "ids_of_nodes", "is_atom", "letters_of_formula", "nodes_of", "text_of"]
 
 MOST_DRAWS = 40
 """The most random points that are drawn to find some where a formula has a value."""
@@ -30,7 +30,7 @@ MANY = 9
 def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:
     """Return the letters of a claim's formula, with random values that obey the claim's hypotheses.
 
-    Return None if the formula has too few values.
+    None if the formula or a letter has no value at most random points.
     """
     numeric = NumericFilter(claim)
     short = claim.defining  # such as c1 = cos(alpha)
@@ -69,7 +69,7 @@ def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:
         return None
     places = [
         PointOfLetters(
-            dict(point.symbols), {}, defined_names, pieces_of(named.formula),
+            dict(point.symbols), {}, defined_names, ids_of_nodes(named.formula),
             rates={atom: values[place] for atom, values in atoms.items() if atom.kind == "call"},
         )
         for place, point in enumerate(at)
@@ -79,16 +79,14 @@ def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:
 
 
 def _symbols_of(definitions: Mapping[str, Node], numeric: NumericFilter) -> set[str]:
-    """Return the names in ``definitions`` that are neither functions of time nor themselves defined by the claim."""
+    """Return the symbols in the formulas of ``definitions``: {"alpha"} for ``{"c1": cos(alpha)}``."""
+    # without names of functions of time and names with a definition of their own
     names = {str(node.value) for tree in definitions.values() for _, node in walk(tree) if node.kind == "name"}
     return names - {"pi", *numeric.functions, *numeric.definitions}
 
 
 def _active(formula: Node, atoms: dict[Node, Values], places: list[PointOfLetters]) -> dict[Node, Values]:
-    """Return those of ``atoms`` on which the value of a formula depends, with their values.
-
-    The trace of a matrix depends on its diagonal only.
-    """
+    """Return the ``atoms`` that change a formula's value: only the diagonal entries for the trace of a matrix."""
     if len(atoms) < MANY:
         return atoms
     here = values_of(formula, places[:1])
@@ -104,8 +102,9 @@ def _active(formula: Node, atoms: dict[Node, Values], places: list[PointOfLetter
     return active
 
 
-def pieces_of(tree: Node) -> frozenset[int]:
-    """Return the identities (``id``) of all nodes in a tree; a test point remembers the values of these nodes."""
+def ids_of_nodes(tree: Node) -> frozenset[int]:
+    """Return the ``id`` of every node in a tree."""
+    # a test point remembers the values of the nodes with these ids
     return frozenset(id(node) for _, node in walk(tree))
 
 
@@ -123,7 +122,7 @@ def is_atom(tree: Node) -> bool:
 
 
 def text_of(atom: Node) -> str:
-    """Return the text of a symbol or rate, as SymPy's printer writes it."""
+    """Return the text of a symbol or rate as SymPy prints it, such as "diff(phi(t), t)"."""
     if atom.kind == "name":
         return str(atom.value)
     return f"diff({text_of(atom.args[0])}, {', '.join('t' for _ in atom.args[1:])})" if atom.value == "diff" else (

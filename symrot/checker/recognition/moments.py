@@ -17,14 +17,14 @@ FIRST_EQUAL = (("A", "B"), ("I_xx", "I_yy"))
 
 
 def is_symmetric_body(absent: str, letter: str, renaming: dict[str, str | None], times: int) -> bool:
-    """Return whether ``letter`` in a claim may stand for two equal moments of inertia, its own and ``absent``."""
+    """Return whether a claim's ``letter`` may stand for two equal moments, as A in a formula for A = B without B."""
     # books write A for A = B; B stands for B = C only if it occurs once, as in A p^2 + B (q^2 + r^2)
     equal = EQUAL_MOMENTS if times == 1 else FIRST_EQUAL
     return any(absent == later and renaming.get(earlier) == letter for earlier, later in equal)
 
 
 def is_shifted_moment(actual: Values, known: Values, letters: Letters) -> bool:
-    """Return whether ``actual`` are the values of the moment of inertia ``known`` plus m d^2, for a parallel axis."""
+    """Return whether ``actual`` are the values ``known`` of a moment of inertia plus m d^2, for a parallel axis."""
     if any(map(is_matrix, (*actual, *known))) or not all(known):
         return False
     ratios = [value / other for value, other in zip(actual, known, strict=True)]
@@ -43,12 +43,12 @@ def is_shifted_moment(actual: Values, known: Values, letters: Letters) -> bool:
 
 
 def _share(added: Sequence[float], mass: Values, length: Values) -> Fraction | None:
-    """Return the rational number k for which the values ``added`` to a moment are k m d^2; None if there is none."""
+    """Return the rational number k with ``added`` = k m d^2 at all points, or None if there is none."""
     return rational([value / (m * d * d) for value, m, d in zip(added, mass, length, strict=True)])
 
 
 def _shares(added: Sequence[float], mass: Values, lengths: Sequence[Values]) -> list[Fraction | None]:
-    """Return the simple fractions [k, l] for which m (k a^2 + l b^2) was ``added`` to a moment of inertia."""
+    """Return simple fractions [k, l] with ``added`` = m (k a^2 + l b^2) at all points, for the ``lengths`` a and b."""
     (first, second, *_), rows = [value / m for value, m in zip(added, mass, strict=True)], [
         (a * a, b * b) for a, b in zip(*lengths, strict=True)
     ]  # fmt: skip

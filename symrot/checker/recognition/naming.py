@@ -152,7 +152,10 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
 
 
 def _near_usual(claim: Claim, named: NamedFormula, readings: Sequence[Identification]) -> Verdict | None:
-    """Return the verdict "doubtful" on a claim known in an unusual convention and nearly known in a usual one."""
+    """Return the verdict "doubtful" if a formula is right in the space frame and, after one change, in the body frame.
+
+    Otherwise return None.
+    """
     if claim.context or claim.hypotheses or not all(is_unusual(known) for known in readings):
         return None
     # such as psi' = (omega_2 sin phi + omega_1 cos phi)/cos theta: true for components in the space frame;
@@ -168,7 +171,7 @@ def _near_usual(claim: Claim, named: NamedFormula, readings: Sequence[Identifica
 
 
 def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | None:
-    """Return the verdict on a claim ``omega = [matrix] q_dot`` by its matrix alone, or None for other claims."""
+    """Return the verdict on the matrix of a claim ``omega = [matrix] q_dot``, or None for claims of another form."""
     factors = named.formula.args if named.formula.kind == "product" else ()
     is_map = len(factors) == 2 and factors[0].value == "Matrix" and (is_atom(factors[1]) or is_derivative(factors[1]))
     if not is_map or len(matrix_entries(factors[0])) <= MOST_COMPONENTS:
@@ -194,7 +197,7 @@ def verdict_on_relation(claim: Claim) -> Verdict | None:
 
 
 def _least_symbols_related(left: Node, right: Node) -> int:
-    """Return the fewest symbols with which the equation ``left == right`` is compared with known relations."""
+    """Return how many symbols the equation ``left == right`` must have to be compared with known relations."""
     nodes = [node for side in (left, right) for _, node in walk(side)]
     accelerated = {node.args[0] for node in nodes if is_derivative(node) and len(node.args) > 2}
     # an equation of motion, such as L theta'' = -g sin theta, needs fewer than another equation
@@ -218,7 +221,7 @@ def _with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tu
 
 
 def _on_signs_of_products(claim: Claim, named: NamedFormula, readings: Collection[Identification]) -> tuple[str, ...]:
-    """Return a tuple with a note on the sign of products of inertia, or () if the sign does not matter or is stated."""
+    """Return a note, in a tuple, on the sign of products of inertia, or () if the sign does not matter or is stated."""
     names = [name for name in names_in(named.formula) if PRODUCT_OF_INERTIA.fullmatch(name)]
     if not names or claim.context.sign_of_products or any("minus sign" in f"{k.name} {k.how}" for k in readings):
         return ()
@@ -281,13 +284,13 @@ def _near_relation(claim: Claim, left: Node, right: Node) -> Verdict | None:
 
 
 def _in_claim(repair: Repair, left: Node, right: Node, named: NamedFormula) -> Repair:
-    """Return a repair of a solved equation ``named`` with its terms on the same sides as in ``left == right``."""
+    """Return the repair of ``left == right`` that says the same as ``repair`` of this equation, solved as ``named``."""
     sides = put_back(left, right, named, read_relation(repair.text)[2])
     return repair if sides is None else replace(repair, text=f"{text(sides[0])} == {text(sides[1])}")
 
 
 def _are_usable(claim: Claim) -> bool:
-    """Return whether the claim's hypotheses only name formulas and state unit lengths, so that faults can be sought."""
+    """Return whether all hypotheses define names, as c1 = cos(alpha), or state unit lengths, as a^2 + b^2 = 1."""
     # under A = B, a right formula may be shorter than the known one, and a term would seem to be missing
     short = claim.defining
     return all(
@@ -297,7 +300,7 @@ def _are_usable(claim: Claim) -> bool:
 
 
 def _is_norm(side: Node, other: Node) -> bool:
-    """Return whether the equation ``side == other`` says that a sum of squares, or a length, is one."""
+    """Return whether the equation ``side == other`` states that a sum of squares, or a length, is one."""
     squares = side.args if side.kind == "sum" else (side,)
     return other == number(1) and all(
         (term.kind == "power" and term.args[1] == number(2)) or (term.kind == "call" and term.value in ("dot", "abs"))
@@ -316,14 +319,17 @@ def _nearby(claim: Claim, named: NamedFormula) -> list[Near]:
 def _doubtful(
     repairs: tuple[Repair, ...], readings: tuple[Identification, ...], notes: tuple[str, ...] = ()
 ) -> Verdict:
-    """Return the verdict "doubtful" with repairs, and the known formulas ``readings`` that the first of them gives."""
+    """Return the verdict "doubtful" with repairs; ``readings`` are the known formulas that the first repair gives."""
     code = repairs[0].code
     diagnosis = Diagnosis(code, FAULT_DESCRIPTIONS[code])
     return Verdict("doubtful", diagnosis=diagnosis, repairs=repairs, recognised_as=readings, notes=notes)
 
 
 def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if changes of one part make the formula a known one; None if there are none."""
+    """Return the verdict "doubtful" if a change of one part makes the formula a known one; otherwise None.
+
+    The verdict is "recognised" if the formula equals a known one for certain signs of its letters.
+    """
     nearby = _nearby(claim, named)
     of_bodies = [near for near in nearby if is_of_body(near.code, near.known.name)]
     shifted = any(near.is_shifted for near in of_bodies if near.cost <= of_bodies[0].cost + AS_NEAR)
@@ -352,7 +358,7 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 
 def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identification, ...]:
-    """Return (known formula,) if ``near.tree`` equals it for some signs of the letters; otherwise ()."""
+    """Return (known formula,) if ``near.tree`` equals the known formula for certain signs of letters; otherwise ()."""
     # a*sqrt(1 - x/a^2) equals sqrt(a^2 - x) for a > 0
     ending = ending_of(near.known.name)
     if named.solve is None or ending not in ("", SQUARED):
@@ -385,10 +391,8 @@ def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identific
 
 
 def _loses_letter(claim: Claim, tree: Node) -> bool:
-    """Return whether a letter of the formula ``tree`` cancels, as b does in ``1 + b/b``.
-
-    Such a formula is not offered as a repair.
-    """
+    """Return whether a letter of the formula ``tree`` cancels, as b does in ``1 + b/b``."""
+    # such a formula is not offered as a repair
     try:
         value = claim.interpreter().read(tree)
     except InputError:
@@ -447,7 +451,10 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
 def recognised_edits(
     claim: Claim, named: NamedFormula, letters: Collection[str], most: int
 ) -> Iterator[tuple[Repair, Verdict]]:
-    """Yield single edits of a claim's formula that make it a known one, each as (repair, new verdict)."""
+    """Yield (repair, verdict) for each single edit that makes a claim's formula a known one.
+
+    ``letters`` are symbols that an edit may put in; the ``most`` cheapest edits are tried.
+    """
     numeric = NumericFilter(claim)
     names = sorted({*numeric.names, *letters} - {*numeric.functions})
     edits = [*single_edits(named.formula, names, numeric.functions, numeric.is_matrix, numeric.moving)]
@@ -464,14 +471,14 @@ def recognised_edits(
 
 
 def _exchanged(tree: Node, names: Mapping[str, str]) -> Node:
-    """Return a tree with other names of symbols and of functions of time: ``names`` maps old to new ones."""
+    """Return a tree with symbols and functions of time renamed: ``names`` maps old names to new ones."""
     is_named = tree.kind == "name" or (tree.kind == "call" and is_atom(tree))
     value = names.get(str(tree.value), tree.value) if is_named else tree.value
     return replace(tree, value=value, args=tuple(_exchanged(child, names) for child in tree.args))
 
 
 def _with_all_terms_added(named: NamedFormula) -> Iterator[Edit]:
-    """Yield the edit of ``a - b - c`` to a + b + c, for a formula that should be a positive number."""
+    """Yield the edit to ``a + b + c`` of the formula ``a - b - c`` if the other side is a number."""
     negative = [term for term in named.formula.args if term.kind == "neg"]
     if named.solve is None and named.side.kind == "number" and named.formula.kind == "sum" and len(negative) > 1:
         added = sum_of([term.args[0] if term.kind == "neg" else term for term in named.formula.args])
@@ -488,9 +495,9 @@ def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:
 
 
 def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int) -> tuple[Identification, ...]:
-    """Return the known formulas that are equal to ``tree`` and fit the names in the claim, the likeliest first.
+    """Return the known formulas and relations that a claim with the right side ``tree`` can mean, the likeliest first.
 
-    ``tree`` needs ``least_symbols`` symbols or more.
+    Empty if ``tree`` has fewer than ``least_symbols`` symbols.
     """
     solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
     is_open = (words_of(named) is None or _is_stated(claim, named)) and least_symbols == LEAST_SYMBOLS
@@ -509,7 +516,7 @@ def _readings_of_relation(
 ) -> tuple[Identification, ...]:
     """Return the known relations that are equivalent to the equation ``named.side == tree``.
 
-    The equation needs ``least_symbols`` symbols or more.
+    Empty if the equation has fewer than ``least_symbols`` symbols.
     """
     difference = sum_of([named.side, negated(tree)])
     try:
@@ -540,7 +547,7 @@ def _readings_of_formula(
 ) -> tuple[Identification, ...]:
     """Return the known formulas for the claim's quantity that are equal to ``formula``, the likeliest first.
 
-    ``formula`` needs ``least_symbols`` symbols or more.
+    Empty if ``formula`` has fewer than ``least_symbols`` symbols.
     """
     try:
         value = claim.with_definitions(claim.interpreter().read(formula))
@@ -575,10 +582,13 @@ def _readings_of_formula(
 
 
 def _without_function(value: Any) -> tuple[Any, str]:
-    """Return the argument and the name of a value's outer function: (u, ", acos") for acos(u)."""
+    """Return a value without its outer root or inverse function, and words for that function.
+
+    ``acos(u)`` gives (u, ", acos"), ``sqrt(u)`` gives (u, ", squared"); another u gives (u, "").
+    """
     if is_matrix(value):
         return value, ""
-    # known formulas with roots and inverse functions are stored without them
+    # known formulas with roots and inverse functions are stored without them; the words end their names
     if any(power.exp == Rational(1, 2) for power in Mul.make_args(value) if power.is_Pow):
         return value**2, SQUARED
     factor, function = value.as_coeff_Mul()

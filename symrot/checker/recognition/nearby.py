@@ -1,4 +1,4 @@
-"""Known formulas that differ from a claim by one fault: a numeric search, whose results remain to be proven.
+"""Known formulas that differ from a claim by one fault: a numeric search, whose results are not yet proven.
 
 For each known formula for the claim's quantity, the search computes the values that the claim's formula should have. It
 then looks for a single part whose change gives these values.
@@ -20,7 +20,7 @@ from symrot.checker.claim.tree import TIME, Node, Path, number, replaced, walk
 from symrot.checker.recognition.array_faults import ArrayFault, agree, array_faults, has_arrays, matching
 from symrot.checker.recognition.identification import UNIT_OF_NAME
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, ending_of
-from symrot.checker.recognition.letters import POINTS, is_atom, letters_of_formula, nodes_of, pieces_of, text_of
+from symrot.checker.recognition.letters import POINTS, ids_of_nodes, is_atom, letters_of_formula, nodes_of, text_of
 from symrot.checker.recognition.moments import is_shifted_moment, is_symmetric_body
 from symrot.checker.recognition.pairing import absent_name, is_fitting, renaming_of_product, renamings, strangeness
 from symrot.checker.recognition.parts import (
@@ -75,9 +75,9 @@ class Near(NamedTuple):
 
 
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
-    """Return changes of a claim's formula after which it may be a known formula, the cheapest first.
+    """Return changes of a claim's formula that may turn it into a known formula, the cheapest first.
 
-    ``fits`` selects the known formulas.
+    Only known formulas with ``fits(known)`` are compared.
     """
     if sum(1 for _ in walk(named.formula)) > MOST_NODES:
         return []
@@ -144,7 +144,7 @@ def _quantity(named: NamedFormula) -> Node:
 
 
 def _relations(quantity: str) -> Iterator[tuple[str, Known]]:
-    """Yield (symbol, formula) for each known relation, solved for each symbol that may be the claim's ``quantity``."""
+    """Yield (symbol, formula) for each known relation, solved for a symbol that the claim may call ``quantity``."""
     for name, known in solved_relations():
         if is_fitting(name, quantity, is_angle=False):
             yield name, known
@@ -167,7 +167,7 @@ _BUILT_IN = {"sin", "cos", "tan", "cot", "sec", "csc", "sqrt", "pi", "Matrix", "
 
 @cache
 def _known_pieces(known: Known) -> frozenset[int]:
-    return pieces_of(_tree(known))
+    return ids_of_nodes(_tree(known))
 
 
 def _is_column(known: Known) -> bool:
@@ -196,7 +196,7 @@ class Search(NamedTuple):
     values: Values
 
     def matching(self, part: Part) -> Iterator[Variant]:
-        """Yield the changes of a part that give it the values ``part.needed``, which make the whole formula right."""
+        """Yield the changes that give a part the values ``part.needed``, with which the whole formula is right."""
         values = self.variants.get(part.path, [])
         (first, *_) = part.needed
         if is_matrix(first) or not values:
@@ -233,7 +233,7 @@ def _search(claim: Claim, named: NamedFormula, letters: Letters, values: Values)
 def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near] | None:
     """Return the single changes of the claim's formula that give it the values of ``known``.
 
-    Return None if it has these values already.
+    None if the claim's formula has the values of ``known`` already.
     """
     named, letters = search.named, search.letters
     # renaming: known symbol -> name in the claim, or None for a symbol that the claim lacks
@@ -308,10 +308,7 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
 
 
 def _lacking_letter(absent: str, name: str, letters: Letters) -> Node:
-    """Return the tree of the quantity ``absent`` that a claim lacks: a symbol, a function of time, or a derivative.
-
-    Its name is ``name``.
-    """
+    """Return the tree for ``name``, the claim's name for the known symbol ``absent``: diff(theta(t), t) for dtheta."""
     moving = {node.args[0] for atom in letters.atoms if atom.kind == "call" for node in nodes_of(atom) if node.args}
     timed = Node("call", name, (TIME,))  # if its rate occurs in the claim
     if absent.startswith("d") and name.startswith("d") and any(atom.value == "diff" for atom in letters.atoms):
@@ -320,10 +317,8 @@ def _lacking_letter(absent: str, name: str, letters: Letters) -> Node:
 
 
 def _is_promising(search: Search, needed: Values) -> bool:
-    """Return whether one change of some part gives the whole formula the values ``needed`` at two points.
-
-    The full comparison at all points is slower.
-    """
+    """Return whether a change of one part gives the whole formula the values ``needed`` at the first two points."""
+    # quicker than the full comparison, which follows
     formula, at = search.named.formula, search.letters.points[:2]
     return any(
         is_superfluous(part) or is_multiple(part) or any(search.matching(part))
@@ -348,7 +343,7 @@ def _repaired(formula: Node, path: Path, change: Change) -> Node:
 
 
 def _with_other_products(known: Known, own: Sequence[PointOfLetters]) -> Iterator[Values]:
-    """Yield the values of a formula at the points ``own`` with the other sign of its products of inertia."""
+    """Yield the values of a known formula with the signs of its products of inertia reversed, if it has any."""
     names = [name for name in _names(known) if PRODUCT_OF_INERTIA.fullmatch(name)]
     if names:
         changed = [{**point.symbols, **{name: -point.symbols[name] for name in names}} for point in own]
@@ -358,13 +353,14 @@ def _with_other_products(known: Known, own: Sequence[PointOfLetters]) -> Iterato
 
 
 def _views(known: Known, values: Values) -> Iterator[Values]:
-    """Yield ``values`` of a known formula as they are and, for a matrix, transposed, doubled, with permuted rows."""
+    """Yield the values of a known formula and of its variants: transposed, doubled, or a quaternion's scalar last."""
     yield values
     if not is_matrix(values[0]):
         return
     rows, columns = shape_of(values[0]) or (0, 0)
     if rows == columns:
         yield tuple(map(transposed, values))
+    # multiples of a ``scaled`` formula have the same name
     doubled = [tuple(times(2.0, value) for value in values)] if known.scaled else []
     yield from doubled
     # a quaternion with its scalar part last
@@ -420,7 +416,7 @@ def _has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], l
 
 
 def _scale(unit: str | None) -> float | None:
-    """Return the factor from a quantity's number in SI units to that in ``UNITS``; None for an unknown unit."""
+    """Return the factor from a number in SI units to one in ``UNITS``: 1.61/0.83 for "m/s". None without a unit."""
     if unit is None:
         return None
     # with factors f for m and g for s, the factor for m/s^2 is f/g^2
@@ -435,9 +431,9 @@ def _renamed(tree: Node, nodes: dict[str, Node]) -> Node:
 
 
 def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters) -> Values | None:
-    """Return the values that the claim's formula should have if its quantity has the values ``target``.
+    """Return the values that the claim's formula needs for its quantity to have the values ``target``.
 
-    Return None if a value does not exist.
+    None if the formula cannot have these values.
     """
     function = _FUNCTIONS_OF_ENDINGS.get(ending_of(known.name))
     if function is None:

@@ -1,7 +1,7 @@
 """Renamings of a known formula's symbols to the symbols of a claim that may have a fault.
 
-A fault can remove one symbol from a formula or add one; so a renaming may leave out one symbol. The letters, units,
-axes and angles of the names tell which symbols may be the same quantity.
+A fault can remove one symbol from a formula or add one; so a renaming may leave out one symbol. Usual letters, units,
+axes and the use as an angle tell which symbols may be the same quantity.
 """
 
 import re
@@ -49,7 +49,7 @@ MOST = 6
 def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] = ()) -> list[dict[str, str | None]]:
     """Return the most plausible renamings of the names ``known`` of a known formula to the names ``own`` of a claim.
 
-    One name may become None.
+    One name may be renamed to None: the claim lacks it.
     """
     if abs(len(known) - len(own)) > 1:
         return []
@@ -66,15 +66,15 @@ def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] 
 
 
 def _rank(renaming: dict[str, str | None]) -> tuple[int, int, bool, int]:
-    """Return the sort key of a renaming, smallest for the names most similar to the known ones."""
+    """Return the sort key of a renaming, smallest if the claim's names are most similar to the known ones."""
     # symbols with another axis, changed names, a symbol without a name, names with another letter
     return _moved(renaming), strangeness(renaming), None in renaming.values(), _unlike(renaming)
 
 
 def renaming_of_product(own: Sequence[str]) -> dict[str, str | None] | None:
-    """Return the claim's names for the components of a quaternion product: a1 for q0, a2 for p0.
+    """Return {"q0": "a1", "p0": "a2", ..}, the renaming of a quaternion product, for the names a1, .., d1, a2, .., d2.
 
-    Return None for names of another form.
+    None for other names.
     """
     places = {(match[1], match[2]): name for name in own if (match := NUMBERED.fullmatch(name))}
     letters, numbers = sorted({letter for letter, _ in places}), sorted({number for _, number in places})
@@ -88,7 +88,10 @@ def renaming_of_product(own: Sequence[str]) -> dict[str, str | None] | None:
 
 
 def _absent_of_product(known: str, renaming: dict[str, str | None]) -> str | None:
-    """Return the name of a component of a quaternion product that the claim lacks: c2 if it has c1 and a2."""
+    """Return a name for the component ``known`` of a quaternion product: c2 for p2 if q2 is c1 and p0 is a2.
+
+    None for names without such numbers.
+    """
     if re.fullmatch("[qp][0-3]", known) is None:
         return None
     beside = renaming.get(("p" if known[0] == "q" else "q") + known[1])
@@ -110,7 +113,9 @@ def _without_mark(name: str) -> tuple[str, str]:
 
 
 def _numbered_angle(known: str, mine: str, other: str) -> str:
-    """Return the name of the angle ``known`` if the angle ``mine`` is called ``other``, or "" for other names.
+    """Return the name for the angle ``known`` if ``mine`` is called ``other``: theta_3 for psi if phi is theta_1.
+
+    An ``other`` without such a number gives "".
 
     Examples
     --------
@@ -128,13 +133,13 @@ def _numbered_angle(known: str, mine: str, other: str) -> str:
 
 
 def _moved(renaming: dict[str, str | None]) -> int:
-    """Return the number of symbols that a renaming moves to another axis, as I_1 to I_2."""
+    """Return how many symbols a renaming moves to another axis, as I_1 to I_2."""
     pairs = [(axes_of(name), axes_of(plain_name(other))) for name, other in renaming.items() if other is not None]
     return sum(bool(mine and new and mine != new) for mine, new in pairs)
 
 
 def _unlike(renaming: dict[str, str | None]) -> int:
-    """Return how many symbols have a name in the claim that does not begin with their own letter."""
+    """Return how many symbols begin with another letter in the claim than in the known formula."""
     return sum(other is not None and not _has_letter_of(name, other) for name, other in renaming.items())
 
 
@@ -144,7 +149,7 @@ def _has_letter_of(name: str, other: str) -> bool:
 
 
 def strangeness(renaming: dict[str, str | None]) -> int:
-    """Return how many names a renaming changes; a radius renamed to another length, or back, counts more."""
+    """Return how many names a renaming changes; a change between a radius and another length counts three times."""
     changed = [name for name, other in renaming.items() if other is None or plain_name(other) != name]
     lengths = [name for name in changed if UNIT_OF_NAME.get(name) == "m" and name not in COORDINATES]
     unusual = [name for name in lengths if (other := renaming[name]) is not None
@@ -155,10 +160,8 @@ def strangeness(renaming: dict[str, str | None]) -> int:
 def _extended(
     renaming: dict[str, str | None], order: Sequence[str], fitting: dict[str, list[str]], count: int
 ) -> Iterator[dict[str, str | None] | None]:
-    """Yield the complete renamings that extend a partial one, and None at each step of the search.
-
-    ``order`` are the known names to rename.
-    """
+    """Yield all extensions of ``renaming`` to the known names ``order``, with a None before each step of the search."""
+    # fitting: the claim's names for each known name; count: the number of the claim's names
     yield None  # the caller counts these, to give up after too many steps
     if not order:
         used = sum(other is not None for other in renaming.values())
@@ -177,7 +180,7 @@ def _extended(
 
 @lru_cache(maxsize=20_000)
 def is_fitting(known: str, own: str, is_angle: bool) -> bool:
-    """Return whether ``known`` in a known formula and ``own`` in a claim may name the same quantity."""
+    """Return whether ``known``, a name in a known formula, may mean the same quantity as ``own`` in a claim."""
     name = plain_name(own)  # is_angle: the claim has it in sines or cosines
     if known == name:
         return True
@@ -199,7 +202,7 @@ def is_fitting(known: str, own: str, is_angle: bool) -> bool:
 
 
 def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]:
-    """Return a name for a symbol that the claim lacks, and whether it continues a series, as Omega_3 does."""
+    """Return a name for a symbol that the claim lacks, and whether others imply it: (Omega_3, True) after Omega_1."""
     for mine, other in renaming.items():
         if other is not None and (numbered := _numbered_angle(known, mine, plain_name(other))):
             return numbered, True

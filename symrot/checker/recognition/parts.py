@@ -1,7 +1,7 @@
 """Faults of single parts of a formula: the value that a part should have, and the short change that gives it.
 
-The needed values of the whole formula at test points are known. They determine those of the terms of a sum, the factors
-of a product, and so on. A change that gives a part these values remains to be proven.
+If the right values of a sum and of all its terms but one are known, the right values of this term follow; likewise for
+factors and arguments. So the search goes inward from the whole formula. Its results are not yet proven.
 """
 
 import math
@@ -58,7 +58,7 @@ Values = tuple[Any, ...]
 
 
 class Part(NamedTuple):
-    """A part of a claim's formula, with its values and its needed values at the test points."""
+    """A part of a claim's formula, with its values and the values that it should have at the test points."""
 
     path: Path
     node: Node
@@ -68,7 +68,7 @@ class Part(NamedTuple):
 
 
 class Change(NamedTuple):
-    """The tree ``made`` that replaces a part, with the code and cost of the fault that this corrects."""
+    """A correction of a part: the tree ``made`` that takes the part's place, and the code and the cost of the fault."""
 
     made: Node
     code: str
@@ -91,7 +91,7 @@ class Letters:
 
 @dataclass
 class PointOfLetters(Point):
-    """A test point at which rates such as ``diff(phi(t), t)`` have values independent of those of ``phi(t)``."""
+    """A test point at which a rate such as ``diff(phi(t), t)`` has a random value of its own."""
 
     rates: Mapping[Node, float] = field(default_factory=dict)
 
@@ -104,14 +104,14 @@ class PointOfLetters(Point):
 
 
 def rates_of_entries(tree: Node, variables: tuple[Node, ...]) -> Node:
-    """Return the derivative of a matrix whose entries are functions of time, written out entry by entry."""
+    """Return the time derivative of a matrix of functions of time, written out entry by entry."""
     if tree.kind == "call" and tree.args == (TIME,):
         return Node("call", "diff", (tree, *variables))
     return replace(tree, args=tuple(rates_of_entries(child, variables) for child in tree.args))
 
 
 def values_of(node: Node, points: Sequence[Point]) -> Values | None:
-    """Return the values of a tree at the points, or None if it has no value at one of them."""
+    """Return the values of a tree at the points, or None if the tree has no value at one of them."""
     try:
         return tuple(point.value(node) for point in points)
     except UndefinedValue:
@@ -119,7 +119,7 @@ def values_of(node: Node, points: Sequence[Point]) -> Values | None:
 
 
 def parts(tree: Node, points: Sequence[Point], needed: Values, path: Path = (), parent: str = "") -> Iterator[Part]:
-    """Yield the parts of a formula with their right values, which follow from those ``needed`` of the whole formula."""
+    """Yield each part of a formula with the values it should have to give the whole formula the values ``needed``."""
     values = values_of(tree, points)
     if values is None or [*map(shape_of, values)] != [*map(shape_of, needed)]:
         return
@@ -132,9 +132,9 @@ def parts(tree: Node, points: Sequence[Point], needed: Values, path: Path = (), 
 def _children(
     tree: Node, points: Sequence[Point], values: Values, needed: Values
 ) -> Iterator[tuple[Path, Node, Values | None]]:
-    """Yield the children of a part, each with its path and the values that it should have.
+    """Yield (path, child, values that the child should have) for each child of a part.
 
-    They are None if nothing determines them.
+    The values are None if nothing determines them.
     """
     cells = matrix_entries(tree) or ({n: (n,) for n in range(len(tree.args))} if tree.kind == "list" else {})
     if cells:
@@ -162,7 +162,7 @@ def _children(
 
 
 def _wrong_row(values: Values, needed: Values) -> int | None:
-    """Return the index of the only row in which a column differs from the needed one; None in all other cases."""
+    """Return the index of the only row in which columns ``values`` and ``needed`` differ. None in other cases."""
     pairs = [(entries_of(value), entries_of(other)) for value, other in zip(values, needed, strict=True)]
     wrong = [n for n in range(len(pairs[0][0])) if not all(near(a[n], b[n]) for a, b in pairs)]
     return wrong[0] if len(wrong) == 1 and (shape_of(values[0]) or (0, 0))[1] == 1 else None
@@ -171,7 +171,7 @@ def _wrong_row(values: Values, needed: Values) -> int | None:
 def _row_of_matrix(
     tree: Node, points: Sequence[Point], values: Values, needed: Values, row: int
 ) -> Iterator[tuple[Path, Node, Values | None]]:
-    """Yield (path, entry, needed values) for each entry in a row of the matrix that multiplies a column."""
+    """Yield (path, entry, needed values) for the matrix entries in a row, where ``tree`` is a matrix times a column."""
     # tree is the product of the matrix and the column
     place, matrix = next(((n, part) for n, part in enumerate(tree.args) if matrix_entries(part)), (0, tree))
     others = [part for n, part in enumerate(tree.args) if n != place]
@@ -209,7 +209,7 @@ def _of_product(arguments: Sequence[Any], place: int, needed: Any) -> Any:
 
 
 def _ratio(left: Any, right: Any) -> float | None:
-    """Return ``left / right`` as one number, for scalars or proportional matrices; None if there is no such number."""
+    """Return the number ``left / right`` for scalars or proportional matrices; None if there is no such number."""
     if not is_matrix(left):
         return left / right if right else None
     pairs = list(zip(entries_of(left), entries_of(right), strict=True))
@@ -246,7 +246,7 @@ _INWARD: dict[tuple[str, str | None], Callable[[Sequence[Any], int, Any], Any]] 
 
 
 def is_superfluous(part: Part) -> bool:
-    """Return whether a formula has its needed values without a part: a term that should be 0, or a factor 1."""
+    """Return whether a part should be left out: a term that should be 0, or a factor that should be 1."""
     neutral = {"sum": 0.0, "product": 1.0}.get(part.parent)
     if neutral is None or any(map(is_matrix, part.needed)) or part.node.kind == "number":
         return False
@@ -255,7 +255,7 @@ def is_superfluous(part: Part) -> bool:
 
 
 def is_multiple(part: Part) -> bool:
-    """Return whether a part has its needed values after multiplication by one number, the same at all points."""
+    """Return whether a part's needed values are its values times one number other than 1."""
     ratios = [_ratio(needed, value) for value, needed in zip(part.values, part.needed, strict=True)]
     first = ratios[0]
     return first is not None and abs(first - 1) > CLOSE and all(r is not None and near(r, first) for r in ratios)
@@ -300,7 +300,7 @@ def variants(node: Node, parent: str, letters: Letters) -> list[Variant]:
 
 
 def _of_letter(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield all other symbols in ``letters`` as replacements of ``node``, if it is a symbol."""
+    """Yield all other symbols in ``letters`` as replacements of ``node``, if ``node`` is a symbol."""
     # as below, parent is the kind of the node around, values are those of node at the test points
     written = {**letters.atoms, **letters.aliases}
     if node not in written:
@@ -313,7 +313,7 @@ def _of_letter(node: Node, parent: str, values: Values, letters: Letters) -> Ite
 
 
 def _of_exponent(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield replacements of a part by other powers: x and x^3 for x^2; a divisor is also yielded as a factor."""
+    """Yield replacements of a part by other powers: x and x^3 for x^2, or x for 1/x."""
     base, exponent = node, Fraction(1)
     if node.kind == "power" and node.args[1].kind == "number":
         base, exponent = node.args[0], node.args[1].value
@@ -345,7 +345,7 @@ def _with_other_factor(base: Node, bases: Values, letters: Letters) -> Iterator[
 
 
 def _of_square(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield the square of a quotient, (a/b)^2 for a/b, and the sum of squares, a^2 - b^2 for (a - b)^2."""
+    """Yield (a/b)^2 for a part a/b, and a^2 - b^2 for a part (a - b)^2."""
     factors = [factor.args[0] if factor.kind == "inv" else factor for factor in node.args]
     if node.kind == "product" and len(factors) > 1 and parent == "sum" and all(f in letters.atoms for f in factors):
         squares = [_square_of(factor) for factor in node.args]
@@ -366,7 +366,7 @@ def _square_of(tree: Node) -> Node:
 
 
 def _of_function(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield replacements of sin(u), such as cos(u), sin(2u) and sin(v); other circular functions likewise."""
+    """Yield replacements of sin(u), such as cos(u), sin(2u) and sin(v), and likewise of cos(u), tan(u) and so on."""
     if node.kind != "call" or node.value not in FUNCTIONS:
         return
     (angle,) = node.args
@@ -385,7 +385,7 @@ def _of_function(node: Node, parent: str, values: Values, letters: Letters) -> I
 
 
 def _of_factor(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield replacements of a term or bracket that have one more symbol or function as factor or divisor: m*a for a."""
+    """Yield a term or bracket with one more symbol or function as factor or divisor: m*a and a/m for a."""
     if parent in ("product", "power", "inv") or node.kind in ("neg", "inv", "number"):
         return
     if node.kind == "product":
@@ -415,7 +415,7 @@ def _factors(letters: Letters) -> Iterator[tuple[Node, Values]]:
 
 
 def _of_terms(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield replacements of a sum: another exponent of all terms, as a^2 + b^2, or sine and cosine exchanged."""
+    """Yield replacements of a sum or product: a^2 + b^2 for a + b, or sine and cosine of an angle exchanged."""
     trees: list[tuple[Node, str]] = []
     if node.kind == "sum":
         bases = [_base(term) for term in node.args]
@@ -443,7 +443,7 @@ def _powered(term: Node, base: Node, power: int) -> Node:
 
 
 def _exchanged(tree: Node, angle: Node) -> Node:
-    """Return a tree in which the sine and the cosine of an angle are exchanged."""
+    """Return a tree with the sine and the cosine of an angle exchanged."""
     if tree.kind == "call" and tree.value in OPPOSITE and tree.args == (angle,):
         return replace(tree, value=OPPOSITE[tree.value])
     return replace(tree, args=tuple(_exchanged(child, angle) for child in tree.args))
@@ -453,7 +453,7 @@ _VARIANTS = (_of_letter, _of_exponent, _of_square, _of_function, _of_factor, _of
 
 
 def rational(values: Sequence[float]) -> Fraction | None:
-    """Return the simple rational number that all values are equal to, or None if there is none."""
+    """Return the rational number that all values equal: 1/3 for 0.3333333333. None if there is no simple one."""
     first = values[0]
     if not math.isfinite(first) or not 1e-4 < abs(first) < 1e4:
         return None

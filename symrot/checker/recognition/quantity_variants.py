@@ -1,4 +1,4 @@
-"""Faults on the side of a claim that has its quantity: ``cos(gamma)`` for ``cos(gamma/2)``, ``k`` for ``k^2``."""
+"""Faults on the side of a claim that names its quantity: ``k = I/m`` for ``k^2 = I/m``, cos(gamma) for cos(gamma/2)."""
 
 from collections.abc import Iterator
 from fractions import Fraction
@@ -16,7 +16,7 @@ TWO = number(2)
 
 
 class QuantityVariant(NamedTuple):
-    """Both sides of a claim after a change of the side with its quantity, with the code and the cost of the fault."""
+    """Both sides of a claim after a fault on the quantity's side is undone, with the fault's code and cost."""
 
     side: Node
     formula: Node
@@ -25,7 +25,7 @@ class QuantityVariant(NamedTuple):
 
 
 def quantity_variants(named: NamedFormula) -> Iterator[QuantityVariant]:
-    """Yield the claim ``named`` with a usual fault undone on the side of its quantity, such as ``k^2`` for ``k``."""
+    """Yield the claim ``named`` with a usual fault undone on the quantity's side: ``k^2 = I/m`` for ``k = I/m``."""
     side, formula = named.side, named.formula
     if side.kind == "call" and side.value in OPPOSITE and is_name_or_rate(side.args[0]):
         (angle,) = side.args
@@ -49,7 +49,7 @@ def _square_of(tree: Node) -> Node:
 
 
 def is_evident_by_quantity(claim: Claim, named: NamedFormula, changed: QuantityVariant) -> bool:
-    """Return whether a claim more likely has the fault that ``changed`` undoes than is right as it stands."""
+    """Return whether the author of a claim probably means the corrected claim ``changed``."""
     letters = names_in(named.formula)
     stem = named.name.partition("_")[0]
     # such as k = k_bar + d

@@ -85,7 +85,7 @@ WORK = new_symbol("W_k", "J")
 
 
 class Relation(NamedTuple):
-    """A relation of mechanics: the left side minus the right side, and the symbols for which it can be solved."""
+    """A relation of mechanics: the left side minus the right side, and the symbols for which to solve it."""
 
     title: str
     source: str  # the derivation page
@@ -94,7 +94,7 @@ class Relation(NamedTuple):
 
 
 def solved(relation: Relation) -> Iterator[tuple[str, str, Any]]:
-    """Yield (name, source, formula) for each symbol in ``relation.words`` that occurs linearly, or only as a square."""
+    """Solve a relation for each symbol in ``relation.words``: yield (name, derivation page, formula for the symbol)."""
     numerator = fraction(together(relation.difference))[0]
     for symbol, words in relation.words.items():
         coefficients = Poly(numerator, symbol).all_coeffs()
@@ -105,7 +105,7 @@ def solved(relation: Relation) -> Iterator[tuple[str, str, Any]]:
             slope, _, rest = coefficients
             name = f"{words} {relation.title}, squared"
         else:
-            continue
+            continue  # linear or purely quadratic in no other case
         yield name, relation.source, factor_terms(cancel(-rest / slope))
 
 
@@ -132,7 +132,7 @@ def primitive(difference: Expr) -> Expr:
 
 
 def without_common_powers(difference: Expr) -> Expr:
-    """Return a difference without symbols or functions that are a factor or divisor of all its terms."""
+    """Return a difference divided by all common powers of symbols: ``a + b`` for ``c*a/d + c*b/d``."""
     # up to a constant factor the same as `primitive`, which is slower because it multiplies out
     common = _common_powers(difference)
     if common is None:
@@ -145,7 +145,7 @@ def without_common_powers(difference: Expr) -> Expr:
 def _common_powers(formula: Expr) -> dict[Expr, int] | None:
     """Return the powers of symbols that divide all terms of a formula: {a: 1, b: -1} for ``a*c/b + a/b``.
 
-    Return None for roots.
+    None if the formula contains a root, or a sum as a divisor.
     """
     if isinstance(formula, Add):
         terms = [_common_powers(term) for term in formula.args]
@@ -294,7 +294,7 @@ def _pendulum() -> Iterator[Relation]:
 
 
 def _wheel() -> Iterator[Relation]:
-    """Yield Euler's equations of a body that carries a wheel, whose momentum is along a principal axis."""
+    """Yield Euler's equations of a body that carries a wheel turning about a principal axis of the body."""
     rates = Matrix(symbols.omega_rates)
     inertia = diag(A, B, C)
     for place, word in enumerate(("first", "second", "third")):
@@ -317,13 +317,14 @@ def _trace() -> Iterator[Relation]:
 
 
 def _top() -> tuple[Matrix, Expr]:
-    """Return the angular velocity of a top at zero spin angle, and the kinetic energy of a symmetric top."""
+    """Return the angular velocity and the kinetic energy of a symmetric top, in Euler angles with spin angle zero."""
+    # the spin angle of a symmetric top enters no relation
     omega = (rate_jacobian("ZXZ") * Matrix(symbols.angle_rates)).subs(PSI, 0)
     return omega, HALF * omega.dot(diag(A, A, C) * omega)
 
 
 def _steady() -> Iterator[Relation]:
-    """Yield conditions of steady precession under a weight or torque, with the spin or the rate of the spin angle."""
+    """Yield conditions of steady precession under a weight or torque, written with omega_3 or with psi'."""
     _, kinetic = _top()
     along = kinetic.diff(THETA).subs(DTHETA, 0)  # A*theta'' at rest in theta, by Lagrange's equation
     for name, load in (("W", symbols.W), ("m g", MASS * G)):

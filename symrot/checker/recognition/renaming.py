@@ -35,9 +35,9 @@ MIDDLE, OUTER = ("theta",), ("phi", "psi", "varphi")
 
 
 def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> bool:
-    """Return whether pairs (known name, new name) rename axes and angles in one way.
+    """Return whether pairs (known name, new name) rename axes and angles alike: not omega_1 to omega_x and I_1 to I_y.
 
-    If omega_1 becomes omega_x, I_1 must not become I_y.
+    With ``fixed``, axis 1 stays 1 or x; without, axes may be exchanged in a cycle.
     """
     rates = [(quantity_of(known), quantity_of(new)) for known, new in renaming]
     pairs = [pair if pair[1] != own[1] else own for pair, own in zip(rates, renaming, strict=True)]
@@ -65,7 +65,7 @@ def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
 
 
 def component(known: str, quantity: str) -> list[tuple[str, str]]:
-    """Return [("component_1", quantity)] if a formula ``known`` is for a first component, and so on; otherwise []."""
+    """Return [("component_2", "H_y")] for ``known`` = "second component of .." and ``quantity`` = "H_y"; else []."""
     parallel = re.search(r"\(parallel-axis theorem\), ([xyz]) axis", known)
     if parallel and axes_of(quantity):
         return [(f"component_{parallel[1]}", quantity)]
@@ -78,7 +78,7 @@ def component(known: str, quantity: str) -> list[tuple[str, str]]:
 
 @cache
 def quantity_of(name: str) -> str:
-    """Return the quantity to which a name belongs: phi for its rate dphi and for phi(t); other names are unchanged."""
+    """Return the quantity that a name belongs to: phi for ``dphi`` and ``phi(t)``; other names stay as they are."""
     while (inner := RATE.fullmatch(name)) is not None:
         name = next(part for part in inner.groups() if part)
     return name
@@ -98,7 +98,7 @@ def axes_of(name: str) -> frozenset[int]:
 
 
 def _keeps_entries(places: Sequence[tuple[tuple[str, ...], tuple[str, ...]]], order: Sequence[int]) -> bool:
-    """Return whether all entries of a rotation matrix keep their rows and columns, or all move as in the transpose."""
+    """Return whether all entries of a rotation matrix keep their rows and columns, or all are transposed."""
     # places: pairs of (row, column), known and new; order: the permutation of the axes
     moved = [(tuple(str(order[int(place) - 1]) for place in known), new) for known, new in places]
     return all(old == new for old, new in moved) or all(old[::-1] == new for old, new in moved)

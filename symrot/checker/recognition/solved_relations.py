@@ -1,6 +1,6 @@
-"""Equations solved for one of their letters, as trees.
+"""Equations solved for one of their letters: ``I w1 + M t = I w2`` gives a formula for each of I, w1, M, t and w2.
 
-The search for faults compares formulas for one quantity; ``I w1 + M t = I w2`` has one for each of its letters.
+The search for faults compares formulas for one quantity, and so can search equations too.
 """
 
 from collections.abc import Iterator, Sequence
@@ -18,7 +18,7 @@ SQUARED = ", squared"
 
 
 class SolvedRelation(NamedTuple):
-    """A known relation that is solved for the symbol ``name``; ``known`` has the formula for this symbol."""
+    """A known relation solved for the symbol ``name``: ``known.text`` is the formula for this symbol."""
 
     name: str
     known: Known
@@ -66,9 +66,9 @@ def solved_claims(left: Node, right: Node, atoms: Sequence[Node]) -> Iterator[Na
 
 
 def put_back(left: Node, right: Node, named: NamedFormula, tree: Node) -> tuple[Node, Node] | None:
-    """Return ``left`` and ``right`` with the one changed term that turned the solved equation ``named`` into ``tree``.
+    """Return both sides of ``left == right`` after the change of one term that turned ``named.formula`` into ``tree``.
 
-    None for other changes.
+    ``named`` is the same equation, solved. None for other changes.
     """
     # tree is the repaired formula of the solved equation
     before, after = _terms(named.formula), _terms(tree)
@@ -82,7 +82,7 @@ def put_back(left: Node, right: Node, named: NamedFormula, tree: Node) -> tuple[
 
 
 def _solve(coefficient: Node, exponent: int) -> Solve:
-    """Return a function from a formula for ``coefficient * letter**exponent`` to one for the letter."""
+    """Return a function that turns a formula for ``coefficient * letter**exponent`` into a formula for the letter."""
 
     def solved(formula: Node) -> Node:
         quotient = product([formula, Node("inv", None, (coefficient,))]) if coefficient != number(1) else formula
@@ -96,7 +96,7 @@ def _terms(tree: Node) -> list[Node]:
 
 
 def _solution(terms: Sequence[Node], letter: Node) -> Solution | None:
-    """Return the solution of ``sum of terms == 0`` for a letter, or None if it occurs in different powers."""
+    """Return the solution of ``sum of terms == 0`` for a letter, or None if it is no factor in one power, 1 or 2."""
     with_letter = [term for term in terms if letter in (node for _, node in walk(term))]
     rest = [negated(term) for term in terms if term not in with_letter]
     coefficients = [_without(term, letter) for term in with_letter]
@@ -108,7 +108,7 @@ def _solution(terms: Sequence[Node], letter: Node) -> Solution | None:
 
 
 def _without(term: Node, letter: Node) -> tuple[Node, int] | None:
-    """Return (a term without its factor w or w^2, the exponent 1 or 2), where w is ``letter``; None for other terms."""
+    """Return (``term`` without the factor w or w^2, exponent 1 or 2) for the letter w, or None for other terms."""
     if term.kind == "neg":
         inner = _without(term.args[0], letter)
         return None if inner is None else (negated(inner[0]), inner[1])

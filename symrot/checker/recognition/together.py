@@ -1,4 +1,4 @@
-"""Whether formulas for components of one vector or tensor, on several lines, are of one body, frame and sequence."""
+"""Whether formulas on several lines, such as ``L_1 = ..`` and ``L_2 = ..``, can be the components of one quantity."""
 
 import re
 from collections.abc import Collection, Iterator, Sequence
@@ -14,9 +14,9 @@ PLACE = re.compile(r"(first|second|third|scalar) component of the |, ([xyz]) axi
 
 
 def fit_together(lines: Sequence[tuple[str, Collection[str], Verdict]]) -> bool:
-    """Return whether several recognised equations can be the components of one quantity.
+    """Return whether several recognised equations can be components of one quantity: of one body, frame and sequence.
 
-    Each is (name of its left side, names in its formula, verdict).
+    Each of ``lines`` is (name of the left side, names in the formula, verdict).
     """
     groups: dict[str, list[list[tuple[Identification, dict[str, str]]]]] = {}
     for name, letters, verdict in lines:
@@ -28,7 +28,7 @@ def fit_together(lines: Sequence[tuple[str, Collection[str], Verdict]]) -> bool:
 
 
 def _meanings(known: Identification, letters: Collection[str]) -> dict[str, str]:
-    """Return, for each of ``letters`` of a formula, the letter of the known formula that it stands for."""
+    """Return {letter of a claim: symbol of the known formula that it stands for} for all ``letters``."""
     # if psi' stands for phi', then psi stands for phi
     renamed = {quantity_of(new): quantity_of(mine) for mine, new in known.mapping.items()}
     return {letter: letter for letter in letters} | renamed
@@ -47,7 +47,7 @@ def _fit(choice: Sequence[tuple[Identification, dict[str, str]]]) -> bool:
 
 
 def misplaced(lines: Sequence[tuple[str, Collection[str], Verdict]]) -> int:
-    """Return how many equations have the name of one component and the formula of another: I_2 with that of I_1."""
+    """Return how many equations name one component but give the formula of another: I_2 with the formula of I_1."""
     return sum(
         name[-1:] in AXIS_OF and bool(verdict.recognised_as)
         and not any(AXIS_OF[name[-1]] == AXIS_OF[place] for k in verdict.recognised_as for place in _places(k.name))

@@ -36,7 +36,7 @@ _TERMS = 20  # terms of the series of (exp(x) - 1 - x)/x^2 for |x| <= 1; the nex
 
 
 def exp_and_expm1(high: Floats, low: Floats) -> tuple[Floats, Floats]:
-    """Return exp(x) and exp(x) - 1 of double-double numbers x = high + low, both rounded to doubles."""
+    """Return exp(x) and exp(x) - 1, rounded to doubles, where x is the sum ``high + low`` of two doubles."""
     grown = np.exp(high)
     return grown * (1.0 + low), np.expm1(high) + grown * low
 
@@ -56,7 +56,7 @@ def _less_whole_turns(turns: dd.Pair) -> Floats:
 
 
 class Turning:
-    """Function from time to a fixed multiple (``share``) of the angle of rotation of a driven body.
+    """A function from time to ``share`` times the angle by which a driven body has rotated.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ class Turning:
         return self._rate[0] * t * (1.0 + x * series) + self._push[0] * t * t * series
 
     def _near(self, t: Floats) -> Floats:
-        """Return ``share`` times the angle at the times t, modulo one revolution, for ``|decay t|`` up to dd.NEAR."""
+        """Return ``share`` times the angle, in revolutions modulo 1, at times t with ``|decay t| <= dd.NEAR``."""
         time = t, np.zeros_like(t)
         x = dd.multiply(time, self._decay)
         series = dd.second(x) if self._decay[0] else (0.5, 0.0)  # accurate for such times only
@@ -127,7 +127,7 @@ class Turning:
         return _less_whole_turns(dd.add(dd.multiply(dd.multiply(time, self._rate), first), pushed))
 
     def _far(self, t: Floats) -> Floats:
-        """Return ``share`` times the angle at the times t, modulo one revolution, for ``|decay t|`` above dd.NEAR."""
+        """Return ``share`` times the angle, in revolutions modulo 1, at times t with ``|decay t| > dd.NEAR``."""
         # (push/decay) t + (rate - push/decay) (1 - exp(x))/decay: a steady and a transient part, which would cancel at
         # smaller x
         time = t, np.zeros_like(t)
@@ -139,7 +139,7 @@ class Turning:
         return np.array([self._exactly(time) for time in t.tolist()])
 
     def _integers(self, bits: int) -> tuple[int, int, int, int]:
-        """Return the constants of :meth:`_exactly` as integers with ``bits`` bits after the binary point."""
+        """Return four constants of the angle for :meth:`_exactly`, as integers with ``bits`` bits after the point."""
         if bits not in self._scaled:
             from mpmath import mp
 
@@ -151,10 +151,10 @@ class Turning:
                 // (x.denominator * self._share.denominator * circle)
                 for x in (final, rest)
             ]
-            octave = int(dd.ln2(bits + _GUARD) * (1 << bits + _GUARD))
-            self._scaled[bits] = turns[0], turns[1], (decay.numerator << bits) // decay.denominator, octave
+            ln2 = int(dd.ln2(bits + _GUARD) * (1 << bits + _GUARD))
+            self._scaled[bits] = turns[0], turns[1], (decay.numerator << bits) // decay.denominator, ln2
         # with damping: final rate and factor of the transient part; without: initial rate and factor of the quadratic
-        # part; then the decay rate and ln 2
+        # part; then the decay rate, and ln 2 with _GUARD more bits
         return self._scaled[bits]
 
     def _exactly(self, t: float) -> float:
@@ -164,10 +164,10 @@ class Turning:
         if growth > _GROWN:
             raise InputError(f"expected times at which the angular velocity is a finite number, got {t!r} s")
         bits = self._bits + 64 * int(growth / 32)
-        final, rest, decay, octave = self._integers(bits)
+        final, rest, decay, ln2 = self._integers(bits)
         shift, one = bottom.bit_length() - 1, 1 << bits
         if decay:
-            grown = _exponential(-(decay * top >> shift), bits, octave)
+            grown = _exponential(-(decay * top >> shift), bits, ln2)
             turns = (final * top >> shift) + (rest * (one - grown) >> bits)
         else:
             turns = (final * top >> shift) + (rest * top * top >> 2 * shift)
@@ -175,12 +175,12 @@ class Turning:
         return (turns - one if 2 * turns > one else turns) / one
 
 
-def _exponential(x: int, bits: int, octave: int) -> int:
-    """Return exp(x) for a fixed-point number x; both are integers with ``bits`` bits after the binary point."""
+def _exponential(x: int, bits: int, ln2: int) -> int:
+    """Return exp(x) for a fixed-point number x: x and the result are integers with ``bits`` bits after the point."""
     if x < -bits << bits:
         return 0
-    # octave is ln 2 in the same form
-    octaves, rest = divmod(x << _GUARD, octave)
+    # ln2: the logarithm of 2, with _GUARD more bits than x
+    octaves, rest = divmod(x << _GUARD, ln2)
     bits += _GUARD
     rest >>= _HALVINGS
     total = term = 1 << bits

@@ -1,7 +1,8 @@
 """Rotation about one axis by the compiled loops of :file:`axial_at.c`, whose constants are computed in integers.
 
 The angle of a driven body grows with the square of time, so its phase at 1e15 s needs constants of 212 bits. They are
-computed in Python's integers; C receives each constant as a sum of several doubles.
+computed in Python's integers; C receives each constant as a sum of several doubles. The transverse angular velocity is
+the part of the angular velocity normal to the driven axis; in the body it rotates by an angle called lag.
 """
 
 import ctypes
@@ -36,7 +37,7 @@ _bound: dict[str, tuple[Any, Any]] = {}
 
 
 def parts(top: int, bottom: int, count: int) -> list[float]:
-    """Return ``count`` doubles whose sum approximates the ratio top/bottom."""
+    """Return ``count`` doubles whose sum approximates the ratio top/bottom, the largest first."""
     sign, top = (-1, -top) if top < 0 else (1, top)
     size = top.bit_length() - bottom.bit_length()
     shift, doubles = _BITS - size, []
@@ -64,7 +65,7 @@ class Loops(NamedTuple):
     def __call__(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> int:
         """Write the angular velocity and the attitude at ``times`` into ``omega`` (n, 3) and ``quaternion`` (n, 4).
 
-        Return 0, :data:`TOO_MANY_TURNS` (some rows are NaN) or :data:`OUT_OF_RANGE` (nothing is written).
+        Return 0, or :data:`TOO_MANY_TURNS` (some samples are NaN), or :data:`OUT_OF_RANGE` (nothing is written).
         """
         status: int = self.evaluate(self.place, len(times), address(times), address(omega), address(quaternion))
         return status
@@ -105,9 +106,10 @@ class Constants:
     axis : 0, 1 or 2
         Index of the body axis about which the torque acts.
     moments : 2 ratios
-        Moments of inertia across the axis and about it, kg m^2, each a pair of integers (numerator, denominator > 0).
+        Moments of inertia, kg m^2, about an axis normal to the driven axis and about the driven axis. A ratio is a
+        pair of integers: numerator and positive denominator.
     torque, damping, across : ratios
-        Torque about the axis, N m; damping coefficients about the axis and across it, N m s.
+        Torque about the axis, N m; damping coefficients, N m s, about the driven axis and about the axes normal to it.
 
     Raises
     ------
@@ -130,16 +132,19 @@ class Constants:
         self._pushed = _nearest(push, over_push)
         self._turns: dict[bool, tuple[int, int, list[float]]] = {}
 
-    def head(self, turned: bool) -> list[float]:
-        """Return the first numbers of the C struct `axial`, which do not depend on the initial state."""
-        # turned: whether the body also rotates about an axis across the driven axis
-        return [float(bool(self._decay)), 1.0, float(turned), *self._head]
+    def head(self, transverse: bool) -> list[float]:
+        """Return the first 8 numbers of the C struct `axial`, from regime to slowing_across.
 
-    def moving(self, rate: Fraction | float, turned: bool) -> list[float]:
-        """Return the values of those members of the C struct `axial` that depend on the initial rate, rad/s."""
-        # the angle is half the angle of rotation; if turned, lag, by which the transverse angular velocity rotates in
-        # the body
-        turn, bits, fixed = self._turns.get(turned) or self._turning(turned)
+        ``transverse`` tells whether there is a transverse angular velocity.
+        """
+        return [float(bool(self._decay)), 1.0, float(transverse), *self._head]
+
+    def moving(self, rate: Fraction | float, transverse: bool) -> list[float]:
+        """Return the numbers of the C struct `axial` that depend on the initial angular velocity ``rate``, rad/s.
+
+        They are the member `axial`, then the member `half`, or `lag` if ``transverse``.
+        """
+        turn, bits, fixed = self._turns.get(transverse) or self._turning(transverse)
         top, bottom = rate.as_integer_ratio()
         if not self._decay:
             evenly = parts(top * turn, bottom << bits, _WIDE)
@@ -156,21 +161,23 @@ class Constants:
             *parts(rest, below, _PAIR), *parts(beyond - below if 2 * beyond > below else beyond, below, _PAIR),
         ]  # fmt: skip
 
-    def _turning(self, turned: bool) -> tuple[int, int, list[float]]:
-        """Return (turn, bits, fixed), constants of an angle of ``turn/2**bits`` revolutions per radian of rotation."""
-        # half the angle of rotation; if turned, lag (axial.h), by which the transverse angular velocity rotates
+    def _turning(self, transverse: bool) -> tuple[int, int, list[float]]:
+        """Return (turn, bits, fixed): a body's rotation by 1 rad changes an angle by ``turn/2**bits`` revolutions.
+
+        The angle is lag if ``transverse``, otherwise half the angle of rotation.
+        """
         turn, bits = _HALF
-        if turned:
+        if transverse:
             (a, over_a), (c, over_c) = self._moments
             lag = Fraction(c * over_a - a * over_c, over_c * a)
             turn, bits = _turns_of(lag.numerator, lag.denominator)
-        # fixed: the constants of the angle that do not depend on the initial state, as doubles for C
+        # fixed: the numbers of the C struct `turning` that do not depend on the initial state
         if self._decay:
             fixed = parts(self._sign * self._push * turn, abs(self._decay) << bits, _WIDE)
         else:
             fixed = [*parts(self._push * turn, 2 * self._shared << bits, _WIDER), *[0.0] * 4]
-        self._turns[turned] = turn, bits, fixed
-        return self._turns[turned]
+        self._turns[transverse] = turn, bits, fixed
+        return self._turns[transverse]
 
     def __call__(self, rates: Sequence[Fraction], attitude: tuple[list[float], list[float]]) -> Loops:
         """Return the motion from one initial state: a :class:`Loops`, the compiled C loop with this motion's constants.
@@ -185,19 +192,20 @@ class Constants:
         """
         evaluate, record = functions()
         one, other = rates[self.axis - 2], rates[self.axis - 1]
-        turned, moving = bool(one or other), self.moving(rates[self.axis], bool(one or other))
-        half, lag = ([0.0] * _TURNING, moving[4:]) if turned else (moving[4:], [0.0] * _TURNING)
+        transverse, moving = bool(one or other), self.moving(rates[self.axis], bool(one or other))
+        half, lag = ([0.0] * _TURNING, moving[4:]) if transverse else (moving[4:], [0.0] * _TURNING)
         constants = record(
-            *self.head(turned), *moving[:4], *half, *lag, *self.omega_rows(float(one), float(other)),
+            *self.head(transverse), *moving[:4], *half, *lag, *self.omega_rows(float(one), float(other)),
             *(x for pair in zip(*attitude, strict=True) for x in (*pair, 0.0, 0.0)),
         )  # fmt: skip
         return Loops(evaluate, constants, ctypes.addressof(constants))
 
     def omega_rows(self, one: Any, other: Any) -> list[Any]:
-        """Return the entries, row by row, of the matrix that maps (cosine, sine, rate) to the angular velocity."""
-        # damped cosine and sine of the angle by which the transverse angular velocity has rotated in the
-        # body, and the rate about the driven axis; one, other: initial rates, rad/s, about the axes that follow it
-        # cyclically
+        """Return the matrix, row by row, that maps (cos(lag), sin(lag), axial rate) to the angular velocity.
+
+        ``one`` and ``other`` are the initial rates, rad/s, about the next two axes after the driven axis.
+        """
+        # C multiplies cosine and sine by the damping factor
         rows: list[list[Any]] = [[0.0] * 3 for _ in range(3)]
         rows[self.axis][2] = 1.0
         rows[self.axis - 2][:2] = one, -other
@@ -206,7 +214,7 @@ class Constants:
 
 
 def _turns_of(top: int, bottom: int) -> tuple[int, int]:
-    """Convert the angle top/bottom rad to revolutions: an integer, and its number of bits after the binary point."""
+    """Convert the angle top/bottom rad to revolutions: (turn, bits), which stands for ``turn/2**bits`` revolutions."""
     top, bottom = top * _PI_BOTTOM, 2 * bottom * _PI_TOP
     bits = max(0, _TURN_BITS + bottom.bit_length() - top.bit_length())
     return (top << bits) // bottom, bits
@@ -216,10 +224,8 @@ _HALF = _turns_of(1, 2)  # half the angle in revolutions, as an integer and its 
 
 
 def _nearest(top: int, bottom: int) -> float:
-    """Return the double nearest to the ratio top/bottom; raise InputError if it exceeds the largest double.
-
-    The ratio is an angular velocity or an acceleration.
-    """
+    """Return the double nearest to the ratio top/bottom; raise InputError if the ratio exceeds the largest double."""
+    # the ratio is an angular velocity or an acceleration
     try:
         return top / bottom
     except OverflowError:

@@ -1,8 +1,8 @@
 """Rotation driven and damped about one axis, at any time, in closed form: C dw/dt = N - c w.
 
-C is the moment of inertia about the axis, w the angular velocity, N the torque and c the damping coefficient. A
-symmetric body may also rotate across its axis. C functions compute the samples if there is a compiler, otherwise NumPy
-and Python's integers.
+C is the moment of inertia about the axis, w the angular velocity, N the torque and c the damping coefficient. The
+angular velocity of a symmetric body may also have a part normal to the axis, the transverse angular velocity. Compiled
+C functions compute the samples if there is a compiler, otherwise NumPy and Python's integers.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -45,9 +45,9 @@ class AxialMotion:
 
     @property
     def has_attitude(self) -> bool:
-        """Whether the attitude can be computed: only if the body does not also rotate across the driven axis."""
-        # it then needs parabolic cylinder functions (symrot.closed_form.spin_up.motion); with damping it has no closed
-        # form
+        """Whether the attitude can be computed: only if the angular velocity stays parallel to the driven axis."""
+        # otherwise the attitude needs parabolic cylinder functions (symrot.closed_form.spin_up.motion); with damping it
+        # has no closed form
         return not any(self._across)
 
     def evaluate(
@@ -152,18 +152,19 @@ def motion(
     torque : number
         Torque about the axis, N m, fixed in the body.
     omega0 : 3 numbers
-        Angular velocity, rad/s; nonzero across the axis only if the body is symmetric about it.
+        Angular velocity, rad/s, parallel to the driven axis unless the body is symmetric about this axis.
     quaternion0 : 4 numbers
         Attitude, body to space, scalar first.
     damping : number
         Coefficient of the torque ``-damping*omega`` about the axis, N m s.
     damping_across : number
-        Coefficient of damping about the axes across the driven axis, N m s.
+        Coefficient of damping about the two axes normal to the driven axis, N m s.
 
     Raises
     ------
     InputError
-        If the body rotates across the axis without being symmetric about it, or a number is outside its domain.
+        If the angular velocity is not parallel to the axis and the body is not symmetric about the axis, or if a
+        number is outside its domain.
     """
     return Driven(inertia, axis, torque, damping, damping_across).motion(omega0, quaternion0)
 
@@ -229,7 +230,7 @@ class Driven:
 
 
 def turned_about(axis: int, q: Sequence[Any]) -> list[Any]:
-    """Return, as a quaternion, the attitude q followed by a half turn about the body axis ``axis`` (0, 1 or 2)."""
+    """Return the quaternion of the attitude that a body reaches from ``q`` by half a turn about its axis ``axis``."""
     product: list[Any] = [None] * 4
     product[0], product[axis + 1] = -q[axis + 1], q[0]
     product[(axis + 1) % 3 + 1], product[(axis + 2) % 3 + 1] = q[(axis + 2) % 3 + 1], -q[(axis + 1) % 3 + 1]

@@ -34,7 +34,7 @@ NEGLIGIBLE = mpf(10) ** -150  # size, relative to the largest component of omega
 
 
 class PortableFreeBody:
-    """The motion of a free body, computed with mpmath and NumPy from the arguments of the C function."""
+    """The motion of a free body, computed with mpmath and NumPy from the arguments of symrot_free_body_prepare."""
 
     @mp.workdps(DIGITS)  # type: ignore[untyped-decorator]
     def __init__(
@@ -194,9 +194,11 @@ class PortableFreeBody:
             quaternion[:] = (x / np.sqrt(2.0 * p0 * (re * re + im * im))[:, None]) @ self.attitude.T
 
     def _sums(self, t: Floats) -> tuple[Any, Any, Floats]:
-        """Return, at the times t, the functions from which angular velocity and attitude are computed."""
-        # they are cn, sn and dn times their amplitudes, the theta series of the attitude (real and imaginary part), and
-        # the phase in half revolutions
+        """Return (cn, sn, dn), each times its amplitude, (re, im) and the phase in half revolutions, at the times t.
+
+        re and im are the real and the imaginary part of a theta series.
+        """
+        # cn, sn and dn give the angular velocity; re, im and the phase the attitude
         if self.regime == "circular":
             sine, cosine = self.axial.circle(t)
             z = multiples(sine, cosine)
@@ -230,7 +232,7 @@ class PortableFreeBody:
 
 
 def _differences(inertia: list[float], omega: list[float], w: list[Any]) -> tuple[list[Any], Any]:
-    """Return the list I2 - I3, I3 - I1, I1 - I2, and the defect |L|^2 - 2 T I_mid of a motion, from exact fractions."""
+    """Return the differences I2 - I3, I3 - I1, I1 - I2 of the moments of inertia, and the defect of the motion."""
     # inertia, omega: lists hi, lo, hi, lo, .. of doubles, along the principal axes
     moments = [Fraction(high) + Fraction(low) for high, low in zip(inertia[::2], inertia[1::2], strict=True)]
     rates = [Fraction(high) + Fraction(low) for high, low in zip(omega[::2], omega[1::2], strict=True)]
@@ -248,7 +250,10 @@ def _rounded(x: Fraction) -> Any:
 def _canonical(
     moments: list[Any], w: list[Any], differences: list[Any], defect: Any
 ) -> tuple[list[int], list[int], int]:
-    """Return the principal axes that the formulas call e1, e2, e3, with their signs, and the sign of I3 - I2."""
+    """Return the indices of the principal axes that the formulas call e1, e2, e3, their signs, and the sign of I3 - I2.
+
+    The formulas need I2 between I1 and I3.
+    """
     above = [differences[2] >= 0, differences[0] >= 0, differences[1] >= 0]  # I_i >= I_(i+1)
     largest = 0 if above[0] and not above[2] else 1 if above[1] else 2
     a, b = (largest + 1) % 3, (largest + 2) % 3

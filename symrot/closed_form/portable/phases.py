@@ -32,10 +32,7 @@ def vector(pairs: list[float]) -> list[Any]:
 
 
 def power_of_two(value: Any) -> Any:
-    """Return a power of two near a positive number, or 1 for zero.
-
-    Dividing by it scales numbers without rounding.
-    """
+    """Return the smallest power of two above a positive number, or 1 for zero: 5 gives 8."""
     return mpf(2) ** int(mp.frexp(value)[1]) if value else mpf(1)
 
 
@@ -53,16 +50,16 @@ class Phase(NamedTuple):
 
     @classmethod
     def of(cls, rate: Any, start: Any = 0, periodic: bool = True) -> "Phase":
-        """Return the phase with the given rate, in revolutions per unit of time, and start, in revolutions."""
+        """Return the phase that starts at ``start`` revolutions and grows by ``rate`` revolutions per unit of time."""
         # the start of a periodic phase is reduced to the range from -1/2 to 1/2
         start = mpf(start) - mp.nint(start) if periodic else start
         high = [float(rate), float(start)]
         return cls((high[0], float(rate - high[0])), (high[1], float(start - high[1])))
 
     def rest(self, t: Floats, parts: int, more: Floats | float = 0.0) -> tuple[Floats, Floats]:
-        """Return the phase plus ``more`` revolutions, modulo one part (1/``parts``), and the number of parts removed.
+        """Return the phase plus ``more``, in revolutions modulo 1/``parts``, and the number of parts removed.
 
-        With 4 parts, 0.3 revolutions give 0.05 and 1.
+        If ``parts`` is 4, a phase of 0.3 gives 0.05 and 1.
         """
         product, error = two_product(t, self.rate[0])
         small = error + t * self.rate[1]
@@ -73,10 +70,8 @@ class Phase(NamedTuple):
         return (high - steps / parts) + (low + small), steps
 
     def whole(self, t: Floats) -> Floats:
-        """Return the phase at the times ``t``, in revolutions, not reduced modulo 1.
-
-        It is for functions that are not periodic.
-        """
+        """Return the phase at the times ``t``, in revolutions, not reduced modulo 1."""
+        # for functions that are not periodic
         product, error = two_product(t, self.rate[0])
         high, low = two_sum(product, self.start[0])
         phase: Floats = high + (low + (error + t * self.rate[1] + self.start[1]))
@@ -92,15 +87,18 @@ class Phase(NamedTuple):
         return sign * np.where(odd, cosine, sine), sign * np.where(odd, -sine, cosine)
 
     def argument(self, t: Floats, stretch: float) -> tuple[Floats, Floats, Floats]:
-        """Return the phase in half revolutions, from -1/2 to 1/2, a sign, and this phase times ``stretch``."""
+        """Return the phase in half revolutions from -1/2 to 1/2, a sign, and ``stretch`` times that phase.
+
+        1.3 half revolutions give 0.3, -1 and ``0.3*stretch``.
+        """
         rest, halves = self.rest(t, 2)
         whole = 2.0 * rest
-        # -1 if the reduction removes an odd number of half revolutions
         flip: Floats = np.where(halves.astype(np.int64) & 1, -1.0, 1.0)
         return whole, flip, np.clip(stretch * whole, -LARGEST, LARGEST)
 
     def argument_once(self, t: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return 0, 1 and the phase at the times ``t``: the results of :meth:`argument` if it is not periodic."""
+        """Return 0, 1 and the phase at the times ``t``: :meth:`argument` for functions that are not periodic."""
+        # nothing is removed, so the reduced phase is 0 and its sign 1
         return np.zeros_like(t), np.ones_like(t), np.clip(self.whole(t), -LARGEST, LARGEST)
 
 
@@ -110,10 +108,8 @@ def turned_by(real: Floats, imaginary: Floats, sine: Floats, cosine: Floats) -> 
 
 
 def hyperbolic(log_nome: float, weight: float, order: float, v: Floats) -> tuple[Floats, Floats]:
-    """Return nome**weight*cosh(order*v) and nome**weight*sinh(order*v), even if cosh alone would overflow.
-
-    ``log_nome`` is the logarithm of the nome of a theta series.
-    """
+    """Return ``nome**weight*cosh(order*v)`` and ``nome**weight*sinh(order*v)``, where log_nome = log(nome)."""
+    # both are finite even if cosh alone would overflow
     log = log_nome * weight if weight else 0.0
     up, down = np.exp(log + order * v), np.exp(log - order * v)
     return 0.5 * (up + down), (np.sinh(order * v) if log == 0.0 else 0.5 * (up - down))

@@ -32,7 +32,7 @@ _bound: list[_Functions] = []
 
 
 def limits() -> tuple[float, float, float]:
-    """Return NEAR, WIDE and MOST of :mod:`symrot.closed_form.spin_up.series`, limits that C takes as an array."""
+    """Return NEAR, WIDE and MOST, the bounds of the ranges in which the asymptotic series is used, for C."""
     return spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST
 
 
@@ -90,7 +90,7 @@ class Compiled:
         self.longest: float = constants[1] / constants[0]
 
     def _prepared(self, table: Floats | None) -> tuple[Any, int, Floats | None]:
-        """Let C compute the constants of the motion; return them as a ctypes array, with its address and ``table``."""
+        """Return the constants of the motion, computed by C, as a ctypes array; then its address and ``table``."""
         bound = functions()
         constants = bound.record()
         place = ctypes.addressof(constants)
@@ -103,9 +103,9 @@ class Compiled:
         return constants, place, table
 
     def fill(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> bool:
-        """Write the samples at ``times``, s, into ``omega`` (n, 3) and ``quaternion`` (n, 4), unless they are None.
+        """Write the samples at ``times``, s, into ``omega`` (n, 3) and ``quaternion`` (n, 4).
 
-        Return whether some times exceed :attr:`longest`.
+        Return whether some times exceed :attr:`longest`; the samples at these times are not valid.
         """
         samples = len(times), address(times), address(omega), address(quaternion)
         _, place, table = self._known
@@ -113,5 +113,5 @@ class Compiled:
         if status & _LACKING:
             self._known = _, place, table = self._prepared(np.empty(TABLE))
             status = self._evaluate(place, address(table), *samples)
-        # the samples at these times are not valid
+        # an array that is None is skipped
         return bool(status & _LOST)

@@ -40,7 +40,7 @@ _LARGEST = Fraction(10) ** 300
 
 
 def _scale(*values: Fraction) -> Fraction:
-    """Return a power of two near the largest absolute value of ``values``, between half of it and twice it."""
+    """Return a power of two between half and twice the largest absolute value of ``values``."""
     # the unit of angular velocities, so that scaled numbers are near 1
     largest = max(map(abs, values))
     size = largest.numerator.bit_length() - largest.denominator.bit_length()
@@ -60,7 +60,7 @@ class Integers:
     Parameters
     ----------
     moments : 2 Fractions
-        Moments of inertia across the axis and about it, kg m^2.
+        Moments of inertia, kg m^2, about an axis normal to the symmetry axis and about the symmetry axis.
     axis : 0, 1 or 2
         Index of the body axis about which the torque acts.
     torque : Fraction
@@ -101,7 +101,7 @@ class Integers:
 
     @staticmethod
     def _body_axes(axis: int, sign: int, first: Fraction, second: Fraction) -> Quaternion:
-        """Return the rotation from the axes e1, e2, e3 of the formulas to the axes of the body, as a quaternion."""
+        """Return the quaternion of the rotation from the axes e1, e2, e3 of the formulas to the axes of the body."""
         # e3 points along the torque, e1 along the transverse angular velocity at the start
         columns = [[Fraction(0)] * 3 for _ in range(3)]
         columns[0][axis - 2], columns[0][axis - 1] = first, second
@@ -114,7 +114,7 @@ class Integers:
         return Near(rounded(self._sweep.across * self._scale / self._root))
 
     def _side(self, omega: Fraction) -> int:
-        """Return -1 before, 0 near and 1 after resonance, at the time when the axial rate Omega equals ``omega``."""
+        """Return -1, 0 or 1 for an axial rate Omega = ``omega`` that occurs before, near or after resonance."""
         if self._sweep.series.wide:  # the asymptotic series holds everywhere
             return 1
         return 0 if abs(omega) < self._edge else 1 if omega > 0 else -1
@@ -133,11 +133,13 @@ class Integers:
         return product(leaving, conjugate(self._near.quaternion(Fraction(side * int(NEAR)))))
 
     def _begin(self, side: int) -> tuple[Fraction, Fraction, Quaternion]:
-        """Return the time, the rate Omega and the rotation at which the formulas for one side of resonance begin."""
-        # side: -1 before, 1 after resonance
+        """Return the time at which the formulas for one side of resonance begin, with Omega and the rotation then.
+
+        ``side`` is -1 before resonance and 1 after it.
+        """
         if self._side(self._start) == side:
             return Fraction(0), self._start, ONE
-        # the motion starts elsewhere, so the formulas begin at the boundary of resonance
+        # the motion starts elsewhere, so this part of it begins at the boundary of resonance
         edge, crossed = side * self._edge, self._near.quaternion(Fraction(side * int(NEAR)))
         return rounded((edge - self._start) / self._sweep.s), edge, product(self._resonance, crossed)
 
@@ -167,7 +169,7 @@ class Integers:
 
     @cached_property
     def longest(self) -> float:
-        """The time, s, beyond which there may be too many revolutions for double-double numbers."""
+        """The time, s, after which double-double numbers may have too few digits for the angle of rotation."""
         values = self._start, self._sweep.across, self._turn[0], self._sweep.s, self._turn[1]
         start, across, turn, s, growth = (abs(float(x)) for x in values)
         even = start + across + turn
@@ -181,23 +183,20 @@ class Integers:
         return self._sweep.series.wide or ends[1] <= -edge or ends[0] >= edge
 
     def fill(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> bool:
-        """Write the samples, computed by NumPy, into ``rates`` and ``attitudes``, unless they are None.
+        """Write the samples at ``times``, s, computed by NumPy, into ``rates`` and ``attitudes``.
 
-        Return whether some times exceed :attr:`longest`.
+        Return whether some times exceed :attr:`longest`; the samples at these times are not valid.
         """
         first, last = min(0.0, float(times.min())), max(0.0, float(times.max()))
         near = attitudes is not None and not self._far(first, last)
         if near not in self._kinds:
             self._kinds[near] = Portable(self._constants(near), self._near.table() if near else None).evaluate
         self._kinds[near](times, rates, attitudes)
-        # the samples at these times are not valid
+        # an array that is None is skipped
         return not max(last, -first) <= self.longest
 
     def finite(self, time: float) -> bool:
-        """Return whether the angular velocity at ``time``, s, is within the range of doubles.
-
-        A sample outside this range is an error.
-        """
+        """Return whether the angular velocity at ``time``, s, is within the range of doubles."""
         return abs(self._spin[0] + self._spin[1] * Fraction(time) * self._scale) < number.LARGEST
 
     def put(self, i: int, time: float, rates: Floats | None, attitudes: Floats | None) -> None:

@@ -1,8 +1,8 @@
 """Rotation of a driven symmetric body between two times far from resonance, in fractions, to 90 digits.
 
-In axes that rotate with its transverse angular velocity, the body rotates at ``(W, 0, Omega)``, with
-``Omega = Omega0 + s t``; resonance is at Omega = 0. The angle of rotation is the integral of
-``S = sqrt(Omega^2 + W^2)`` over a time t, with S0 = S at the start:
+In axes that rotate with the body's transverse angular velocity (length W), the body's angular velocity is
+``(W, 0, Omega)``, with ``Omega = Omega0 + s t``; resonance is at Omega = 0. The angle of rotation in a time t is the
+integral of ``S = sqrt(Omega^2 + W^2)``, with S0 = S at the start:
 
     t/(2 D) (E sqrt(1 + z^2) + W^2 asinh(z)/z),  E = S0 S + Omega0 Omega,  D^2 = (W^2 + E)/2,  z = s t/(2 D).
 
@@ -84,7 +84,7 @@ def _polynomial(coefficients: Floats, y: float) -> float:
 
 
 class Sweep:
-    """The constants of a driven body far from resonance: W, s and the asymptotic series for kappa^2 = W^2/s."""
+    """A driven body far from resonance, given by W (``across``), s and the asymptotic series for kappa^2 = W^2/s."""
 
     def __init__(self, across: Fraction, s: Fraction, series: Series) -> None:
         self.across, self.s, self.series = across, s, series
@@ -96,8 +96,8 @@ class Sweep:
         return number.sqrt(rounded(omega * omega + self._square))
 
     def _direction(self, omega: Fraction) -> tuple[float, float, float]:
-        """Return the sine and cosine of the angle between (W, 0, Omega) and the third axis, and y = unit/S^2."""
-        # y is the variable of the polynomials in self.series
+        """Return ``W/S``, ``Omega/S`` and the variable y of the polynomials in ``series``, at Omega = ``omega``."""
+        # y = unit/S^2; W/S and Omega/S are sine and cosine of the angle between (W, 0, Omega) and the third axis
         speed = self.speed(omega)
         return float(self.across / speed), float(omega / speed), float(rounded(self.unit / (speed * speed)))
 
@@ -109,7 +109,7 @@ class Sweep:
     def axes(self, omega: Fraction) -> Quaternion:
         """Return the rotation that maps the third axis to the vector n, at the axial rate Omega = ``omega``.
 
-        The vector n is at rest in space, near the axis of rotation.
+        n is explained in :mod:`symrot.closed_form.spin_up.series`.
         """
         sine, cosine, y = self._direction(omega)
         g, c = _polynomial(self.series.g, y), _polynomial(self.series.c, y)
@@ -137,7 +137,6 @@ class Sweep:
         return rounded(steady) + Fraction(self.delta(omega)) - Fraction(self.delta(start))
 
     def rotation(self, start: Fraction, time: Fraction) -> Quaternion:
-        """Return the rotation of the body in ``time`` s, far from resonance, as a fixed-point quaternion."""
-        # start: the axial rate Omega at the beginning
+        """Return the body's rotation in ``time`` s, from Omega = ``start``, as a quaternion of integers."""
         end = conjugate(self.axes(start + self.s * time))
         return product(self.axes(start), about_third(self.angle(start, time)), end)

@@ -1,11 +1,12 @@
-"""Attitude of a driven symmetric body near resonance, by Taylor series at evenly spaced points, in integers.
+"""Attitude of a driven symmetric body near resonance, by Taylor series about evenly spaced points.
 
-A body rotates at ``(kappa, 0, x)``, where x is the scaled time (see :mod:`symrot.closed_form.spin_up.motion`). If its
-axes agree with the space axes at x = 0, the attitude is ``alpha = q0 + i q3``, ``beta = q1 + i q2``, with
+The angular velocity is ``(kappa, 0, x)``, in body components, where x is the scaled time (see
+:mod:`symrot.closed_form.spin_up.motion`). The attitude q, with ``q = 1`` at x = 0, is ``alpha = q0 + i q3``,
+``beta = q1 + i q2``, with
 
     2 alpha' = i x alpha - kappa beta,  2 beta' = kappa alpha - i x beta.
 
-At each point the equations determine each Taylor coefficient from the two previous coefficients.
+At each point these equations give each Taylor coefficient from the two previous ones. Numbers are fixed-point integers.
 
 Proof: ``derivations/driven_rotation.md``.
 """
@@ -74,7 +75,7 @@ class Near:
         return total[0], total[1], total[2], total[3]
 
     def quaternion(self, x: Fraction) -> Quaternion:
-        """Return the attitude at the scaled time x as a quaternion of fixed-point integers, with an error of 1e-30."""
+        """Return the attitude at the scaled time x as a quaternion of integers, with an error of 1e-30."""
         piece = min(int(abs(x) * PIECES), len(self._series) - 1)
         q0, q3, q1, q2 = self._sum(self._series[piece], abs(x) - Fraction(2 * piece + 1, 2 * PIECES))
         # at -x, q1 and q2 have the opposite signs
@@ -82,7 +83,7 @@ class Near:
         return q0, sign * q1, sign * q2, q3
 
     def table(self) -> Floats:
-        """Return the Taylor coefficients as an array of doubles: interval of x, power, component of the quaternion."""
+        """Return Taylor coefficients as doubles: ``table[i, n, k]`` for interval i of x, power n, component k."""
         # powers of the distance from the middle of the interval
         one = 1 << FIXED
         return np.array(

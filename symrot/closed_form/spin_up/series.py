@@ -1,12 +1,13 @@
 """Asymptotic series for a driven symmetric body far from resonance, in inverse powers of its angular velocity.
 
-A body rotates at ``(kappa, 0, x)``, where ``x`` is the scaled time. A vector ``n`` at rest in space follows the axis of
-rotation; with ``r^2 = x^2 + kappa^2`` and ``v = 1/r^2``, its components in the body are
+The angular velocity in the body is ``(kappa, 0, x)``, where x is the scaled time. A vector n, fixed in space, lies near
+the axis of rotation. With ``r^2 = x^2 + kappa^2`` and ``v = 1/r^2``, the components of n in the body are
 
-    n1 = (kappa/r) a(v),  n2 = (kappa/r) v c(v),  n3 = (x/r) b(v).
+    n1 = (kappa/r) a(v),  n2 = (kappa/r) v c(v),  n3 = (x/r) b(v),  b - a = -v^2 g(v).
 
-The angle of rotation about ``n`` exceeds the integral of ``r`` by ``delta = (x/r) e(v)``. The series do not converge,
-but for x above :data:`NEAR`, or kappa above :data:`WIDE`, their terms fall below 1e-18 before they grow.
+The angle of rotation about n exceeds the integral of r by ``delta = (x/r) e(v)``. The series do not converge, but for x
+above :data:`NEAR`, or kappa above :data:`WIDE`, the terms fall below 1e-18 before they grow. They are replaced by
+polynomials in ``y = radius2 v``: radius2 = kappa^2 above :data:`WIDE`, else NEAR^2 + kappa^2, so that y is from 0 to 1.
 
 Source: DLMF 12.9 and 12.10, for the parabolic cylinder functions whose modulus and phase these series are. Proof:
 ``derivations/driven_rotation.md``.
@@ -39,10 +40,9 @@ _TERMS = 32  # powers of kappa^2 v that are used where kappa^2 v <= _SMALL
 
 
 class Series(NamedTuple):
-    """Three series, as polynomials in y, for the rotation of a body that is driven about its symmetry axis."""
+    """Coefficients of polynomials in y, lowest power first, for ``v^2 g``, ``v c`` and ``e``."""
 
-    # y = radius2/r^2 from 0 to 1, lowest power first; radius2 is kappa^2 if kappa is large (wide), and the series are
-    # accurate at every x; otherwise it is NEAR^2 + kappa^2, and they are accurate for x above NEAR
+    # whether kappa is above WIDE: the series are then accurate at every x, otherwise for x above NEAR
     wide: bool
     # perpendicular to the angular velocity, n has the components (kappa/r) (x/r) v^2 g and (kappa/r) v c
     g: Floats  # times v^2 at y = 1
@@ -52,15 +52,15 @@ class Series(NamedTuple):
 
 @cache
 def _nodes() -> tuple[Floats, Floats]:
-    """Return DEGREE + 1 Chebyshev points between 0 and 1, and the powers of each point."""
+    """Return DEGREE + 1 values of y, Chebyshev points between 0 and 1, and the powers of each value."""
     y = 0.5 - 0.5 * np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
     return y, np.vander(y, 3 * _ORDERS + 1, increasing=True)
 
 
 def _first(share: float, v: float) -> Floats:
-    """Return the coefficients of a(v) as a polynomial in ``y = radius2 v``, lowest power first."""
+    """Return the coefficients of a as a polynomial in y; ``share`` is kappa^2/radius2, ``v`` is 1/radius2."""
     # n' = n x (kappa, 0, x) gives c = -(a + 2 v a'), b - a = -v^2 g with g = 3 c + 2 v c', and 2 (1 - kappa^2 v) b' =
-    # kappa^2 (b + c), so that each coefficient follows from the previous ones; share is kappa^2/radius2, v is 1/radius2
+    # kappa^2 (b + c), so that each coefficient follows from the previous ones
     order, total = {0: 1.0}, [0.0] * (3 * _ORDERS + 1)
     total[0] = 1.0
     for _ in range(_ORDERS):
@@ -77,8 +77,10 @@ def _first(share: float, v: float) -> Floats:
 
 
 def _angle(share: float, v: float, h: Floats) -> Floats:
-    """Return the values of the function e at the Chebyshev points of y, where ``(x/r) e`` is the angle delta, rad."""
-    # d delta/dx = kappa^2 v^(5/2) h, where h is a polynomial in y; share is kappa^2/radius2, v is 1/radius2
+    """Return e at the values of y in :func:`_nodes`; ``share`` and ``v`` as for :func:`_first`.
+
+    ``h`` are the coefficients of the polynomial in y with ``d delta/dx = kappa^2 v^(5/2) h``.
+    """
     powers = _nodes()[1]
     if share >= _SMALL:  # from x = 0
         e = np.zeros(len(h) + 2)
@@ -93,8 +95,8 @@ def _angle(share: float, v: float, h: Floats) -> Floats:
 
 
 def series(kappa2: float, inverse: float) -> Series:
-    """Return the series for the rotation of a driven body with kappa^2 = ``kappa2``, in powers of 1/r."""
-    # inverse is 1/kappa^2; one of the two may be too small for a double, and is then 0
+    """Return the polynomials in y for kappa^2 = ``kappa2``; ``inverse`` is 1/kappa^2."""
+    # kappa2 or inverse may be too small for a double, and is then 0
     wide = kappa2 >= WIDE * WIDE
     radius2 = kappa2 if wide else NEAR * NEAR + kappa2
     share, v = (1.0, inverse) if wide else (kappa2 / radius2, 1.0 / radius2)

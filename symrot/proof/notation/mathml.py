@@ -91,7 +91,7 @@ class _Translation:
         return complaint(self.latex, "formula", node.start, "LaTeX that the pages use")
 
     def row(self, row: Row) -> list[Item]:
-        """Return the items of a parsed formula, see :class:`Item`; the LaTeX of an item extends up to the next item."""
+        """Return the items of a parsed formula, see :class:`Item`."""
         items: list[Item] = []
         kind = "sign"
         marked = False
@@ -99,6 +99,7 @@ class _Translation:
             if node.text == MARK:
                 marked = True
                 continue
+            # the LaTeX of an item extends up to the next item
             end = row.items[place].start if place < len(row.items) else row.end
             item = self.item(node, kind in ("", "function"))
             body = item.mathml
@@ -294,9 +295,11 @@ def _pieces(items: list[Item], kind: str) -> Iterator[list[Item]]:
 
 
 def mathml(latex: str, *, display: bool = False, width: float = WIDEST) -> str:
-    """Return a LaTeX formula as the text of a MathML element ``<math>``."""
+    """Return a LaTeX formula as the text of a MathML element ``<math>``.
+
+    With ``display`` it stands on lines of its own, and is broken into several if it is wider than ``width`` letters.
+    """
     start = '<math xmlns="http://www.w3.org/1998/Math/MathML"' + (' display="block"' if display else "") + ">"
-    # a displayed formula is broken if it is wider than ``width`` letters; within a sentence it never is
     lines = rows(latex, width) if display else [read(latex)]
     if len(lines) == 1:
         return f"{start}{_joined(lines[0]).mathml}</math>"

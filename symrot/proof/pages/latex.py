@@ -1,4 +1,7 @@
-"""Printer of derivations as LaTeX: a document for a page, a book for many; the same pages give the same bytes."""
+"""Printer of derivations as LaTeX: one page as a document, or many pages as a book.
+
+The same pages always give the same bytes.
+"""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -71,7 +74,7 @@ def latex_book(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) -
     title, about : str
         The title of the book, and a paragraph below it.
     chapters : mapping of str to sequence of Page
-        Title of a part of the book -> its pages, in reading order. Pages with an empty title do not begin a part.
+        A map from the title of a part to its pages, in reading order. An empty title is not printed.
 
     Examples
     --------
@@ -148,7 +151,7 @@ def _table(table: Table, number: int) -> str:
 
 
 def _cell(cell: str, share: str) -> str:
-    """Return a cell of a table in LaTeX; a long formula is scaled to the ``share`` of the line if it is wider."""
+    """Return a cell of a table in LaTeX; a long formula shrinks to ``share``, the part of the line for its column."""
     is_long = re.fullmatch(r"\$[^$]+\$", cell) and len(cell) > LONGEST_INLINE
     return rf"\fittedcell{{{share}}}{{{cell.strip('$')}}}" if is_long else _prose(cell)
 

@@ -23,7 +23,10 @@ def characters() -> frozenset[str]:
 
 @cache
 def face(source: str = "") -> str:
-    """Return CSS rules by which a browser shows formulas in the font; without its address they contain the font."""
+    """Return CSS rules by which a browser shows formulas in the font, from the file at the address ``source``.
+
+    If ``source`` is empty, the rules contain the font.
+    """
     address = source or f"data:font/woff2;base64,{b64encode(content()).decode('ascii')}"
     return (
         f'@font-face {{ font-family: "symrot math"; src: url("{address}") format("woff2"); }}\n'

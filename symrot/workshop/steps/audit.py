@@ -78,7 +78,10 @@ def audit_step(
     if data["seal"] != seal(data) or path.read_text(encoding="utf-8") != certificate_json(data):
         raise CertificateError(f"{path}: expected a certificate as symrot prints it, got one that was edited")
     if data["trusted"] != (TRUSTED if "bounds" in data else TRUSTED | NOT_STATED):
-        raise CertificateError(f"{path}: expected the assumptions that symrot states, got others")
+        raise CertificateError(
+            f"{path}: expected the section 'trusted' (the assumptions) as symrot prints it, got another; emit the step "
+            "again"
+        )
     try:
         texts = _files(path, name, data)
     except (KeyError, TypeError, ValueError, OverflowError) as reason:
@@ -111,7 +114,7 @@ def audit_step(
 
 
 def _files(path: Path, name: str, data: Data) -> dict[str, str]:
-    """Return the text of each file of a step, by name; its hash must be that in the certificate."""
+    """Return a map from name to text of a step's files; raise CertificateError if a hash differs."""
     expected = {f"{name}.c", f"{name}.h", f"{name}_test.c"}
     parameters = [(symbol, value) for symbol, _, value in data["rates"]["parameters"]]
     expected |= {parameters_file(name)} if parameters else set()
@@ -147,7 +150,10 @@ def _method(path: Path, data: Data) -> Method:
 
 
 def _of_scene(path: Path, data: Data, method: Method) -> str:
-    """Compare a step's certificate with symrot's own for the same shipped scene; return a sentence about it."""
+    """Compare a step's certificate with the shipped scene that it names; return the result as a sentence.
+
+    CertificateError is raised if they differ.
+    """
     options = r" --step \w+(?: --order \d+)?(?: --jacobian [\w,]+)?"
     match = re.fullmatch(rf"symrot emit (\S+){options} --target c", str(data["regenerate"]))
     scene = match[1] if match else ""
@@ -169,7 +175,10 @@ def _of_scene(path: Path, data: Data, method: Method) -> str:
 
 
 def _bounds(path: Path, data: Data, method: Method, source: str, rerun: bool) -> str:
-    """Compute the error bounds of a step's certificate again; return a sentence that says that they agree."""
+    """Compute the bounds in a step's certificate again; return a sentence that says that they agree.
+
+    CertificateError is raised if they differ.
+    """
     name, rates = data["kernel"], rates_of(data)
     try:
         section = data["bounds"]["rounding"]

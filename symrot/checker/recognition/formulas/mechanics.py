@@ -1,6 +1,6 @@
 """Formulas of mechanics in books: tops, wheels, free symmetric bodies, rotation about one axis.
 
-A weight on the axis is written as ``W c_3`` and as ``m g c_3``.
+Formulas of heavy tops occur twice: with the weight W, and with m g.
 """
 
 from collections.abc import Iterator
@@ -105,7 +105,8 @@ def _free(omega: Matrix) -> Iterator[Named]:
 
 
 def one_axis() -> Iterator[Named]:
-    """Yield the formulas of rotation about one axis. They are products of few symbols, which only a name identifies."""
+    """Yield the formulas of rotation about one axis, such as ``C*omega_3`` for the angular momentum."""
+    # products of few symbols: only the name of a claim's quantity tells which one is meant
     along, inertia = Matrix([0, 0, symbols.omega_3]), diag(A, symbols.B, C)
     momentum, rate = inertia * along, Matrix([0, 0, symbols.domega_3])
     yield "kinetic energy of rotation about one axis", TURNING, along.dot(momentum) / 2
