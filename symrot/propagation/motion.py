@@ -401,7 +401,7 @@ class ShiftableMotion(RestartableMotion):
 
 
 def on_clock(motion: Motion, times: Floats) -> Motion:
-    """Return the motion with time counted from 0 or from its start, so that these times, s, keep the most digits."""
+    """Return the motion with time counted from 0 or from its start, whichever lets ``times``, s, keep more digits."""
     # its own clock, or one that shows 0 at the start
     return motion.on_own_clock if isinstance(motion, ShiftableMotion) and motion._shifts(times) else motion
 
@@ -555,7 +555,10 @@ class SciPyMotion(ShiftableMotion):
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch, python_rates)
 
     def deviations(self, parameters: Sequence[float]) -> "Deviations | None":
-        """Return bounds on changes of the rates, which limit SciPy's steps; None if no step needs a limit."""
+        """Return bounds on torque changes (``Deviations``) for SciPy's steps.
+
+        None: no torque can have a pulse that a step misses.
+        """
         if self.setup.deviations is None:
             return None
         names = [name for name, _ in self.kernel.rate_parameters]

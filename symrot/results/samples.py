@@ -37,7 +37,7 @@ class Samples(ABC):
 
     @abstractmethod
     def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
-        """Return the time and the quantities ``quantities`` with their labels, as rows for tables.
+        """Return the time and the quantities ``quantities`` with their labels, for tables.
 
         The default (None) is the output quantities of the scene.
         """
@@ -180,7 +180,7 @@ class MotionSamples(Samples):
         return conversions.quaternion_to_axis(self.quaternion, self.axis_number)
 
     def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
-        """Return the time and the quantities ``quantities`` with their labels, as rows for tables.
+        """Return the time and the quantities ``quantities`` with their labels, for tables.
 
         The default (None) is the output quantities of the scene.
         """

@@ -116,7 +116,7 @@ class SavedTrajectory(Samples):
         return About(*(self.metadata[name] for name in About._fields))
 
     def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
-        """Return the time and the quantities ``quantities`` with their labels, as rows for tables.
+        """Return the time and the quantities ``quantities`` with their labels, for tables.
 
         The default (None) is all quantities in the file.
         """

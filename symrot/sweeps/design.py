@@ -29,7 +29,7 @@ MOST_TRAJECTORIES = 10**12
 
 @dataclass(frozen=True)
 class Axis:
-    """One value that varies: its place in the scene, and the law of its values, such as a normal distribution."""
+    """One value that varies: a number of the scene, and the law of its values, such as a normal distribution."""
 
     target: Target
     law: Law

@@ -29,7 +29,7 @@ SHRINK = 0.3  # smallest factor by which a step is multiplied at once
 class Disc(NamedTuple):
     """Disc of complex numbers within ``radius`` of a real ``centre``; it encloses the values of a formula.
 
-    ``log_size`` optionally bounds the logarithm of their absolute values.
+    ``log_size``, if present, bounds the logarithm of every absolute value in the disc.
     """
 
     centre: float

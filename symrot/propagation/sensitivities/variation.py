@@ -190,7 +190,10 @@ def columns_of(scene: Scene, variables: Sequence[Variable]) -> list[Column]:
 
 
 def structure_of(scene: Scene, columns: Sequence[Column], varying: Collection[str] = ()) -> Structure:
-    """Return the form of the equations in which each constant that a variable of ``columns`` changes is a parameter."""
+    """Return the form of the equations in which the constants ``varying`` are parameters, not numbers.
+
+    So is each constant that a variable of ``columns`` changes.
+    """
     # They become parameters even if they are now zero or one, since derivatives by them are needed; so do constants
     # that differ between the motions of an ensemble (varying). Other zeros and ones simplify the equations.
     moving = {name for column in columns for name in column.constants} | set(varying)

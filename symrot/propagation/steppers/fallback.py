@@ -216,10 +216,9 @@ def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
 
 
 class _ShiftedSolution:
-    """SciPy's interpolant of one step, for times that are ``epoch`` s later than its own."""
+    """SciPy's interpolant of one step, called with times on the motion's clock instead of times since ``epoch``, s."""
 
     def __init__(self, solution: Any, epoch: float) -> None:
-        # the interpolant counts time from the epoch, s, on the motion's clock
         self._solution, self._epoch = solution, epoch
 
     def __call__(self, t: Floats) -> Floats:
@@ -268,7 +267,7 @@ class _Integration:
         return Stats(self.steps, 0, self.evaluations, perf_counter() - self.began)
 
     def follow(self, times: Floats) -> Floats:
-        """Return the states at the times, shape (n, N), which lie on one side of t0, sorted by distance from it."""
+        """Return the states, shape (n, N), at times on one side of t0, sorted by distance from t0."""
         states = np.empty((len(times), len(self.y0)))
         _evaluate(self.solutions(float(times[-1])), times, states)
         states[times == self.t0] = self.y0

@@ -70,7 +70,7 @@ def add_samples(
 
 
 def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
-    """Return why a stepper is stuck at the time t: doubles are too coarse there, or else ``reason``."""
+    """Return why a stepper is stuck at the time t: adjacent doubles lie too far apart there, or else ``reason``."""
     apart = math.ulp(t)
     # too coarse: less than a million doubles between the ends of the motion
     if abs(stop - t0) > MANY_TICKS * apart:

@@ -145,7 +145,7 @@ def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
 class Segment(NamedTuple):
     """Interval between switching times, from ``start`` to ``stop``, s.
 
-    ``first`` and ``last``, just inside, are the ends at which torques are evaluated.
+    Torques are evaluated at ``first`` and ``last``, just inside, instead of at the ends.
     """
 
     # first and last lie just inside a switching time, where a torque may jump

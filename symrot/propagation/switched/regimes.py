@@ -47,7 +47,7 @@ class Guard(NamedTuple):
 
 
 class RegimeParameters(NamedTuple):
-    """Parameters of the equations of a smooth motion between switches, as functions of the epoch (clock zero)."""
+    """Parameters of the equations between two switches, as functions of the scene time at which the clock shows 0."""
 
     rates: ShiftedParameters
     # of the formulas whose zeros end the motion
@@ -118,7 +118,7 @@ class Regime:
             yield Guard(mode, f"1 - ({guard})", 1, where)
 
     def _parameters_under(self, modes: Modes) -> RegimeParameters:
-        """Return the parameters of the equations for given ``modes``, still as functions of the epoch."""
+        """Return the parameters of the equations for given ``modes``, which still depend on when the clock shows 0."""
         key = tuple(modes.values())
         if key not in self._parameters:
             values = {name: Fraction(value) for name, value in modes.items()}
@@ -143,10 +143,7 @@ class Regime:
         }
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
-        """Return two lists of parameters: for the stepper, and for the library that searches for switches.
-
-        They hold for the values ``modes`` of sign, abs, .. and the zero of time.
-        """
+        """Return two lists of parameters for given ``modes``: for the stepper, and for the search for switches."""
         rates, guards, quantities, invariants = self._parameters_under(modes)
         fixed = rates.fixed and guards.fixed and quantities.fixed
         place = tuple(modes.values()), None if fixed else zero
@@ -177,7 +174,7 @@ class Regime:
         return dict((*values, *zip(self.plan.states, y.tolist(), strict=True)))
 
     def rates_since(self, modes: Modes, zero: Instant) -> Callable[[float], list[float]] | None:
-        """Return a function from an epoch, s after ``zero``, to parameters of rates that take the time since the epoch.
+        """Return a function from a new zero of the clock, s after ``zero``, to the parameters of the rates.
 
         None: the rates do not depend on time.
         """
