@@ -375,7 +375,7 @@ def _shape(side: Any) -> Any:
 
 
 def _as_side(display: Any, side: Any) -> Any:
-    """Return ``display``, which the page prints instead of ``side``, in the shape of ``side``."""
+    """Return ``display``, which the page prints instead of ``side``, as a matrix if ``side`` is a matrix."""
     display = _frozen(display)
     if isinstance(side, MatrixBase) and not isinstance(display, MatrixBase):
         # the zero matrix; below, a number stands for this multiple of the identity matrix

@@ -159,7 +159,7 @@ def _appendices(derivations: Sequence[str]) -> list[str]:
 
 
 def _chapters(chosen: Sequence[str]) -> dict[str, list[str]]:
-    """Return a map from the title of a chapter to the names of those of its pages that are in ``chosen``."""
+    """Return a map from the title of each chapter to its pages in ``chosen``, by name."""
     whole = READING_ORDER | {APPENDICES: _appendices(names())}
     chapters = {title: [name for name in members if name in chosen] for title, members in whole.items()}
     return {title: members for title, members in chapters.items() if members}
@@ -349,7 +349,7 @@ def check(directory: Path | str, say: Say = _quiet) -> list[tuple[Path, str]]:
 
 
 def _left_over(directory: Path, printed: dict[str, str]) -> list[Path]:
-    """Return the files in a directory that symrot printed earlier and that are not in ``printed``, today's files."""
+    """Return the files that symrot printed into a directory earlier and that are not in ``printed`` now."""
     files = [*sorted(directory.glob("*.md")), *sorted(directory.glob("figures/*.svg"))]
     others = (path for path in files if path.relative_to(directory).as_posix() not in printed and path.is_file())
     return [path for path in others if _mark(path).encode() in path.read_bytes()]

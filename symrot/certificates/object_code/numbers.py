@@ -96,7 +96,7 @@ def _bitwise(operation: Callable[..., int]) -> Numeric:
 
 
 def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
-    """Return the function that executes a comparison: result bits are 1 where an outcome is among ``outcomes``."""
+    """Return the function that executes a comparison: all bits are 1 for pairs of numbers with one of ``outcomes``."""
     by_number = list(PREDICATES.values())
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:

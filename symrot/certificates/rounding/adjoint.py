@@ -73,7 +73,7 @@ class _ErrorPass:
         self.unit = 2.0 ** -DIGITS[self.precision]
 
     def rounded(self, exact: Array, factor: float = 1.0) -> tuple[Array, Array]:
-        """Return the intervals of computed values, and error bounds, of an operation with the ``exact`` results."""
+        """Return (intervals of the computed values, error bounds) of an operation with results in ``exact``."""
         # ``factor`` times half a unit in the last place of the largest exact result
         error = intervals.half_ulp(intervals.magnitude(exact), self.precision) * factor
         if factor != 1.0:
@@ -88,7 +88,7 @@ class _ErrorPass:
         return self.centred.refined(node, operand_places(node), values, plain)
 
     def relative(self, exact: Array, units: float, least: float) -> tuple[Array, Array]:
-        """Return the intervals of computed values, and error bounds, of a function with a known relative error."""
+        """Return (intervals of the computed values, error bounds) of a function with a known relative error."""
         # ``units`` unit roundoffs (2^-53 or 2^-24) of the largest exact value, plus ``least``
         error = intervals.magnitude(exact) * (units * self.unit * (1 + 2.0**-20)) + least
         return intervals.widened(exact, error), error
