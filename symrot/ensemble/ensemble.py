@@ -104,10 +104,7 @@ class EnsembleMember(MotionSamples):
 
     @property
     def sensitivities(self) -> Sensitivities | None:
-        """The derivatives of this motion by the k variables that were requested, or None if none were.
-
-        Their arrays have the shape (m, .., k).
-        """
+        """The derivatives of this motion by k variables, arrays of shape (m, ..., k); None if none were requested."""
         every = self._ensemble.sensitivities
         return None if every is None else every.of(self._number)
 
@@ -283,7 +280,10 @@ class Ensemble(MotionSamples):
         return percentiles
 
     def _statistic(self, quantity: str, omit_stopped: bool, pair: tuple[Callable[..., Any], Callable[..., Any]]) -> Any:
-        """Return a statistic of a quantity over the n motions, at each sample time: shape (m, ...)."""
+        """Return a statistic of a quantity over all motions, at each sample time: shape (m, ...).
+
+        ``pair`` holds a function of all values, such as numpy.mean, and one that skips NaN, such as numpy.nanmean.
+        """
         if quantity in UNAVERAGED or quantity not in QUANTITIES:
             names = ", ".join(name for name in QUANTITIES if name not in UNAVERAGED)
             raise InputError(f"quantity: expected one of {names}, got {number.show(quantity)}")
@@ -292,7 +292,6 @@ class Ensemble(MotionSamples):
                 "t: expected sample times that all motions share, for statistics, got different times for each motion"
             )
         values = self.quantity(quantity)
-        # pair: a function of all values, such as numpy.mean, and a function that skips NaN
         if not omit_stopped:
             return pair[0](values, axis=0)
         with catch_warnings():  # no motion reached a time: the statistic is NaN there

@@ -39,10 +39,7 @@ class Kind(NamedTuple):
 
 
 def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
-    """Return the closed forms that occur in an ensemble, each with the indices of the trajectories that have it.
-
-    None stands for no closed form.
-    """
+    """Return the closed forms that occur in an ensemble, as pairs (:class:`Kind`, indices of the trajectories)."""
     chosen: dict[Kind, list[Rows]] = {}
     known: dict[Hashable, Kind] = variation.cached("forms", dict)
     for pattern, rows in _patterns(variation):
@@ -59,9 +56,9 @@ def forms_of(variation: Variation) -> list[tuple[Kind, Rows]]:
 
 
 def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
-    """Return groups of trajectories that certainly have the same closed form, as pairs (pattern, row indices).
+    """Return trajectories grouped by which numbers are zero or equal, as pairs (pattern, indices of trajectories).
 
-    The pattern is None if a trajectory must be examined alone.
+    All trajectories of a group have the same closed form. The pattern None occurs for groups of one trajectory only.
     """
     columns, n = variation.columns, len(variation)
     code = (variation.omega != 0) @ np.array([1, 2, 4])
@@ -77,7 +74,7 @@ def _patterns(variation: Variation) -> list[tuple[Hashable, Rows]]:
     kinds = [torque.kind for torque in variation.scene.torques]
     varied = [kinds[place] for name in columns if (place := variation.places[name].torque) >= 0]
     summed = any(kinds.count(kind) > 1 for kind in varied)
-    if summed or len(bits) > MOST_BITS:  # sums of constants may be zero too
+    if summed or len(bits) > MOST_BITS:  # sums of constants may be zero too; each trajectory must be examined
         return [(None, np.array([i])) for i in range(n)]
     code = code + np.array(bits).T @ (8 << np.arange(len(bits)))
     order = np.argsort(code, kind="stable")
@@ -245,7 +242,7 @@ class _Part(NamedTuple):
     omega: Floats  # (n, 3)
 
     def of(self, chosen: NDArray[np.bool_]) -> "_Part":
-        """Return a _Part with those trajectories of this one whose entry in the Boolean array ``chosen`` is true."""
+        """Return the trajectories k of this object for which ``chosen[k]`` is true, as a new object."""
         return self._replace(rows=self.rows[chosen], omega=self.omega[chosen])
 
     @property
@@ -258,12 +255,15 @@ class _Part(NamedTuple):
         return attitudes if len(self.rows) == len(variation) else attitudes[self.rows]
 
     def constant(self, name: str) -> Any:
-        """Return the constant ``name`` of the plan: a Fraction, or an array (one value per trajectory) if it varies."""
+        """Return the constant ``name``, such as ``weight``: a Fraction, or an array (n,) if it varies."""
         value = self.variation.constant(name)
         return value if isinstance(value, Fraction) else value[self.rows]
 
     def moments(self) -> tuple[Any, Any]:
-        """Return the moments of inertia across the symmetry axis and about it, kg m^2: Fractions, or arrays."""
+        """Return the moments of inertia, kg m^2, about an axis normal to the symmetry axis and about the symmetry axis.
+
+        A moment that varies between the trajectories is an array (n,), otherwise a Fraction.
+        """
         assert self.axis is not None
         return self.constant(PRINCIPAL[self.axis - 2]), self.constant(PRINCIPAL[self.axis])
 
@@ -271,7 +271,7 @@ class _Part(NamedTuple):
 def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Rows, "Batch | None", Any]]:
     """Yield groups of the trajectories ``rows``, all of one closed form, as (indices, batch, usual).
 
-    ``batch`` is None if the motions must be computed one by one.
+    ``usual`` tells which trajectories the batch computes correctly. If ``batch`` is None, it computes none.
     """
     make = BATCHES.get(kind.form.library) if kind.form else None
     if make is None:
@@ -279,7 +279,7 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
         return
     from symrot.closed_form.batches import usual
 
-    # usual: for which indices the batch gives the same bits as a single motion
+    # correctly: with the same bits as a single motion; all others are computed one by one
     for part in _parts(variation, kind, rows):
         batch, fine = make(part)
         if batch is not None and make is _free and not np.all(fine):
@@ -298,7 +298,7 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
 
 
 def _parts(variation: Variation, kind: Kind, rows: Rows) -> Iterator[_Part]:
-    """Yield the trajectories ``rows`` as parts, each for one batch; only heavy tops form two parts."""
+    """Yield the trajectories ``rows`` in groups that one batch can compute: two for heavy tops, otherwise one."""
     groups = [rows]
     if kind.form and kind.form.library == "heavy_top" and variation.columns:
         height = variation.constant(f"{variation.prefix(0)}center_of_mass_{(kind.axis or 0) + 1}")
@@ -374,9 +374,9 @@ def _gyrostat(part: _Part) -> tuple["Batch | None", Usual]:
 
 
 def _driving(part: _Part, kind: str, field: str, axis: int) -> Any:
-    """Return one component of a field, such as ``torque``, summed over all torques of one kind in the scene.
+    """Return component ``axis`` of the vector ``field``, such as ``torque``, summed over the torques of one kind.
 
-    None if it varies and there are several such torques.
+    An array (n,) if it varies between trajectories, otherwise a Fraction; None if one of several torques varies.
     """
     variation = part.variation
     components = [

@@ -55,7 +55,7 @@ class Followed(NamedTuple):
 
 
 class Problem(NamedTuple):
-    """What to compute for an ensemble: the trajectories, their equations (the plan), times, tolerance and threads."""
+    """What to compute for an ensemble: trajectories, equations (the plan), times, tolerance and number of threads."""
 
     variation: Variation
     plan: Plan
@@ -237,7 +237,7 @@ class _Stepped:
         if self.times.size and epoch.starts_far(problem.t0, float(self.times.min()), float(self.times.max())):
             self.epoch, self.t0, self.moved = problem.t0, 0.0, epoch.time_shifted(self.plan, self.kernel)
         try:
-            self.p = self.numbers.bound(self.moved[1].rate_parameters, self.epoch)
+            self.p = self.numbers.values_of(self.moved[1].rate_parameters, self.epoch)
         except OverflowError:
             raise IntegrationStopped(self.epoch, NOT_FINITE_SENTENCE) from None
 
@@ -260,17 +260,14 @@ class _Stepped:
         return epoch.clock(moving, self.numbers.constants(k), self.epoch, make)
 
     def read(self, states: Floats, omega: Floats, quaternion: Floats | None) -> None:
-        """Write the angular velocity and the attitude that follow from ``states`` into ``omega`` and ``quaternion``.
-
-        ``states`` has the shape (n, m, N).
-        """
+        """Compute ``omega`` and ``quaternion`` from the integrated states, shape (n, m, N), and write them there."""
         chosen = list(self.chosen)
         # the plan's N states may be fewer than the seven of omega and q, such as one angle
         values: dict[str, Any] = dict(zip(self.plan.states, np.moveaxis(states, -1, 0), strict=True))
         values["t"] = self.times
         outputs = OMEGA + (QUATERNION if quaternion is not None else ())
         parameters = self._parameters_of(outputs)
-        columns = self.numbers.bound(parameters).T
+        columns = self.numbers.values_of(parameters).T
         values |= dict(zip([name for name, _ in parameters], columns[:, :, None], strict=True))
         values_of = self.kernel.quantities.evaluate(values, ARRAY_FUNCTIONS, float, outputs)
         for k, name in enumerate(OMEGA):

@@ -51,10 +51,12 @@ class Numbers:
         """Return all constants of trajectory ``chosen[k]`` as exact fractions, by name, such as ``weight`` or ``A``."""
         return Plan(self._variation.scene_of(self._chosen[k]), self._plan.structure, ()).constants
 
-    def bound(self, parameters: Parameters, epoch: float = 0.0) -> Floats:
-        """Return the values of k kernel parameters for each trajectory, shape (n, k), each rounded only once."""
+    def values_of(self, parameters: Parameters, epoch: float = 0.0) -> Floats:
+        """Return the values of k kernel parameters for each trajectory, shape (n, k), each rounded only once.
+
+        ``epoch`` is the scene's time, s, at which the time t of the kernel is 0.
+        """
         scene = Plan(self._variation.scene, self._plan.structure, ()).constants
-        # epoch, s: the time at which the kernel's clock shows 0
         known = {"pi": number.PI, EPOCH: Fraction(epoch), **scene}
         fixed = {name: value for name, value in known.items() if name not in self._columns}
         values = np.empty((len(self._chosen), len(parameters)))
@@ -77,12 +79,11 @@ class Numbers:
         parameters : pairs of name and formula
             The parameters; those that do not depend on the variable are left out of the result.
         moved : mapping
-            The derivatives, by the variable, of the constants of the plan, such as ``{"weight": 1}``; the same for all
-            trajectories.
+            The derivative of each constant by the variable, such as ``{"weight": 1}``, the same for all trajectories.
         variable : str
             The name of the variable, for messages.
         epoch : float
-            As for :meth:`bound`.
+            As for :meth:`values_of`.
 
         Raises
         ------
@@ -117,7 +118,7 @@ class Numbers:
         return result
 
     def _each(self, node: tuple[object, ...], used: set[str]) -> Floats:
-        """Return the values of the formula ``node``, one for each trajectory."""
+        """Return the values of the formula ``node``, which contains the names ``used``, one for each trajectory."""
         columns = {name: column for name, column in self._columns.items() if name in used}
         table = np.stack(list(columns.values()), axis=1)
         # evaluated once for trajectories with equal constants
@@ -128,11 +129,10 @@ class Numbers:
 
 
 def _slope(node: Node, constants: Mapping[str, Fraction], moved: Mapping[str, Fraction], variable: str) -> Fraction:
-    """Return the derivative of the formula ``node`` by a variable on which its constants depend.
+    """Return the derivative of the formula ``node`` by a variable; ``moved`` are the derivatives of the constants.
 
-    For ``A*B`` with A = 2, B = 3 and ``moved = {"A": 1}`` it is 3.
+    ``A*B`` with A = 2, B = 3 and ``moved = {"A": 1}`` gives 3.
     """
-    # moved: the derivatives of the constants by the variable
     ratios = [abs(constants[name] / slope) for name, slope in moved.items() if slope and name in constants]
     size = min((ratio for ratio in ratios if ratio), default=Fraction(1))
 

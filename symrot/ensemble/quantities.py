@@ -25,14 +25,14 @@ class Source(NamedTuple):
     def evaluate(
         self, names: Sequence[str], t: Floats, omega: Floats, quaternion: Floats | None, chosen: Sequence[int]
     ) -> Floats:
-        """Return the named output quantities of the chosen motions, shape (n, m, len(names)).
+        """Return the output quantities ``names`` of the motions ``chosen``, shape (n, m, len(names)).
 
         The times ``t`` have the shape (m,) or (n, m).
         """
         structure = self.plan.structure.unreduced()
         plan = replace(self.plan, structure=replace(structure, attitude=quaternion is not None))
         kernel = scene_kernel(plan)
-        numbers = Numbers(self.variation, plan, chosen).bound(kernel.quantity_parameters)
+        numbers = Numbers(self.variation, plan, chosen).values_of(kernel.quantity_parameters)
         values: dict[str, Any] = {f"omega_{k + 1}": omega[..., k] for k in range(3)}
         if quaternion is not None:
             values |= {f"q{k}": quaternion[..., k] for k in range(4)}

@@ -78,8 +78,8 @@ def follow_sensitivities(problem: Problem, keys: Sequence[str]) -> tuple[Sensiti
     Raises
     ------
     InputError
-        If the torques have no derivatives, if a key names no variable, or if a variable changes something that varies
-        in the ensemble under another name.
+        If the torques have no derivatives, if a key names no variable, or if a variable, such as gravity, changes
+        another number, such as weight, that differs between the motions.
     """
     variation, scene = problem.variation, problem.variation.scene
     own = [float(rate) for rate in scene.initial.omega_b]
@@ -121,7 +121,7 @@ def read_columns(scene: Scene, keys: Sequence[str], varying: Collection[str]) ->
 
 
 def _require_own(column: Column, varying: Collection[str]) -> None:
-    """Raise InputError if a variable changes a number that varies in the ensemble under another name."""
+    """Raise InputError if a variable changes another number that differs between the motions: gravity and weight."""
     variable = column.variable
     if variable.key == ATTITUDE or variable.key.startswith("omega"):
         return
@@ -130,7 +130,7 @@ def _require_own(column: Column, varying: Collection[str]) -> None:
         moved.clear()
     moved |= {"omega"} if any(column.start[:RATES]) else set()
     moved |= {"quaternion"} if any(column.start[RATES:]) else set()
-    # such as the variable gravity, while weight has a value of its own in each motion
+    # such as the variable gravity, if the motions have different weights
     own = sorted(moved.intersection(varying))
     if own:
         raise InputError(
@@ -148,14 +148,14 @@ def _constant(variable: Variable) -> str:
 
 
 class _Equations:
-    """The compiled equations of the motions and of the columns of their derivatives, with the numbers of each motion.
+    """The compiled equations of n motions and of their derivatives by k variables, with the constants of each motion.
 
     Parameters
     ----------
     problem : Problem
         The motions.
     columns : sequence of Column
-        At most :data:`AT_ONCE` columns.
+        The variables, at most :data:`AT_ONCE`.
     """
 
     def __init__(self, problem: Problem, columns: Sequence[Column]) -> None:
@@ -169,7 +169,7 @@ class _Equations:
             self.plan, self.epoch = Plan(scene, replace(structure, clock=EPOCH), ()), problem.t0
             rates, self.parameters = rates_of(self.plan)
         numbers = Numbers(variation, self.plan, range(len(variation)))
-        self.values = numbers.bound(self.parameters, self.epoch)
+        self.values = numbers.values_of(self.parameters, self.epoch)
         self.slopes = [
             numbers.slopes(
                 self.parameters,
@@ -195,7 +195,8 @@ class _Equations:
         return library.build(lanes.wrap_translation_unit(text), "lanes", lanes.FLAGS)
 
     def follow(self, rows: lanes.Integers) -> tuple[Floats, Floats, list[str]]:
-        """Return states, shape (n, m, 7), their derivatives, (n, m, 7, k), and why each motion stopped early, or ""."""
+        """Return states, shape (n, m, 7), their derivatives, (n, m, 7, k), and n texts: why a motion stopped early."""
+        # the text is empty for a motion that reached all times
         problem, count, columns = self.problem, len(rows), len(self.columns)
         times = problem.times if problem.times.ndim == 1 else problem.times[rows]
         start, units = self._start(rows), self._units(rows)
@@ -237,7 +238,8 @@ class _Equations:
         return start
 
     def _units(self, rows: lanes.Integers) -> Floats:
-        """Return the unit of each derivative in each of the motions ``rows``: a power of two, shape (n, k)."""
+        """Return the factors by which the derivatives by k variables are multiplied while integrated, shape (n, k)."""
+        # powers of two
         variation, units = self.problem.variation, np.ones((len(rows), len(self.columns)))
         for k, column in enumerate(self.columns):
             variable = column.variable
@@ -254,7 +256,8 @@ class _Equations:
         return units
 
     def _integrate(self, p: Floats, y: Floats, times: Floats) -> tuple[Floats, Sequence[str]]:
-        """Return the states of n motions and their derivatives by k variables, (n, m, 7 (1 + k)), and messages."""
+        """Return samples (n, m, 7 (1 + k)), states and derivatives at m times, and why each motion stopped early."""
+        # the reason is an empty text for a motion that did not stop early
         problem = self.problem
         if self.in_lanes:
             outcome = lanes.follow(self.path, p, y, problem.t0, times, TOLERANCE, workers=problem.workers)

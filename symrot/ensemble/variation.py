@@ -130,7 +130,7 @@ class Variation:
         return fixed and not any(self.columns[name].any() for name in self.columns if name in PRODUCTS)
 
     def constant(self, name: str) -> Fraction | Floats:
-        """Return the constant ``name`` of the plan, such as ``weight``: a Fraction, or an array (n,) if it varies."""
+        """Return the constant ``name``, such as ``weight``: a Fraction, or an array (n,) if it varies."""
         if name in self.columns:
             return self.columns[name]
         torque, field, entry = self.places[name]
@@ -140,15 +140,15 @@ class Variation:
         return self.scene.torques[torque].constant(*_constant_place(field, entry))
 
     def prefix(self, torque: int) -> str:
-        """Return the text before the names of the constants of torque number ``torque`` (from 0), such as ``torque2_``.
+        """Return the prefix of the names of a torque's constants: ``"torque2_"``, or ``""`` if the names are unique.
 
-        It is empty if the names are unique.
+        ``torque`` is the number of the torque, from 0.
         """
         structure: Structure = self.cached("structure", lambda: general_structure(self.scene))
         return structure.torques[torque].prefix
 
     def constants_beside(self, name: str) -> list[float]:
-        """Return the entries beside ``name`` in its vector or tensor that do not vary: ``I_yy`` for ``I_xx``."""
+        """Return the values that do not vary in the same vector or tensor as ``name``: that of I_yy for ``"I_xx"``."""
         place = self.places[name]
         same = [key for key, other in self.places.items() if other[:2] == place[:2] and key not in self.columns]
         values = {self.constant(key) for key in same if not isinstance(self.places[key].entry, str)}
@@ -202,7 +202,7 @@ class Variation:
         return plan
 
     def patterns(self) -> list[NDArray[np.intp]]:
-        """Return groups of trajectories, as arrays of row indices, such that all of a group have the same plan."""
+        """Return the trajectories grouped by their plans (choices of equations), as arrays of indices."""
         # only the trajectory's own constants count: which are zero, and which moments are equal
         bits = [column != 0 for column in self.columns.values()]
         if not PLACES.keys().isdisjoint(self.columns):
@@ -255,8 +255,10 @@ def _equal(one: Fraction | Floats, other: Fraction | Floats) -> Any:
 
 
 def _constant_place(field: str, entry: int | str | None) -> tuple[str, int | None]:
-    """Return the arguments (name, index) with which a torque of a scene reads or replaces a constant."""
-    # the name of a parameter of formulas; or a field and an index in it, None if the field is a number
+    """Return the arguments (name, component) with which :class:`Torque` finds the constant at a :class:`Place`.
+
+    ``("center_of_mass", 2)`` is unchanged; ``("parameters", "k")`` gives ``("k", None)``.
+    """
     return (entry, None) if isinstance(entry, str) else (field, entry)
 
 
@@ -270,8 +272,8 @@ def _unit(row: list[float]) -> tuple[Fraction, Fraction, Fraction, Fraction]:
 
 
 def _representative(column: Floats) -> Fraction:
-    """Return one value of a column that stands for all of them in a plan."""
-    # not zero if one value is not: a plan makes use of zeros
+    """Return one value of a column, zero only if all are zero: ``[0, 3, 4]`` gives 3."""
+    # a plan is made from it for all trajectories, and makes use of zeros
     return Fraction(float(column[np.argmax(column != 0)]))
 
 
@@ -285,7 +287,7 @@ def read_variation(
     parameters: Mapping[str, ArrayLike] | None,
     attitude: Any = None,
 ) -> Variation:
-    """Return the variation that the arguments of an ensemble describe, after checks; None means the value in the scene.
+    """Return the variation that the arguments of an ensemble describe; for None, the value in the scene is used.
 
     Raises
     ------
@@ -331,10 +333,7 @@ def read_variation(
 
 
 def _quaternions(attitude: Any) -> ArrayLike:
-    """Return the argument ``attitude`` as quaternions, scalar first, shape (n, 4).
-
-    It holds n rotations of SciPy, n quaternions or n matrices ``dcm_sb``.
-    """
+    """Return n rotations of SciPy, n quaternions or n matrices ``dcm_sb`` as quaternions, shape (n, 4)."""
     if hasattr(attitude, "as_quat"):
         return np.roll(np.atleast_2d(attitude.as_quat()), 1, axis=1)
     array = real_array(attitude, "attitude", "rotations of SciPy, or an array of shape (n, 4) or (n, 3, 3)")
@@ -346,7 +345,8 @@ def _quaternions(attitude: Any) -> ArrayLike:
 
 
 def _check_bodies(variation: Variation) -> None:
-    """Raise InputError if a trajectory has moments of inertia that no body has, or that do not determine its motion."""
+    """Raise InputError if a trajectory has moments of inertia that no body has, or those of a point or a needle."""
+    # a point or a needle has a moment of zero, so that a torque does not determine its angular acceleration
     moments: Any = variation.moments
     if not variation.in_principal_axes:
         tensors = np.empty((len(variation), 3, 3))
@@ -448,6 +448,6 @@ def _columns(scene: Scene, places: dict[str, Place], name: str, values: ArrayLik
 
 
 def _field(key: str, place: Place) -> str:
-    """Return the name of the field that contains the constant ``key``: ``center_of_mass`` for ``center_of_mass_3``."""
+    """Return the name of the vector that contains the constant ``key``: ``center_of_mass`` for ``center_of_mass_3``."""
     # a constant that is no component of a vector is its own field
     return key.rpartition("_")[0] if isinstance(place.entry, int) else key
