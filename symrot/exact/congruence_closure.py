@@ -1,7 +1,8 @@
 """Congruence closure: among inverse functions or logarithms that are proven equal, one replaces the others.
 
-``asin(x)`` and ``atan2(x, sqrt(1 - x^2))`` are equal, but the polynomial ring has an independent variable for each.
-``hypotheses`` are expressions that are zero, ``domain`` formulas that are nonnegative.
+``asin(x)`` and ``atan2(x, sqrt(1 - x^2))`` are equal, but the polynomial ring has an independent variable for each. A
+proof is stored as its polynomial rings: it holds where none of their divisors is zero. ``hypotheses`` are expressions
+that are zero, ``domain`` formulas that are nonnegative.
 """
 
 from collections.abc import Iterator, Sequence
@@ -25,15 +26,14 @@ MOST_SYMBOLS = 6
 def proof_by_congruence(
     left: Expr, right: Expr, hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> tuple[FormulaRing, ...] | None:
-    """Prove ``left = right`` by replacing inverse functions by others that are proven equal.
+    """Prove ``left = right`` by replacing inverse functions with equal ones; return the rings.
 
-    Return the polynomial rings of the proof, or None.
+    None: there is no proof.
     """
     rings: list[FormulaRing] = []
     while True:
         ring = FormulaRing([left, right], hypotheses, domain)
         further_rings = proof(ring, ring.difference(left, right).numerator)
-        # the proof holds where no divisor in these rings is zero
         if further_rings is not None:
             return (*rings, ring, *further_rings)
         names: list[Expr] = [leaf for leaf in ring.symbols if type(leaf) in _NAMES and leaf.free_symbols]
@@ -51,7 +51,7 @@ def proof_by_congruence(
 def _equal_pairs(
     names: Sequence[Expr], hypotheses: Sequence[Expr], domain: Sequence[Expr]
 ) -> Iterator[tuple[Expr, Expr, tuple[FormulaRing, ...]]]:
-    """Yield (f, h, rings) with ``f = h`` proven, where f is in ``names`` and h is another name or pi/2 minus it."""
+    """Yield (f, h, rings) with ``f = h`` proven in ``rings``; h is g or ``pi/2 - g``, with f and g in ``names``."""
     for first, second in combinations(names, 2):
         for other in (first, pi / 2 - first):
             if not hypotheses and not seems_zero(second - other, domain):

@@ -113,11 +113,13 @@ def rational_witness(
 
 
 def _difference(ring: FormulaRing, left: Expr, right: Expr) -> tuple[Callable[[dict[int, Fraction]], bool], int]:
-    """Return (test, cost): ``test(values)`` is True if both sides are defined and differ at a point."""
+    """Return (test, cost): ``test(values)`` is True if both sides are defined and differ at a point.
+
+    A test evaluates ``cost`` terms.
+    """
     # the shorter of two forms is evaluated: the polynomial left - right, or the formulas as they are written
     written = pieces((left, right))
     try:
-        # cost is the number of terms that a test evaluates
         residual = ring.difference(left, right).numerator
         if len(residual) <= written:
             return lambda values: bool(_value(residual, values)), len(residual)

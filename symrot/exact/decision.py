@@ -162,7 +162,7 @@ def first_decision(case: C, stages: Sequence[Callable[[C], Decision | None]]) ->
         decision = stage(case)
         if decision is not None:
             return decision
-    raise AssertionError(f"expected a decision of the last stage, {stages[-1].__name__}, which decides every case")
+    raise AssertionError(f"expected a decision from the last stage, {stages[-1].__name__}, got None: a fault of symrot")
 
 
 # -- stages that all cases share --------------------------------------------------------------------------------------

@@ -1,7 +1,8 @@
 """Proofs that sums of inverse trigonometric functions, or of logarithms, are zero.
 
 A rational combination D of inverse functions and pi, strictly between -2 pi and 2 pi, is zero if ``sin D = 0`` and
-``cos D = 1``. A real D with logarithms is zero if and only if ``exp D = 1``.
+``cos D = 1``. A real D with logarithms is zero if and only if ``exp D = 1``. A proof holds where no divisor in its
+polynomial rings is zero.
 """
 
 from collections.abc import Iterator, Sequence
@@ -31,10 +32,10 @@ _NAMES = (*INVERSE, log)
 
 @dataclass(frozen=True)
 class Lift:
-    """A condition that makes a polynomial zero: the polynomials ``numerators`` of another ``ring`` are zero."""
+    """A condition under which a polynomial is zero: in a new ``ring``, all polynomials ``numerators`` are zero."""
 
     ring: FormulaRing
-    # for asin(x) + acos(x) - pi/2: its sine, and its cosine minus 1, in which asin and acos do not occur
+    # for D = asin(x) + acos(x) - pi/2: sin(D) and cos(D) - 1, in which asin and acos do not occur
     numerators: tuple[PolyElement, ...]
 
 
@@ -44,7 +45,10 @@ def vanishes(ring: FormulaRing, numerator: PolyElement) -> bool:
 
 
 def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] | None:
-    """Return the rings, besides ``ring``, by which the polynomial ``numerator`` is proven to be zero, or None."""
+    """Prove that the polynomial ``numerator`` is zero; return the rings that this needs in addition to ``ring``.
+
+    The tuple may be empty. None: there is no proof.
+    """
     numerator = ring.reduce(numerator)
     if not numerator:
         return ()
@@ -99,7 +103,10 @@ class PrincipalValueProof:
 
 
 def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof | None:
-    """Return a proof that ``numerator``, as asin(sin(x)) - x, is zero where an angle is a principal value, or None."""
+    """Return a proof that ``numerator`` is zero under conditions: asin(sin(x)) - x is, for x from -pi/2 to pi/2.
+
+    None: there is no proof.
+    """
     names = {number: leaf for leaf, number in ring.symbols.items() if type(leaf) in (*_PRINCIPAL, atan2)}
     if not names or len(numerator) > MOST_TERMS:
         return None
@@ -130,7 +137,10 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
 
 
 def _principal_multiple(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> PrincipalValueProof | None:
-    """Return a proof of where a sum like ``asin(3*x - 4*x^3) - 3*asin(x)`` (two inverse functions) is zero, or None."""
+    """Return a proof that ``factor`` is zero under conditions: ``asin(3*x - 4*x^3) - 3*asin(x)`` is, if abs(x) <= 1/2.
+
+    None: there is no proof.
+    """
     terms = _combination(ring, factor, {**dict(enumerate(ring.generators)), **names})
     leaves = [(leaf, multiple) for leaf, multiple in terms or () if leaf is not pi]
     if len(leaves) != 2 or any(type(leaf) not in _PRINCIPAL for leaf, _ in leaves):
@@ -185,8 +195,9 @@ def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> Principa
 
 
 def _principal_direction_of_root(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return a proof that ``atan2(y, x) = w`` under conditions, if y or x is a root or an absolute value; else None."""
+    """Return a proof that ``leaf``, an ``atan2(y, x)``, equals ``angle`` under conditions; None without one."""
     y, x = leaf.args
+    # y or x must be a root or an absolute value.
     # y = sqrt(P): if P = r^2 sin(w)^2 for r = x/cos(w), the value is w for w in [0, pi] and positive r; for x = sqrt(P)
     # likewise, with r = y/sin(w) and w in [-pi/2, pi/2]
     for root, other_part, own, other_function, ends in (

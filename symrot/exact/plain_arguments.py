@@ -1,8 +1,8 @@
 """Simplified arguments of functions: ``sin(sin(x)^2 + cos(x)^2) = sin(1)``.
 
 A polynomial ring has a variable for each call of an unknown function as it is written, also if two calls are equal. So
-arguments are replaced by normal forms first. ``hypotheses`` are expressions that are zero, ``domain`` formulas that are
-nonnegative.
+arguments are replaced by normal forms first; the results are equal where no divisor of the returned rings is zero.
+``hypotheses`` are expressions that are zero, ``domain`` formulas that are nonnegative.
 """
 
 from collections.abc import Sequence
@@ -29,7 +29,7 @@ MOST_COMPARED = 8
 def with_plain_arguments(
     formulas: Sequence[Expr], hypotheses: Sequence[Expr] = (), domain: Sequence[Expr] = ()
 ) -> tuple[list[Expr], tuple[FormulaRing, ...]]:
-    """Return (formulas, rings): the formulas with all arguments of functions in normal form.
+    """Return the formulas with all arguments of functions in normal form, and the rings in which this was computed.
 
     ``f(sin(x)^2 + cos(x)^2)`` becomes ``f(1)``.
     """
@@ -44,12 +44,14 @@ def with_plain_arguments(
         values = {node: node.func(*(shorter[argument] for argument in node.args)) for node in nodes}
         formulas = [formula.xreplace(values) for formula in formulas]
         rings += [ring, *further]
-    # equal to the formulas passed in wherever no divisor of the rings is zero
     return formulas, tuple(rings)
 
 
 def _common_forms(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Expr, Expr], tuple[FormulaRing, ...]]:
-    """Return (forms, rings): the normal form of each argument, the same for arguments that are proven equal."""
+    """Return a map from arguments to normal forms, and the rings, besides ``ring``, that prove arguments equal.
+
+    Equal arguments get the form of the first.
+    """
     shorter: dict[Expr, Expr] = {}
     rings: list[FormulaRing] = []
     for argument in arguments:
@@ -58,7 +60,6 @@ def _common_forms(ring: FormulaRing, arguments: Sequence[Expr]) -> tuple[dict[Ex
             further = proof(ring, ring.difference(argument, other).numerator)
             if further is not None:
                 shorter[argument] = shorter[other]
-                # the rings, besides ring, that the proofs of equality use
                 rings += further
                 break
     return shorter, tuple(rings)

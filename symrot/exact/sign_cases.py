@@ -88,14 +88,14 @@ def _constraints(ring: FormulaRing, insides: dict[int, PolyElement]) -> Iterator
 def _consistent(
     ring: FormulaRing, insides: dict[int, PolyElement], constraints: Sequence[Constraint]
 ) -> list[Constraint]:
-    """Return those ``constraints``, in order, that one choice of signs can satisfy together at every point."""
+    """Return ``constraints`` without those that share an f with an earlier constraint, unless f is nowhere zero."""
     # formulas are defined only where a divisor is not zero
     divisors = {factor for poly in ring.ratios.factors for factor, _ in poly.factor_list()[1]}
     nonzero = {place for place, inside in insides.items() if inside in divisors or -inside in divisors}
     accepted: dict[frozenset[int], Constraint] = {}
     for sign, places in constraints:
-        # where f = 0 its sign is free and can satisfy one constraint, but perhaps not two: constraints may share only
-        # an f that is nowhere zero
+        # where f = 0 its sign is free and can satisfy one constraint, but perhaps not two; so at every point some signs
+        # satisfy all constraints that are returned
         if all(places & others <= nonzero for others in accepted):
             accepted.setdefault(places, (sign, places))
     return list(accepted.values())

@@ -143,7 +143,10 @@ def _join(left: Monomial, right: Monomial) -> Monomial:
 
 
 def products_of_monomials(left: Polynomial, right: Polynomial) -> set[Monomial]:
-    """Return all products of a monomial of ``left`` and one of ``right``."""
+    """Return the products of each monomial of ``left`` with each of ``right``, without coefficients, each product once.
+
+    ``(x + 1)*(x - 1)`` gives x^2, x and 1.
+    """
     # products whose coefficients cancel count too: callers use the number as the cost of left * right
     return {_join(monomial, factor) for monomial in left.terms for factor in right.terms}
 

@@ -105,8 +105,11 @@ class Program:
         number: Callable[[Fraction], Any] = float,
         only: Collection[str] | None = None,
     ) -> dict[str, Any]:
-        """Return the values of the outputs, by name, for the ``values`` of the inputs: floats, arrays or Fractions."""
-        # only these outputs, and the temporaries that they need
+        """Return the values of the outputs by name, for ``values`` of the inputs: floats, arrays or Fractions.
+
+        ``functions`` and ``number`` compute functions and constants for such values. ``only`` restricts the outputs.
+        """
+        # all outputs if only is None; of the temporaries, those that the outputs need
         outputs = [(name, node) for name, node in self.outputs if only is None or name in only]
         needed = set().union(*(names(node) for _, node in outputs))
         temporaries = []
@@ -116,7 +119,6 @@ class Program:
                 temporaries.append((name, node))
         known = dict(values)
         for name, node in reversed(temporaries):
-            # functions and number evaluate functions and constants for this kind of number
             known[name] = evaluate(node, known, functions, number)
         return {name: evaluate(node, known, functions, number) for name, node in outputs}
 

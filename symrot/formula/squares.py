@@ -53,9 +53,9 @@ def _root_of_sum(node: Node) -> Node | None:
 
 
 def as_polynomial(node: Node, generators: dict[str, Node]) -> Polynomial | None:
-    """Return a formula as a polynomial in its symbols and function calls, or None.
+    """Return a formula as a polynomial in its symbols and function calls; None for others, such as ``1/x``.
 
-    ``generators`` gets an entry (text, formula) for each of them.
+    ``generators`` gets an entry for each symbol and call: ``"cos(x)"`` and its formula tree.
     """
     kind = node[0]
     if kind == "number":
@@ -65,7 +65,7 @@ def as_polynomial(node: Node, generators: dict[str, Node]) -> Polynomial | None:
         generators[name] = node
         return generator(name)
     parts = [as_polynomial(child, generators) for child in children(node)]
-    # too long to go on
+    # None too if the polynomial would be too long
     if any(part is None or len(part.terms) > MOST_TERMS for part in parts):
         return None
     first, *others = (part for part in parts if part is not None)

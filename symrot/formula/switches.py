@@ -82,7 +82,10 @@ def has_switches(node: Node) -> bool:
 
 
 def condition_error(node: Node) -> str:
-    """Return what to write instead of the first wrong condition of ``where``, as ``1 < t < 2``, or an empty text."""
+    """Return what a message says is expected instead of the first wrong condition of ``where``; empty without one.
+
+    ``where(1 < t < 2, 1, 0)`` gives "one comparison at a time: ..".
+    """
 
     def wrong(node: Node, condition: bool) -> str:
         if node[0] != "call" or node[1] not in CONDITIONS:
@@ -102,11 +105,11 @@ def condition_error(node: Node) -> str:
 
 
 def hold(conditions: Iterable[tuple[Node, int]], modes: Mapping[str, int], held: Collection[str] = ()) -> bool:
-    """Return whether each pair (formula, value) of ``conditions`` is satisfied by the present ``modes``.
+    """Return whether all ``conditions``, pairs (formula, value), are true for the present ``modes``.
 
-    ``held`` names modes without a fixed value.
+    A condition with a mode in ``held`` counts as true.
     """
-    # while the motion slides along a switch, its mode has no fixed value; a condition with this mode counts as true
+    # while the motion slides along a switch, its mode is held and has no fixed value
     return all(names(share) & set(held) or evaluate(share, modes) == value for share, value in conditions)
 
 
@@ -116,12 +119,15 @@ def has_choices(node: Node) -> bool:
 
 
 def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> Node:
-    """Return a formula with a, if p is 1, or b, if p is 0, in place of each ``where(p, a, b)``; ``modes`` gives p."""
+    """Return a formula with each ``where(p, a, b)`` replaced by a, if p is 1 for the present ``modes``, or by b, if 0.
+
+    If p contains a mode in ``held``, ``b + p*(a - b)`` replaces it.
+    """
     if not has_choices(node):
         return node
     if node[:2] == ("call", "where"):
         share, yes, no = node[2]
-        # a motion slides along the switch: the mode changes too fast to be 1 or -1, and the sum b + p (a - b) is a mean
+        # a motion slides along the switch: the mode changes too fast to be 1 or -1, and the sum is a mean
         if names(share) & set(held):
             return _blend(share, chosen(yes, modes, held), chosen(no, modes, held))
         return chosen(yes if evaluate(share, modes) == 1 else no, modes, held)
@@ -260,12 +266,12 @@ class _Writer:
         return ("symbol", name)
 
     def part(self, node: Node, share: Node, value: int) -> Node:
-        """Return ``node``, the part a or b of ``where(c, a, b)``, as a smooth formula.
+        """Return ``node``, the a or b of ``where(c, a, b)``, without jumps; ``share`` is c as a formula of modes.
 
         ``value`` is 1 for a and 0 for b.
         """
         outside = self.conditions
-        # the switches in the part matter only where share has that value
+        # the switches in the node matter only where share has that value
         self.conditions = (*outside, (share, value))
         smooth = self.smooth(node)
         self.conditions = outside

@@ -146,8 +146,8 @@ class _Reader:
             return reduce(lambda left, right: ("call", token, (left, right)), arguments)
         if len(arguments) != self.functions[token]:
             count = self.functions[token]
-            number = f"{count} argument{'s' * (count != 1)}"
-            raise self.fail(f"{number} of '{token}' instead of {len(arguments)}", position, token)
+            plural = "s" * (count != 1)
+            raise self.fail(f"{count} argument{plural} of '{token}' instead of {len(arguments)}", position, token)
         return ("call", token, tuple(arguments))
 
     def number(self, token: str, position: int) -> Fraction:

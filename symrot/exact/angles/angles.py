@@ -27,7 +27,7 @@ class LinearForm:
 
 
 def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
-    """Return an angle (rad) as a sum of rational multiples of pi and of atoms: phi and psi in ``2*phi - psi/2 + pi/3``.
+    """Return the linear form of an angle (rad): ``2*phi - psi/2 + pi/3`` gives ``{phi: 2, psi: -1/2}`` plus 1/3 of pi.
 
     Raises
     ------

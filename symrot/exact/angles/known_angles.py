@@ -33,15 +33,15 @@ def halved(coefficient: Fraction) -> Iterator[tuple[int, int]]:
 
 
 def parts_of(atom: Expr, coefficient: Fraction) -> list[Expr]:
-    """Return the cosines and sines from which those of ``coefficient * atom`` follow by sum formulas.
+    """Return the cosines and sines from which sum formulas give the cosine and sine of ``coefficient * atom``.
 
-    The coefficient 5/4 gives those of ``atom`` and ``atom/4``.
+    They are listed as cos, sin, cos, sin, ..: for 5/4, those of ``atom`` and then those of ``atom/4``.
 
     Examples
     --------
     >>> from sympy import asin, symbols
     >>> u = symbols("u", real=True)
-    >>> parts_of(asin(u), Fraction(2))  # a multiple of asin(u), which is not halved
+    >>> parts_of(asin(u), Fraction(2))  # cos(asin(u)) and sin(asin(u)), which give cos(2*asin(u)) and sin(2*asin(u))
     [sqrt(1 - u**2), u]
     """
     return [part for halvings, _ in halved(coefficient) for part in cosine_sine(atom, halvings)]

@@ -12,11 +12,14 @@ __all__ = ["divisors", "is_dense", "radicands", "signs", "split_radicands"]
 
 
 def divisors(ring: FormulaRing, granted: Container[int] = ()) -> list[tuple[Expr, Expr]]:
-    """Return the divisors in a ring's formulas, which must not be zero, as pairs (divisor as written, a factor)."""
+    """Return pairs (divisor as the formula writes it, a factor of the divisor) for all divisors in a ring's formulas.
+
+    No factor may be zero. Factors with an index in ``granted`` are left out.
+    """
     roots = {place: root for root, place in ring.roots.items()}
     pairs: list[tuple[Expr, Expr]] = []
     for number, (source, factor) in enumerate(zip(ring.ratios.sources, ring.ratios.factors, strict=True)):
-        # ``granted`` holds indices of factors that the caller knows to be nonzero
+        # granted: the caller knows that these factors are not zero
         if number in granted:
             continue
         places = [n for n, power in enumerate(factor.leading_expv()) if power] if len(factor) == 1 else []

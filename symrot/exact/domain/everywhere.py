@@ -1,6 +1,6 @@
 """Bounds of a formula that hold for all real values of its symbols.
 
-``cos(x) - 2`` lies between -3 and -1, so its root is real nowhere. Bounds are fractions or infinite.
+``cos(x) - 2`` lies between -3 and -1, so ``sqrt(cos(x) - 2)`` is not real for any x. Bounds are fractions or infinite.
 """
 
 from collections.abc import Callable, Sequence
@@ -117,7 +117,7 @@ def _power(base: Range, exponent: Expr) -> Range:
 
 
 def _monotone(function: Callable[[Expr], Expr], least: Bound, most: Bound) -> Callable[[Range], Range]:
-    """Return a function from a range of u to that of f(u), where f = ``function`` rises from ``least`` to ``most``."""
+    """Return a function from the range of u to that of f(u), for a rising f with values from ``least`` to ``most``."""
 
     def of(argument: Range) -> Range:
         # the limits replace f(low) and f(high) where these have no finite value: log(0) is -infinity

@@ -50,14 +50,14 @@ The function ``sign`` is the derivative of an absolute value, which does not exi
 
 
 def is_leaf(node: Expr) -> bool:
-    """Return whether a node is a free real number: a symbol, function of time, its derivative, or matrix entry."""
+    """Return whether a node is a symbol, a function of time such as f(t), a derivative of f(t), or a matrix entry."""
     if isinstance(node, sympy.Derivative):
         return isinstance(node.expr, AppliedUndef)
     return bool(node.is_Symbol) or isinstance(node, AppliedUndef | MatrixElement)
 
 
 def leaves_of(formulas: Iterable[Expr]) -> list[Expr]:
-    """Return the free real numbers in formulas (:func:`is_leaf`), each once, in the same order in every run."""
+    """Return the symbols and other leaves (:func:`is_leaf`), such as f(t), in formulas, each once, sorted by name."""
     leaves = {node for node in _pieces(formulas) if is_leaf(node)}
     return sorted(leaves, key=lambda leaf: (str(leaf), type(leaf).__name__))
 
@@ -118,7 +118,7 @@ def _granted(need: Need) -> bool:
 
 
 def _pieces(formulas: Iterable[Expr]) -> Iterator[Expr]:
-    """Yield every subexpression of formulas once; free real numbers such as f(t) are not split."""
+    """Yield every subexpression of formulas once; a function of time f(t) is yielded, but not its argument t."""
     # a stack, because recursion would be too deep for large formulas
     stack, seen = list(formulas), set()
     while stack:

@@ -24,14 +24,14 @@ Outside = tuple[tuple[Root | Expr, int], ...]
 
 
 def take_squares(above: PolyElement, below: PolyElement, generators: Sequence[Expr]) -> tuple[Expr, Outside, bool]:
-    """Return (P, [(f, n), ..], loose) with ``above/below = P * product(f^(2 n))`` and no f negative.
+    """Return (P, pairs (f, n), loose) with ``above/below = P * product(f^(2 n))`` and no f negative.
 
-    ``x^2 y`` gives y and (``|x|``, 1).
+    ``loose``: whether P may be negative where an f is zero. ``x^2 y`` gives y, (``|x|``, 1) and True.
     """
     whole = above.ring.clone(domain=ZZ)
     above, below = above.set_ring(whole), below.set_ring(whole)
     rest, squares = _square_part(above)
-    # where such a factor f is zero and P negative, sqrt(P f^2) is real but sqrt(P) is not
+    # there sqrt(P f^2) is real, but sqrt(P) is not
     loose = any(rest.rem([factor]) for factor, _ in squares)
     divisor, inverse = _square_part(below)
     squares += [(factor, -times) for factor, times in inverse]
@@ -67,14 +67,13 @@ def _irreducible(poly: PolyElement) -> list[tuple[PolyElement, int]]:
 
 @dataclass(frozen=True)
 class Dependence:
-    """A square root expressed by others: ``sqrt(number) * product(roots) / product(factor^n)``.
+    """A square root as ``sqrt(number) * product(roots)``, divided by ``f^n`` for each pair (f, n) in ``divisors``.
 
-    For sqrt(a b) the roots may be sqrt(a) and sqrt(b).
+    ``sqrt(a c) = sqrt(a b) sqrt(b c) / |b|`` has number 1 and the pair (``|b|``, 1).
     """
 
     number: Rational
     roots: tuple[Root, ...]
-    # pairs (factor, n) of the denominator: (|b|, 1) for sqrt(a c) = sqrt(a b) sqrt(b c) / |b|
     divisors: tuple[tuple[Root | Expr, int], ...]
 
 

@@ -112,7 +112,7 @@ class Ratios:
         return Ratio(base.numerator**exponent, base.constant**exponent, below)
 
     def invert(self, value: Ratio, source: Expr) -> Ratio:
-        """Return 1/value; its divisor is stored together with ``source``, the divisor as the formula writes it.
+        """Return 1/value; the new divisor is stored with ``source``, the divisor as the user's formula writes it.
 
         Raises
         ------

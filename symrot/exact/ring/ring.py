@@ -261,8 +261,8 @@ class FormulaRing:
         return accepted
 
     def _take_fine_constants(self) -> int:
-        """Return an even N such that sines and cosines of constant angles are polynomials in 2 cos(pi/N), or 0."""
-        # multiples of pi/24 have square roots as sines and cosines; N may also be too large
+        """Remove pi from the bases if cosines of its angles need 2 cos(pi/N); return the even N, otherwise 0."""
+        # no such number for multiples of pi/24, which have square roots as sines and cosines, or if N is too large
         if pi not in self.bases or not cyclotomic.needs_cyclotomic_field(self.bases[pi].denominator):
             return 0
         # pi then needs no sine and cosine of its own
@@ -280,7 +280,7 @@ class FormulaRing:
     def _relate(self, domain: Any) -> Relations | None:
         """Build the ring over ``domain``, the integers or the rationals; return the relations of its variables.
 
-        Return None if they need fractions over the integers.
+        None: ``domain`` is the integers, but a relation contains fractions.
         """
         self.ring = PolyRing([f"x{number}" for number in range(len(self.generators))], domain, lex)
         self.relations = Relations()
@@ -318,7 +318,10 @@ class FormulaRing:
         return above.quo_ground(below.LC)
 
     def _tangled_numbers(self, rules: Sequence[Rule]) -> dict[int, Number]:
-        """Return the ring's algebraic numbers, as sqrt(2), by index, if some equations between them are not known."""
+        """Return a map from variables to the algebraic numbers that they stand for, such as the cube root of 2.
+
+        Empty if no equation between these numbers can be missing among the relations.
+        """
         known: dict[int, Number] = {}
         if self.fine:
             known[self.fine_place] = cosine_number(self.fine_place, cyclotomic.degree(self.fine), self.fine)
@@ -327,7 +330,7 @@ class FormulaRing:
             if root.power_expression.is_number and all(n in known for n in _occurring(inside[place])):
                 known[place] = root_number(place, root.index, inside[place], known)
         simple = all(number.index == 2 and not number.needs for number in known.values())
-        # sqrt(2)*sqrt(3) = sqrt(6) is such an equation; square roots of primes satisfy none
+        # an equation such as sqrt(2)*sqrt(3) = sqrt(6); square roots of primes satisfy none
         # {} also for an imaginary number, because the proofs need real numbers
         return {} if simple or len(known) < 2 or I in self.generators else known
 

@@ -52,27 +52,33 @@ class Root:
 
 @dataclass(frozen=True)
 class Radicand:
-    """A radicand split into factors: ``content * above / below * product(factor^(2 n) of outside)``."""
+    """A radicand in factors: ``content * above / below``, times ``f^(2 n)`` for each pair (f, n) in ``outside``.
+
+    Under a square root ``x^2 y / 4`` has content 1/4, above y, below 1 and outside (``|x|``, 1).
+    """
 
     content: Rational  # >= 0
     above: Expr  # a primitive polynomial over the integers, like below
     below: Expr  # 1 under a square root
-    outside: tuple[tuple[Root | Expr, int], ...] = ()  # pairs (factor, n) that leave the root; no factor is negative
-    # whether such a factor may be zero where above is negative: there the root is real, but the root of above is not
+    outside: tuple[tuple[Root | Expr, int], ...] = ()  # f^n leaves a square root, f >= 0; () for other roots
+    # whether an f may be zero where above is negative: there the root is real, but the root of above is not
     loose: bool = False
 
 
 @dataclass(frozen=True)
 class Radical:
-    """A fractional power in factors: ``(rational * product(roots) * product(factor^n of outside) / below)^power``."""
+    """A fractional power in factors: ``rational * product(roots) / below``, times ``f^n`` for (f, n) in ``outside``.
+
+    All of this is raised to ``power``. ``sqrt(4 x^2 y)`` has rational 2, the root sqrt(y) and the pair (``|x|``, 1).
+    """
 
     base: Expr
     rational: Rational
-    roots: tuple[Root, ...]  # sqrt(y) for sqrt(x^2 y)
+    roots: tuple[Root, ...]
     below: Expr
     power: int
-    outside: tuple[tuple[Root | Expr, int], ...] = ()  # pairs (factor, n): (|x|, 1) for sqrt(x^2 y)
-    # whether such a factor may be zero where a root is not real, as at x = 0, y = -1: there the whole power is real
+    outside: tuple[tuple[Root | Expr, int], ...] = ()
+    # whether an f may be zero where a root is not real, as at x = 0, y = -1: there the whole power is real
     loose: bool = False
 
     @property
@@ -85,7 +91,7 @@ class Radical:
 
     @property
     def parts(self) -> tuple[Expr, ...]:
-        """The expressions in this power, such as radicands, that must be read before the power itself can be."""
+        """The formulas inside this power, such as radicands, whose own symbols and roots the ring needs too."""
         insides = [root.power_expression for root in self.generators]
         return (self.rational, self.below, *insides, *(f for f, _ in self.outside if not isinstance(f, Root)))
 
