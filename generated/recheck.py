@@ -1372,7 +1372,8 @@ def check_precision(name, data, specification, kernels):
         kernel = kernels[function]
         need(
             kernel.real == real and kernel.shape in shapes,
-            f"{function}: expected a function of {real} numbers, for {'one sample' if function == name else 'n samples'}",
+            f"{function}: expected a function of {real} numbers for "
+            f"{'one sample' if function == name else 'many samples'}",
         )
         check_formulas(function, kernel, data, point)
         if box_point:

@@ -1,7 +1,8 @@
 """Bounds of the truncation error of one time step on a box of states and step sizes, in interval arithmetic.
 
 The exact motion and a step of order n and size h differ by h^(n+1) (a - b), where a and b are coefficients of Taylor
-series, of the motion and of the step. Intervals contain both, on a box that no motion leaves during the step.
+series, of the motion and of the step. Intervals contain both, on a box that no motion leaves during the step. A defect
+is the amount by which a method violates an order condition, because its coefficients are rounded.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -167,7 +168,10 @@ class _Power:
         return result if exponent >= 0 else 1 / result
 
     def integrated(self, start: Any, slope: "_Power") -> "_Power":
-        """Return the series f(x(h)): x is this series, ``start`` is f(x(0)), and ``slope`` is the series f'(x(h))."""
+        """Return the series f(x(h)), where this series is x(h).
+
+        ``start`` is f(x(0)), and ``slope`` is the series f'(x(h)).
+        """
         # for example, ``slope`` is 1/x if f is the logarithm
         rates = self.rates
         return _Power((start, *(_dot(slope.terms[: n + 1], rates[n::-1]) / (n + 1) for n in range(len(rates)))))
@@ -526,7 +530,7 @@ class _Problem:
             return [inf] * len(self.states)
 
     def _defective(self, values: Mapping[str, Any], size: Any) -> list[Any]:
-        """Return, for each state, a bound of the error that the method's defects cause (see ``require_order``)."""
+        """Return, for each state, a bound of the error that the defects of the method cause."""
         # valid for all states in the box ``values`` and all sizes up to ``size``
         count = len(self.defects) + 1
         largest = {name: _Majorant.of(iv.mpf(abs(value).b), count) for name, value in values.items()}
@@ -560,7 +564,7 @@ class _Problem:
         return None
 
     def _step_coefficients(self, values: Mapping[str, Any], span: Any, order: int) -> list[Any]:
-        """Return, for each state, an interval with the coefficient of h^``order`` in the series of the step."""
+        """Return, for each state, an interval with the coefficient of h^``order`` in the Taylor series of the step."""
         # h is the step size; ``span`` is the range of its values
         # the coefficients of a Taylor method above its own order are zero
         if isinstance(self.method, TaylorSeries):

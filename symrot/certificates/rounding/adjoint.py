@@ -259,7 +259,7 @@ GAP_CELLS = 8192
 def _gap_errors(own: OutputGraph, libm_ulp: float) -> tuple[Array, ...]:
     """Return error bounds of a function such as (x - sin x)/x^3 for 0 <= x <= GAP_END, cut into equal cells.
 
-    Entry i of array k is the bound on 2^k cells, from cell i on.
+    Entry i of array k is the bound on the 2^k cells that begin with cell i.
     """
     ends = np.linspace(0.0, GAP_END, GAP_CELLS + 1)
     boxes = np.stack([ends[:-1], ends[1:]])[:, None]
