@@ -65,7 +65,7 @@ class Contestant:
 
 @cache
 def _samples(name: str, count: int) -> list[Floats]:
-    """Return ``count`` random inputs within a kernel's bounds, one array (size, count) per argument.
+    """Return ``count`` random inputs within a kernel's bounds, one array of shape (size, count) for each argument.
 
     Quaternions have unit norm.
     """
@@ -80,7 +80,10 @@ def _samples(name: str, count: int) -> list[Floats]:
 
 @cache
 def _block(name: str, shape: str, count: int, place: int) -> tuple[Floats, Floats]:
-    """Return arrays for inputs and outputs that all contestants share; samples are rows, or columns in a batch."""
+    """Return the arrays of inputs and outputs that all contestants share.
+
+    A sample is a row of the array, or a column in a batch.
+    """
     samples = np.concatenate(_samples(name, count))
     size = sum(a.size for a in kernel_program(name).signature.arguments if a.role == "out")
     # One block from a page boundary, since the distance of inputs and outputs modulo a page changes the time. Place in
@@ -186,7 +189,7 @@ def _heyoka_drivers(signature: Signature) -> str:
 
 
 def _moving(signature: Signature) -> str:
-    """Return C code that reads all inputs of a batch, adds them up and writes all outputs: the cost of memory
+    """Return C code that only reads all inputs of a batch, adds them up and writes all outputs: the cost of memory
     access.
     """
     inputs, outputs = ([a for a in signature.arguments if a.role == role] for role in ("in", "out"))
@@ -201,8 +204,9 @@ def _moving(signature: Signature) -> str:
 
 
 def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], float]:
-    """Return a function of ``place``, a memory block's number, that times ``run(repeats, place)`` and returns s per
-    sample.
+    """Return a function that times ``run(repeats, place)`` and returns seconds per sample.
+
+    Its argument ``place`` is the number of a memory block.
     """
     repeats, elapsed = 1, 0.0
     # so many repeats that the clock measures the time accurately
@@ -221,8 +225,9 @@ def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], f
 
 
 def _runs(name: str, loaded: ctypes.CDLL, shapes: Sequence[str], many: int) -> dict[str, Callable[[int], float]]:
-    """Return, by shape of input, functions that take a memory block's number and return s per sample of a compiled
-    kernel.
+    """Return, for each shape of input, functions that time the compiled kernel ``name`` and return seconds per sample.
+
+    Their argument is the number of a memory block.
     """
     runs = {}
     for shape in shapes:
@@ -242,7 +247,9 @@ def _call(function: Any, count: int, addresses: Sequence[Any], repeats: int, pla
 def _in_c(
     name: str, text: str, many: int, shapes: Sequence[str] = SHAPES, prepare: Callable[[Any], object] = id
 ) -> tuple[dict[str, Callable[[int], float]], Floats]:
-    """Compile a kernel with its drivers; return its timing functions by shape, and its outputs for a small batch."""
+    """Compile a kernel with its drivers; return timing functions for each shape of input, and outputs for a small
+    batch.
+    """
     loaded = ctypes.CDLL(str(build_cache.build(text, f"bench_{name}", FLAGS)))
     # for tools whose functions need a set-up
     prepare(loaded)
@@ -264,8 +271,9 @@ def _symrot_text(name: str) -> str:
 
 
 def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
-    """Return the contestants for a kernel, symrot first, and the missing tools; raise AssertionError if
-    outputs differ.
+    """Return the contestants for a kernel, symrot first, and the names of the missing tools.
+
+    Raise AssertionError if the outputs of two tools differ.
     """
     contestants: list[Contestant] = []
     missing: list[str] = []
@@ -370,14 +378,14 @@ def _line(contestant: Contestant) -> str:
 def _operations(contestants: Sequence[Contestant]) -> tuple[int, int]:
     """Return the number of operations of symrot's kernel, and the smallest number among the other tools.
 
-    The first of the ``contestants`` is symrot.
+    ``contestants[0]`` is symrot.
     """
     mine, *others = (sum(c.operations.values()) for c in contestants if c.operations)
     return mine, min(others)
 
 
 def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
-    """Return, by shape of input, the ratio of symrot's time to the best other tool's time."""
+    """Return, for each shape of input, symrot's time divided by the least time of the other tools."""
     own, others = contestants[0], [c for c in contestants[1:] if c.name != FLOOR]
     ratios = {}
     for shape in SHAPES:
@@ -392,7 +400,9 @@ def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
 
 
 def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
-    """Return the table of the kernel ``name`` as lines: its contestants, and symrot's ratios to the best other tool."""
+    """Return the lines of the table for the kernel ``name``: the contestants, and symrot's time over the least other
+    time.
+    """
     parts = [f"operations {mine} to {best}" for mine, best in (_operations(contestants),)]
     parts += [f"{shape} {ratio:.2f}" for shape, ratio in _ratios(contestants).items()]
     lines = [
@@ -411,14 +421,17 @@ def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
 
 
 def _missed(name: str, contestants: Sequence[Contestant]) -> list[str]:
-    """Return texts that say where symrot needs more operations, or over 1.05 times the time, of the best tool."""
+    """Return texts that say where symrot needs more operations than the best tool, or more than 1.05 times its time."""
     mine, best = _operations(contestants)
     over = [f"{name} {shape} {ratio:.3f}" for shape, ratio in _ratios(contestants).items() if ratio > BAR]
     return [f"{name} operations {mine} to {best}"] * (mine > best) + over
 
 
 def counts(name: str) -> tuple[dict[str, Counter[str]], list[str]]:
-    """Return a map from tool to its operations on a kernel by kind, and the names of the missing tools."""
+    """Return how many operations of each kind a kernel needs in each tool, and the names of the missing tools.
+
+    Example: ``{"symrot": {"mul": 12, "add": 9}, ..}``.
+    """
     operations, missing = {"symrot": counted(_emitted(name).source, name)}, []
     for tool, make in PEERS_IN_C.items():
         try:
@@ -437,7 +450,7 @@ def counts(name: str) -> tuple[dict[str, Counter[str]], list[str]]:
 
 
 def _count(names: Sequence[str]) -> None:
-    """Print the operations of kernels by symrot and by the other tools, and the kernels for which symrot needs more."""
+    """Print how many operations each tool needs for each kernel, and the kernels for which symrot needs more."""
     over, absent = [], set[str]()
     for name in names:
         operations, missing = counts(name)

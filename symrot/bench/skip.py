@@ -1,7 +1,8 @@
 """The gain of specialised kernels: cost of each motion with the most general kernel and with the scene's own kernel.
 
-The general kernel has a full inertia tensor, the attitude and every kind of torque. Both kernels must reach the same
-final state. Nanoseconds are per evaluation of the rates in C, microseconds per motion; the last column is `auto`.
+The general kernel has a full inertia tensor, the attitude and every kind of torque. Both must reach the same final
+state. The table has nanoseconds per evaluation of the rates in C, and microseconds per motion; the column ``auto us``
+is the time with the method ``auto``.
 """
 
 import ctypes
@@ -47,9 +48,7 @@ Progress = Callable[[str], object]
 
 
 def rungs() -> dict[str, tuple[str, Scene]]:
-    """Return the motions for which both kernels are compared, by name: (description, scene), the most general one
-    first.
-    """
+    """Return a map from the name of each compared motion to (description, scene), the most general motion first."""
     scenes = {}
     for name, entry in read_toml(LADDER, LADDER.name).items():
         about = str(entry.pop("about"))
@@ -78,8 +77,9 @@ def general_plan(scene: Scene) -> Plan:
 
 
 def measure(name: str | None = None, quick: bool = False, say: Progress = lambda text: None) -> dict[str, Any]:
-    """Measure the time that specialised kernels save, for the scene ``name`` or a list of motions; return data for
-    JSON.
+    """Measure the time that specialised kernels save, and return it as data for JSON.
+
+    The motion is the scene ``name``; without a name, a list of motions is measured.
 
     Raises
     ------
@@ -104,7 +104,7 @@ def measure(name: str | None = None, quick: bool = False, say: Progress = lambda
 
 
 def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[], object]]]:
-    """Return a row of the table without its times, and by column the functions that must be timed."""
+    """Return a row of the table without its times, and a map from each column of times to the function to be timed."""
     plans = {"general": general_plan(scene), "own": make_plan(scene)}
     row: dict[str, Any] = {"motion": about}
     runs: dict[str, Callable[[], object]] = {}
@@ -131,7 +131,7 @@ def _row(about: str, scene: Scene) -> tuple[dict[str, Any], dict[str, Callable[[
 
 
 def _evaluations(problem: Problem) -> Callable[[], object]:
-    """Return a function that evaluates the rates of a scene at many states near the initial state, to be timed."""
+    """Return a function to be timed: it evaluates the rates of a scene at many states near the initial state."""
     size = len(problem.y0)
     function = ctypes.CDLL(str(cache.build(problem.kernel.source + LOOP.format(states=STATES, size=size), "many"))).many
     function.argtypes, function.restype = (ctypes.c_long, *(ctypes.c_void_p,) * 3), None
@@ -145,7 +145,7 @@ def _scaled(value: float | None, unit: float) -> str:
 
 
 def lines(results: Mapping[str, Any]) -> list[str]:
-    """Return the table of the ``results`` of :func:`measure` as lines of text; the first is the title."""
+    """Return the table as lines of text, the first of which is the title; ``results`` come from :func:`measure`."""
     from symrot.report.layout import columns, fields, room
 
     rows = [["motion", "states", "operations", "ns", "motion us", "auto us", "", "ends apart"]]

@@ -85,7 +85,7 @@ class Run(NamedTuple):
 
 
 class SteppedProblem(Problem):
-    """One motion over ``scale`` times its span, with the compiled libraries of symrot's steppers for it."""
+    """One motion over ``scale`` times its span, with the compiled steppers of symrot for it."""
 
     def __init__(self, name: str, scale: float) -> None:
         super().__init__(scene(name))
@@ -204,7 +204,7 @@ def _by_hand(library_: Any, method: str, problem: SteppedProblem, steps: int) ->
 
 
 def _loops(problem: SteppedProblem) -> list[tuple[str, float, TimedRun]]:
-    """Return (name, steps, function) for each handwritten C loop, with several numbers of steps."""
+    """Return (name, number of steps, function) for each handwritten C loop and for several numbers of steps."""
     text = "\n".join(
         (
             problem.kernel.source,
@@ -242,7 +242,7 @@ def _contestants(problem: SteppedProblem, settings: bool) -> list[tuple[str, flo
 
 
 def measure(name: str, rounds: int = 9, settings: bool = False, scale: float = 1.0) -> list[Run]:
-    """Time all contestants on one motion over ``scale`` times its span; return their runs."""
+    """Time all contestants on one motion over ``scale`` times its span, and return their runs."""
     problem, exact = SteppedProblem(name, scale), reference(name, scale)
     # With ``settings``, heyoka runs in all its settings; otherwise only in the default.
     return raced(_contestants(problem, settings), partial(problem.largest_error, exact=exact), rounds)
@@ -252,7 +252,7 @@ def raced(
     tasks: Sequence[tuple[str, float, Callable[[], tuple[int, Any]]]], error: Callable[[Any], float], rounds: int,
     clock: Callable[[], float] = perf_counter,
 ) -> list[Run]:  # fmt: skip
-    """Return the runs of several contestants (name, tolerance, task), timed alternately with ``clock``."""
+    """Return the runs of several contestants (name, tolerance, task); ``clock`` times them alternately."""
     runs = []
     for name, tolerance, task in tasks:
         # a task returns its number of steps and its last states
@@ -270,7 +270,10 @@ def raced(
 
 
 def best_of(runs: Iterable[Run], error: float, names: Sequence[str]) -> Run | None:
-    """Return the fastest run of the contestants ``names`` whose error is at most ``error``, or None."""
+    """Return the fastest run of the contestants ``names`` whose error is at most ``error``.
+
+    None if there is no run.
+    """
     good = [run for run in runs if run.name in names and run.error <= error]
     return min(good, key=lambda run: min(run.seconds), default=None)
 
@@ -279,7 +282,7 @@ def best_of(runs: Iterable[Run], error: float, names: Sequence[str]) -> Run | No
 
 
 def _print_table(name: str, runs: list[Run]) -> dict[str, list[float]]:
-    """Print the table of one motion; return, by other program, the ratios of its times to symrot's."""
+    """Print the table of one motion; return, for each other program, its times divided by symrot's, one per decade."""
     stop = MOTIONS[name]["span"]["t"][1]
     present = list(dict.fromkeys(run.name for run in runs))
     peers = [n for n in present if n.startswith("heyoka")]
@@ -321,7 +324,7 @@ def _print_ratios(indent: str, ratios: dict[str, list[float]]) -> None:
 
 
 def _print_orders(name: str, rounds: int) -> None:
-    """Print, for a motion, the least time of each order of the series for each power of ten of the error."""
+    """Print, for a motion, the least time of each order of the series at each power of ten of the error."""
     problem, exact = SteppedProblem(name, 1.0), reference(name)
     paths = {f"{order}": problem.taylor_library(order) for order in ORDERS}
     tasks: list[tuple[str, float, TimedRun]] = [

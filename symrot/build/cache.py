@@ -1,7 +1,7 @@
 """The cache of compiled C: a library is compiled once, stored for the user, and later loaded without a compiler.
 
 The name of a library contains the checksum of its content, so a damaged one is built again. ``CC`` names the compiler,
-``SYMROT_CACHE`` the cache directory. If that is unusable, a temporary directory replaces it. No NumPy here.
+``SYMROT_CACHE`` the cache directory. If that directory cannot be used, a temporary one replaces it. No NumPy here.
 """
 
 import os
@@ -59,7 +59,7 @@ OWN_FILE = re.compile(r"(\w+-[0-9a-f]{32}\.(so|dll|dylib|index|text)|\.symrot-\w
 
 
 class Compiler(NamedTuple):
-    """A C compiler: the words of its command line, and a text that changes when its program or options change."""
+    """A C compiler: the words of its command line, and a text that changes with its program or its options."""
 
     command: tuple[str, ...]
     # a part of cache keys, so that another compiler never gets libraries of this one
@@ -67,7 +67,10 @@ class Compiler(NamedTuple):
 
 
 class Cache(NamedTuple):
-    """The directory that stores compiled libraries: the user's, or a temporary one with the reason."""
+    """The directory that stores compiled libraries, and the reason if it is temporary.
+
+    The reason says why the user's directory cannot be used.
+    """
 
     directory: Path
     # why the user's directory cannot be used; empty if it is used
@@ -93,7 +96,7 @@ def compiler() -> Compiler:
 
 
 def missing() -> str:
-    """Return the sentence that says why no C compiler can be used, or an empty text if there is one."""
+    """Return the sentence that says why no C compiler can be used, or an empty text if one can be used."""
     try:
         compiler()
     except CompilerError as error:
@@ -102,7 +105,10 @@ def missing() -> str:
 
 
 def cache(probe: bool = False) -> Cache:
-    """Return the cache directory in use: the user's, or a temporary one of this process, with the reason."""
+    """Return the cache directory in use: the user's, or a temporary one with the reason why the user's cannot be used.
+
+    With ``probe`` a small file is written first, so that a full disk is noticed.
+    """
     if probe:
         # notices a full disk
         _keep(_text_name("probe"), b"")
@@ -137,7 +143,7 @@ def build(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path:
 def built(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path | None:
     """Return the path of the library if the cache contains it, otherwise None; nothing is compiled.
 
-    The arguments are those of :func:`build`.
+    The arguments are the arguments of :func:`build`.
     """
     entry = _entry(compiler(), source, name, flags)
     for directory in _directories():
@@ -147,7 +153,7 @@ def built(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path | None
 
 
 class Building:
-    """A library that another thread compiles like :func:`build`; :meth:`path` waits for the result."""
+    """The compilation of a library in another thread; :meth:`path` waits for its end."""
 
     def __init__(self, source: str, name: str, flags: tuple[str, ...] = FLAGS) -> None:
         self._path: Path | None = built(source, name, flags)
@@ -188,7 +194,7 @@ class Building:
 
 
 def _thread(work: Callable[..., None], *arguments: object) -> Any:
-    """Return a thread, not yet started, that runs ``work(*arguments)``, a compilation."""
+    """Return a thread, not yet started, that compiles by calling ``work(*arguments)``."""
     # All modules that the work needs are imported here: Ctrl-C during an import of the main thread can leave Python's
     # import lock locked, and then a thread that imports a module would never end.
     import atexit  # noqa: F401
@@ -254,8 +260,8 @@ def _digest(text: str) -> str:
 
 
 def _which(program: str) -> str | None:
-    """Return the full path of the executable ``program``, searched on the path as a shell does; None if
-    there is none.
+    """Return the full path of the executable ``program``, searched in the folders of ``PATH``, or None if it is
+    missing.
     """
     # the module shutil has such a function but is slow to import
     endings = ("", ".exe") if sys.platform == "win32" else ("",)
@@ -330,7 +336,7 @@ def _cache_directory() -> Path:
 
 
 def _foreign(path: Path) -> str:
-    """Return the reason why a file or directory must not be trusted, or an empty text if it can be trusted."""
+    """Return why a file or directory must not be trusted, such as another owner; an empty text if it can be trusted."""
     status = path.lstat()
     if hasattr(os, "getuid") and status.st_uid != os.getuid():
         return f"{path} belongs to another user (uid {status.st_uid})"
@@ -343,7 +349,7 @@ def _foreign(path: Path) -> str:
 
 @cache_once
 def _exposed(directory: Path) -> str:
-    """Return the reason why another user could replace the cache ``directory``, or an empty text if nobody could."""
+    """Return why another user could replace the cache ``directory``; an empty text if nobody could."""
     if not hasattr(os, "getuid"):
         return ""
     # Who may write to a directory may rename its entries, even those of others; in a sticky directory such as /tmp,
@@ -366,7 +372,10 @@ def _exposed(directory: Path) -> str:
 
 
 def _shared_group(group: int) -> bool:
-    """Return whether a group may have members other than the user; True if the system does not know group or user."""
+    """Return whether a group may have members other than the user.
+
+    True if the system does not know the group or the user.
+    """
     import grp
     import pwd
 
@@ -379,7 +388,10 @@ def _shared_group(group: int) -> bool:
 
 
 def _user_directory() -> tuple[Path, str]:
-    """Return the user's cache directory, created if missing, and the reason why it cannot be used, or an empty text."""
+    """Return the user's cache directory, and the reason why it cannot be used, or an empty text.
+
+    A missing directory is created.
+    """
     directory = _cache_directory() / CACHE_SUBDIR
     try:
         if not directory.is_dir():
@@ -397,7 +409,7 @@ def _user_directory() -> tuple[Path, str]:
 
 
 def _directories() -> list[Path]:
-    """Return the directories that may hold compiled kernels: the user's cache, if usable, and the temporary one."""
+    """Return the directories that may hold compiled libraries: the user's, if it can be used, and the temporary one."""
     directory, reason = _user_directory()
     return [*([] if reason else [directory]), *([] if _temporary.path is None else [_temporary.path])]
 
@@ -425,7 +437,10 @@ def _replace(path: Path, content: bytes) -> None:
 
 
 def _keep(name: str, content: bytes) -> Path:
-    """Write ``content`` into the cache as a file ``name``, or else into the temporary directory; return its path."""
+    """Write ``content`` to the file ``name`` of the cache, and return its path.
+
+    If that fails, the file is written to the temporary directory.
+    """
     if _temporary.path is None:
         directory, reason = _user_directory()
         if not reason:
@@ -452,7 +467,7 @@ def _library_name(name: str, content: bytes) -> str:
 
 
 def _sound_library(directory: Path, entry: str, name: str) -> Path | None:
-    """Return the path of the library that the file ``entry`` names; None if it is missing or damaged."""
+    """Return the path of the library that the file ``entry`` names, or None if the library is missing or damaged."""
     pointer = _read(directory / entry)
     if pointer is None:
         return None

@@ -41,8 +41,8 @@ def _bound(options: Namespace) -> int:
     if options.target is None:
         if options.variable:
             raise InputError(
-                "--variable: expected --target X as well, because --variable names the inputs whose ranges the search "
-                "for the largest box changes, and --target starts this search"
+                "--variable: expected --target X as well; with --target, symrot widens or narrows the ranges of the "
+                "inputs, and --variable names those inputs"
             )
         report = symrot.bound(options.kernel, options.box, options.precision)
     else:
@@ -110,8 +110,8 @@ def _selftest_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--bounds",
         action="store_true",
-        help="test what the error bounds assume of the compiler and the processor, and not what equal bits require: "
-        "a compiler that computes a*b + c with one rounding instead of two then passes",
+        help="test only what the error bounds assume of the compiler and the processor; a compiler that rounds "
+        "a*b + c once instead of twice passes, although its results may differ in the last bits",
     )
     json_option(parser)
 

@@ -68,7 +68,8 @@ def _exercise_arguments(parser: ArgumentParser) -> None:
         "topic",
         metavar="TOPIC",
         nargs="*",
-        help="topics, or templates of exercises, which take turns (default: all topics)",
+        help="topics, or templates of exercises; the sheet takes one exercise from each, then starts again (default: "
+        "all topics)",
     )
     parser.add_argument(
         "--seed", type=_whole, default=0, metavar="N", help="seed of the numbers in the exercises (default: 0)"

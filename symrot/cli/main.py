@@ -480,7 +480,9 @@ def _check_arguments(parser: ArgumentParser) -> None:
     parser.epilog = help_text()
     parser.add_argument("--textbook", metavar="NAME", help="check the formulas of a published text, listed in symrot: "
                         "chen, sahakian, brown or beer-johnston (named by their authors), or all")  # fmt: skip
-    parser.add_argument("--all", action="store_true", help="with --textbook all: write the pages of errata")
+    parser.add_argument(
+        "--all", action="store_true", help="with --textbook all: write pages that list the errors in the texts"
+    )
     parser.add_argument(
         "-o", "--output", metavar="DIR", default="generated", help="folder that --all writes to (default: ./generated)"
     )

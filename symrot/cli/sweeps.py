@@ -20,9 +20,9 @@ _TIMES = "'linspace(0, 10, 11)' or 'values(0, 1, 5)'"
 
 
 def _vary(texts: list[str]) -> dict[str, Any]:
-    """Return, by the name of the varied quantity, the distributions and grids of the options ``--vary``.
+    """Return a map from the name of each varied quantity to its distribution or grid; ``texts`` come from ``--vary``.
 
-    An example of one of the ``texts`` is ``omega_1 ~ normal(0, 0.1)``, whose key in the result is ``omega_1``.
+    The text ``omega_1 ~ normal(0, 0.1)`` gives the key ``omega_1``.
     """
     from symrot.sweeps.laws import Distribution, read_law
 
@@ -150,7 +150,9 @@ def _arguments(parser: ArgumentParser) -> None:
         help="how values are drawn: random, latin or sobol (default: random)",
     )
     parser.add_argument(
-        "--count", metavar="N", help="number of trajectories (default: one for each point of the grids)"
+        "--count",
+        metavar="N",
+        help="number of trajectories, needed for random values (default: one for each combination of grid values)",
     )
     parser.add_argument("--seed", metavar="N", default=0, help="seed of the draws (default: 0)")
     parser.add_argument("--output", metavar="NAME", action="append", default=[],

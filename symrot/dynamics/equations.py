@@ -54,7 +54,9 @@ class Equations:
 
     @property
     def explicit_rates(self) -> tuple[Expr, ...]:
-        """The rates as formulas in t, the states and constants alone: definitions are inserted for named quantities."""
+        """The rates as formulas in t, the states and the constants, with named intermediate quantities replaced by
+        their formulas.
+        """
         rates = self.rates
         for symbol, value in reversed(self.definitions):
             rates = tuple(rate.xreplace({symbol: value}) for rate in rates)
@@ -158,8 +160,9 @@ def inverse(tensor: Matrix) -> Matrix:
 
 
 def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr]]:
-    """Return the motion of a structure in symbols, its attitude states, and its relations (expressions that are always
-    zero).
+    """Return the symbols of a motion with this structure, its attitude states, and expressions that are always zero.
+
+    The expression for a quaternion is ``|q|^2 - 1``.
     """
     inertia, axis = inertia_matrix(structure.inertia), structure.planar
     turning = [
@@ -218,14 +221,14 @@ def equations_of_motion(structure: Structure) -> Equations:
 
 
 def sliding(equations: Equations, held: list[tuple[FormulaTorque, str]]) -> Equations:
-    """Return the equations of a motion that slides along jumps of torques: the formulas whose signs jump stay zero.
+    """Return the equations of a motion along a jump of a torque, such as dry friction that holds a body at rest.
 
-    ``held`` pairs each torque with the symbol of its sign.
+    ``held`` pairs each torque with the symbol (mode) that replaces its sign function.
 
     Raises
     ------
     InputError
-        If the rates of the guards do not determine the modes.
+        If the condition that the motion stays on the jump does not determine the modes.
     """
     rates = dict(zip(equations.states, equations.explicit_rates, strict=True))
     names, pace, guards = [], [], []

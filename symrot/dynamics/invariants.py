@@ -90,7 +90,9 @@ def _of_torque(torque: TorqueStructure, momentum_s: Matrix, energy: Expr) -> Ite
 
 def _reason(name: str, holds: bool, equations: Equations, kinds: Sequence[str]) -> str:
     if holds and name.startswith("spin"):
-        return "the moments about the other axes are equal, and no torque acts about this axis"
+        axis = name[-1]
+        others = " and ".join(number for number in "123" if number != axis)
+        return f"the moments about axes {others} are equal, and no torque acts about axis {axis}"
     if not kinds:
         return "no torque acts"
     acting = _listed(kinds)

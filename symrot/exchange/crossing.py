@@ -1,7 +1,8 @@
 """Tests that a closed surface is the boundary of a body: winding numbers along lines, and pairs of crossing triangles.
 
-A surface bounds a body if each point of space has the winding number 0 (outside) or 1 (inside). Crossings of a line
-with the surface give these numbers. All pairs of triangles are searched only in small meshes.
+A surface bounds a body if each point of space has the winding number 0 (outside) or 1 (inside). Crossings of straight
+lines with the surface give these numbers. A line that meets an edge of a triangle tests nothing. All pairs of triangles
+are searched only in small meshes.
 """
 
 from typing import Any, NamedTuple
@@ -46,8 +47,9 @@ class _Boxes(NamedTuple):
 
 
 def require_boundary(surface: Surface, where: str) -> str:
-    """Raise InputError if a closed surface crosses itself; otherwise return a sentence about the tests that
-    it passed.
+    """Return a sentence about the tests that a closed surface passed.
+
+    Raise InputError if the surface crosses itself.
     """
     # several shells are allowed: separate parts, and cavities, whose normals point into the cavity
     numbers = shells(surface)
@@ -74,7 +76,7 @@ def require_boundary(surface: Surface, where: str) -> str:
 
 
 def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """Return the indices of triangles through which straight lines test what is inside the surface."""
+    """Return the indices of the triangles through which the lines of the test are drawn."""
     edges = corners[1] - corners[0], corners[2] - corners[0]
     areas = sum((edges[0][i] * edges[1][j] - edges[0][j] * edges[1][i]) ** 2 for i, j, _ in AXES)
     order = np.lexsort((areas, numbers)) if count > 1 else np.array([int(areas.argmax())])
@@ -89,7 +91,10 @@ def _chosen(corners: Floats, numbers: NDArray[np.int64], count: int) -> NDArray[
 
 
 def _passes(corners: Floats, boxes: _Boxes, triangle: int, where: str, surface: Surface) -> int:
-    """Return whether a line through a triangle could be tested, 1 or 0; raise InputError if the test fails."""
+    """Return 1 if a line through a triangle passes the test, or 0 if every tried line meets an edge.
+
+    Raise InputError if a winding number is neither 0 nor 1.
+    """
     own = corners[:, :, triangle]
     normal = np.cross(own[1] - own[0], own[2] - own[0])
     axes = AXES[int(np.abs(normal).argmax())]
@@ -110,10 +115,10 @@ def _passes(corners: Floats, boxes: _Boxes, triangle: int, where: str, surface: 
 def _profile(
     corners: Floats, boxes: _Boxes, target: Floats, axes: tuple[int, int, int]
 ) -> tuple[Floats, NDArray[np.int64]] | None:
-    """Return the depths at which a line through ``target`` crosses the surface, and the winding number behind each
-    crossing.
+    """Return the coordinates along ``axes[2]`` where a line through ``target`` crosses the surface, and the winding
+    number after each.
 
-    None near an edge.
+    The line is parallel to ``axes[2]``. None if it passes near an edge of a triangle.
     """
     # the line is parallel to the last of the axes; a depth is the coordinate along it
     u, v, depth = axes
@@ -183,7 +188,10 @@ def _search_pairs(surface: Surface, boxes: _Boxes, where: str) -> bool:
 
 
 def _pierces(surface: Surface, edges_of: NDArray[np.int64], through: NDArray[np.int64]) -> int | None:
-    """Return the number of a triangle in ``edges_of`` that has an edge through its partner in ``through``, or None."""
+    """Return the first triangle in ``edges_of`` that has an edge through the triangle at the same index of ``through``.
+
+    None if there is no such triangle.
+    """
     corners = surface.triangles
     a, b, c = (corners[through, k] for k in range(3))
     heights = [_sides(surface, a, b, c, corners[edges_of, k]) for k in range(3)]
@@ -201,8 +209,8 @@ def _pierces(surface: Surface, edges_of: NDArray[np.int64], through: NDArray[np.
 
 
 def _sides(surface: Surface, a: Any, b: Any, c: Any, d: Any) -> NDArray[np.int64]:
-    """Return the side, 1 or -1, of the plane (a, b, c) on which each vertex d is; 0 if rounding errors could
-    change it.
+    """Return on which side of the plane (a, b, c) each vertex d lies: 1, -1, or 0 if rounding errors could change the
+    side.
     """
     p, q, r, s = (surface.vertices[index] for index in (a, b, c, d))
     u, v, w = p - s, q - s, r - s

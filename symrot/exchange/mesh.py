@@ -215,9 +215,10 @@ def _integrated(moments: VolumeMoments, node: Any, source: object, unit: Fractio
 
 
 def _result(body: _Body, amount: Fraction | None, exact: bool) -> tuple[Fraction, Any, Any, Fraction] | None:
-    """Return mass, centre of mass, tensor and relative error, from the moments of a body.
+    """Return mass, centre of mass, inertia tensor and relative error of a body from its moments.
 
-    None if error or mass are unusable.
+    None if the mass is not clearly positive or the error is too large. ``amount`` is a prescribed mass; ``exact`` says
+    that the moments have no error.
     """
     (mass, mass_error), first = body.mass, body.first
     if mass <= mass_error:
@@ -249,7 +250,7 @@ def _result(body: _Body, amount: Fraction | None, exact: bool) -> tuple[Fraction
 
 
 def _require_volume(moments: VolumeMoments, unit: Fraction, where: str) -> None:
-    """Raise InputError if a mesh encloses no volume: zero, or negative by more than its error."""
+    """Raise InputError if the volume of a mesh is zero, or negative by more than its error bound."""
     volume, error = moments.values[0, 0, 0], moments.errors[0, 0, 0]
     if volume == 0 and error == 0:
         raise InputError(f"{where}: expected a mesh that encloses a volume, got a volume of zero")

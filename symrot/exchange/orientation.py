@@ -1,6 +1,6 @@
 """Exact rotation matrices from the notations of robot files.
 
-They map components in a child frame to its parent frame.
+Each matrix maps components in a child frame to components in its parent frame.
 """
 
 from collections.abc import Callable, Sequence
@@ -71,7 +71,10 @@ def _of_euler(values: Numbers, angles: Angles) -> Tensor:
 
 
 def _of_two_axes(values: Numbers, angles: Angles) -> Tensor:
-    """Return the rotation matrix of an x axis and of a vector that is made orthogonal to it as y axis."""
+    """Return the rotation matrix of a frame given by two vectors: its x axis, and a vector in its xy plane.
+
+    Example: ``(1, 0, 0, 1, 1, 0)`` gives the identity matrix.
+    """
     # values are the six components of the two vectors
     x = _direction(values[:3], "an x axis that is not zero")
     slope = dot(values[3:], x)

@@ -67,7 +67,10 @@ def read_xml(path: Path, where: str) -> tuple[bytes, ElementTree.Element]:
 
 
 def span_of(content: bytes, owner: str, name: str, element: str) -> tuple[Span, bool]:
-    """Return the place of ``element`` inside ``<owner name="name">`` in a file's bytes, and whether it is present."""
+    """Return the range of bytes of ``element`` inside ``<owner name="name">``, and whether ``element`` exists.
+
+    If it does not exist, the range is empty, at the byte where the element can be inserted.
+    """
     parser = expat.ParserCreate()
     stack: list[tuple[str, str]] = []
     places: dict[str, int] = {}

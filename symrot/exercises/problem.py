@@ -100,8 +100,9 @@ class Asked:
 def chain(
     name: str, law: str, left: Any, written: Any, result: Any, then: str = "This is simplified."
 ) -> tuple[Line, ...]:
-    """Return the lines of a solution: the value ``written`` by the law, and the simplified value ``result`` if it
-    differs.
+    """Return the lines of a solution: ``law`` gives the value ``written``; ``then`` says how it becomes ``result``.
+
+    There is only the first line if the two values are equal.
     """
     # each line: reason, quantity, value, displayed name
     first = Line(law, left, written, name)

@@ -101,8 +101,8 @@ def exercise(topic: str | Sequence[str] = "", *, seed: int = 0, count: int = 1) 
     Parameters
     ----------
     topic : str or sequence of str
-        A topic or the name of a template, see ``symrot exercise --list``, or several of them, whose exercises take
-        turns; an empty text stands for all topics.
+        A topic or the name of a template, see ``symrot exercise --list``. Several of them supply one exercise each,
+        in turn; an empty text stands for all topics.
     seed : int
         Seed of the random choices. Another seed gives other numbers and begins with another template; the same seed
         gives the same exercises on every machine.

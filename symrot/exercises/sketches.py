@@ -49,8 +49,10 @@ def _shape(*points: tuple[float, float], width: str = USUAL, fill: str = "none")
 
 
 def _head(x: float, y: float, angle: float) -> str:
-    """Return the head of an arrow with its tip at (x, y); ``angle`` is the arrow's direction in degrees,
-    down from x."""
+    """Return the head of an arrow with its tip at (x, y).
+
+    ``angle`` is the arrow's direction in degrees: 0 points right, 90 down.
+    """
     sides = [(x - 9 * cos(radians(angle + k)), y - 9 * sin(radians(angle + k))) for k in (20, -20)]
     return _shape((x, y), *sides, width=THIN, fill="currentColor")
 
@@ -172,7 +174,7 @@ def _box(x: float, y: float, wide: float, high: float, deep: float) -> str:
 
 
 def box_with_axis() -> str:
-    """Return an SVG drawing of a box with its three sides and the axis z through its centre."""
+    """Return an SVG drawing of a box with its three side lengths and the axis z through its centre."""
     return _drawing(
         "A box and the axis z through its centre", 240, 200,
         _box(40, 70, 110, 90, 60), _dashed(116, 10, 116, 56), _arrow(116, 30, 116, 8), _turn(116, 26, 20, 6, 150, -150),
@@ -181,7 +183,7 @@ def box_with_axis() -> str:
 
 
 def book() -> str:
-    """Return an SVG drawing of a thrown book, with its three sides and its rotation about the middle one."""
+    """Return an SVG drawing of a thrown book that rotates about the axis parallel to its side of middle length."""
     return _drawing(
         "A book that rotates about the axis parallel to its middle side", 280, 165,
         _box(40, 95, 140, 26, 90), _dashed(60, 140.1, 110, 108), _dot(110, 108), _dashed(194, 54, 248, 19.3),
@@ -191,7 +193,7 @@ def book() -> str:
 
 
 def crate_on_edge() -> str:
-    """Return an SVG drawing of a crate that tips about its lower edge, with the sides across the edge."""
+    """Return an SVG drawing of a crate with the sides a and b that tips about its lower edge O, seen along the edge."""
     along, up = (cos(radians(25)), -sin(radians(25))), (-sin(radians(25)), -cos(radians(25)))
     base = (90.0, 150.0)
     right = base[0] + 120 * along[0], base[1] + 120 * along[1]
@@ -215,7 +217,10 @@ def disk_on_nail() -> str:
 
 
 def cone_on_apex() -> str:
-    """Return an SVG drawing of a cone with its apex, height and base radius, and the axis across its own axis."""
+    """Return an SVG drawing of a cone that stands on its apex, with a rotation axis through the apex.
+
+    The rotation axis is perpendicular to the cone's axis of symmetry.
+    """
     return _drawing(
         "A cone and an axis through its apex, perpendicular to its own axis", 220, 190,
         _dashed(25, 160, 195, 160), _path("M110 160 L50 45 M110 160 L170 45"), _ellipse(110, 45, 60, 15),
@@ -258,9 +263,9 @@ def two_masses() -> str:
 
 
 def _top(angle: float) -> tuple[str, tuple[float, float], tuple[float, float]]:
-    """Return a top on its tip at (100, 180), its centre of mass, and the end of its axis.
+    """Return the SVG of a top with its tip at (100, 180), and two points: the centre of mass and the end of the axis.
 
-    ``angle`` is that of its axis to the vertical in degrees.
+    ``angle`` is the inclination of the axis from the vertical, degrees.
     """
     axis = sin(radians(angle)), -cos(radians(angle))
     side = -axis[1], axis[0]

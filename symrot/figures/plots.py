@@ -20,7 +20,7 @@ class Axes:
     size : (float, float)
         Width and height, points.
     corner : (float, float)
-        The place of its lower left corner in the picture.
+        The position of the rectangle's lower left corner in the picture.
     """
 
     def __init__(
@@ -40,8 +40,9 @@ class Axes:
         self.picture.arrow(self.plane, (left, low), (left, high + 0.06 * (high - low)), y_label, "soft")
 
     def curve(self, x: Floats, y: Floats, style: str = "blue thick", label: str = "", at: float = 1.0) -> None:
-        """Draw a curve through the points (x, y), with a label at its right end or above the fraction ``at`` of its
-        length.
+        """Draw a curve through the points (x, y), with a label above the fraction ``at`` of its length.
+
+        With ``at = 1``, the default, the label is to the right of its end.
         """
         # points above or below the rectangle are left out
         inside = (y >= self.y[0]) & (y <= self.y[1])

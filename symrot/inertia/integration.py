@@ -83,7 +83,10 @@ def _jacobian(position: tuple[Polynomial, ...], coordinates: tuple[Coordinate, .
 
 
 def domain(shape: Shape, known: Mapping[str, Fraction] | None = None) -> Domain:
-    """Return a shape's map from coordinates to positions, with its Jacobian and limits, as polynomials."""
+    """Return a shape's map from coordinates to positions, with its Jacobian and limits, as polynomials.
+
+    Dimensions in ``known``, such as ``{"radius": 2}``, are numbers in them; other dimensions stay symbols.
+    """
     numbers = known or {}
     # Dimensions in known (names as in shapes.scalar_names) are numbers, the others symbols.
     values = {n: constant(numbers[n]) if n in numbers else generator(n) for n in scalar_names(shape)}

@@ -101,10 +101,7 @@ def _eliminate(work: _Work, vectors: _Work, p: int, q: int) -> None:
 
 
 def _root(tensor: Tensor, value: Decimal) -> Fraction:
-    """Return the exact eigenvalue of a tensor near ``value`` if it is a fraction of moderate size.
-
-    Otherwise, for an irrational eigenvalue, return ``value`` itself.
-    """
+    """Return the fraction near ``value`` that is exactly an eigenvalue of the tensor, or else ``value`` itself."""
     approximate = Fraction(value)
     exact = approximate.limit_denominator(_LARGEST_DENOMINATOR)
     shifted = subtract(tensor, tuple(tuple(exact * entry for entry in row) for row in IDENTITY))
@@ -116,7 +113,7 @@ def _closest_order(vectors: _Work) -> tuple[int, ...]:
 
 
 def _directed(columns: list[tuple[Fraction, ...]]) -> Tensor:
-    """Return principal axes as right-handed columns, ordered and signed so that column k is close to given axis k."""
+    """Return principal axes as the columns of a right-handed matrix, with signs that bring column k close to axis k."""
     for k, column in enumerate(columns):
         leading = column[k] or max(column, key=abs)
         if leading < 0:
@@ -128,7 +125,7 @@ def _directed(columns: list[tuple[Fraction, ...]]) -> Tensor:
 
 
 def _settle(moments: list[Fraction]) -> tuple[Fraction, Fraction, Fraction]:
-    """Return the moments with negligible ones as zero and nearly equal ones as the same number."""
+    """Return the moments, with negligible moments replaced by zero and nearly equal moments by the same number."""
     # 2^-200 of their size; exact comparisons then give the kind of symmetry
     limit = max(map(abs, moments)) * NEGLIGIBLE
     settled = [Fraction(0) if abs(moment) <= limit else moment for moment in moments]

@@ -292,8 +292,8 @@ def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str 
 
 
 def scalar_names(shape: Shape) -> tuple[str, ...]:
-    """Return the names of the numbers among a shape's dimensions: a length's own, and ``x1, y1, z1, x2, ..`` for
-    corners.
+    """Return the names of a shape's dimensions, with points split into coordinates: ``radius`` or ``x1, y1, z1, x2,
+    ..``.
     """
     names: list[str] = []
     for d in shape.dimensions:
@@ -303,7 +303,10 @@ def scalar_names(shape: Shape) -> tuple[str, ...]:
 
 
 def scalars(shape: Shape, dimensions: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the numbers among a shape's dimensions by name: corners ``((0, 0, 0), (1, 0, 0), ..)`` give ``x2 = 1``."""
+    """Return a shape's dimensions as numbers by name, points split into coordinates.
+
+    The points ``((0, 0, 0), (1, 0, 0), ..)`` give ``x1 = 0, y1 = 0, z1 = 0, x2 = 1, ..``.
+    """
     values: list[Any] = []
     for d in shape.dimensions:
         value = dimensions[d.name]

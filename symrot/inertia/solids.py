@@ -302,7 +302,7 @@ def _points(corners: Any, dimension: Dimension) -> list[tuple[Expr, ...]]:
     except (TypeError, ValueError) as reason:
         if isinstance(reason, InputError):
             raise
-        raise InputError(f"expected {dimension.meaning} as lists of three, got {show(corners)}") from None
+        raise InputError(f"expected {dimension.meaning} as lists of three coordinates, got {show(corners)}") from None
     if len(points) != (dimension.size or len(points)):
         raise InputError(f"expected {dimension.size} points, {dimension.meaning}, got {len(points)}")
     return points

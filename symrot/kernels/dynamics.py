@@ -167,7 +167,10 @@ def _heavy_top(name: str, body: str) -> Definition:
 
 
 def _weighed(center: Matrix) -> tuple[Matrix, Named]:
-    """Return the vector 2 W r in symbols, for weight W and centre of mass r, and the formulas of the symbols."""
+    """Return the vector 2 W r of weight W and centre of mass r as three symbols, and the formula of each symbol.
+
+    A component that is zero stays 0. The factor 2 belongs to the formulas of the vertical.
+    """
     # The torque is half the vertical times this vector: fewer operations. Zeros stay zeros.
     components = [symbol if c else c for symbol, c in zip(_symbols("moment_of_weight"), center, strict=True)]
     return Matrix(components), tuple(

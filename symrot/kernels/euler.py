@@ -134,7 +134,10 @@ def _rates(frame: str, name: str, sequence: str) -> Definition:
 
 
 def _solved(jacobian: RateMatrix, omega: Matrix) -> tuple[Named, list[Expr]]:
-    """Return a quotient as a pair (symbol, formula), and the rates of the Euler angles in terms of this symbol."""
+    """Return the rates of the Euler angles in terms of a new symbol, preceded by (symbol, its formula).
+
+    The symbol stands for the only quotient, so that it is computed once.
+    """
     matrix, determinant = Matrix(jacobian), jacobian.determinant
     # Of the outer angles, this one rotates about a coordinate axis of the frame of omega: its rate follows from one
     # component of omega and the other rate, without a division by the determinant.

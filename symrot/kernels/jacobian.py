@@ -105,7 +105,10 @@ def _distinct(kernel: Definition, variables: Sequence[str]) -> Sequence[str]:
 
 
 def _components(kernel: Definition, name: str) -> tuple[tuple[str, str, str], ...]:
-    """Return the components of the input ``name`` as (name, unit, meaning): all of an argument, or a single one."""
+    """Return the components of an input as (name, unit, meaning).
+
+    ``name`` is an argument such as ``"omega"``, which has three components, or one component such as ``"omega_1"``.
+    """
     for argument in kernel.inputs:
         if argument.name == name:
             return argument.components
@@ -117,8 +120,8 @@ def _components(kernel: Definition, name: str) -> tuple[tuple[str, str, str], ..
 
 
 def _laws(kernel: Definition, chosen: dict[str, tuple[tuple[str, str, str], ...]]) -> tuple[Law, ...]:
-    """Return the laws (provable identities) of a kernel with derivatives: those of ``kernel``, and that each derivative
-    is exact.
+    """Return the laws (provable identities) of a kernel with derivatives: those of ``kernel``, and one for the
+    derivatives by each input.
     """
     symbols, laws = _symbols(kernel), list(kernel.laws())
     roots = {symbol: value for symbol, value in kernel.named if value.is_Pow and value.exp == Rational(1, 2)}
@@ -137,8 +140,9 @@ def _laws(kernel: Definition, chosen: dict[str, tuple[tuple[str, str, str], ...]
 
 
 def _slope(formula: Expr, variable: Symbol, roots: dict[Symbol, Expr]) -> Expr:
-    """Return the derivative of ``formula`` by ``variable``, where symbols stand for square roots (the map
-    ``roots``).
+    """Return the derivative of ``formula`` by ``variable``.
+
+    ``roots`` maps symbols in the formula to the square roots that they stand for.
     """
     through = [
         exact_derivative(formula, root) * exact_derivative(value.base, variable) / (2 * root)

@@ -94,7 +94,10 @@ def _largest(components: Components) -> Array:
 
 
 def _in_range(*components: Array) -> tuple[Components, Array]:
-    """Return the components of samples and their squared lengths; samples of extreme size are scaled."""
+    """Return the components of samples and their squared lengths, as needed to normalise them.
+
+    A sample whose squares would overflow or underflow is first divided by its largest component.
+    """
     squares = _sum_of_squares(components)
     extreme = ~((squares > SAFE[0]) & (squares < SAFE[1]))
     if not extreme.any():
@@ -381,9 +384,9 @@ def mrp_switch(s: Any) -> tuple[Array, Mask]:
 
 
 def places(sequence: str) -> tuple[tuple[int, int, int], tuple[int, int, int], int, int]:
-    """Return the axes of the three rotations whose product is ``dcm_sb``, the positions of their angles, and m, sign.
+    """Return, for the product ``dcm_sb`` of three rotations, their axes, the positions of their angles, and m, sign.
 
-    ``"ZYX"`` gives (2, 1, 0), (0, 1, 2), 0, -1.
+    The first two axes have ``e_1 x e_2 = sign e_m``. ``"ZYX"`` gives (2, 1, 0), (0, 1, 2), 0, -1.
     """
     axes, intrinsic = parse_sequence(sequence)
     (first, middle, last), order = (axes, (0, 1, 2)) if intrinsic else (axes[::-1], (2, 1, 0))
@@ -481,7 +484,10 @@ def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: floa
 
 
 def _sum(x: Array, y: Array, odd: Mask) -> Array:
-    """Return the angles ``x + y``, rounded once, for x and y in [-pi/2, pi/2]."""
+    """Return the angles ``x + y``, rounded once, for x and y in [-pi/2, pi/2].
+
+    Where ``odd`` is true, the sum is changed by pi towards zero.
+    """
     total = x + y
     back = total - x
     error = (x - (total - back)) + (y - back)

@@ -1,8 +1,8 @@
 """Euler angles: all 12 intrinsic and 12 extrinsic sequences, each computed from three elementary rotations.
 
-Every sequence is a product of three factors, ``dcm_sb = R_first R_middle R_last``; the extrinsic ``zyx`` equals the
-intrinsic ``XYZ`` with reversed angles. Proper sequences have equal first and last axes (``ZXZ``), the others are
-Tait-Bryan. Convention: :mod:`symrot.conventions`. Proof: ``derivations/euler_body_rates.md``.
+Every sequence is a product of three factors, ``dcm_sb = R_first R_middle R_last``. The extrinsic ``xyz`` with angles
+(a, b, c) equals the intrinsic ``ZYX`` with (c, b, a). Proper sequences have equal first and last axes (``ZXZ``), the
+others are Tait-Bryan. Convention: :mod:`symrot.conventions`. Proof: ``derivations/euler_body_rates.md``.
 """
 
 from collections.abc import Sequence
@@ -49,7 +49,9 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Factor:
-    """One of the three rotations whose product is ``dcm_sb``: its axis, its angle, and the number of this angle."""
+    """One of the three rotations whose product is ``dcm_sb``: its axis, its angle, and the index of the angle,
+    0 to 2.
+    """
 
     axis: int
     angle: Expr
@@ -131,7 +133,11 @@ def lock_indicator(sequence: str, dcm_sb: Matrix) -> Expr:
 
 
 def _core(sequence: str, frame: str, angles: Sequence[Any] | None) -> tuple[Matrix, Matrix, Matrix]:
-    """Return the factors ``carry, core, order`` of the rate matrix ``B = carry * core * order``."""
+    """Return three factors of the rate matrix ``B = carry * core * order``.
+
+    ``core`` depends on the middle angle only, ``carry`` is a rotation to the components of ``frame``, and ``order``
+    permutes columns.
+    """
     first, middle, last = factors(sequence, angles)
     # core has the three axes in the frame of the middle rotation, and depends on the middle angle only; carry rotates
     # them to components in frame.
@@ -191,8 +197,10 @@ class EulerRateMatrix(RateMatrix):
         return tuple(other for other, met in meetings.items() if met is S.EmptySet)
 
     def regular_at(self, angles: Sequence[Any] | None = None) -> tuple[str, ...]:
-        """Return the sequences, of all 24, that are not in gimbal lock at the attitude ``angles`` (default: the
-        symbols).
+        """Return the sequences, of all 24, that are not in gimbal lock at the attitude given by ``angles`` of this
+        sequence.
+
+        Without ``angles``, a sequence is left out only if it is in gimbal lock at every attitude.
         """
         own_angles = expressions(
             self.parameters if angles is None else angles, 3, f"the Euler sequence {self.sequence}"
@@ -271,8 +279,9 @@ def _rate_jacobian(sequence: str, frame: str, parameters: tuple[Expr, ...]) -> E
 
 @cache
 def sequences_at_lock(sequence: str) -> dict[str, Set]:
-    """Return, for each other Euler sequence, the gimbal-lock attitudes of ``sequence`` at which it locks too, as a set
-    of one angle, rad.
+    """Return, for each other Euler sequence, at which gimbal-lock attitudes of ``sequence`` it is in gimbal lock too.
+
+    In gimbal lock one angle, rad, determines the attitude; the result maps a sequence to a set of its values.
     """
     left, _, _ = factors(sequence)
     # In gimbal lock only the sum or difference of the outer angles matters, so one of them is zero. The set is empty

@@ -97,8 +97,8 @@ def _divided(page: Page, sections: Sequence[str]) -> tuple[Items, Items]:
     titles = [item.title for item in page.items if isinstance(item, Section)]
     if [*sections] != titles[len(titles) - len(sections) :]:
         raise InputError(
-            f"{page.name}: expected the appendix to have the last sections of the page, which has {titles}, "
-            f"got {[*sections]}"
+            f"{page.name}: expected the appendix to consist of the last sections of the page, whose sections are "
+            f"{titles}, got {[*sections]}"
         )
     places = (n for n, item in enumerate(page.items) if isinstance(item, Section) and item.title in sections)
     place = next(places, len(page.items))

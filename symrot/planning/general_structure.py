@@ -83,7 +83,10 @@ def _general_torque(number: int, torque: Torque, known: set[str], switched: bool
 
 
 def _formula_torque(torque: Torque, switched: bool) -> FormulaTorque:
-    """Return the structure of a torque given by formulas; its constants keep their names in the scene."""
+    """Return the structure of a torque given by formulas; its constants have the same names as in the scene.
+
+    If ``switched``, functions that jump, such as sign, become constants (modes).
+    """
     formulas, parameters, frame = torque.formulas, tuple(torque.values), torque.frame
     if not (switched and any(has_switches(expression.parse(text, switching=True)) for text in formulas)):
         return FormulaTorque("", formulas, parameters, frame)

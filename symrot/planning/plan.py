@@ -22,7 +22,7 @@ from symrot.planning.rules import (
     RULES_UNDER_EXTERNAL_TORQUE,
     RuleOutcome,
     pattern,
-    small_components,
+    zero_components,
 )
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial
@@ -121,7 +121,10 @@ class Plan:
 
     @cached_property
     def initial_state(self) -> tuple[float, ...]:
-        """The initial values of :attr:`states`, in the same order; the angle theta starts at 0."""
+        """The initial values of :attr:`states`, in the same order.
+
+        ``theta``, the angle of a body that rotates about one axis only, starts at 0.
+        """
         start = self.scene.initial
         values = (*start.omega_b, *start.quaternion, 0)
         ratios = [values[place].as_integer_ratio() for place in self._places]
@@ -211,5 +214,5 @@ def structure_key(scene: Scene, initial: Initial) -> Hashable:
     # and which body components of torques fixed in space are zero.
     attitude = tuple([pattern(q, unit=True) for q in initial.quaternion])
     fixed = [torque for torque in scene.torques if torque.kind in DIRECTED]
-    small = tuple([small_components(torque.vector(DIRECTED[torque.kind]), initial) for torque in fixed])
+    small = tuple([zero_components(torque.vector(DIRECTED[torque.kind]), initial) for torque in fixed])
     return rotates_about, attitude, small

@@ -30,7 +30,7 @@ from symrot.scene.torque import Torque
 
 __all__ = [
     "ATTITUDE_QUANTITIES", "DIRECTED", "RULES", "RULES_UNDER_EXTERNAL_TORQUE", "RuleOutcome", "pattern",
-    "small_components",
+    "zero_components",
 ]  # fmt: skip
 
 ZERO, ONE, MINUS_ONE, FREE = Pattern  # a global name is looked up faster than a member of an Enum
@@ -198,7 +198,7 @@ def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, scene_torque
     if torque.kind == "constant_space":
         return _lies_along(scene_torque.vector("torque"), axis, scene)
     if torque.kind == "gravity":  # a pendulum: level axis, centre of mass off the axis
-        level = small_components(scene_torque.vector("direction"), scene.initial)[axis]
+        level = zero_components(scene_torque.vector("direction"), scene.initial)[axis]
         return level and torque.vector("center_of_mass")[axis] is ZERO
     return torque.kind == "damping"
 
@@ -223,8 +223,8 @@ def _negligible(value: Fraction, vector: tuple[Fraction, ...]) -> bool:
     return abs(value) <= max(map(abs, vector)) * NEGLIGIBLE
 
 
-def small_components(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[bool, ...]:
-    """Return, for each body component of a vector in space components, whether it is zero at the initial attitude."""
+def zero_components(vector_s: tuple[Fraction, ...], initial: Initial) -> tuple[bool, ...]:
+    """Return which of the three body components of the space vector ``vector_s`` are zero at the initial attitude."""
     if _all_large(vector_s, initial):
         return False, False, False
     # Zero to 2^-200 of the largest one: the quaternion of most attitudes is irrational and therefore rounded.
@@ -247,7 +247,7 @@ def _all_large(vector_s: tuple[Fraction, ...], initial: Initial) -> bool:
 
 
 def _lies_along(vector_s: tuple[Fraction, ...], axis: int, scene: Scene) -> bool:
-    small = small_components(vector_s, scene.initial)
+    small = zero_components(vector_s, scene.initial)
     return all(small[i] for i in range(3) if i != axis)
 
 
@@ -295,9 +295,9 @@ def _constant_spin(scene: Scene, structure: Structure) -> RuleOutcome:
 
 
 def _constant(scene: Scene, *axes: int) -> tuple[Pattern | None, Pattern | None, Pattern | None]:
-    """Return, for each component of omega_b, None if it changes, else its pattern: zero, or free (a parameter).
+    """Return, for each component of omega_b, its pattern (zero, or free) if it is constant, or None if it changes.
 
-    ``axes`` lists the constant ones.
+    ``axes`` lists the numbers, 0 to 2, of the constant components.
     """
     first, second, third = (
         pattern(w, unit=False) if axis in axes else None for axis, w in enumerate(scene.initial.omega_b)

@@ -1,4 +1,7 @@
-"""Drawing of curves over time in one panel: fast oscillations become a filled band, overlapping curves are dashed."""
+"""Drawing of curves over time in one panel: fast oscillations become a filled band, overlapping curves are dashed.
+
+Lengths in a panel are counted in columns of 1/150 inch, about a pixel of a printed figure.
+"""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -26,9 +29,7 @@ BAND_NOTE = "filled: least to greatest"
 
 
 def columns_of(axes: Any) -> tuple[float, float]:
-    """Return the width and the height of matplotlib axes in columns, units of 1/150 inch, about a pixel of a printed
-    figure.
-    """
+    """Return the width and the height of matplotlib axes, in columns of 1/150 inch."""
     # curves are thinned out to what differs between neighbouring columns
     box, dpi = axes.get_window_extent(), axes.figure.dpi
     return COLUMNS_PER_INCH * box.width / dpi, COLUMNS_PER_INCH * box.height / dpi
@@ -49,7 +50,7 @@ def is_too_fast(t: Floats, values: Floats, columns: float, visible: float) -> bo
     t, values : arrays, shape (n,)
         Times in increasing order, and the values of the curve there.
     columns : float
-        The width of the panel in pixels.
+        The width of the panel in columns.
     visible : float
         The least change that can be seen, in the unit of the values; smaller oscillations, such as rounding errors, do
         not count.
@@ -68,7 +69,7 @@ def envelope(t: Floats, values: Floats, columns: float) -> tuple[Floats, Floats,
     t, values : arrays, shape (n,)
         Times in increasing order, and the values of the curve there.
     columns : float
-        The width of the panel in pixels. A bin is at least one pixel wide and holds about two periods of the curve.
+        The width of the panel in columns. A bin is at least one column wide and holds about two periods of the curve.
 
     Returns
     -------
@@ -123,7 +124,10 @@ def _long_runs(mask: Mask, fraction: float) -> Mask:
 
 
 def _pieces(values: Floats, hidden: Mask) -> Iterator[tuple[Floats, bool]]:
-    """Yield two parts of a curve, the longer first, each with a flag: whether the part hides an earlier curve."""
+    """Yield the two parts of a curve, hidden and not hidden, the longer first, as pairs (values, whether it is hidden).
+
+    Values outside the part are NaN.
+    """
     grown = hidden.copy()  # both parts share their end points, so that the curve has no gaps
     grown[1:] |= hidden[:-1]
     grown[:-1] |= hidden[1:]
@@ -135,8 +139,9 @@ def _pieces(values: Floats, hidden: Mask) -> Iterator[tuple[Floats, bool]]:
 
 def draw_curves(axes: Any, t: Floats, curves: Sequence[Floats], names: Sequence[str], colours: Sequence[str] = COLOURS,
                 widths: Sequence[float] = WIDTHS) -> None:  # fmt: skip
-    """Draw curves over the times ``t`` and label them; NaN interrupts a curve, and the scale of the axes must be set
-    before.
+    """Draw curves over the times ``t`` and label them; NaN interrupts a curve.
+
+    The scale of the axes must be set before.
     """
     size = columns_of(axes)
     scale = np.log10 if axes.get_yscale() == "log" else np.asarray

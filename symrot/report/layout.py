@@ -30,7 +30,9 @@ def number_text(value: float | Fraction, digits: int = 6) -> str:
 
 
 def apart(*values: float) -> list[str]:
-    """Return numbers as text with six digits, or as many more as distinguish the closest two of them."""
+    """Return numbers as texts with six digits, or with as many more as are needed to tell the two closest numbers
+    apart.
+    """
     ordered = sorted({float(value) for value in values})
     nearest = min((after - before for before, after in pairwise(ordered)), default=math.inf)
     digits = 6
@@ -59,7 +61,7 @@ def emphasis(text: str, stream: TextIO) -> str:
 
 
 def room(most: int = WIDTH) -> int:
-    """Return the width, in characters, of lines to print: that of the terminal, but at most ``most``.
+    """Return the width of printed lines in characters: the width of the terminal or ``most``, whichever is smaller.
 
     If the output goes to a pipe or file, the width is ``most``.
     """
@@ -149,7 +151,10 @@ def _widths(rows: Sequence[Sequence[str]], width: int, wrap: int, right: Sequenc
 
 
 def _parts(widths: Sequence[int], width: int, right: Sequence[int]) -> list[list[int]]:
-    """Return how a table that is too wide for a line is split: the indices of the columns in each part."""
+    """Return how a table that is too wide for a line is split: the indices of the columns in each part.
+
+    Every part begins with column 0; ``right`` has the indices of right-aligned columns (numbers).
+    """
     # each part has the first column
     parts = [[0]]
     for i in range(1, len(widths)):

@@ -188,7 +188,7 @@ class PlanRow(TypedDict):
 class OperationsRecord(TypedDict):
     """Numbers of operations in one evaluation of the rates ``dy/dt``.
 
-    ``general`` is that of the equations for any body, ``specialised`` that of the equations after the plan's rules.
+    ``general`` is for the equations of any body, ``specialised`` for the equations that the plan has simplified.
     """
 
     general: int
@@ -233,7 +233,7 @@ class DriftRecord(TypedDict):
 
 
 class EventRecord(TypedDict):
-    """The times, s, of one event and its kind at each of them, as recorded in a file of samples."""
+    """The times, s, of one event in a file of samples, and whether it is rising, falling or touching at each time."""
 
     formula: str
     kinds: list[str]

@@ -53,7 +53,7 @@ class Window:
         return next((step for step in GRIDS if step * 4.0 <= across), GRIDS[-1])
 
     def contains(self, x: float, y: float) -> bool:
-        """Return whether a point of the drawing lies well inside the window."""
+        """Return whether a point of the drawing lies in the window, at least 5 % of half its width from the edge."""
         return max(abs(x - self.centre[0]), abs(y - self.centre[1])) < 0.95 * self.half
 
 
@@ -170,7 +170,10 @@ def _levels(axes: Any, view: Floats, value: Callable[[Floats], Floats], window: 
 def _path(
     axes: Any, points: Floats, gaps: NDArray[np.bool_], front: NDArray[np.bool_] | None = None, width: float = 1.3
 ) -> None:
-    """Draw a path through points of the drawing, shape (n, 2), coloured from dark at its start to light at its end."""
+    """Draw a path through points of the drawing, shape (n, 2), coloured from dark at its start to light at its end.
+
+    The path is interrupted after points where ``gaps`` is true, and paler where ``front`` is false.
+    """
     from matplotlib import colormaps
     from matplotlib.collections import LineCollection
 
@@ -203,7 +206,7 @@ def _path(
 
 
 def _gaps(directions: Floats, extent: float = 1.0) -> NDArray[np.bool_]:
-    """Return a mask of the directions that are too far from the next direction of a path for a line between them."""
+    """Return a mask of a path's directions: True if the next direction is too far away to be joined by a line."""
     steps = np.linalg.norm(np.diff(directions, axis=0), axis=1)
     # relative to the size of the path, rad; the last direction has no next one
     return np.append(steps > LONGEST * extent, False)

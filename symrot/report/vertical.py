@@ -45,7 +45,10 @@ def local_vertical(t: Floats, mean_motion: float) -> Floats:
 
 
 def vertical_angles(trajectory: Any) -> VerticalAngles:
-    """Return the angles between the body and the vertical of a motion whose scene has one (:func:`has_vertical`)."""
+    """Return the angles, rad, between a line of the body and the vertical, at the times of a motion.
+
+    The line is that from the fixed point to the centre of mass, or a satellite's long axis.
+    """
     torque = next(item for item in trajectory.scene.torques if item.kind in ("gravity", "gravity_gradient"))
     if torque.kind == "gravity":
         # from the fixed point to the centre of mass

@@ -160,7 +160,7 @@ _entry = number("an entry of an inertia tensor in kg m^2")
 
 
 def _rows_of_tensor(value: Any, where: str) -> Matrix:
-    """Return the inertia tensor that ``value``, three rows in a scene, gives.
+    """Return the inertia tensor whose three rows a scene gives as ``value``, the entry with the name ``where``.
 
     Entries ij and ji that differ only by rounding become their mean; other differences raise InputError.
     """
@@ -191,7 +191,9 @@ def _tensor(value: Any, where: str) -> Matrix:
 
 
 def _body_of_moments(inertia: Matrix, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return the body whose inertia tensor, about the point of rotation, a scene gives directly."""
+    """Return the body with the tensor ``inertia`` about its point of rotation; ``values`` hold mass, name and
+    ``about``.
+    """
     about, center = values["about"], values["center_of_mass"]
     if about == "center_of_mass":
         if center is not None and any(center):
@@ -271,7 +273,10 @@ def _density(unit: str) -> Reader:
 
 
 def _read_shape_table(value: Mapping[str, Any], where: str, others: Mapping[str, Entry]) -> tuple[Part, dict[str, Any]]:
-    """Return the shape that a table with the key ``shape`` describes, and the values of all keys of the table."""
+    """Return the shape in a table such as ``{shape = "sphere", radius = 1, mass = 2}``, and all values of the table.
+
+    ``others`` are further keys that the table may have, such as ``name``.
+    """
     if "shape" not in value:
         fail(f"{where}.shape", f"one of the shapes {', '.join(SHAPES)}, the key is missing")
     shape = _shape_name(value["shape"], f"{where}.shape")
@@ -318,13 +323,18 @@ def _bounded(value: Any, where: str) -> None:
 
 
 def _placed(parts: Sequence[Part], values: Mapping[str, Any], where: str, source: str, of_parts: str) -> Body:
-    """Return the body composed of ``parts``, with its inertia about its centre of mass or about the fixed point."""
+    """Return the body composed of ``parts``; ``values`` say about which point it rotates, its centre of mass by
+    default.
+
+    ``source`` describes the body; ``where`` and ``of_parts`` are names for messages.
+    """
     return _about_point(mass_properties(parts, of_parts), values, where, source)._replace(parts=tuple(parts))
 
 
 def _about_point(properties: MassProperties, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return a body with the given mass properties, and its inertia about the point of rotation that
-    ``values`` names.
+    """Return a body with the given mass properties, and its inertia about the point of rotation in ``values``.
+
+    That is the centre of mass, or the entry ``fixed_point``.
     """
     about, point = values["about"], values["fixed_point"]
     if about == "center_of_mass" and point is not None:

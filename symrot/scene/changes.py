@@ -64,7 +64,7 @@ class Place(NamedTuple):
 
 
 class _Scene(NamedTuple):
-    """What :func:`changed` works on: the content of a scene, and the exact values that were read from this content."""
+    """The content of a scene, and the exact values that were read from it: the input of :func:`changed`."""
 
     content: Content
     omega_b: Sequence[Fraction]
@@ -371,9 +371,9 @@ def _set_inertia(scene: _Scene, key: str, value: Any) -> None:
 
 
 def _moments(scene: _Scene, inertia: Content) -> Content:
-    """Return a table ``[body]`` that gives the scene's body by the entries ``inertia`` instead of by its shapes.
+    """Return the table ``[body]`` of a scene with moments of inertia instead of shapes.
 
-    ``inertia`` holds ``principal`` or ``inertia``; name, mass and centre of mass are those of the present body.
+    The moments are ``inertia``, such as ``{"principal": [1, 2, 3]}``. Name, mass and centre of mass stay the same.
     """
     body, content = scene.body, scene.content["body"]
     moments: Content = {**inertia, "about": body.about, "name": content.get("name", "")}

@@ -83,7 +83,9 @@ class Scene:
 
     @property
     def torque_kinds(self) -> tuple[str, ...]:
-        """The kinds of all torques, such as ``("gravity", "damping")``; ``"table"`` comes last if there are samples."""
+        """The kinds of all torques, such as ``("gravity", "damping")``; the kind of a sampled torque (``table``) comes
+        last.
+        """
         table = () if self.table is None else (self.table.kind,)
         return (*(torque.kind for torque in self.torques), *table)
 

@@ -115,9 +115,9 @@ def errata() -> tuple[Erratum, ...]:
 
 
 def conditions() -> tuple[Condition, ...]:
-    """Return conditions that documents leave out, as :class:`Condition`; with them, symrot proves their claims.
+    """Return conditions that documents leave out although their claims are true only with them.
 
-    For other claims symrot finds the missing condition by itself; these cannot be found in this way.
+    Conditions that symrot infers from a claim by itself are not in the list.
     """
     return tuple(
         Condition(entry["claim"], tuple(entry["given"]), entry["words"]) for entry in _content("errata")["condition"]
@@ -125,7 +125,9 @@ def conditions() -> tuple[Condition, ...]:
 
 
 def lines(name: str) -> tuple[Line, ...]:
-    """Return the lines of a document that state no new formula; ``name`` is one of :data:`DOCUMENTS`."""
+    """Return the lines of the document ``name`` that have a relation sign but state no new formula, such as
+    repetitions.
+    """
     return tuple(Line(*entry) for entry in _content("lines")[name])
 
 

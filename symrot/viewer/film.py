@@ -178,7 +178,7 @@ def _polygons(patch: Patch) -> list[Floats]:
 
 
 def _curves(patch: Patch) -> list[list[Point]]:
-    """Return the lines of a patch that is no surface: a curve as one list of points, or single points."""
+    """Return the points of a curve as one list, or, for a patch of single points, one list for each point."""
     return [patch.points] if patch.columns else [[point] for point in patch.points]
 
 

@@ -150,7 +150,7 @@ def test_a_section_for_the_library_must_exist(monkeypatch):
     page = derivation("driven_rotation")
     monkeypatch.setitem(LESSONS, "driven_rotation", replace(LESSONS["driven_rotation"], library=("No such",)))
     with pytest.raises(
-        InputError, match=r"expected the appendix to have the last sections of the page, .*, got \['No such'\]"
+        InputError, match=r"expected the appendix to consist of the last sections of the page, .*, got \['No such'\]"
     ):
         taught(page)
 

@@ -150,14 +150,14 @@ def test_doubles_settle_which_torques_lie_along_an_axis(monkeypatch):
     for row in [*chance.standard_normal((200, 4)), *chance.integers(-2, 3, (400, 4)), clear, level]:
         if np.any(row):
             start = Initial((0, 0, 1), number.unit([Fraction(float(x)) for x in row]))
-            found = rules.small_components(vector, start)
+            found = rules.zero_components(vector, start)
             turned = exact(vector, start)
             assert found == tuple(abs(x) <= max(map(abs, turned)) / 2**200 for x in turned)
     monkeypatch.setattr(rules, "_in_body", None)
     given = started(SCENES["turned top"], (0.0, 0.0, 1.0), clear)
     structure_key(given, given.initial)
     with pytest.raises(TypeError):
-        rules.small_components((Fraction(0), Fraction(0), Fraction(1)), started(given, None, level).initial)
+        rules.zero_components((Fraction(0), Fraction(0), Fraction(1)), started(given, None, level).initial)
 
 
 def test_quantities_of_a_changed_start_use_one_kernel(monkeypatch):

@@ -1,4 +1,6 @@
-"""Addresses of heyoka's compiled functions, so that its machine code can be timed in the same loops as other code."""
+"""Addresses of the functions that heyoka compiles, so that its machine code is timed in the same loops as other
+code.
+"""
 
 import ctypes
 import subprocess
@@ -18,9 +20,9 @@ _LOADED = Path("/proc/self/maps")
 
 @cache
 def _function(name: str) -> Any:
-    """Return heyoka's compiled function for the textbook formulas of the kernel ``name``.
+    """Return heyoka's compiled function of the textbook formulas for the kernel ``name``.
 
-    It also computes ``LANES`` samples at once, in a SIMD vector.
+    The function can also compute ``LANES`` samples at once, in a SIMD vector.
     """
     import heyoka
 
@@ -31,8 +33,9 @@ def _function(name: str) -> Any:
 
 
 def heyoka_code(name: str) -> tuple[Any, Any, Any]:
-    """Return the addresses of heyoka's C functions of a kernel: for one sample, and for one or ``LANES`` samples of a
-    batch.
+    """Return the addresses of the three functions that heyoka compiles for a kernel.
+
+    One computes a single sample; the others compute one sample, or ``LANES`` samples, of a batch.
 
     Raises
     ------
@@ -54,8 +57,9 @@ def heyoka_code(name: str) -> tuple[Any, Any, Any]:
 
 
 def _linked(directory: Path, index: int, code: bytes) -> Any:
-    """Link heyoka's object code into the shared library number ``index`` in ``directory``; return the address of its
-    function.
+    """Link heyoka's object code into a shared library in ``directory``; return the address of the function.
+
+    ``index`` is part of the library's file name.
     """
     (directory / f"{index}.o").write_bytes(code)
     made = directory / f"{index}.so"

@@ -1,7 +1,7 @@
 """Processor times of several runs that alternate, so that all run under the same conditions.
 
 All runs are timed once per round. A run of microseconds is repeated until the clock can resolve it; a run of seconds is
-timed in fewer rounds. The result is the median over the rounds; the least time is recorded too.
+timed in fewer rounds. The median and the least time over the rounds are recorded.
 """
 
 import gc
@@ -20,7 +20,7 @@ SLOW, SLOW_ROUNDS = 0.2, 2  # a run that takes at least SLOW seconds is timed in
 
 @dataclass
 class Measured:
-    """One method or program at one tolerance: steps, error, and processor seconds in each round."""
+    """One method or program at one tolerance: number of steps, error, and processor seconds in each round."""
 
     name: str
     tolerance: float
@@ -45,7 +45,7 @@ class Measured:
 
 
 def seconds_of(run: Callable[[], object], repeats: int = 1) -> float:
-    """Return the processor seconds of one run, averaged over ``repeats`` runs."""
+    """Call ``run`` ``repeats`` times, and return the mean processor time of one call, s."""
     began = process_time()
     for _ in range(repeats):
         run()
@@ -53,9 +53,7 @@ def seconds_of(run: Callable[[], object], repeats: int = 1) -> float:
 
 
 def rounds_for(seconds: float, rounds: int) -> int:
-    """Return the number of rounds in which a run of ``seconds`` is timed: ``rounds``, or at most :data:`SLOW_ROUNDS`
-    for slow runs.
-    """
+    """Return in how many rounds a run is timed: ``rounds``, or at most :data:`SLOW_ROUNDS` if it takes many seconds."""
     return rounds if seconds < SLOW else min(rounds, SLOW_ROUNDS)
 
 
@@ -64,7 +62,7 @@ def _repeats(seconds: float) -> int:
 
 
 def work_ahead(measured: Iterable[Measured], rounds: int) -> float:
-    """Return an estimate of the time, s, of all timed rounds of all ``measured`` methods, from their first runs."""
+    """Return the estimated time, s, of a race of all ``measured`` methods in ``rounds`` rounds."""
     return sum(one.first * _repeats(one.first) * rounds_for(one.first, rounds) for one in measured)
 
 
@@ -73,9 +71,10 @@ def race(
     rounds: int,
     turn: Callable[[int], object] = lambda number: None,
 ) -> None:
-    """Time all runs alternately, and append the measured seconds to each run's entry.
+    """Time all runs alternately, and append the seconds of each run to its entry.
 
-    ``entries`` are pairs (entry, function to be timed).
+    ``entries`` are pairs (entry, function to be timed); ``turn(number)`` is called at the start of each round, to
+    report the progress.
     """
     collecting = gc.isenabled()
     gc.disable()

@@ -70,7 +70,7 @@ class Reference(NamedTuple):
 
     @property
     def doubt(self) -> float:
-        """The smallest difference from another reference; errors of methods below it are meaningless.
+        """The smallest difference between this reference and another one; smaller errors of methods mean nothing.
 
         It is nan if there is no other reference.
         """
@@ -267,9 +267,10 @@ def _grid(problem: Problem) -> list[float]:
 def _fixed_steps(
     general: Problem, name: str, files: Sequence[Path], fewest: int, grid: Sequence[float]
 ) -> Callable[[int], Any]:
-    """Return a function from a number of steps to the integrated states at the times of comparison.
+    """Return a function from a number of steps (at least ``fewest``) to the integrated states at the times
+    ``general.ends``.
 
-    A step ends at each time in ``grid``.
+    The method ``name`` is compiled from ``files``. A step ends at each time of ``grid``.
     """
     parts = [
         general.kernel.source,

@@ -1,8 +1,9 @@
-"""Comparison of derivatives of motions by initial values and constants: symrot, and heyoka's variational equations.
+"""Times and errors of derivatives of a motion by initial values and constants: symrot, and heyoka's variational
+equations.
 
     python -m symrot.bench.comparison.sensitivities [--rounds 7] [--settings default fast compact] [--motion NAME ..]
 
-Both integrate the motion with its derivatives as one system of equations. The error is the largest against a difference
+Both programs integrate the motion together with its derivatives. The error is the largest difference from a difference
 quotient of two motions in 40 digits.
 """
 
@@ -34,7 +35,9 @@ Floats = NDArray[np.float64]
 
 
 class Case(NamedTuple):
-    """A motion of :data:`symrot.bench.taylor.MOTIONS`, its duration in s, and the variables of its derivatives."""
+    """A motion of :data:`symrot.bench.taylor.MOTIONS`, its duration, s, and the variables by which it is
+    differentiated.
+    """
 
     motion: str
     duration: int
@@ -53,7 +56,7 @@ STATES = 7
 
 
 def reference(case: Case, variable: str) -> Floats:
-    """Return the derivatives of the seven states at the last time by one variable, from motions of 40 digits."""
+    """Return the derivatives of the seven states by ``variable`` at the last time, from motions in 40 digits."""
     import mpmath
 
     scene = motion_scene(case.motion)
@@ -76,7 +79,10 @@ def reference(case: Case, variable: str) -> Floats:
 
 
 def _heyoka(case: Case, scene: Scene, settings: dict[str, bool]) -> Callable[[], Floats]:
-    """Return a function that runs heyoka once and returns the derivatives at the last time, shape (7, variables)."""
+    """Return a function that runs heyoka and returns the derivatives of the seven states at the last time.
+
+    Their shape is (7, number of variables).
+    """
     import heyoka
 
     problem = Problem(scene, Plan(scene, general_structure(scene), ()))
@@ -105,7 +111,10 @@ def _heyoka(case: Case, scene: Scene, settings: dict[str, bool]) -> Callable[[],
 
 
 def _symrot(case: Case, scene: Scene) -> Callable[[], Floats]:
-    """Return a function that calls symrot's propagator and returns the derivatives at the last time, as _heyoka."""
+    """Return a function that runs symrot and returns the derivatives of the seven states at the last time.
+
+    Their shape is (7, number of variables).
+    """
     own = propagator(scene, sensitivities=case.variables)
     times, omega = np.array([float(case.duration)]), [float(rate) for rate in scene.initial.omega_b]
 
@@ -118,12 +127,14 @@ def _symrot(case: Case, scene: Scene) -> Callable[[], Floats]:
 
 
 def _error(computed: Floats, exact: Floats) -> float:
-    """Return the largest error of a column of derivatives, divided by the largest of the column's numbers."""
+    """Return the largest error of the columns of ``computed``, each relative to the largest number of the column in
+    ``exact``.
+    """
     return float((np.abs(computed - exact).max(axis=0) / np.abs(exact).max(axis=0)).max())
 
 
 def measure(case: Case, rounds: int, settings: Sequence[str]) -> list[Measured]:
-    """Return the measured runs of one case: symrot's first, then heyoka's in each of the settings."""
+    """Return the measured runs of one case: the run of symrot, then one run of heyoka for each of the ``settings``."""
     scene = motion_scene(case.motion)
     exact = np.stack([reference(case, variable) for variable in case.variables], axis=1)
     runs = {"symrot": _symrot(case, scene)}
@@ -137,7 +148,7 @@ def measure(case: Case, rounds: int, settings: Sequence[str]) -> list[Measured]:
 
 
 def main() -> None:
-    """Print the times and errors of all cases; the ratio is that of heyoka's fastest setting to symrot."""
+    """Print times and errors for all cases, and the ratio of heyoka's time in its fastest setting to symrot's time."""
     parser = argparse.ArgumentParser(description="derivatives of motions: symrot and heyoka")
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--settings", nargs="*", default=list(SETTINGS), choices=list(SETTINGS))

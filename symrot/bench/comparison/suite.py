@@ -43,7 +43,7 @@ def motions() -> dict[str, tuple[str, Scene]]:
 
 
 class _Checkpoint:
-    """The finished studies of an interrupted run, stored in a file; only a run with the same settings uses them."""
+    """The finished studies of an interrupted run, stored in a file; a run with other settings ignores them."""
 
     def __init__(self, directory: Path, **settings: Any) -> None:
         self.path = directory / "unfinished.json"
@@ -118,7 +118,7 @@ def run(
 
 
 def _compact(results: Mapping[str, Any]) -> str:
-    """Return the results of the suite as JSON text, one motion a line, with numbers of four significant digits."""
+    """Return the results of the suite as JSON text: one line per motion, numbers with four significant digits."""
     studies = results["studies"].items()
     rows = ",\n".join(f"{json.dumps(name)}: {json.dumps(_short(one), ensure_ascii=False)}" for name, one in studies)
     rest = ",\n".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in results.items() if key != "studies")
@@ -134,8 +134,9 @@ def _short(value: Any, name: str = "") -> Any:
 
 
 def summary(studies: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return the median and the smallest ratio of each other program's time to symrot's time, over all studies and
-    errors.
+    """Return, for each other program, the median and the smallest of the ratios of its time to symrot's time.
+
+    There is one ratio for each motion and each power of ten of the error.
     """
     rows = []
     for peer in PEERS:
@@ -158,7 +159,7 @@ def _cell(one: Mapping[str, Any], peer: str) -> str:
 
 
 def _ratio(middle: float, least: float) -> str:
-    """Return the text of a median ratio and the smallest ratio: ``(12.3, 3.4)`` gives ``"12 (3.4)"``."""
+    """Return the text for a median and a smallest ratio: ``(12.3, 3.4)`` gives ``"12 (3.4)"``."""
     return " ".join(
         form.format(f"{value:.{0 if value >= 10 else 1}f}") for form, value in (("{}", middle), ("({})", least))
     )
@@ -197,7 +198,9 @@ LEGEND = (
 
 
 def lines(results: Mapping[str, Any]) -> list[str]:
-    """Return the table of the suite's ``results``, from :func:`run`, as lines of text; the first is the title."""
+    """Return the table of the suite as lines of text, the first of which is the title; ``results`` come from
+    :func:`run`.
+    """
     rows = _rows(results)
     table = columns(rows, width=room(220), wrap=0, right=range(1, len(rows[0])))
     return [
@@ -210,7 +213,7 @@ def lines(results: Mapping[str, Any]) -> list[str]:
 
 
 def page(results: Mapping[str, Any]) -> str:
-    """Return the table of the suite's ``results``, from :func:`run`, as a Markdown page that names the machine."""
+    """Return the table of the suite as a Markdown page that names the machine; ``results`` come from :func:`run`."""
     head, *rows = _rows(results)
     one = next(iter(results["studies"].values()))
     machine = one["machine"]

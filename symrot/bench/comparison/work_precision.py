@@ -1,8 +1,8 @@
 """Work-precision studies: time and error of every available method on one scene.
 
-The error is the largest at four instants of the span, each reached by a separate run, against a more precise reference.
-For each power of ten of the error (decade), the table has the fastest run of at most that error; no curve is
-smoothed or extended.
+Each method runs to four instants of the span; its error is the largest difference there from a more precise reference.
+For each power of ten of the error (decade), the table has the fastest run of at most that error; no curve is smoothed
+or extended.
 """
 
 import hashlib
@@ -114,7 +114,7 @@ def study(
 
 
 def digest(problem: Problem) -> str:
-    """Return a hash by which stored results are assigned to a motion: body, initial state, torques and span."""
+    """Return a hash of a motion (body, initial state, torques, span), by which stored results are assigned to it."""
     scene = problem.scene
     moving = (scene.body.inertia, scene.initial, scene.torques, scene.span.start, scene.span.stop, problem.names)
     return hashlib.sha256(repr(moving).encode()).hexdigest()[:16]
@@ -123,7 +123,7 @@ def digest(problem: Problem) -> str:
 def _entries(
     problem: Problem, contestants: Sequence[Contestant], effort: Effort, exact: Sequence[State], say: Progress
 ) -> tuple[list[Entry], list[dict[str, str]]]:
-    """Return every run (a contestant at one tolerance) with its error, and the skipped contestants with the reasons."""
+    """Return one entry with its error for each method and tolerance, and the skipped methods with reasons."""
     entries: list[Entry] = []
     skipped = []
     for contestant in contestants:
@@ -169,8 +169,9 @@ def best(runs: Iterable[dict[str, Any]], error: float) -> dict[str, Any] | None:
 
 
 def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str, Any]]:
-    """Return one row of the printed table for each decade of the error: methods, their times and ratios to
-    the fastest.
+    """Return the rows of the printed table, one for each power of ten of the error (decade) down to ``floor``.
+
+    A row has each method's time and its ratio to the time of the fastest method.
     """
     names = list(dict.fromkeys(run["method"] for run in runs))
     rows = []
@@ -194,7 +195,9 @@ def decades(runs: Sequence[dict[str, Any]], floor: float = 0.0) -> list[dict[str
 
 
 def against(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return, for each other program, the median and least ratio of its time to symrot's over all decades."""
+    """Return, for each other program, the median and the smallest of the ratios of its time to symrot's, over all
+    decades.
+    """
     peers = list(dict.fromkeys(name for row in rows for name in row["methods"] if name not in (*OURS, "symrot scipy")))
     settings = [name for name in peers if name.startswith("heyoka")]
     asked = [(name, (name,)) for name in peers]
@@ -215,7 +218,11 @@ def against(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _ratios(rows: Sequence[dict[str, Any]], ours: Sequence[str], theirs: Sequence[str]) -> dict[str, float]:
-    """Return, for each decade that both reach, the least time of methods ``theirs`` divided by that of ``ours``."""
+    """Return, for each decade, the least time of the methods ``theirs`` divided by the least time of the methods
+    ``ours``.
+
+    Decades that one side does not reach are left out.
+    """
     ratios = {}
     for row in rows:
         sides = [[row["methods"][name]["seconds"] for name in names if name in row["methods"]]
@@ -226,7 +233,7 @@ def _ratios(rows: Sequence[dict[str, Any]], ours: Sequence[str], theirs: Sequenc
 
 
 def machine() -> dict[str, Any]:
-    """Return a description of the machine, and the versions of programs, with which times were measured."""
+    """Return a description of the machine on which times are measured, and the versions of the programs."""
     return {
         "processor": _processor(), "cores": os.cpu_count(), "load": list(os.getloadavg()) if _has_load() else None,
         "python": platform.python_version(), "numpy": np.__version__,

@@ -35,7 +35,7 @@ FROM = 30.0  # number of revolutions after which the power of growth is fitted
 
 
 class Curve(NamedTuple):
-    """Errors of one method along one motion at several times; nan after the time at which the method stopped."""
+    """Errors of one method at several times of one motion; nan after the time at which the method stopped."""
 
     method: str
     attitude: Floats  # rad, shape (n,)
@@ -67,18 +67,19 @@ class Track:
 
     @staticmethod
     def rough(scene: Scene) -> str:
-        """Return why a motion has no Taylor series, such as a torque that jumps; an empty text if it has one."""
+        """Return why a motion has no Taylor series, such as a torque that jumps, or an empty text if it has one."""
         return non_smooth_torque(propagator(scene, "scipy").plan)
 
     def trajectory(self, states: Floats, motion: Motion | None = None) -> Trajectory:
-        """Return the ``states`` as a trajectory of ``motion`` (default: the scene's) at the first times of
-        this track.
+        """Return the trajectory of ``motion`` (default: the scene's) that consists of ``states``.
+
+        The states belong to the first ``len(states)`` times of this track.
         """
         # There are fewer states than times if a method stopped early.
         return Trajectory(motion or self.motion, self.times[: len(states)], states, "", Stats(0, 0, 0, 0.0), "")
 
     def curve(self, method: str, trajectory: Trajectory) -> Curve:
-        """Return the errors of a method along the motion, from its trajectory; ``method`` is the name of the curve."""
+        """Return the errors of ``trajectory`` along the motion, as a curve with the name ``method``."""
         count, blank = len(trajectory), np.full(len(self.times), np.nan)
         q, r = trajectory.quaternion, self.truth.quaternion[:count]
         chord = np.minimum(*(np.linalg.norm(q - sign * r, axis=1) for sign in (1, -1)))
@@ -93,7 +94,9 @@ class Track:
         return Curve(method, attitude, rates, invariants)
 
     def turns(self, t: float) -> float:
-        """Return the number of revolutions in t s at the initial angular speed."""
+        """Return how many revolutions the body would make in the time ``t``, s, at its initial angular speed:
+        ``speed*t/(2 pi)``.
+        """
         return self.speed * t / (2.0 * math.pi)
 
 
@@ -158,7 +161,7 @@ def _rk4(normalised: bool) -> Callable[[Track, Floats], Trajectory | None]:
 
 
 class Method(NamedTuple):
-    """A method for computing a motion, with the largest numbers of revolutions for which it is run."""
+    """A method for computing a motion, and up to how many revolutions it is run: by default, and with ``--long``."""
 
     name: str
     about: str
@@ -181,7 +184,7 @@ METHODS = (
 
 
 def growth(track: Track, long: bool = False, say: Callable[[str], object] = lambda text: None) -> list[Curve]:
-    """Return the error curves of all methods that can compute this motion, for more revolutions if ``long``."""
+    """Return the error curves of all methods that can compute this motion; ``long`` runs them for more revolutions."""
     curves = []
     for method in METHODS:
         say(f"{track.scene.name}: {method.name} ..")
@@ -194,7 +197,7 @@ def growth(track: Track, long: bool = False, say: Callable[[str], object] = lamb
 
 
 def exponent(revolutions: Floats, errors: Floats) -> float:
-    """Return the exponent k of errors that grow as t^k; nan from fewer than four points."""
+    """Return the exponent k if errors grow as t^k; nan if there are fewer than four points."""
     # A motion with an error above 0.5 has nothing in common with the exact one.
     chosen = (revolutions >= FROM) & np.isfinite(errors) & (errors > 0.0) & (errors < 0.5)
     if int(chosen.sum()) < 4:
@@ -203,6 +206,6 @@ def exponent(revolutions: Floats, errors: Floats) -> float:
 
 
 def median_curve(curves: list[Any], name: str) -> Floats:
-    """Return the median over several motions of the error ``name``, a field of :class:`Curve` such as ``attitude``."""
+    """Return the median over several curves of the error ``name``, a field of :class:`Curve` such as ``attitude``."""
     medians: Floats = np.exp(np.median(np.log(np.array([getattr(c, name) for c in curves]) + 1e-18), axis=0))
     return medians

@@ -33,9 +33,7 @@ class Carried(NamedTuple):
 
 
 def laws() -> list[tuple[str, bool]]:
-    """Return the laws by which one tangent or secant step changes lengths, as pairs (formula, whether it was
-    proven).
-    """
+    """Return how one tangent or secant step changes lengths, as pairs (formula, whether it was proven)."""
     from sympy import Matrix, eye, symbols
 
     from symrot.exact import is_zero
@@ -98,8 +96,9 @@ SCHEMES = {
 
 
 def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.0, 2.0, 3.0)) -> list[Carried]:
-    """Move the corners of a box along a motion in steps; return growth, strain and error for each step size
-    and scheme.
+    """Move the corners of a box along a motion, with each scheme and each step size of ``steps``, s.
+
+    Return one :class:`Carried` for each scheme and step size.
     """
     points, results = _corners(size), []
     motion = propagator(scene)
@@ -123,7 +122,10 @@ def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.
 
 
 def _strain(first: Floats, last: Floats) -> float:
-    """Return the strain of points: the largest ratio of a distance after to before, divided by the least, minus 1."""
+    """Return the strain of moved points: the ratio distance after / distance before differs among pairs of points.
+
+    The strain is the largest ratio divided by the smallest, minus 1.
+    """
     pairs = np.triu_indices(len(first), 1)
     before, after = (np.linalg.norm(each[pairs[0]] - each[pairs[1]], axis=1) for each in (first, last))
     ratios = after[before > 0.0] / before[before > 0.0]

@@ -41,8 +41,8 @@ def derive() -> Derivation:
     d.tabulate(
         "The cosine $c$ of the angle between the first and the last axis determines how close an attitude is to gimbal "
         r"lock: the eigenvalues of $B^{\mathsf T} B$ are $1$ and $1 \pm c$, and $B^{-1} \det B$ is finite at every "
-        "angle. The last column has the sequences that are regular wherever the sequence of the row is in gimbal "
-        "lock.",
+        "angle. The last column of the table lists the sequences that have no gimbal lock wherever the sequence in the "
+        "first column has one.",
         ("Sequence", "Kind", "$c$", "Gimbal lock at", "Sequences without gimbal lock there"),
         [
             (
@@ -54,9 +54,10 @@ def derive() -> Derivation:
     )
     d.section("What is lost at gimbal lock, for the other sequences")
     d.tabulate(
-        "At each singular angle: the combination of angles on which the attitude depends, the direction $n$ (in body "
-        r"components) about which no angle rates rotate the body, and the limit of $\det B\,\dot q$, the angle rates "
-        "times the determinant. It is a multiple of $s$, angle rates that do not rotate the body.",
+        "The table gives for each singular angle: the combination of angles on which the attitude depends; the "
+        "direction $n$ (in body components) about which the body cannot rotate; the limit of the product of the "
+        r"determinant and the angle rates, $\det B\,\dot q$; and angle rates $s$ at which the body is at rest. The "
+        "limit is a multiple of $s$.",
         ("Sequence", r"$\theta$", "Attitude depends on", "$n$", r"$\det B\,\dot q \to$", "$s$"),
         [
             (_cells(sequence, point), _locked(d, sequence, point))

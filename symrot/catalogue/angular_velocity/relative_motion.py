@@ -150,8 +150,8 @@ def _moving(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  
         display=r"\dot\omega_b \times d + \omega_b \times (\omega_b \times d) + 2\,\omega_b \times u + w",
         board=(
             (
-                r"The rate of $R \left( \omega_b \times d + u \right)$ has two terms. In the body the vector in the "
-                r"brackets changes at the first rate, and $\dot R = R\,[\omega_b]_\times$ gives the second:",
+                r"The rate of $R \left( \omega_b \times d + u \right)$ in body components is the rate of the vector in "
+                r"brackets, plus $\omega_b$ times this vector, since $\dot R = R\,[\omega_b]_\times$:",
                 r"\left( \dot\omega_b \times d + \omega_b \times u + w \right) + \omega_b \times \left( \omega_b "
                 r"\times d + u \right)",
             ),

@@ -90,7 +90,8 @@ def _frames(d: Derivation) -> None:
     )
     motion = attitude_rates()
     d.step(
-        "A motion described by a unit quaternion has the spin tensor of its angular velocity.",
+        r"If $R$ is computed from a unit quaternion, $\dot R R^{\mathsf T}$ is the skew matrix of the angular velocity "
+        "in space.",
         rate(dcm_sb, motion) * dcm_sb.T,
         skew(dcm_sb * OMEGA),
         because=r"$\dot q = \tfrac12\,q\,(0, \omega_b)$",

@@ -122,7 +122,7 @@ def _all(d: Derivation) -> None:
 
 
 def _step(d: Derivation, sequence: str) -> Step:
-    """Add the step that the Euler parameters of one sequence give the rotation of its three angles; return the step."""
+    """Add the step that states: the quaternion of Euler parameters gives the rotation matrix of the Euler sequence."""
     return d.step(
         f"The Euler parameters give the rotation {sequence}.",
         quaternion_to_dcm(quaternion_of_euler(sequence)),

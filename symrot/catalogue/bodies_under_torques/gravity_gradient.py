@@ -29,10 +29,10 @@ def derive() -> Derivation:
     n, epsilon, mass = symbols.n, symbols.epsilon, symbols.m
     d.section("The torque")
     d.passage(
-        r"The satellite's centre of mass is at the distance $a = 1/\epsilon$ from the centre of attraction, in the "
-        r"direction $r$. A point of mass $m$ at $\rho = (x, y, z)$ from the centre of mass is attracted by a force "
-        r"that decreases with the square of the distance. On a circular orbit $\mu / a^3 = n^2$, where $n$ is the "
-        "mean motion (Kepler):",
+        r"The satellite's centre of mass is at the distance $a$ from the centre of attraction, in the direction $r$. "
+        r"The small parameter $\epsilon$ is $1/a$. A point of mass $m$ at $\rho = (x, y, z)$ from the centre of mass "
+        r"is attracted by a force that decreases with the square of the distance. On a circular orbit $\mu / a^3 = "
+        r"n^2$, where $n$ is the mean motion (Kepler):",
         (r"F", r"-\,m\,n^2 a\, \frac{r + \epsilon \rho}{|r + \epsilon \rho|^3}"),
     )
     place = R + epsilon * P
@@ -63,7 +63,8 @@ def derive() -> Derivation:
             ("The tidal force is inserted:", r"\rho \times m\,n^2 \left( 3\,(r \cdot \rho)\,r - \rho \right)"),
             (r"$\rho \times \rho = 0$:", r"3 m\,n^2\,(r \cdot \rho)\,\rho \times r"),
             (
-                "The factors are exchanged; a multiple of $r$ may be added to the second factor:",
+                r"The factors of the cross product are exchanged, and a multiple of $r$ is added to the second factor, "
+                r"which changes nothing, since $r \times r = 0$:",
                 r"3 n^2\,r \times m \left( |\rho|^2\,r - (r \cdot \rho)\,\rho \right)",
             ),
             (r"$I_\rho\,r = m \left( |\rho|^2\,r - (r \cdot \rho)\,\rho \right)$:", r"3 n^2\,r \times I_\rho\,r"),

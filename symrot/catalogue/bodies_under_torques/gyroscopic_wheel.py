@@ -121,8 +121,8 @@ def _level(d: Derivation, torque: Matrix, line: Matrix) -> None:
         display="e",
     )
     d.step(
-        "If the axle is pushed around faster than it precesses, it rises; if it is held back, it sinks. The difference "
-        "between the moment of the weight and the torque of the precession acts about the line of nodes.",
+        "If the axle is pushed around faster than it precesses, it rises; if it is held back, it sinks. The torque "
+        "that tips it, the moment of the weight minus the rate of the angular momentum, acts about the line of nodes.",
         (weight - torque.subs(level)).dot(line),
         W * ARM - C * SPIN * PRECESSION,
         because="the rate of the angular momentum is subtracted from the torque of the weight",

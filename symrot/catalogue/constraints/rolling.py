@@ -163,8 +163,8 @@ def _nonholonomic(d: Derivation) -> None:
     bracket = roll.jacobian(state) * turn - turn.jacobian(state) * roll
     aside = R * Matrix([-sin(PSI), cos(PSI), 0, 0])
     d.step(
-        "The sequence turn, roll, turn back, roll back moves the wheel sideways, to second order. No single motion of "
-        "the wheel does this.",
+        "The sequence turn, roll, turn back, roll back, each by a small angle, moves the wheel sideways, in proportion "
+        "to the product of the two angles. Neither motion alone does this.",
         bracket,
         aside,
         because="the sideways motion is the Lie bracket of the two motions",

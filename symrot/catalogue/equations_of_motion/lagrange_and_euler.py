@@ -46,8 +46,8 @@ def _transposition(d: Derivation) -> None:
         (r"E_k[T]", r"\frac{d}{dt} \frac{\partial T}{\partial \dot q_k} - \frac{\partial T}{\partial q_k}"),
     )
     _one_sequence(
-        d, EXAMPLE, f"For the sequence {EXAMPLE}, Lagrange's operator gives a cross product, multiplied by the "
-        r"transpose of $B$."
+        d, EXAMPLE, rf"For the sequence {EXAMPLE}, Lagrange's operator turns $\mu \cdot \omega$ into "
+        r"$\omega \times \mu$, multiplied by the transpose of $B$."
     )  # fmt: skip
     d.passage(
         r"In the kinetic energy $\tfrac12\,\omega \cdot I\,\omega$, the angular momentum $I\,\omega$ takes the place "

@@ -298,11 +298,10 @@ def _theta(d: Derivation) -> None:
         r"For real $u$ the argument of $N(u + w)$ has the derivative $(Y(u + w) - \overline{Y(u + w)})/2i$ with "
         "respect to $u$. The complex conjugate is obtained by replacing $u + w$ by $u - w$ and $i$ by $-i$. By the "
         "addition theorems of [Z and dn](elliptic_functions_appendix.md), the derivative is the real constant "
-        "$Z(w)/2i$ plus a function of sn and dn."
+        "$Z(w)/2i$ plus a function $f$ of sn and dn."
     )
     d.step(
-        "This function of sn and dn, the variable part of the derivative of the argument of $N(u + w)$, is a constant "
-        r"minus a constant multiple of that term of $\dot\psi$ which contains $\Delta$.",
+        r"The function $f$ is a constant minus a constant multiple of the term of $\dot\psi$ that contains $\Delta$.",
         argument,
         H * TWO / (2 * ONE * THREE) - TWO / (2 * ONE * THREE) * (H - THREE * DN) / below,
         because=r"$\mathrm{sn}_w, \mathrm{cn}_w, \mathrm{dn}_w$ are substituted, and the polynomial division "
@@ -324,10 +323,11 @@ def _theta(d: Derivation) -> None:
         named=r"\tfrac12\,\dot\psi + \sigma\,p \left( \frac{d}{du} \arg N(u + w) - \frac{Z(w)}{2 i} \right)",
     )
     d.step(
-        r"The nome is squared for this reason: $Y$ has the derivative $\tfrac12 \left( \mathrm{dn}^2 + "
-        r"i\,\mathrm{dn}' \right)$ minus a constant. The product of this expression and its conjugate has degree two "
-        "in dn, so where one of the two has a double pole, the other is finite. Therefore the zeros of $N$ are at "
-        "every second pole of dn along the imaginary axis.",
+        r"Up to a constant, $Y$ has the derivative $\tfrac12 \left( \mathrm{dn}^2 + i\,\mathrm{dn}' \right)$. The "
+        r"product of $\mathrm{dn}^2 + i\,\mathrm{dn}'$ "
+        r"and its conjugate $\mathrm{dn}^2 - i\,\mathrm{dn}'$ has degree two "
+        "in dn. So at each pole of dn, one factor has a double pole and the other is finite. The zeros of $N$ are "
+        "therefore at every second pole of dn along the imaginary axis. This is why the nome is squared.",
         DN**4 + rate(DN, derivatives()) ** 2,
         (2 - MU) * DN**2 - (1 - MU),
         because="the squares of sn and cn are replaced",

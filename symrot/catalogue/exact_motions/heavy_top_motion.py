@@ -233,8 +233,9 @@ def _theta(d: Derivation) -> None:
             display=r"\frac{\dot u}{2 (1 + u)}" if side == 1 else r"-\frac{\dot u}{2 (1 - u)}",
         )
         d.step(
-            r"The imaginary part of the logarithmic derivative is, up to a constant, the rate of $\tfrac12 (\phi "
-            rf"{sign} \psi)$, if the sign of $w$ is chosen so that $\mathrm{{sn}}_w \mathrm{{cn}}_w \mathrm{{dn}}_w = "
+            r"The imaginary part of the logarithmic derivative of $\mathrm{H}(u + w) / \Theta(u)$ is, up to a "
+            rf"constant, the rate of $\tfrac12 (\phi {sign} \psi)$, if the sign of $w$ is chosen so that "
+            r"$\mathrm{sn}_w \mathrm{cn}_w \mathrm{dn}_w = "
             rf"\mp i\,\frac{{p_\phi {sign} p_\psi}}{{2 A\,p\,(u_2 - u_1)}}$.",
             s2 * c2 * d2,
             (I * momentum / (2 * A * SPEED * (U2 - U1))) ** 2,

@@ -137,8 +137,8 @@ def _rotor(d: Derivation, momentum: Matrix, own: object) -> None:
     d.section("Effect of the rotor")
     d.notation({r"\nu": own, "H": sqrt(squared(momentum))})
     d.step(
-        r"If $h_3 = (A - C)\,\omega_3$, the body does not rotate about its axis relative to the precession. A "
-        "dual-spin satellite uses this.",
+        r"If $h_3 = (A - C)\,\omega_3$, the body does not rotate about its axis relative to a frame that precesses "
+        "with the axis. A dual-spin satellite uses this.",
         own.subs(ROTOR, (A - C) * SPIN),  # type: ignore[attr-defined]
         0,
         because=r"$\nu$ is substituted",

@@ -176,8 +176,8 @@ def _herpolhode(d: Derivation) -> None:
     )
     along = OMEGA.dot(MOMENTUM) / SQUARE * MOMENTUM
     d.step(
-        "The square of the distance of the point of contact from the foot of the perpendicular from the centre to the "
-        r"plane is $|\omega|^2$ minus a constant.",
+        "Let $F$ be the foot of the perpendicular from the centre to the plane. The square of the distance between $F$ "
+        r"and the point of contact is $|\omega|^2$ minus the constant $(2 T / |L|)^2$.",
         squared(OMEGA - along),
         squared(OMEGA) - TWICE_ENERGY**2 / SQUARE,
         because=r"the component of $\omega$ along $L$ is $2 T / |L|$",
@@ -193,7 +193,7 @@ def _herpolhode(d: Derivation) -> None:
         named=r"\dot\omega \cdot L",
     )
     d.step(
-        "For two equal moments the distance of the point of contact from the foot of the perpendicular is constant: "
+        "For two equal moments the distance of the point of contact from $F$ is constant: "
         "polhode and herpolhode are circles.",
         rate(squared(across), FREE).subs(B, A),
         0,

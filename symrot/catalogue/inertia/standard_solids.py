@@ -164,9 +164,9 @@ def _integral(body: Solid, axes: Sequence[int]) -> Expr:
 
 
 def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
-    """Return the antiderivatives of an integral as text for the reason of a step, the innermost first.
+    """Return the antiderivatives of an integral over a solid as text for the reason of a step, the innermost first.
 
-    ``axes`` as in :func:`_integral`. If they are long, return only the last antiderivative.
+    If the text would be long, only the last antiderivative is in it.
     """
     constant, stages = _stages(body, axes)
     formulas = [f"${_latex(factor_terms(stage.antiderivative))}$ in ${_latex(stage.variable)}$" for stage in stages]
@@ -179,9 +179,9 @@ def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
 
 
 def _between(body: Solid, axes: Sequence[int]) -> list[tuple[str, Expr, Expr]]:
-    """Return, for each integration, the equation (words, left, right) for the antiderivative between its limits.
+    """Return, for each integration, the line (words, left, right) that inserts the limits into the antiderivative.
 
-    The equations become lines on the page; ``axes`` as in :func:`_integral`.
+    ``axes`` lists the factors of the integrand: 0 for x, 1 for y, 2 for z.
     """
     equations = []
     for stage in _stages(body, axes)[1]:

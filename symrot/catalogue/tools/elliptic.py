@@ -27,7 +27,9 @@ def derivatives(speed: Expr = S.One, parameter: Expr = MU) -> dict[Symbol, Expr]
 
 
 def squares(parameter: Expr = MU, fixed: bool = False) -> list[Expr]:
-    """Return s^2 + c^2 - 1 and d^2 + mu s^2 - 1, which are zero for sn, cn and dn."""
+    """Return ``[s^2 + c^2 - 1, d^2 + mu s^2 - 1]``, zero for s, c, d = sn, cn, dn at the argument u, or at w if
+    ``fixed``.
+    """
     # with fixed, at the fixed argument w; mu is the parameter
     s, c, d = W_VALUES if fixed else (SN, CN, DN)
     return [c**2 - 1 + s**2, d**2 - 1 + parameter * s**2]

@@ -237,8 +237,10 @@ def weak(d: Derivation) -> None:
 
 
 def _by_legendre(c: Expr) -> dict[Symbol, Expr]:
-    """Return coefficients a_{k+1}, a_k, a_{k-1} of the series of ``sqrt(1 + 2 c h + h^2)`` in h by Legendre
-    polynomials.
+    """Return three neighbouring coefficients, a_{k+1}, a_k, a_{k-1}, of the power series of ``sqrt(1 + 2 c h + h^2)``
+    in h.
+
+    They are formulas in the Legendre polynomials P_k(-c) and P_{k-1}(-c).
     """
     # P_k and P_{k-1} at -c
     above, below = Symbol("P_{k}"), Symbol("P_{k-1}")

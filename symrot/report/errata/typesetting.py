@@ -65,7 +65,7 @@ def _mark(node: Node) -> Node:
 
 
 def _marked_members(old: Node, new: Node) -> tuple[Node, Node]:
-    """Return the printed and the corrected sum or product, with a mark (a box) on the members that only one of them
+    """Return the printed and the corrected sum or product, with boxes around terms or factors that only one of them
     has.
     """
     only_old, only_new = _places_of_others(old, new), _places_of_others(new, old)
@@ -154,7 +154,7 @@ class _Typesetter(Writer):
         return written.strip()
 
     def product(self, node: Node) -> str:
-        r"""Return a product as LaTeX, each divisor as a fraction with the factors before it above:
+        r"""Return a product as LaTeX; factors before a divisor become the numerator of a fraction.
 
         ``a/b*c`` -> ``\frac{a}{b} c``. A vector or matrix is put behind the fraction.
         """
@@ -173,13 +173,16 @@ class _Typesetter(Writer):
         return " ".join([*pieces, *([self._row(above, alone=False)] if above else [])])
 
     def _is_array(self, factor: Node) -> bool:
-        """Return whether a factor is a written-out matrix, or a vector or matrix by its letter."""
+        """Return whether a factor is a written-out matrix, or a letter that denotes a vector or matrix."""
         inner = factor.args[0] if factor.kind == MARK else factor
         letter = self.letters.get(str(inner.value), "") if inner.kind == "name" else ""
         return (inner.kind == "call" and inner.value in ("Matrix", "diag")) or letter.startswith(("\\vec", "\\mathbf"))
 
     def _row(self, factors: list[Node], alone: bool = True) -> str:
-        """Return the product of ``factors`` as LaTeX; a single factor gets no brackets if ``alone``."""
+        """Return the product of ``factors`` as LaTeX: ``[x, y + z]`` gives ``x (y + z)``.
+
+        A single factor has brackets only if ``alone`` is false: it then stands beside a fraction.
+        """
         # false if other parts of the same product, such as a fraction, precede or follow
         alone = alone and len(factors) == 1
         written = ""
