@@ -194,7 +194,7 @@ class Evaluator:
 
 
 class KernelCheck:
-    """The check that a C function computes its formulas, in its versions for one sample and for many (``_batch``)."""
+    """The check that a kernel's C functions, for one sample and for many (``_batch``), compute its formulas."""
 
     def __init__(self, name, data, c_functions):
         self.name, self.readback, self.spec, self.c_functions = name, data["readback"][name], data["spec"], c_functions

@@ -289,7 +289,7 @@ EXACT_FUNCTIONS |= {"copysign": Decimal.copy_sign}
 
 
 class Decimals(Arithmetic):
-    """An arithmetic of 190-digit numbers, in which sin, cos, sqrt, abs, atan2 and copysign have their exact values."""
+    """An arithmetic of 190-digit numbers with sin, cos, sqrt, abs, atan2, copysign; other functions are random."""
 
     def __init__(self):
         super().__init__()
@@ -752,7 +752,7 @@ class CReader(Reader):
     # functions
 
     def new_name(self, what):
-        """Return the next word, which must be a name without a meaning so far, in this text or in C."""
+        """Return the next word, which must be a name that is not in use so far, in this text or in C."""
         name = self.take_name(what)
         known = [self.names, self.parameters, self.kernels, RESERVED, *self.inline.values()]
         for end in REALS.values():
@@ -937,7 +937,10 @@ ROUNDING_SHAPE = {
 
 
 def check_shape(value, shape, place):
-    """Raise ValueError if a value does not have the types in ``shape``; other parts of the value are ignored."""
+    """Raise ValueError if a value does not have the types in ``shape``, such as ``{"name": str, "sizes": [str]}``.
+
+    Other entries of the value are ignored.
+    """
     if isinstance(shape, type):
         need(isinstance(value, shape), f"{place}: expected a text, as the schema says, got {quoted(value)}")
     elif isinstance(shape, tuple):
@@ -1286,7 +1289,7 @@ def check_formulas(name, kernel, data, point):
 
 
 class BoxPoint(NamedTuple):
-    """A random point of the box for which rounding errors are bounded: inputs, exact outputs and their bounds."""
+    """A random point of the box for which rounding errors are bounded: inputs, exact outputs, and bounds of errors."""
 
     inputs: dict
     exact: dict
