@@ -1104,7 +1104,7 @@ def draw_hypothesis(members, names):
 def check_law(law, specification, points):
     """Raise ValueError if an expression of a law, which must be zero, is not zero to 60 digits at random points."""
     place = f"the law {quoted(law['law'])}"
-    need(law["vanishing"], f"{place}: expected at least one expression that must be zero, got none")
+    need(law["vanishing"], f"{place} does not follow: expected at least one expression that must be zero, got none")
     members = law["given"]
     need(
         all(is_name(name) for name in members),
@@ -1126,7 +1126,7 @@ def check_law(law, specification, points):
             # An analytic expression that is not identically zero passes at a random point with negligible probability.
             # ``size`` is its value if all symbols are random and unrelated.
             small = min(max(abs(size) / 10**60, Decimal("1e-70")), Decimal("1e-40"))
-            need(abs(rest) <= small, f"{place} does not hold: expected 0 to 60 digits, got {rest:.3}")
+            need(abs(rest) <= small, f"{place} does not follow from the formulas: expected 0 to 60 digits, got {rest:.3}")
 
 
 # --- series and constants ---------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""The certificate of an emitted time step: the C text computes the formula of the step's method, for any state and size.
+"""The certificate of an emitted time step: the C text computes the formula of a method, for any state and step size.
 
 The formula, the method applied to the derived rates, is too long to expand. So C text and formula are computed at
 random points, exactly, as residues: integers modulo a prime. Functions such as sin are random functions there.

@@ -85,7 +85,7 @@ def illustrated(page: Page) -> PrintedPage:
 
 
 def _with_figures(page: Page) -> tuple[Page, list[Figure]]:
-    """Return a derivation's page with figures below the headings of their sections, and the figures for its top."""
+    """Return a page with each figure below the heading of its section, and the figures for the top of the page."""
     figures = figures_of(page.name)
     by_section: dict[str, list[Figure]] = {}
     for figure in figures:
@@ -154,7 +154,7 @@ def _page_names() -> tuple[str, ...]:
 
 
 def _appendices(derivations: Sequence[str]) -> list[str]:
-    """Return the names of the appendices of some derivations; a derivation without an appendix has none in the list."""
+    """Return the names of the appendices that some of the ``derivations`` have, in the same order."""
     return [f"{name}{APPENDIX}" for name in derivations if LESSONS[name].library]
 
 
@@ -274,7 +274,7 @@ def _present(directory: Path, chosen: Sequence[str], suffix: str) -> set[str]:
 
 
 def _only_links_to(present: set[str], link: re.Pattern[str], text: str) -> str:
-    """Return the text of a page, in which links to derivations that are not in ``present`` are plain text."""
+    """Return ``text`` with each link to a page that is not in ``present`` replaced by the words of the link."""
     missing = set(_page_names()) - present
     # ``link`` has the groups "page" (derivation) and "label" (words of the link)
     return link.sub(lambda match: match["label"] if match["page"] in missing else match[0], text)
