@@ -1126,7 +1126,7 @@ def check_law(law, specification, points):
             # An analytic expression that is not identically zero passes at a random point with negligible probability.
             # ``size`` is its value if all symbols are random and unrelated.
             small = min(max(abs(size) / 10**60, Decimal("1e-70")), Decimal("1e-40"))
-            need(abs(rest) <= small, f"{place} does not follow from the formulas: expected 0 to 60 digits, got {rest:.3}")
+            need(abs(rest) <= small, f"{place} does not follow from formulas: expected 0 to 60 digits, got {rest:.3}")
 
 
 # --- series and constants ---------------------------------------------------------------------------------------------
