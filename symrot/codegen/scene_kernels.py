@@ -115,7 +115,7 @@ def rate_derivatives(equations: Equations, variables: Sequence[str]) -> tuple[Fo
 def rates_jacobian_program(
     equations: Equations, name: str, chained: Formulas, arguments: Sequence[Argument]
 ) -> Lowered:
-    """Return the program of the rates and their derivatives, in the way that needs the fewest operations.
+    """Return the program, with the fewest operations, that computes the rates and their derivatives.
 
     ``chained`` and ``arguments`` are the result of :func:`rate_derivatives`.
     """
