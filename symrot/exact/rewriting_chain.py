@@ -48,7 +48,7 @@ def chains(left: Any, right: Any, relations: Sequence[Any] = ()) -> tuple[Chain,
     left, right : Expr or Matrix
         Two sides of a proven equation, of the same shape.
     relations : sequence of Expr or Eq
-        Its hypotheses.
+        The hypotheses of the equation.
 
     Raises
     ------

@@ -509,7 +509,7 @@ class SwitchedRun(RunState):
             self._wake(other)
 
     def _returns(self, mode: str) -> bool:
-        """Return whether the function ``mode`` must be held, because its switch would restore earlier modes."""
+        """Return whether ``mode`` must be held at its jump, because its switch would only restore earlier modes."""
         # all modes would be as they were before at this time: the same switches would repeat without end
         first = self.visited.get(self._state(flip=mode))
         if first is None:
