@@ -197,6 +197,7 @@ OPTIONAL = {
     "heyoka",
     "symforce",
     "casadi",
+    "distributed",
     "trimesh",
 }  # extras (matplotlib brings mpl_toolkits and requires PIL), peers of benchmarks
 

@@ -22,7 +22,9 @@ FACTOR, OTHER = "factor_", "other_"
 
 
 def for_complex_numbers(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return "conditional" for a claim such as ``|z|^2 = z^2``, true for real z only; otherwise ``verdict``."""
+    """Return the verdict "conditional" on a claim such as ``|z|^2 = z^2``, true for real z only; otherwise
+    ``verdict``.
+    """
     if verdict.verdict != "true" or claim.relation is None or claim.define or claim.hypotheses or claim.has_parts:
         return verdict
     nodes = [node for side in claim.relation[1:] for _, node in walk(side)]
@@ -51,9 +53,8 @@ def for_complex_numbers(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def for_special_directions(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return "conditional" for a claim such as ``F·d = F d``, true for two vectors in special directions only.
-
-    Others keep their ``verdict``.
+    """Return the verdict "conditional" on a claim such as ``F·d = F d``, true for special directions only; else
+    ``verdict``.
     """
     if verdict.verdict != "false" or claim.relation is None or claim.hypotheses:
         return verdict

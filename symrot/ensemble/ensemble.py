@@ -214,10 +214,10 @@ class Ensemble(MotionSamples):
         return self._evaluated(names, range(len(self)))
 
     def _evaluated(self, names: Sequence[str], chosen: Sequence[int]) -> Floats:
-        rows = list(chosen)
+        rows = slice(None) if chosen == range(len(self)) else list(chosen)  # a slice needs no copies
         t = self.t if self.t.ndim == 1 else self.t[rows]
         quaternion = None if self._quaternion is None else self._quaternion[rows]
-        return self._source.evaluate(names, t, self.omega[rows], quaternion, rows)
+        return self._source.evaluate(names, t, self.omega[rows], quaternion, chosen)
 
     def mean(self, quantity: str, omit_stopped: bool = False) -> Floats:
         """Return the mean of a quantity over all motions at each sample time, shape (m, ...).

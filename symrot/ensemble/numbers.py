@@ -10,9 +10,10 @@ from fractions import Fraction
 import numpy as np
 
 from symrot.dynamics.structure import PrincipalInertia
+from symrot.ensemble.enclosed import Enclosed, exact
 from symrot.ensemble.variation import PRINCIPAL, Variation
 from symrot.formula import exact_numbers as number
-from symrot.formula.tree import Node, names
+from symrot.formula.tree import Node, evaluate, names
 from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import EPOCH, Parameters
 from symrot.propagation.binding import folded, value_of
@@ -112,20 +113,34 @@ class Numbers:
                 continue
             table = np.stack([self._columns[key] for key in own], axis=1)
             rows, places = np.unique(table, axis=0, return_inverse=True)
-            exact = [fixed | dict(zip(own, map(Fraction, row), strict=True)) for row in rows.tolist()]
-            values = np.array([float(_slope(node, constants, moved, variable)) for constants in exact])
+            constants = [fixed | dict(zip(own, map(Fraction, row), strict=True)) for row in rows.tolist()]
+            values = np.array([float(_slope(node, each, moved, variable)) for each in constants])
             result[name] = values[places.ravel()]
         return result
 
-    def _each(self, node: tuple[object, ...], used: set[str]) -> Floats:
-        """Return the values of the formula ``node``, which contains the names ``used``, one for each trajectory."""
+    def _each(self, node: Node, used: set[str]) -> Floats:
+        """Return the values of the formula ``node``, which contains the names ``used``, rounded once."""
         columns = {name: column for name, column in self._columns.items() if name in used}
-        table = np.stack(list(columns.values()), axis=1)
-        # evaluated once for trajectories with equal constants
-        rows, places = np.unique(table, axis=0, return_inverse=True)
-        exact = [dict(zip(columns, map(Fraction, row), strict=True)) for row in rows.tolist()]
-        values: Floats = np.array([float(value_of(node, constants)) for constants in exact])[places.ravel()]
+        try:
+            with np.errstate(all="ignore"):
+                symbols = {name: exact(column) for name, column in columns.items()}
+                enclosed: Enclosed = evaluate(node, symbols, None, exact)
+                values, certain = enclosed.rounded()
+        except KeyError:  # a function, which has no enclosure
+            values, certain = np.empty(len(self._chosen)), np.zeros(len(self._chosen), dtype=bool)
+        if not certain.all():
+            values[~certain] = _in_fractions(node, {name: column[~certain] for name, column in columns.items()})
         return values
+
+
+def _in_fractions(node: Node, columns: Mapping[str, Floats]) -> Floats:
+    """Return the values of the formula ``node`` in exact arithmetic; ``columns`` are the values of its symbols."""
+    table = np.stack(list(columns.values()), axis=1)
+    # evaluated once for trajectories with equal constants
+    rows, places = np.unique(table, axis=0, return_inverse=True)
+    constants = [dict(zip(columns, map(Fraction, row), strict=True)) for row in rows.tolist()]
+    values: Floats = np.array([float(value_of(node, each)) for each in constants])[places.ravel()]
+    return values
 
 
 def _slope(node: Node, constants: Mapping[str, Fraction], moved: Mapping[str, Fraction], variable: str) -> Fraction:

@@ -28,6 +28,7 @@ __all__ = [
     "mrp_to_quaternion",
     "multiply",
     "normalize",
+    "quaternion_to_axis",
     "quaternion_to_axis_angle",
     "quaternion_to_dcm",
     "quaternion_to_euler",
@@ -193,6 +194,12 @@ def quaternion_to_dcm(q: Any) -> Array:
     """Return the direction cosine matrices ``dcm_sb``, shape (..., 3, 3), of quaternions ``q`` of any norm but zero."""
     q = array_of(q, 4, what="a quaternion")
     return _by_components(_dcm, q, 9).reshape(*q.shape[:-1], 3, 3)
+
+
+def quaternion_to_axis(q: Any, axis: int) -> Array:
+    """Return column ``axis`` (0, 1 or 2) of ``dcm_sb``, shape (..., 3): the direction of a body axis in space."""
+    q = array_of(q, 4, what="a quaternion")
+    return _by_components(lambda *components: _dcm(*components)[axis::3], q, 3)
 
 
 def _quaternion_of_dcm(*r: Array) -> Components:

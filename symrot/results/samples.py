@@ -177,7 +177,7 @@ class MotionSamples(Samples):
     @cached_property
     def axis(self) -> Floats:
         """Direction of the symmetry axis (without one: of the third body axis), space components, shape (..., 3)."""
-        return self.dcm[..., self.axis_number]
+        return conversions.quaternion_to_axis(self.quaternion, self.axis_number)
 
     def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
         """Return the time and the quantities ``quantities`` with their labels, as rows for tables.

@@ -159,6 +159,7 @@ def test_a_motion_is_bitwise_the_same_in_any_order_lane_company_and_number_of_th
         assert (alone.states[0] == whole.states[i]).all() and alone.steps[0] == whole.steps[i]
 
 
+@pytest.mark.shipped_flags
 def test_the_number_of_lanes_changes_no_bit():
     paths = [small({"x": "y*z", "y": "-x*z + sin(x)", "z": "k*x*y - z/2"}, 10, width) for width in WIDTHS]
     assert [lanes.lanes(str(path)).width for path in paths] == list(WIDTHS)
@@ -167,7 +168,7 @@ def test_the_number_of_lanes_changes_no_bit():
     assert all((other.states == found[0].states).all() for other in found[1:])
 
 
-@pytest.mark.long_motion  # its digits need the fused operations of the flags that ship
+@pytest.mark.shipped_flags  # its digits need the fused operations of the flags that ship
 def test_no_turn_is_lost_to_the_rounding_of_a_third():
     """After a steady rotation by 1e5 rad the phase agrees with 40 digits; a series with the double 1/3 is wrong by
     7e-13 rad.

@@ -23,6 +23,8 @@ from symrot.propagation.propagate import propagator
 from symrot.scene.tables import Initial
 from tests.propagation.test_changed_start import BESIDE, GRAVITY, SCENES, scene
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
+
 RANDOM = np.random.default_rng(12)
 PUSH = {"kind": "constant_body", "torque": [0, 0, "1/9"]}
 BRAKE = {"kind": "damping", "linear": ["1/10", "1/10", "1/5"]}

@@ -6,6 +6,8 @@ import pytest
 import symrot
 from tests.needs import needs_compiler
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
+
 SCENE = {
     "schema": 1,
     "body": {"principal": [1, 1, "1/2"], "about": "fixed_point", "center_of_mass": [0, 0, "1/2"]},

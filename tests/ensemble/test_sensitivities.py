@@ -7,6 +7,8 @@ import symrot
 from symrot.errors import InputError
 from tests.needs import needs_compiler
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
+
 TOP = {
     "schema": 1,
     "body": {"principal": [2, 3, 4], "about": "fixed_point"},
@@ -63,6 +65,7 @@ def test_derivatives_of_full_tensors_are_those_of_single_motions(k, key):
 
 
 @needs_compiler
+@pytest.mark.shipped_flags  # like the module's fixture, whose bits it compares
 def test_derivatives_do_not_depend_on_the_other_motions(tops):
     alone = symrot.propagate_ensemble(
         TOP, omega=OMEGA[1:], quaternion=ATTITUDES[1:], parameters={"weight": WEIGHTS[1:]}, workers=2,

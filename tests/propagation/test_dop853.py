@@ -22,6 +22,8 @@ from symrot.propagation.steppers import dop853
 from symrot.scene.scene import Scene
 from tests.reference.tops import MOTIONS, RIGID_BODY, TIMES, error, parameters, state, taylor, wave
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
+
 
 @cache
 def built(kernel, name, states, parameters, blocks, scales):
@@ -143,6 +145,7 @@ def test_the_dense_output_is_as_good_as_the_steps():
         assert math.log2(coarse / fine) > 7.0
 
 
+@pytest.mark.shipped_flags
 def test_rounding_does_not_pile_up():
     """S28: a million additions of 1e-4 end within 3e-14 of 100; -ffast-math would break this and is not used."""
     path = small("dy[0] = p[0];", 1)

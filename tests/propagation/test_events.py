@@ -316,7 +316,7 @@ def test_dense_zeros_of_exact_motions_are_counted():
 
 
 @pytest.mark.thinned(2)
-@pytest.mark.long_motion
+@pytest.mark.shipped_flags
 @pytest.mark.parametrize("formula", ["sin(1/(t - 5))", "asin(sin(t)) - t", "sin(1e8*t)"])
 def test_zeros_that_cannot_be_told_apart_end_in_a_sentence(formula):
     """The samples and events before that time are kept."""

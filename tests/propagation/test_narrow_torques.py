@@ -221,9 +221,9 @@ def test_an_ensemble_meets_the_pulse(method):
     assert np.abs(ensemble.omega[:, 2, 2] - np.array(starts)[:, 2] - sqrt(pi)).max() < ALLOWED * 1e-10 * 1.8
 
 
-@pytest.mark.long_motion
+@pytest.mark.shipped_flags
 @pytest.mark.thinned(2)
-@pytest.mark.long_motion
+@pytest.mark.shipped_flags
 @pytest.mark.parametrize("method", ("taylor", "dop853"))
 @pytest.mark.parametrize("torque", ["exp(t**3)", "exp(exp(t))", "cosh(100*t)", "1/(t-1/3)**3"])
 def test_overflow_and_poles_end_in_a_sentence(torque, method):
@@ -337,7 +337,7 @@ def test_a_switch_is_located_to_the_last_bits(method, torque):
     assert np.abs(omega - np.maximum(t - c, 0) / 3).max() < ALLOWED * 1e-12
 
 
-@pytest.mark.long_motion
+@pytest.mark.shipped_flags
 @pytest.mark.parametrize("count", [100, pytest.param(1000, marks=pytest.mark.campaign)])
 @pytest.mark.parametrize("method", STEPPED)
 def test_a_thruster_fires_hundreds_of_times(method, count):

@@ -25,6 +25,8 @@ from symrot.scene.file import names_with_kernels
 from symrot.scene.scene import Scene, load_scene
 from tests.reference import taylor
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
+
 REFERENCE = tomllib.loads((Path(__file__).parents[1] / "reference" / "trajectories.toml").read_text())
 TOLERANCES = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
 PROMISE = 20  # the error stays below this many tolerances
@@ -104,7 +106,6 @@ def test_the_reference_file_is_what_its_program_prints():
 
 
 @pytest.mark.thinned(6)
-@pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("name", SCENES)
 def test_every_simplification_leaves_the_motion_alone(name):
     """The structure after each rule of the plan, from general to special, gives the same motion."""
@@ -350,7 +351,6 @@ CHOICES = {
 
 
 @pytest.mark.thinned(3)
-@pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("name", CHOICES)
 def test_auto_steps_no_motion_that_it_can_solve(name):
     """Closed form if there is one, otherwise Taylor series for smooth torques, otherwise Dormand and Prince's method."""

@@ -14,6 +14,8 @@ from symrot.cli.main import main
 from symrot.errors import InputError
 from tests.needs import needs_compiler
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
+
 TOP = {
     "schema": 1,
     "body": {"principal": [2, 3, 4], "about": "fixed_point"},

@@ -23,7 +23,7 @@ def test_the_list_is_complete():
 
 @pytest.mark.thinned(2)
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.long_motion] * (name in FLAGS_THAT_SHIP)) for name in SUITE]
+    "name", [pytest.param(name, marks=[pytest.mark.shipped_flags] * (name in FLAGS_THAT_SHIP)) for name in SUITE]
 )
 def test_quick_ones_meet_their_bars(name):
     (found,) = (each for each in stress.STRESSES + stress.FOUND if each.id == name)
@@ -32,7 +32,7 @@ def test_quick_ones_meet_their_bars(name):
 
 
 @pytest.mark.campaign
-@pytest.mark.long_motion
+@pytest.mark.shipped_flags
 @pytest.mark.parametrize("name", [each.id for each in stress.STRESSES + stress.FOUND if each.id != "S40"])
 def test_all_meet_their_bars_at_full_length(name):
     (found,) = (each for each in stress.STRESSES + stress.FOUND if each.id == name)

@@ -118,8 +118,8 @@ class TypedNotation:
 
 
 def with_formulas(source: str, formula: Callable[[Node], str], signs: Mapping[str, str]) -> str:
-    """Return a condition such as ``0 <= x <= pi and y > 0`` in another notation, with ``signs`` for signs such as
-    ``==``.
+    """Return a condition such as ``0 <= x**2`` in another notation: formulas as ``formula`` writes them, signs by
+    ``signs``.
     """
     pieces = SIGN.split(source)
     try:
@@ -163,7 +163,7 @@ def _is_over_digit(node: Node) -> bool:
 
 
 def _is_rate_of_name(node: Node) -> bool:
-    """Return whether a derivative is the time derivative of a single name, as ``diff(q, t)`` is."""
+    """Return whether a derivative is the time derivative of a single name, as ``diff(q, t)`` is that of q."""
     # it is printed q'
     return node.args[0].kind == "name" and all((a.kind, a.value) == ("name", "t") for a in node.args[1:])
 

@@ -209,13 +209,13 @@ class _Drawing:
         return False
 
     def substitution(self) -> bool:
-        """Solve an equation for an unknown with a number as coefficient, as ``2*x + y^2 = 1`` for x; return
-        whether one exists.
+        """Solve an equation for an unknown with a number as coefficient, ``2*x + y^2 = 1`` for x; return whether there
+        was one.
         """
         return self._solve(lambda slope: slope.is_ground)
 
     def fraction(self) -> bool:
-        """Solve an equation that is linear in an unknown, as ``y*x + z = 1`` for x; return whether one exists."""
+        """Solve an equation that is linear in an unknown, ``y*x + z = 1`` for x; return whether there was one."""
         return self._solve(lambda slope: True)
 
     def _solve(self, fits: Callable[[PolyElement], bool]) -> bool:
@@ -349,8 +349,8 @@ def _as_rational(value: Any, field: Any) -> Any:
 
 
 def _eliminated(poly: PolyElement, place: int, above: PolyElement, below: PolyElement) -> PolyElement:
-    """Return a polynomial with ``above/below`` in place of an unknown, multiplied by a power of ``below`` so that
-    it has no divisor.
+    """Return a polynomial with ``above/below`` for an unknown, times the power of ``below`` that clears its
+    divisors.
     """
     degree = poly.degrees()[place]
     if not degree:

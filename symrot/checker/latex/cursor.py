@@ -155,7 +155,7 @@ class Cursor(cursor.Cursor):
         super().__init__(source, where, read(source, where, pieces))
 
     def doubtful(self, kind: str, item: tree.Node, stop: int, expected: str, place: tree.Node | None = None) -> bool:
-        """Record an ambiguous part of the text, ``item`` to ``stop``; return whether its less usual meaning applies.
+        """Record an ambiguous piece of the text, ``item`` to ``stop``; return whether it gets its less usual meaning.
 
         Raises
         ------

@@ -235,7 +235,7 @@ class NamesPart(SumsPart):
         return self.factor()
 
     def vector(self, name: str) -> Node:
-        """Record that a name is a vector or tensor, which needs components, and return its node."""
+        """Record that ``name`` is a vector or tensor, so that its components get names; return its node."""
         name = name.removesuffix(MARK)
         self.vectors.setdefault(name, False)
         # an arrow at the end of the name distinguishes the vector r from its length r

@@ -45,7 +45,7 @@ SEPARATORS = (",", ";", "\\\\")
 
 @dataclass(frozen=True)
 class Equation:
-    """An equation read from LaTeX, its text in SymPy syntax, and the vectors for which component names are needed."""
+    """An equation read from LaTeX, its text in SymPy syntax, and its vectors whose components get names."""
 
     relation: Relation
     text: str
@@ -148,10 +148,7 @@ def _read(
 
 
 def _on_constants(sides: Sequence[Node], vectors: Collection[str]) -> tuple[str, ...]:
-    """Return a note, or none, on the symbols other than vectors that time derivatives treat as constants.
-
-    ``sides`` are those of all equations.
-    """
+    """Return (note,) on the symbols that time derivatives in ``sides`` treat as constants; () without such symbols."""
     nodes = [node for side in sides for _, node in walk(side)]
     rates = [node.args[0] for node in nodes if is_derivative(node) and node.args[-1] == TIME]
     parts = (part for rate in rates if rate.kind != "call" for _, part in walk(rate))

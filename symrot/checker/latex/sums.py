@@ -115,7 +115,9 @@ class SumsPart(Cursor):
         return negated(left) if negative else left
 
     def has_bare_vectors(self, left: Node, right: Node, sign: str) -> bool:
-        r"""Return whether letters without a mark around ``\times`` or ``\cdot`` are vectors: ``\omega\times r``."""
+        r"""Return whether the text shows that unmarked letters at ``\times`` or ``\cdot`` are vectors, as in
+        ``\omega\times r``.
+        """
         names = [name_of(last_factor(side)) for side in (left, right)]
         if self.flips is None or sign not in ("\\times", "\\cdot") or not all(map(is_usual_vector, names)):
             return False
@@ -241,7 +243,9 @@ class SumsPart(Cursor):
         return node
 
     def raised(self, node: Node, inside: tree.Node) -> Node:
-        """Return ``node`` with the sign that is raised after it: a power, transpose, conjugate or skew matrix."""
+        r"""Return ``node`` with what is raised after it, ``inside``: a power, a transpose ``^T``, a conjugate ``^*``,
+        or ``^\times``.
+        """
         mark = tree.alone(inside)
         if isinstance(mark, tree.Font) and mark.text in UPRIGHT:
             mark = tree.alone(mark.inside)

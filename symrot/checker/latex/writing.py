@@ -131,7 +131,8 @@ def _is_square(node: Node) -> bool:
 
 @cache
 def _with_marks(name: str) -> str:
-    """Return the LaTeX of a name with a bar or prime; empty for other names, and if its LaTeX has another name.
+    """Return the LaTeX of a name with a bar or prime; empty for other names, and if this LaTeX would be read as another
+    name.
 
     Examples
     --------

@@ -54,7 +54,9 @@ class OpenFunctionsPart(Cursor):
         return Node("neg", None, (value,), value.span) if negative else value
 
     def open_call(self, function: str, token: Token, exponent: Node | None) -> tuple[Node, Node | None]:
-        """Parse the argument in ``sin 2x``; return the call sin(2*x), and its exponent, 2 for ``sin^2 x``, or None."""
+        """Parse the argument in ``sin 2x``; return the call sin(2*x) and its exponent: ``exponent``, 2 in ``sin^2 x``,
+        or None.
+        """
         self.plain = True
         first = self.token()
         if first.kind not in ("number", "name", "fraction") and first.text not in ("√", "-", "[", "|"):
@@ -87,7 +89,7 @@ class OpenFunctionsPart(Cursor):
         return self.power()
 
     def power_of_call(self, token: Token, factors: list[Node]) -> Node | None:
-        """Return the exponent 2 of ``sin x^2`` if the parser chooses the less usual (sin x)^2, else None."""
+        """Return the exponent 2 of ``sin x^2`` if it is read as (sin x)^2, the less usual meaning; else None."""
         last = factors[-1]
         if last.kind != "power" or last.args[0].kind not in ("name", "call"):
             return None
@@ -155,7 +157,7 @@ class OpenFunctionsPart(Cursor):
         """Parse and return ``dx/dt``, ``d²x/dt²``, ``d/dt x`` or ``d/dx (..)``; return None for any other text."""
         texts = [self.token(n).text for n in range(8)]
         word = token.text
-        if word.startswith("d") and texts[:2] == ["/", "dt"] and not self.continues(1):
+        if word.startswith("d") and texts[:2] == ["/", "dt"] and not self.is_power_base(1):
             if word == "d":
                 return self.derivative_of_next(token)
             return self.quotient_rate(token, word[1:], 1, 2)
@@ -167,8 +169,8 @@ class OpenFunctionsPart(Cursor):
             return self.quotient_rate(token, texts[1], int(texts[0]), 5)
         return self.derivative_by(token)
 
-    def continues(self, ahead: int) -> bool:
-        """Return whether the token ``ahead`` places after the cursor is the base of a power, as x in ``x^2`` is."""
+    def is_power_base(self, ahead: int) -> bool:
+        """Return whether a power, as ``^2`` in ``x^2``, follows the token that is ``ahead`` tokens after the cursor."""
         after = self.token(ahead + 1)
         return after.text in ("^", "**") or after.kind == "power"
 

@@ -158,7 +158,7 @@ class PiecesPart(OpenFunctionsPart):
         return Node("call", name, (node, *arguments), self.span(start))
 
     def rate(self, node: Node, mark: Token, start: int) -> Node:
-        """Return ``diff(x(t), t)`` for ``x'``, or the name ``x_prime`` in its less usual meaning.
+        """Return ``diff(x(t), t)`` for ``x'``, or the name ``x_prime`` if ``flips`` ask for this less usual meaning.
 
         ``node`` is the name, ``mark`` the primes or dots after it.
         """

@@ -275,7 +275,9 @@ def _written(digits: str) -> str:
 
 
 def _letter(text: str, at: int, word: str) -> Iterator[tuple[str, str, int]]:
-    """Yield (kind, text, end) of a letter such as ω, ``word`` in ASCII, with its subscript, and of its dots."""
+    """Yield (kind, text, end) of the tokens of a letter ω: the name omega, its ``word``, with a subscript, and its
+    dots.
+    """
     stop = at + 1
     dots = 0
     over = ""

@@ -54,10 +54,7 @@ def starts(inertia: Sequence[Number], rotor: Sequence[Number]) -> Callable[[Init
 
 
 class Gyrostat:
-    """A symmetric body with a rotor along its axis, with the constants that all its motions share.
-
-    They do not depend on the initial state.
-    """
+    """A symmetric body with a rotor along its axis, with the constants that all its motions share."""
 
     def __init__(self, inertia: Sequence[Number], rotor: Sequence[Number]) -> None:
         self._inertia = moments = numbers("inertia", inertia, 3, SMALLEST)

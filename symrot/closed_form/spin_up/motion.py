@@ -58,7 +58,7 @@ class SpinUp:
 
     @cached_property
     def integers(self) -> "Integers":
-        """The same motion in integer arithmetic, for samples beyond 1e13 rad, or without a C compiler."""
+        """The same motion in integer arithmetic, for angles above 1e13 rad, or if there is no C compiler."""
         from symrot.closed_form.spin_up.integers import Integers
 
         body, rates, attitude = self._initial_state
@@ -84,7 +84,7 @@ class SpinUp:
         return rates, attitudes
 
     def _by_integers(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Compute in integers all samples with too many revolutions for double-double numbers; fill their rows."""
+        """Write, computed in integers, the samples with too many revolutions for double-double numbers."""
         for time in (float(times.min()), float(times.max())):
             if not self.integers.finite(time):
                 raise InputError(f"expected times at which the angular velocity is a finite number, got {time!r} s")
@@ -105,7 +105,7 @@ def motion(
     Parameters
     ----------
     inertia : 3 numbers
-        Principal moments of inertia, kg m^2, positive; those about the two axes across the driven axis are equal.
+        Principal moments of inertia, kg m^2, positive; those about the two axes normal to the driven axis are equal.
     axis : 0, 1 or 2
         Index of the principal axis about which the torque acts.
     torque : number
@@ -132,10 +132,7 @@ def starts(inertia: Sequence[Number], axis: int, torque: Number) -> Callable[[In
 
 
 class SpunBody:
-    """A symmetric body and the torque about its axis, with the constants that all its motions share.
-
-    They do not depend on the initial state.
-    """
+    """A symmetric body and the torque about its axis, with the constants that all its motions share."""
 
     def __init__(self, inertia: Sequence[Number], axis: int, torque: Number) -> None:
         self._inertia, (self.torque,) = numbers("inertia", inertia, 3, SMALLEST), numbers("torque", [torque], 1)

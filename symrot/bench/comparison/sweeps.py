@@ -1,0 +1,112 @@
+"""Time of a sweep against the same motions by propagate_ensemble alone, and of one Dask worker against two.
+
+    python -m symrot.bench.comparison.sweeps [--count 1e6] [--seconds 10] [--rounds 3]
+
+Every motion is a damped heavy top with its own rate and weight; a sweep writes three outputs at 11 times to a Zarr
+file. The longer the motions, the less the rest of a sweep counts: outputs, files, starts of processes. All contestants
+use the same number of cores, one after the other in each round; the median of the ratios counts.
+
+``pip install 'symrot[sweep,cluster]'`` installs what is needed.
+"""
+
+import argparse
+import os
+import resource
+import sys
+from pathlib import Path
+from statistics import median
+from tempfile import TemporaryDirectory
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+import symrot
+from symrot.report.layout import columns
+from symrot.sweeps.processes import cores
+
+__all__ = ["TOP", "VARY", "main"]
+
+TOP: dict[str, Any] = {
+    "schema": 1,
+    "body": {"principal": [1, 1, "1/2"], "about": "fixed_point", "center_of_mass": [0, 0, "1/2"]},
+    "initial": {"omega": ["1/10", "1/5", 20], "attitude": {"sequence": "ZXZ", "angles": [0, "1/2", 0]}},
+    "torque": [{"kind": "gravity", "weight": 20}, {"kind": "damping", "linear": "1/100"}],
+}
+"""A heavy top with damping, which has no closed form, without the span of time."""
+
+VARY = {"omega_1": "normal(0.1, 0.1)", "weight": "uniform(15, 25)"}
+OUTPUTS = ("omega_1", "axis_z", "energy")
+PART = 100_000  # motions of one call of propagate_ensemble, so that its results fit in memory
+
+
+Scene = dict[str, Any]
+
+
+def _ensembles(scene: Scene, count: int, workers: int) -> float:
+    """Return the seconds that ``propagate_ensemble`` takes for ``count`` tops with ``workers`` threads."""
+    random = np.random.default_rng(7)
+    begin = perf_counter()
+    for start in range(0, count, PART):
+        n = min(PART, count - start)
+        omega = np.column_stack([random.normal(0.1, 0.1, n), np.full(n, 0.2), np.full(n, 20.0)])
+        parameters = {"weight": random.uniform(15, 25, n)}
+        symrot.propagate_ensemble(scene, omega=omega, parameters=parameters, workers=workers)
+    return perf_counter() - begin
+
+
+def _sweep(scene: Scene, count: int, workers: int, scheduler: str | None = None) -> float:
+    """Return the seconds of a sweep of ``count`` tops into a new Zarr file."""
+    with TemporaryDirectory(prefix="symrot-") as folder:
+        begin = perf_counter()
+        symrot.sweep(
+            scene, VARY, count=count, seed=7, outputs=OUTPUTS, path=Path(folder, "tops.zarr"),
+            workers=workers, scheduler=scheduler,
+        )  # fmt: skip
+        return perf_counter() - begin
+
+
+def _on_cluster(scene: Scene, count: int, workers: int) -> float:
+    """Return the seconds of a sweep by ``workers`` Dask workers with one thread each, which have run a short sweep."""
+    from distributed import LocalCluster
+
+    with LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
+        address = cluster.scheduler_address
+        _sweep(scene, 2048 * workers, 1, address)
+        return _sweep(scene, count, 1, address)
+
+
+def _peak() -> float:
+    """Return the largest memory of this process and of a process that it started, in MB."""
+    unit = 1e6 if sys.platform == "darwin" else 1e3
+    return max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)) / unit
+
+
+def main() -> None:
+    """Print the seconds of each contestant in each round, the ratios, and the largest memory of a process."""
+    parser = argparse.ArgumentParser(description="sweeps against propagate_ensemble, and two Dask workers against one")
+    parser.add_argument("--count", type=float, default=1e6)
+    parser.add_argument("--seconds", type=float, default=10, help="length of each motion, s")
+    parser.add_argument("--rounds", type=int, default=3)
+    options = parser.parse_args()
+    count, number = int(options.count), cores()
+    os.environ.setdefault("DASK_LOGGING__DISTRIBUTED", "error")
+    scene = TOP | {"span": {"t": [0, options.seconds], "samples": 11}}
+    _sweep(scene, 2048, number)  # compiles the kernel
+    rows = [("round", "propagate_ensemble", "sweep", "ratio", "memory", "1 Dask worker", "2 Dask workers", "ratio")]
+    ratios: list[tuple[float, float]] = []
+    for turn in range(options.rounds):
+        alone, sweep = _ensembles(scene, count, number), _sweep(scene, count, number)
+        memory = _peak()
+        one, two = _on_cluster(scene, count, 1), _on_cluster(scene, count, 2)
+        ratios.append((sweep / alone, one / two))
+        rows.append((str(turn + 1), f"{alone:.1f} s", f"{sweep:.1f} s", f"{sweep / alone:.2f}", f"{memory:.0f} MB",
+                     f"{one:.1f} s", f"{two:.1f} s", f"{one / two:.2f}"))  # fmt: skip
+    sweeps, workers = (median(each) for each in zip(*ratios, strict=True))
+    rows.append(("median", "", "", f"{sweeps:.2f}", "", "", "", f"{workers:.2f}"))
+    print(f"{count} damped tops over {options.seconds:g} s, three outputs at 11 times, {number} cores")
+    print("\n".join(columns(rows)))
+
+
+if __name__ == "__main__":
+    main()

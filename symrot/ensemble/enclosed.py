@@ -1,0 +1,85 @@
+"""Arithmetic on arrays of numbers with bounds of their errors, for formulas whose exact values are rounded once.
+
+Each number is a sum of two doubles, with a bound of its distance from the exact number. If all numbers within the bound
+round to the same double, that double is the exact number, rounded.
+"""
+
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.closed_form.arithmetic import double_double as dd
+from symrot.closed_form.arithmetic.pairs import pair
+from symrot.propagation.steppers.stepping import Floats
+
+__all__ = ["Enclosed", "exact"]
+
+ERROR = 2.0**-98
+"""More than the relative error of one double-double operation (2^-104), and than the rounding of a bound."""
+
+LEAST, MOST = 2.0**-900, 2.0**900  # products and quotients of this size have an exact error term
+
+
+class Enclosed:
+    """An array of numbers, each within ``error`` of ``high + low``; the error is infinite where nothing is known."""
+
+    def __init__(self, high: Floats, low: Floats, error: Floats) -> None:
+        self.high, self.low, self.error = high, low, error
+
+    def rounded(self) -> tuple[Floats, NDArray[np.bool_]]:
+        """Return the numbers as doubles, and where each double is certainly the exact number rounded."""
+        # a bound of 0 belongs to an exact number; twice the bound covers the rounding of low + error
+        below, above = (self.high + (self.low + 2 * sign * self.error) for sign in (-1.0, 1.0))
+        return self.high + 0.0, np.isfinite(self.high) & (below == self.high) & (above == self.high)
+
+    def _lost(self, other: "Enclosed") -> Floats:
+        """Return the relative error of a sum or product of two arrays: 0 where both numbers are doubles."""
+        return np.where((self.low == 0) & (other.low == 0), 0.0, ERROR)
+
+    def __neg__(self) -> "Enclosed":
+        return Enclosed(-self.high, -self.low, self.error)
+
+    def __add__(self, other: "Enclosed") -> "Enclosed":
+        high, low = dd.add((self.high, self.low), (other.high, other.low))
+        size = np.abs(self.high) + np.abs(other.high)
+        return _made(high, low, self.error + other.error + self._lost(other) * size, size)
+
+    def __sub__(self, other: "Enclosed") -> "Enclosed":
+        return self + -other
+
+    def __mul__(self, other: "Enclosed") -> "Enclosed":
+        high, low = dd.multiply((self.high, self.low), (other.high, other.low))
+        a, b, size = np.abs(self.high), np.abs(other.high), np.abs(high)
+        error = a * other.error + b * self.error + self.error * other.error + self._lost(other) * size
+        zero = (a == 0) & (self.error == 0) | (b == 0) & (other.error == 0)
+        return _made(high, low, np.where(zero, 0.0, error), np.where(zero, 0.0, np.where(size == 0, np.inf, size)))
+
+    def __truediv__(self, other: "Enclosed") -> "Enclosed":
+        high, low = dd.divide((self.high, self.low), (other.high, other.low))
+        size, least = np.abs(high), np.abs(other.high) * (1 - ERROR) - other.error
+        zero = (self.high == 0) & (self.error == 0) & (least > 0)
+        error = np.where(least > 0, (self.error + size * other.error) / least + ERROR * size, np.inf)
+        return _made(high, low, np.where(zero, 0.0, error), np.where(zero, 0.0, np.where(size == 0, np.inf, size)))
+
+    def __pow__(self, exponent: int) -> "Enclosed":
+        one = exact(Fraction(1), len(self.high))
+        power = one
+        for _ in range(abs(exponent)):
+            power = power * self
+        return power if exponent >= 0 else one / power
+
+
+def _made(high: Floats, low: Floats, error: Floats, size: Floats) -> Enclosed:
+    """Return numbers whose error is infinite where the operands or results leave the range of exact error terms."""
+    safe = (size == 0) | (size > LEAST) & (size < MOST)
+    return Enclosed(high, low, np.where(safe, error, np.inf))
+
+
+def exact(value: Fraction | Floats, count: int = 1) -> Enclosed:
+    """Return an array of doubles as exact numbers, or ``count`` copies of one fraction."""
+    if isinstance(value, Fraction):
+        high, low = pair(value)
+        error = 0.0 if Fraction(high) + Fraction(low) == value else ERROR * abs(high)
+        return _made(*(np.full(count, each) for each in (high, low, error, abs(high))))
+    return _made(value, np.zeros(len(value)), np.zeros(len(value)), np.abs(value))
