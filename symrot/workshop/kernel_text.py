@@ -118,7 +118,7 @@ class KernelText(ABC):
 
 
 class LibraryText(KernelText):
-    """The texts of a kernel of the library, which has its own box of inputs and bounds of rounding errors on it."""
+    """The texts of a library kernel, which has standard ranges of inputs and bounds of rounding errors on these ranges."""
 
     folders: ClassVar[Mapping[str, str]] = {"numpy": "../numpy", "js": "../js", "jax": "../jax"}
 
