@@ -152,7 +152,7 @@ def stepped(
 
 
 def without_factors(rates: Program) -> tuple[Program, list[Fraction]]:
-    """Return the rates without the numbers that multiply whole formulas (1/2 in ``1/2*(a - b)``), and these numbers."""
+    """Return the rates without leading numeric factors, and the factors: ``1/2*(a - b)`` gives a - b and 1/2."""
     # a step multiplies its weights by these numbers once, instead of each rate at each stage
     outputs, factors = [], []
     for name, node in rates.outputs:
