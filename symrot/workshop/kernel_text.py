@@ -118,7 +118,7 @@ class KernelText(ABC):
 
 
 class LibraryText(KernelText):
-    """The texts of a library kernel, which has standard ranges of inputs and bounds of rounding errors on these ranges."""
+    """The texts of a library kernel; its bounds of rounding errors hold on standard ranges of the inputs."""
 
     folders: ClassVar[Mapping[str, str]] = {"numpy": "../numpy", "js": "../js", "jax": "../jax"}
 
