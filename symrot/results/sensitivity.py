@@ -103,7 +103,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
         return f"<Sensitivities by {', '.join(self.variables)}: {of}{samples} samples>"
 
     def of(self, motion: int) -> "Sensitivities":
-        """Return the derivatives of one motion of an ensemble, which is number ``motion`` from 0."""
+        """Return the derivatives of motion number ``motion``, from 0, of an ensemble."""
         omega, quaternion, rotation = (array[motion] for array in (self.omega, self.quaternion, self.rotation))
         return replace(self, omega=omega, quaternion=quaternion, rotation=rotation)
 

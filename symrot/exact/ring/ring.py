@@ -239,7 +239,7 @@ class FormulaRing:
         return radicand
 
     def _dependences(self) -> dict[Root, Dependence]:
-        """Return a map from each square root that is a product of other roots, as sqrt(a*b) may be, to this product."""
+        """Return the square roots that are products of other roots, with these products: sqrt(a*b): sqrt(a)*sqrt(b)."""
         places = {root: n for root, n in self.roots.items() if root.index == 2 and not root.power_expression.is_number}
         plain = [root for root in places if not isinstance(root.expression, Abs)]
         if not plain or len(places) < 2:
