@@ -75,9 +75,8 @@ def _blank(match: re.Match[str]) -> str:
 
 
 def _clauses(text: str) -> tuple[str, list[str]]:
-    """Return (equations, clauses): ``text`` with blanks for clauses without an equation, and these clauses.
-
-    "m is the mass" is one.
+    """Return (text with blanks for clauses without an equation, such as "m is the mass", and a list of these
+    clauses).
     """
     left_out: list[str] = []
 
