@@ -364,7 +364,7 @@ def _tidied(conditions: Sequence[Any]) -> list[Any]:
 
 
 def _factors(expression: Expr) -> list[Expr]:
-    """Return the factors of a polynomial, such as ``[x, x + 1]`` for ``x**2 + x``, or ``[expression]`` without any."""
+    """Return the factors of a polynomial: ``[x, x + 1]`` for ``x**2 + x``, or ``[expression]`` for a single one."""
     plain = not expression.is_number and expression.is_polynomial(*expression.free_symbols)
     factors = [base for base, _ in factor_list(expression)[1]] if plain else []
     return factors if len(factors) > 1 else [expression]
@@ -375,7 +375,7 @@ def _shape(side: Any) -> Any:
 
 
 def _as_side(display: Any, side: Any) -> Any:
-    """Return ``display``, which the page prints instead of ``side``, in the shape of ``side``."""
+    """Return ``display``, which the page prints instead of ``side``, as a matrix if ``side`` is a matrix."""
     display = _frozen(display)
     if isinstance(side, MatrixBase) and not isinstance(display, MatrixBase):
         # the zero matrix; below, a number stands for this multiple of the identity matrix

@@ -77,7 +77,7 @@ class KernelText(ABC):
 
     @abstractmethod
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
-        """Return the kernel with its formulas, laws and texts, the object from which its certificate is made."""
+        """Return the kernel's formulas, laws and texts as one object, from which the certificate is made."""
 
     def rounding(self, bounds: Bounds | None) -> Bounds | None:
         """Return the section ``rounding`` of the certificate, which states ``bounds``; None if there are no bounds."""

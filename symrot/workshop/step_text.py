@@ -192,7 +192,7 @@ class StepText(StepFiles):
 
     @cached_property
     def certified(self) -> StepUnderTest:
-        """The step with its method and texts, the object from which its certificate is made."""
+        """The method and the texts of the step as one object, from which the certificate is made."""
         description = self._description("c")
         return StepUnderTest(
             self.name, description.title, description.command, self._rates_program, self.method,

@@ -40,7 +40,7 @@ class TheoremResult:
 
 @dataclass(frozen=True)
 class CoqResult:
-    """The result of checking files of theorems with Coq; its truth value is True if there are no problems.
+    """The result of checking files of theorems with Coq; ``bool(result)`` is True if there are no problems.
 
     Attributes
     ----------

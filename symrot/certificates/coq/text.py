@@ -101,7 +101,7 @@ def folded(text: str, indent: int = 0) -> str:
 
 
 def comment(text: str) -> str:
-    """Return a Coq comment in folded lines; comment marks inside the text are split so that they cannot end it."""
+    """Return a Coq comment in folded lines; comment marks inside ``text`` are split, so that none ends the comment."""
     return folded("(* " + text.replace("(*", "( *").replace("*)", "* )") + " *)", 3)
 
 

@@ -372,7 +372,7 @@ class LawProver(FormulaReader):
     # --- cofactors ----------------------------------------------------------------------------------------------------
 
     def remainder(self, value: PolyElement) -> PolyElement:
-        """Return the remainder of a polynomial after division by the relations; if it is 0, so is the polynomial."""
+        """Return the remainder of a polynomial after division by the relations; if it is 0, the polynomial is 0."""
         # several hypotheses are left to :meth:`cofactors`
         basis = [*self.rules, *(self.hypotheses if len(self.hypotheses) == 1 else ())]
         return value.rem(basis) if basis else value

@@ -110,7 +110,7 @@ def hypotheses(symbols: Sequence[Symbol]) -> tuple[Expr, ...]:
 
 
 def _hypothesis_names(name: str, law: Law) -> tuple[str, ...]:
-    """Return the names of the symbols in the hypotheses of a law, the relations that it presupposes."""
+    """Return the names of the symbols in a law's hypotheses, the relations that the law presupposes."""
     symbols = sorted({symbol for relation in law.relations for symbol in relation.free_symbols}, key=str)
     # only unit vectors, unit quaternions and rotation matrices are known
     if hypotheses(symbols) != law.relations:

@@ -158,7 +158,7 @@ def _compare(
 
 
 def _terms_from_operations(text: Operations, terms: Terms, width: int) -> list[int]:
-    """Return the outputs that the C text computes as terms, symbolic values of ``width`` bits in ``terms``."""
+    """Return the outputs of the C text as symbolic terms of ``width`` bits, added to the store ``terms``."""
     known: list[int] = []
     binary = {"add": terms.add, "sub": terms.sub, "mul": terms.mul, "div": terms.div, "copysign": terms.copysign}
     unary = {"neg": terms.neg, "abs": terms.abs, "sqrt": terms.sqrt}

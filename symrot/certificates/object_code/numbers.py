@@ -96,7 +96,7 @@ def _bitwise(operation: Callable[..., int]) -> Numeric:
 
 
 def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
-    """Return the function that executes a comparison: result bits are 1 where an outcome is among ``outcomes``."""
+    """Return the function that compares numbers: all bits of a result are 1 for the ``outcomes``, else 0."""
     by_number = list(PREDICATES.values())
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
@@ -136,7 +136,7 @@ def _greater(terms: Terms, a: int, b: int) -> int:
 
 
 def _blended(suffix: str) -> Numeric:
-    """Return the function that executes a blend: the second source where the third is negative, else the first."""
+    """Return the function that executes a blend: take the second source where the third is negative, else the first."""
 
     def one(terms: Terms, a: int, b: int, mask: int) -> int:
         # the sign bit of the mask decides
@@ -159,7 +159,7 @@ def _same(state: MachineState, sources: list[Words], _: int) -> Words:
 
 
 def _shifted(width: int, shift: Callable[[int, int, int], int]) -> Numeric:
-    """Return the function that shifts constants, where ``shift`` takes (number, count, ``width``)."""
+    """Return the function that shifts each constant of ``width`` bits; ``shift(number, count, width)`` shifts one."""
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
         terms, results = state.context.terms, list[int]()

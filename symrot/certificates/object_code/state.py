@@ -85,7 +85,7 @@ class MachineState:
     flags: tuple[str, tuple[int, ...]] = ("unknown", ())
 
     def branch(self, pair: Pair, outcomes: Outcomes) -> "MachineState":
-        """Return a copy of the state after a branch: comparing the two terms of ``pair`` has one of ``outcomes``."""
+        """Return a copy of the state on the branch where comparing the two terms ``pair`` has one of ``outcomes``."""
         return replace(
             self,
             general={name: list(words) for name, words in self.general.items()},

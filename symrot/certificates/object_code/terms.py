@@ -249,7 +249,7 @@ class Terms:
     # --- rounded operations -------------------------------------------------------------------------------------------
 
     def _folded(self, a: int, b: int, operation: Callable[[float, float], float]) -> int | None:
-        """Return an operation on two constant terms as a constant term, or None if a term is not a finite constant."""
+        """Return ``operation`` of two constant terms as a constant term; None if a term is no finite constant."""
         x, y = self._value(a), self._value(b)
         if x is None or y is None or not (isfinite(x) and isfinite(y)):
             return None
@@ -398,7 +398,10 @@ class Terms:
         return ordered
 
     def rebuilt(self, roots: Iterable[int], known: Known, fused: bool = True) -> list[int]:
-        """Return the terms ``roots``, simplified by the comparison outcomes that ``known`` leaves possible."""
+        """Return the terms ``roots``, simplified by the comparison outcomes that ``known`` leaves possible.
+
+        If ``fused`` is false, each fused a*b + c becomes a rounded product and a rounded sum.
+        """
         roots = list(roots)
         new: dict[int, int] = {}
         for index in self.order(roots):
@@ -437,7 +440,8 @@ class Terms:
         return int(_CONSTRUCTORS[kind](self, *operands))
 
     def without_signs_of_zero(self, roots: Iterable[int]) -> list[int]:
-        """Return terms simplified by -(a + b) = (-a) + (-b), which fails only in the sign of a sum that is zero."""
+        """Return the terms ``roots``, simplified by -(a + b) = (-a) + (-b); only the signs of zeros may change."""
+        # for -0 + 0 the two sides differ
         roots = list(roots)
         new: dict[int, int] = {}
         for index in self.order(roots):

@@ -166,7 +166,7 @@ class _BoundSearch:
         return np.concatenate(boxes, axis=2), np.concatenate(decided, axis=1)
 
     def cut(self, parts: _Parts, branch: int) -> Array:
-        """Return the boxes of ``parts``, cut down to where their undecided condition takes ``branch``, 0 or 1."""
+        """Return the boxes of ``parts``, reduced to points at which the part's undecided condition takes ``branch``."""
         boxes = parts.boxes.copy()
         for number, (relation, i, j) in enumerate(self.graph.conditions):
             left, right = self.graph.nodes[i], self.graph.nodes[j]
@@ -192,7 +192,7 @@ class _BoundSearch:
     def best(
         self, parts: _Parts, relative: Array, otherwise: NDArray[np.int64]
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return, for each part, the input that it is best to halve, and the second best (-1 if not worth it)."""
+        """Return, for each part, the best input in which to halve it, and the second best input (or -1)."""
         # the best: shrinking its range lowers the bound most; ``relative``: widths relative to the whole box
         inputs, count = parts.boxes.shape[1:]
         middle = parts.boxes.mean(axis=0) + (parts.boxes - parts.boxes.mean(axis=0)) / SHRUNK
@@ -302,8 +302,7 @@ def _narrow(run: _BoundSearch, parts: _Parts) -> NDArray[np.bool_]:
 
 
 def _spread(run: _BoundSearch, parts: _Parts) -> Array:
-    """Return, for each part, its width relative to the whole box, in the inputs on which its obstacle depends."""
-    # the largest of these widths
+    """Return how wide each part is, relative to the whole box: the largest width among the inputs of its obstacle."""
     width = np.where(run.width > 0, run.width, 1.0)
     relative = (parts.boxes[1] - parts.boxes[0]) / width[:, None]
     return np.asarray((relative * run.depends[np.maximum(parts.obstacle, 0)].T).max(axis=0, initial=0.0))

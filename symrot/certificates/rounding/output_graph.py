@@ -99,7 +99,7 @@ class OutputGraph:
 
     @cached_property
     def choices(self) -> tuple[tuple[str, bool], ...]:
-        """The conditions that compare rounded numbers: (text, whether their branches are equal modulo 2 pi)."""
+        """The conditionals that compare rounded numbers: (condition, whether its branches are equal modulo 2 pi)."""
         choices = []
         for number, (relation, i, j) in enumerate(self.conditions):
             if (self.exact[i] and self.exact[j]) or relation == "<":
@@ -233,9 +233,9 @@ class _GraphReader:
         return self.put(kind, *(self.read(i) for i in operands(node)))
 
     def squares(self, index: int, depth: int = 0) -> list[tuple[int, int]] | None:
-        """Return (x, roundings) for each term x^2 of a sum: (a, 2), (b, 3), (c, 3) for a^2 + (b^2 + c^2).
+        """Return, for each term x^2 of a sum, x and the number of roundings: a, 2; b, 3; c, 3 for a^2 + (b^2 + c^2).
 
-        The result is None if it is no sum of squares.
+        The result is None if the operation ``index`` is no sum of squares.
         """
         node = self.source[index]
         # one rounding in the square, and one in each addition on the way to the sum (``depth``)

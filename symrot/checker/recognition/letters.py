@@ -122,7 +122,7 @@ def is_atom(tree: Node) -> bool:
 
 
 def text_of(atom: Node) -> str:
-    """Return the text of a symbol or rate as SymPy prints it, such as "diff(phi(t), t)"."""
+    """Return the text of a symbol or rate, such as "phi(t)" or "diff(phi(t), t)"."""
     if atom.kind == "name":
         return str(atom.value)
     return f"diff({text_of(atom.args[0])}, {', '.join('t' for _ in atom.args[1:])})" if atom.value == "diff" else (

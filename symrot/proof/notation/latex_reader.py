@@ -41,7 +41,7 @@ def key(latex: str) -> str:
 
 
 def parts(latex: str) -> list[list[str]]:
-    r"""Return the equations in a LaTeX text as lists of their sides: ``a = b, \quad c`` gives a and b; c."""
+    r"""Return the equations in a LaTeX text as lists of sides: ``a = b, \quad c`` gives ``[a, b]`` and ``[c]``."""
     equations: list[list[str]] = [[""]]
     depth = 0
     for token, following in pairwise(tokens(latex)):
