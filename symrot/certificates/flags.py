@@ -150,7 +150,7 @@ class FlagRemark:
 
 @dataclass(frozen=True)
 class FlagEffect:
-    """The effect of a command's compiler flags: "bits", "bounds" or "nothing" still holds, with remarks."""
+    """The effect of compiler flags: ``holds`` is "bits", "bounds" or "nothing", and ``remarks`` give the reasons."""
 
     holds: str
     remarks: tuple[FlagRemark, ...]

@@ -23,7 +23,7 @@ ANONYMOUS = "#"  # first letter of temporaries that get their names later
 class Recorder:
     """A record of the operations of one computation, from which :meth:`program` makes a straight-line program.
 
-    Its method ``symbol`` returns an input.
+    The method ``symbol`` returns an input of the program.
     """
 
     def __init__(self) -> None:

@@ -21,7 +21,7 @@ def square_under_root(radicand: Node) -> tuple[Node, Node] | None:
 
 
 def _split(node: Node) -> tuple[Node, Node]:
-    """Return (u, v) with node = u^2 v, as in (a, b) for ``a**2*b``; u is 1 if no factor is written as a square."""
+    """Return (u, v) with ``node = u^2 v``: (a, b) for ``a**2*b``; u is 1 if no factor is written as a square."""
     kind = node[0]
     if kind in ("*", "/"):
         (a, v), (b, w) = map(_split, children(node))

@@ -150,9 +150,9 @@ def placed(node: Node, values: Mapping[str, Node]) -> Node:
 
 
 def on_line(node: Node) -> tuple[Any, int]:
-    """Return (key, sign): the formulas ``t - 1`` and ``2 - 2*t``, being proportional, have the same key.
+    """Return (key, sign) of a formula; proportional formulas have equal keys.
 
-    Their signs differ.
+    ``t - 1`` and ``2 - 2*t`` have the same key and different signs.
     """
     polynomial = as_polynomial(node, {})
     if polynomial is None or not polynomial.terms:

@@ -235,10 +235,7 @@ class EulerMotion(Motion):
         return states
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return omega and quaternion at the times, shape (n, 7), and the cost.
-
-        Constant components of omega may be left out.
-        """
+        """Return the states at ``times``, s, shape (n, N), and the cost (steps, evaluations, seconds)."""
         began = perf_counter()
         self._count = [0, 0, 0, 0]
         states = np.empty((len(times), len(self.plan.states)))

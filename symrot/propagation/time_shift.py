@@ -137,7 +137,7 @@ def clock(
     start: float = 0.0,
     make: Callable[[Plan, SceneKernel], Any] = compiled,
 ) -> Callable[[float], tuple[Any, list[float]]]:
-    """Return a function from an epoch, s, to rates that take the time since the epoch, and to their parameters."""
+    """Return a function from an epoch, s, to a pair: rates that take the time since the epoch, and their parameters."""
 
     # moving(), a plan and kernel as time_shifted returns them, is called on first use; make() turns them into the
     # library for DOP853 or the Python function for SciPy

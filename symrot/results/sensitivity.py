@@ -116,7 +116,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
         return {"variables": list(self.variables), "units": list(self.units), "groups": dict(self.groups)}
 
     def _labelled(self) -> list[Labelled]:
-        """Return the derivatives with labels, as rows for tables.
+        """Return the derivatives with labels, for tables.
 
         There are three quantities for each variable, such as ``omega_by_weight``, ``quaternion_by_weight`` and
         ``rotation_by_weight``.

@@ -55,7 +55,9 @@ class ParquetStore:
                 other = json.loads(description.read_text(encoding="utf-8"))
                 identity, rows = other["identity"], int(other["rows"])
             except (OSError, LookupError, ValueError, TypeError):
-                raise InputError(f"{expectation}, got something else; choose another name") from None
+                raise InputError(
+                    f"{expectation}, got a file or folder with other content; choose another name"
+                ) from None
             if different := difference(header.identity, identity):
                 raise InputError(
                     f"{expectation}, got the results of a sweep with a different {different}; choose another name"
@@ -73,7 +75,7 @@ class ParquetStore:
 
     @property
     def only_statistics(self) -> str:
-        """Empty: this store has the values of the outputs, not only statistics of them."""
+        """Always an empty text: this store has the values of the outputs, not only statistics."""
         return ""
 
     def pending(self) -> list[tuple[int, int]]:
@@ -142,7 +144,7 @@ class ParquetStore:
         return np.asarray(rows["value"].to_numpy().reshape(shape))
 
     def has(self, name: str) -> bool:
-        """Return whether the array ``name`` can be read from one column: input, output, status or message."""
+        """Return whether ``name`` is stored in one column of the files: an input, output, status or message."""
         # not an attitude: each of its four components has a column of its own
         columns = (variable.name for variable in self.header.variables if variable.dimensions in ((), (TIME,)))
         return name in (STATUS, MESSAGE, *columns)

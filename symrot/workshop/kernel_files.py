@@ -93,7 +93,10 @@ def certificate_files(
 
 
 def stored_bounds(kernel: KernelText, directory: Path | None) -> Mapping[str, Any] | None:
-    """Return the rounding bounds of a scene's kernel, read from its certificate in a folder and checked, or None."""
+    """Return the rounding bounds in a scene kernel's certificate in ``directory``, after they were checked.
+
+    The result is None if there are none, or if they do not hold for the kernel.
+    """
     # a library kernel has bounds of its own
     if directory is None or not isinstance(kernel, SceneText):
         return None
@@ -104,7 +107,6 @@ def stored_bounds(kernel: KernelText, directory: Path | None) -> Mapping[str, An
     try:
         check_section(section, operations, None)
         check_bounds(section, operations, None)
-    # the bounds belong to other operations, or do not hold
     except CertificateError:
         return None
     return section

@@ -118,7 +118,7 @@ class KernelText(ABC):
 
 
 class LibraryText(KernelText):
-    """The texts of a kernel of the library, which has its own box of inputs and bounds of rounding errors on it."""
+    """The texts of a library kernel; its bounds of rounding errors hold on standard ranges of the inputs."""
 
     folders: ClassVar[Mapping[str, str]] = {"numpy": "../numpy", "js": "../js", "jax": "../jax"}
 

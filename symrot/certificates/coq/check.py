@@ -67,7 +67,10 @@ class CoqResult:
 
 
 def coqc() -> str | None:
-    """Return the path of Coq's compiler, ``coqc`` or what the variable ``COQC`` names; None if it is not installed."""
+    """Return the path of Coq's compiler ``coqc``, or of the one named in the environment variable ``COQC``.
+
+    The result is None if it is not installed.
+    """
     return shutil.which(os.environ.get("COQC") or "coqc")
 
 

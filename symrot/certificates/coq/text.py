@@ -106,7 +106,7 @@ def comment(text: str) -> str:
 
 
 def _record(formulas: Sequence[Expr]) -> str:
-    """Return formulas as Coq text of one vector, quaternion or matrix (row by row); a single formula stays a number."""
+    """Return formulas as Coq text of one vector, quaternion or matrix (row by row); a single formula gives a number."""
     if len(formulas) == 1:
         return folded(f"  {coq_expression(formulas[0])}", 4)
     texts = [_within(formula, _ATOM) for formula in formulas]

@@ -51,7 +51,7 @@ def number_from_bits(bits: int, width: int) -> float:
 
 
 def _bits_from_number(value: float, width: int) -> int | None:
-    """Return the bits of a number rounded to ``width`` bits; None for a NaN or an overflow."""
+    """Return the bits of the float or double of ``width`` bits nearest to ``value``; None for NaN or overflow."""
     number, whole = _FORMATS[width]
     try:
         return None if value != value else int(unpack(whole, pack(number, value))[0])
@@ -369,7 +369,7 @@ class Terms:
         return self._add("mask", width, outcomes, a, b)
 
     def choose(self, mask: int, x: int, y: int) -> int:
-        """Return the term that is ``x`` if all bits of a mask are 1, and ``y`` if all are 0."""
+        """Return the term that is ``x`` if all bits of the term ``mask`` are 1, and ``y`` if all are 0."""
         decided = self.constant(mask)
         if decided is not None and decided in (0, self._ones(mask)):
             return x if decided else y

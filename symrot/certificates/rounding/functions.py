@@ -152,13 +152,13 @@ _tangent_gap_factor = _EvenFunction(
 
 
 def tangent_gap_slope(x: Array) -> Array:
-    """Return intervals that contain the derivative of (sin x - x cos x)/x^3, which is ``tangent_gap``."""
+    """Return intervals that contain the derivative of ``tangent_gap``, (sin x - x cos x)/x^3."""
     # -x times j2(x)/x^2, which decreases from 1/15 at x = 0 until x = 5.7
     return negative(multiply_loosely(x, _tangent_gap_factor(x)))
 
 
 def sine_gap_slope(x: Array) -> Array:
-    """Return intervals that contain the derivative of (x - sin x)/x^3, which is ``sine_gap``."""
+    """Return intervals that contain the derivative of ``sine_gap``, (x - sin x)/x^3."""
     # -x I(x), where I(x), the integral of (1-s)^2 s sin(x s)/(2 x) over s from 0 to 1, decreases from 1/60 until x =
     # 4.4
     return negative(multiply_loosely(x, _sine_gap_factor(x)))

@@ -1,8 +1,8 @@
 """Identification of a formula: a look-up by fingerprint among the formulas that symrot derives, then a proof.
 
 A formula is recognised whatever its symbols are called, transposed or not, with either sign, and with the scalar part
-of a quaternion first or last. Symbols of two formulas are paired if their signatures are equal: the values of a formula
-where this symbol has one number and all others have another. Every match is proven by the exact engine.
+of a quaternion first or last. The signature of a symbol is the value of a formula where this symbol has one number and
+all others have another; symbols with equal signatures are paired. Every match is proven by the exact engine.
 """
 
 import re

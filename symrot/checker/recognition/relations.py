@@ -105,7 +105,7 @@ def solved(relation: Relation) -> Iterator[tuple[str, str, Any]]:
             slope, _, rest = coefficients
             name = f"{words} {relation.title}, squared"
         else:
-            continue  # linear or purely quadratic in no other case
+            continue  # neither linear nor purely quadratic in the symbol
         yield name, relation.source, factor_terms(cancel(-rest / slope))
 
 

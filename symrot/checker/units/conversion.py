@@ -254,7 +254,7 @@ def _read(plain: str, way: _Interpretation) -> Measured | None:
 
 
 def numeric_end(source: str) -> tuple[str, str]:
-    """Split a chain of equations into formulas and equations between numbers with units; ("", "") if there are none.
+    """Split a chain of equations into formulas and a chain of numbers with units; ("", "") if it does not end so.
 
     Examples
     --------

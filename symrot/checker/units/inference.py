@@ -1,4 +1,7 @@
-"""The units of the parts of a formula (names, sums, products, powers, matrices), and contradictions between them."""
+"""The units of the parts of a formula (names, sums, products, powers, matrices), and contradictions between them.
+
+A unit is stored as a dimension: exponents of kg, m, s and other bases, without scales such as the one of mm.
+"""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field

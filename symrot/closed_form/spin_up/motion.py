@@ -105,7 +105,7 @@ def motion(
     Parameters
     ----------
     inertia : 3 numbers
-        Principal moments of inertia, kg m^2, positive; those about the two axes across the driven axis are equal.
+        Principal moments of inertia, kg m^2, positive; those about the two axes normal to the driven axis are equal.
     axis : 0, 1 or 2
         Index of the principal axis about which the torque acts.
     torque : number

@@ -236,7 +236,7 @@ class _Closure:
         return result
 
     def seek(self, i: int) -> None:
-        """Replace polynomials of the attitude in series ``i`` and its operands by auxiliary states."""
+        """Replace the polynomials of the attitude in series ``i``, and in its operands, by auxiliary states."""
         s = self.series[i]
         if i in self.replaced or s.rule not in ("sum", "product"):
             return
@@ -278,7 +278,8 @@ class _Closure:
         return _rebuilt(self, rates)
 
     def seed(self, form: Polynomial) -> Node:
-        """Return the formula in states and t that computes an auxiliary state, ``form``, at the start of each step."""
+        """Return the formula in states and t of the auxiliary state ``form``, a polynomial."""
+        # it is evaluated at the start of each step
         # terms with the same functions of time are put in one bracket
         groups: dict[Monomial, dict[Fraction, list[Node]]] = {}
         for monomial, x in sorted(form.terms.items()):
@@ -354,9 +355,9 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     def summed(
         terms: list[_Term], pairs: Iterable[tuple[int, Node | None]] = (), constant: Node | None = None
     ) -> Series:
-        """Return the series of the sum of ``terms`` (auxiliary states), of weight times series, and of a constant.
+        """Return the series of a sum of auxiliary states (``terms``), other series (``pairs``) and a constant.
 
-        ``pairs`` are (index of a series, weight).
+        Each of ``pairs`` is (index of a series, weight).
         """
         for term in terms:
             if term.companion is None:

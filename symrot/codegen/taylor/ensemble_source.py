@@ -457,8 +457,10 @@ def _add(name: str, sign: int, factors: str) -> str:
 
 
 def _called(s: Series, first: int) -> str:
-    """Return the C call that computes coefficient 0 of a function such as exp from coefficient 0 of its arguments."""
-    # the operands of the series from number first on
+    """Return the C call, such as ``V_CALL(exp, v3)``, that computes coefficient 0 of the function ``s``.
+
+    The arguments of the function are the operands of ``s`` from number ``first`` on.
+    """
     arguments = [f"v{operand}" for operand in s.operands[first:]]
     return f"V_CALL{'' if len(arguments) == 1 else len(arguments)}({s.function}, {', '.join(arguments)})"
 

@@ -437,12 +437,12 @@ class _Jet:
 
 
 def _of(function: str, turn: str) -> str:
-    """Return the C name of the value of a function, such as sin, at the angle ``a t + b`` with the C name ``turn``."""
+    """Return the C name of a function's value at an angle ``turn``: ``sin`` and ``turn_r3_0`` give sin_turn_r3_0."""
     return f"{function}_{turn}"
 
 
 def _calls(node: Node) -> list[Node]:
-    """Return the function calls in a formula; a call inside the arguments of another call is not listed separately."""
+    """Return the outermost function calls in a formula: ``a*sin(exp(b)) + tan(c)`` has sin(exp(b)) and tan(c)."""
     if node[0] == "call":
         return [node]
     return [call for child in children(node) for call in _calls(child)]

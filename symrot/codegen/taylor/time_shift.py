@@ -152,7 +152,7 @@ class _Mover:
         return _Form(gathered)
 
     def summands(self, node: Node, negative: bool) -> Iterator[tuple[bool, _Form]]:
-        """Yield the terms of nested sums as pairs (whether it is subtracted, term).
+        """Yield the terms of a sum as (subtracted, term): ``a - (b + c)`` gives (False, a), (True, b), (True, c).
 
         ``negative`` tells whether the whole sum is subtracted.
         """
@@ -193,7 +193,7 @@ class _Mover:
         return value
 
     def parameter(self, formula: Node) -> Node:
-        """Return the symbol of the parameter with the formula ``formula``, which is added if it is new."""
+        """Return the symbol of the parameter with the formula ``formula``; a new parameter is added."""
         for name, known in (*self.formulas.items(), *self.added):
             if known == formula:
                 return ("symbol", name)

@@ -128,7 +128,7 @@ def _replace(poly: PolyElement, rule: Rule) -> PolyElement:
 
 
 def _divide(poly: PolyElement, rule: Rule) -> PolyElement:
-    """Return the remainder of ``poly`` after division by a minimal polynomial, which ``rule`` represents."""
+    """Return the remainder of ``poly`` after division by the polynomial ``g^n - P`` of a rule ``g^n = P``."""
     place, power = rule.generator, rule.power
     # variables other than that of the algebraic number count as coefficients
     groups: dict[tuple[int, ...], dict[int, Any]] = {}
