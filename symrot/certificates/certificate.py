@@ -216,8 +216,10 @@ def _as_lists(value: Any) -> Any:
 
 
 def _readback(kernel: KernelUnderTest, suffix: str, real: str) -> Data:
-    """Return the ``readback`` entry of one C function: its operations, and the proof that they give the formulas."""
-    # ``suffix`` is the end of the function's name, such as "f", and ``real`` the type of its numbers, such as "float"
+    """Return the ``readback`` entry of one C function: its operations, and the proof that they give the formulas.
+
+    ``suffix`` is ``""`` with numbers of the C type ``real`` = ``"double"``, and ``"f"`` with ``"float"``.
+    """
     name, file = f"symrot_{kernel.name}{suffix}", f"{kernel.name}.c"
     text = kernel.files[file]
     one, batch = read_kernel(text, name, file), read_batch(text, f"{name}_batch", file)

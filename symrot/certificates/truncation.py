@@ -216,8 +216,10 @@ def _is_zero(value: Any) -> bool:
 
 
 def _turning(x: _Power, sign: int, functions: tuple[str, str]) -> tuple[_Power, _Power]:
-    """Return the power series (sin x, cos x) if ``sign`` is -1, or (sinh x, cosh x) if ``sign`` is 1."""
-    # ``functions``: the names of the two, for the first coefficients
+    """Return the power series (sin x, cos x) if ``sign`` is -1, or (sinh x, cosh x) if ``sign`` is 1.
+
+    ``functions`` has the names of the two functions.
+    """
     rates = x.rates
     s, c = ([_SCALAR[name](iv.mpf(x.terms[0]))] for name in functions)
     for n in range(len(rates)):
@@ -564,8 +566,10 @@ class _Problem:
         return None
 
     def _step_coefficients(self, values: Mapping[str, Any], span: Any, order: int) -> list[Any]:
-        """Return, for each state, an interval with the coefficient of h^``order`` in the Taylor series of the step."""
-        # h is the step size; ``span`` is the range of its values
+        """Return, for each state, an interval with the coefficient of h^``order`` in the Taylor series of the step.
+
+        ``values`` and ``span`` are the ranges of the inputs and of h.
+        """
         # the coefficients of a Taylor method above its own order are zero
         if isinstance(self.method, TaylorSeries):
             return [0] * len(self.states)
@@ -573,7 +577,6 @@ class _Problem:
         size = _Power((span, iv.mpf(1), *(0,) * (count - 2)))
         start = {name: _Power.of(value, count) for name, value in values.items() if name != SIZE}
         functions = _Functions({name: _of_any(name) for name in _OF_SERIES})
-        # valid for all states of the box
         after = stepped(
             self.rates, self.method, start, size, functions, lambda value: _Power.of(_number(value), count)
         )  # fmt: skip

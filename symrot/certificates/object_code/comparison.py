@@ -130,10 +130,13 @@ def compare_function(text: Operations, function: CFunction, listing: Listing) ->
 def _compare(
     text: Operations, function: CFunction, listing: Listing, start: tuple[str, int], top: int
 ) -> ObjectVerdict:
-    """Return the verdict on a C function and its machine code at ``start``, for one alignment of the stack."""
+    """Return the verdict on a C function and its machine code at ``start``, for one alignment of the stack.
+
+    ``top`` is the offset of the return address on the stack.
+    """
     width, terms = WIDTH[text.precision], Terms()
     expected = _terms_from_operations(text, terms, width)
-    # ``top``, the stack offset of the return address, fixes the alignment by its remainder modulo 64
+    # the remainder of ``top`` modulo 64 is the alignment
     pointers = [p for p in function.parameters if p.size > 0]
     arrays = {p.name: ArrayArgument(p.name, p.size * width // 8, not p.is_const) for p in pointers}
     numbers = tuple(p.name for p in function.parameters if p.size == 0)

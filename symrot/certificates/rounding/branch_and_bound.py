@@ -192,7 +192,10 @@ class _BoundSearch:
     def best(
         self, parts: _Parts, relative: Array, otherwise: NDArray[np.int64]
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return, for each part, the best input in which to halve it, and the second best input (or -1)."""
+        """Return, for each part, the best input in which to halve it, and the second best input (or -1).
+
+        ``relative`` has the widths of the parts in each input; ``otherwise`` is the result if halving lowers no bound.
+        """
         # the best: shrinking its range lowers the bound most; ``relative``: widths relative to the whole box
         inputs, count = parts.boxes.shape[1:]
         middle = parts.boxes.mean(axis=0) + (parts.boxes - parts.boxes.mean(axis=0)) / SHRUNK
@@ -211,7 +214,6 @@ class _BoundSearch:
         # -1 if the gain of the second input is at most SECOND times the first gain
         second = np.argmax(gain, axis=1)
         worth = (gain[np.arange(count), second] > SECOND * (parts.bound - least)) & (least < parts.bound)
-        # ``otherwise``: the first input of a part whose bound no shrinking lowers
         return np.asarray(np.where(least < parts.bound, best, otherwise)), np.where(worth, second, -1)
 
 
@@ -263,7 +265,10 @@ def search(
 
 
 def _run_search(run: _BoundSearch, budget: int, target: float | None) -> SearchResult:
-    """Return the result of a search that ends when the bound is tight, or after ``budget`` evaluations."""
+    """Return the result of a search that ends when the bound is tight, or after ``budget`` evaluations.
+
+    With a ``target``, the search also ends when it is known whether the bound exceeds the target.
+    """
     graph, box = run.graph, run.box
     conditions = len(graph.conditions)
     parts = run.parts(box[:, :, None].copy(), np.full((conditions, 1), -1, np.int8))
@@ -279,7 +284,6 @@ def _run_search(run: _BoundSearch, budget: int, target: float | None) -> SearchR
             enough = max(enough, target)
         if parts.bound.max() <= enough or run.evaluations >= budget:
             break
-        # with a target, the search ends when it is known whether the bound exceeds it
         if target is not None and run.pointwise > target:
             break
         narrow = _narrow(run, batch)
