@@ -88,7 +88,7 @@ def _symbols_of(definitions: Mapping[str, Node], numeric: NumericFilter) -> set[
 def _active(formula: Node, atoms: dict[Node, Values], places: list[PointOfLetters]) -> dict[Node, Values]:
     """Return the ``atoms`` that change a formula's value: only the diagonal entries for the trace of a matrix."""
     if len(atoms) < MANY:
-        return atoms
+        return atoms  # a formula of few letters depends on all of them
     here = values_of(formula, places[:1])
     active = {}
     for atom, values in atoms.items():

@@ -66,6 +66,7 @@ def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
 
 def component(known: str, quantity: str) -> list[tuple[str, str]]:
     """Return [("component_2", "H_y")] for ``known`` = "second component of .." and ``quantity`` = "H_y"; else []."""
+    # a moment of inertia by the parallel-axis theorem has an axis, too
     parallel = re.search(r"\(parallel-axis theorem\), ([xyz]) axis", known)
     if parallel and axes_of(quantity):
         return [(f"component_{parallel[1]}", quantity)]

@@ -134,5 +134,5 @@ def _without(part: tuple[int, ...], item: int) -> tuple[int, ...]:
 
 
 def _negated(pair: Any) -> Any:
-    """Return a sort key with all numbers of a pair negated, so that ``max`` selects the lowest numbers."""
+    """Return ``pair`` with all indices negated, as a sort key with which ``max`` selects the lowest indices."""
     return tuple(_negated(item) if isinstance(item, tuple) else -item for item in pair if not isinstance(item, str))

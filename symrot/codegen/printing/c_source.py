@@ -110,7 +110,7 @@ def c_arguments(program: Program, real: Real = DOUBLE) -> str:
 
 
 def _head(name: str, arguments: str, qualifier: str = "", returns: str = "void") -> str:
-    """Return the head of a C function; if it is too long for one line, its arguments fill several lines."""
+    """Return the head of a C function, such as ``void f(double x)``, with line breaks if it is long."""
     head = f"{qualifier}{returns} {name}({arguments})"
     if len(head) <= WIDTH:
         return head
@@ -153,8 +153,8 @@ def _index_in_batch(index: int) -> str:
 def _body(
     program: Program, index_of: Callable[[int], str], indent: str, real: Real, near: bool = False, late: bool = False
 ) -> list[str]:  # fmt: skip
-    """Return the C statements that compute a program's outputs; each value is computed just before its first use."""
-    # the first output that needs it; this order keeps few values in use at a time, so that they fit into registers
+    """Return the C statements of a program; a value is computed just before the first output that needs it."""
+    # this order keeps few values in use at a time, so that they fit into registers
     results = dict(program.outputs)
     lines: list[str] = []
     stores: dict[str, list[str]] = {a.name: [] for a in program.signature.arguments}

@@ -156,7 +156,7 @@ def _statements(index: int, op: Operation, places: dict[str, str], known: dict[s
 
 
 def _enclosed(kind: str, around: str, op: Operation, places: dict[str, str], known: dict[str, str]) -> str:
-    """Return the C expression for the enclosure of one operation: a call of a function of event_enclosures.h."""
+    """Return the C expression that encloses the result of an operation: a call of a function in event_enclosures.h."""
     # around: the C function that makes an enclosure from a centre and a radius; places: input -> C; known: state -> C
     # text of the error of its value
     if op.kind == "number":

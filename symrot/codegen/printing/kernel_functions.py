@@ -68,7 +68,7 @@ def series(coefficients: Iterable[Fraction], variable: str) -> Node:
 def own_function(name: str, precision: str) -> tuple[tuple[str, ...], list[Statement], Choice]:
     """Return the definition of a function that <math.h> lacks, such as sinc, as (parameters, temporaries, choice).
 
-    ``choice`` is (relation, left, right, a, b): the value is a if the relation, such as ``<``, holds, otherwise b.
+    The choice ``("<", left, right, a, b)`` stands for the value ``a if left < right else b``.
     """
     if name in _CHOICES:
         parameters, choice = _CHOICES[name]
