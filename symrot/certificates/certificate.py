@@ -297,8 +297,10 @@ WIDTH = 118
 
 
 def _layout(value: Any, indent: int = 0, key: str = "") -> str:
-    """Return a value as JSON text, in which an object or list that fits on one line is written on one line."""
-    # ``indent`` blanks come before the value's lines; its ``key`` takes room on the first line
+    """Return a value as JSON text, in which an object or list that fits on one line is written on one line.
+
+    ``indent`` blanks come before the lines; ``key``, the name of the value, takes room on the first line.
+    """
     flat = json.dumps(value, ensure_ascii=False)
     if len(flat) + indent + len(key) <= WIDTH or not isinstance(value, (dict, list)) or not value:
         return flat

@@ -414,7 +414,7 @@ class Reader:
         return f"{self.place}, line {self.token.line}"
 
     def refuse(self, expectation):
-        """Raise ValueError with the line number, the expected text and the next word."""
+        """Raise ValueError with the line number, the text ``expectation`` and the next word."""
         raise ValueError(f"{self.here()}: expected {expectation}, got {quoted(self.token.text)}")
 
     def need(self, holds, sentence):
@@ -924,7 +924,7 @@ class CReader(Reader):
 
 
 def run(body, numbers, inputs):
-    """Run the ``body`` of a C function; return a map of its outputs, and the angles that it tests for their range."""
+    """Run a C ``body`` on ``inputs`` in the arithmetic ``numbers``; return outputs, and angles whose range it tests."""
     names, outputs = dict(inputs), {}
     for target, expression in body.statements:
         value = expression.value(numbers, names)
@@ -1095,7 +1095,7 @@ class Specification:
 
 
 def draw_hypothesis(members, names):
-    """Define random values for symbols that a law assumes to form a rotation matrix or a unit vector."""
+    """Define random values for the symbols ``members``, which a law assumes to be a rotation matrix or unit vector."""
     # 2*v*v^T + 2*q0*[v]x + (2*q0^2 - 1)*1 for the unit quaternion (q0, v)
     # nine symbols are a matrix, row by row
     vector = [names.numbers.draw() for _ in range(4 if len(members) == 9 else len(members))]
@@ -1149,7 +1149,10 @@ LEAST = {"double": Fraction(1, 2**55), "float": Fraction(1, 2**26)}  # a quarter
 
 
 def check_series(series, functions, real):
-    """Check the polynomial that replaces a function near x = 0; return ``functions`` with the function so replaced."""
+    """Check the polynomial that replaces a function near x = 0, for numbers of the C type ``real``.
+
+    Return ``functions`` with a function that computes the polynomial near x = 0.
+    """
     name, split_text, coefficient_texts, rest_text = series
     place = f"series of {quoted(name)}"
     split, rest = constant(split_text, place), constant(rest_text, place)

@@ -391,12 +391,14 @@ def _halves(box: Box, name: str) -> Iterator[dict[str, tuple[Fraction, Fraction]
 
 
 def _gains(problem: "_Problem", box: Box, whole: list[float]) -> dict[str, float]:
-    """Return a map: input -> fraction by which the largest bound decreases if the input's range is halved."""
+    """Return a map: input -> fraction by which the largest bound decreases if the input's range is halved.
+
+    ``whole`` are the bounds on the whole box; inputs without a gain are left out.
+    """
     gains = {}
     for name, (low, high) in box.items():
         if low < high:
             halves = max(max(problem.bounds(half)) for half in _halves(box, name))
-            # inputs without a gain are left out; ``whole`` are the bounds on the whole box
             if halves < max(whole):
                 gains[name] = 1.0 if max(whole) == inf else 1 - halves / max(whole)
     return gains
@@ -551,7 +553,7 @@ class _Problem:
         ]
 
     def _enclosure(self, values: Mapping[str, Any], span: Any) -> dict[str, Any] | None:
-        """Return ranges that no motion from the box leaves during the step; None if none are found."""
+        """Return ranges that no motion leaves that starts in ``values`` and lasts ``span``; None if none are found."""
         around = dict(values) | {"t": values["t"] + span}
         for _ in range(ATTEMPTS):
             slopes = self.rates.evaluate(around, _Functions(_SCALAR), _number).values()

@@ -97,7 +97,7 @@ class _BoundSearch:
         self.largest_value, self.turns = 0.0, False
 
     def evaluate(self, boxes: Array, decided: NDArray[np.int8]) -> Evaluation:
-        """Return the error bounds of boxes, given the branch of each condition on each box."""
+        """Return the error bounds of boxes; ``decided`` is the branch of each condition on each box."""
         count = boxes.shape[2]
         self.evaluations += count
         # CHUNK boxes at a time, to limit memory
@@ -115,7 +115,10 @@ class _BoundSearch:
         return Evaluation(*(np.concatenate([getattr(part, name) for part in chunks]) for name in _FIELDS))
 
     def parts(self, boxes: Array, decided: NDArray[np.int8]) -> _Parts:
-        """Return the boxes that contain allowed inputs, such as unit quaternions, each with its error bound."""
+        """Return the boxes that contain allowed inputs, such as unit quaternions, each with its error bound.
+
+        ``decided`` is the branch of each condition on each box.
+        """
         # each box is shrunk to the allowed inputs in it
         boxes = narrowed(boxes, self.region, self.graph.places)
         evaluation = self.evaluate(boxes, decided)
