@@ -21,7 +21,9 @@ FREE = frozenset({"neg"})  # a minus sign counts as part of its addition or mult
 
 
 def _operations(structure: Structure) -> Counter[str]:
-    """Return the operations of one evaluation of a structure's equations of motion by kind, such as ``{"mul": 12}``."""
+    """Return how many operations of each kind one evaluation of the equations of motion needs, such as
+    ``{"mul": 12}``.
+    """
     from symrot.codegen.scene_kernels import rates_program
     from symrot.dynamics.equations import equations_of_motion
 

@@ -60,7 +60,7 @@ def fail(where: str, expectation: str, value: object = ..., reason: str = "") ->
 def table(value: object, where: str, expectation: str = "a table") -> Mapping[str, Any]:
     """Return the value if it is a table (a mapping); raise InputError otherwise.
 
-    ``expectation`` is what the message says was expected there.
+    ``expectation``, such as "a table [body]", is part of the message.
     """
     if not isinstance(value, Mapping):
         fail(where, expectation, value)
