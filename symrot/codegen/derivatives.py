@@ -169,9 +169,9 @@ def _single_operations(program: Program) -> Program:
 
 
 def _slopes(formula: Expr, value: Symbol | None = None) -> dict[Symbol, Expr]:
-    """Return the partial derivatives of a formula, by the symbols in it.
+    """Return the partial derivatives of a formula, by the symbols in the formula.
 
-    ``value`` is the symbol of the temporary that holds the formula's value, or None.
+    They may contain ``value``, the symbol for the formula itself: y = sqrt(a) has the derivative 1/(2 y).
     """
     held = sorted(formula.free_symbols, key=str)
     above, below = formula.as_numer_denom()

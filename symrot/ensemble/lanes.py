@@ -153,7 +153,7 @@ class Lanes:
         return coefficients
 
     def work(self, job: _Job, interrupted: Callable[[], bool] = bool) -> None:
-        """Integrate all motions of a job, unless ``interrupted()`` becomes true; the job says where the results go."""
+        """Integrate all motions of a job; stop early if ``interrupted()`` returns true."""
         memory = ctypes.create_string_buffer(self._memory)
         self._library.symrot_lanes_clear(memory)
         while not interrupted() and self._run(memory, ctypes.addressof(job), STEPS_PER_CALL) != DONE:

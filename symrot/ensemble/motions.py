@@ -259,7 +259,7 @@ class _Stepped:
         return epoch.clock(moving, self.numbers.constants(k), self.epoch, make)
 
     def read(self, states: Floats, omega: Floats, quaternion: Floats | None) -> None:
-        """Compute ``omega`` and ``quaternion`` from the integrated states, shape (n, m, N), and write them there."""
+        """Write the samples that follow from the states, shape (n, m, N), into ``omega`` and ``quaternion``."""
         chosen = np.asarray(self.chosen)
         whole = len(chosen) == len(omega) and bool((chosen == np.arange(len(omega))).all())
         rows = slice(None) if whole else chosen  # a slice needs no copies

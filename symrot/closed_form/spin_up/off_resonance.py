@@ -118,7 +118,7 @@ class Sweep:
         return product(turn, fixed(number.unit((m3, -m2, m1, Fraction(0)))))
 
     def angle(self, start: Fraction, time: Fraction) -> Fraction:
-        """Return the angle, rad, by which the body rotates about n in ``time`` s, from Omega = ``start``."""
+        """Return the angle, rad, by which the body rotates about n in ``time`` s, beginning at Omega = ``start``."""
         omega = start + self.s * time
         here, there, product = self.speed(omega), self.speed(start), rounded(omega * start)
         if product >= 0:
@@ -132,6 +132,6 @@ class Sweep:
         return rounded(steady) + Fraction(self.delta(omega)) - Fraction(self.delta(start))
 
     def rotation(self, start: Fraction, time: Fraction) -> Quaternion:
-        """Return the body's rotation in ``time`` s, from Omega = ``start``, as a quaternion of integers."""
+        """Return the body's rotation in ``time`` s, which begins at Omega = ``start``, as a quaternion of integers."""
         end = conjugate(self.axes(start + self.s * time))
         return product(self.axes(start), about_third(self.angle(start, time)), end)

@@ -267,9 +267,9 @@ class _Builder:
     def driven(self, functions: Sequence[tuple[str, int]], partners: Sequence[int], argument: _Linear) -> int:
         """Add a series for each of ``functions``, unless it exists, and return the index of the first series.
 
-        The derivative of function i is its sign times function ``partners[i]``: for sin and cos, partners are (1, 0).
+        ``functions`` are pairs (name, sign): the derivative of function i is sign times function ``partners[i]``.
         """
-        # functions: pairs (name, sign)
+        # for sin and cos, partners are (1, 0)
         clock = self.clock(argument)
         seed = () if clock else (self.series_of(argument),)
         drive = () if clock else (self.theta(*seed),)

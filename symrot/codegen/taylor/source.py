@@ -442,7 +442,7 @@ def _of(function: str, turn: str) -> str:
 
 
 def _calls(node: Node) -> list[Node]:
-    """Return the outermost function calls in a formula: ``a*sin(exp(b)) + tan(c)`` has sin(exp(b)) and tan(c)."""
+    """Return the outermost function calls in a formula: ``a*sin(exp(b)) + tan(c)`` gives sin(exp(b)) and tan(c)."""
     if node[0] == "call":
         return [node]
     return [call for child in children(node) for call in _calls(child)]
