@@ -385,7 +385,7 @@ class Token(NamedTuple):
 
 
 def tokens(text, place):
-    """Return the words (tokens) of a text; each word is as long as possible, as a C compiler splits a text."""
+    """Return the words (tokens) of a text, each as long as possible, as in C; ``place`` names the text in messages."""
     words, start, line = [], 0, 1
     while start < len(text):
         match = TOKEN.match(text, start)
@@ -414,7 +414,7 @@ class Reader:
         return f"{self.place}, line {self.token.line}"
 
     def refuse(self, expectation):
-        """Raise ValueError with the line number, the expected text and the next word."""
+        """Raise ValueError with the line number, the text ``expectation`` and the next word."""
         raise ValueError(f"{self.here()}: expected {expectation}, got {quoted(self.token.text)}")
 
     def need(self, holds, sentence):
@@ -441,7 +441,10 @@ class Reader:
                 self.refuse(f"`{word.text}` of `{phrase}`")
 
     def take_name(self, what):
-        """Return the next word, which must be a name; refuse names of macros, and names with a leading underscore."""
+        """Return the next word, which must be a name; ``what`` says in messages which name is expected.
+
+        Names of macros and names with a leading underscore are refused.
+        """
         if self.token.kind != "name" or self.token.text.startswith(("_", "SYMROT_")):
             self.refuse(what)
         return self.advance()
@@ -561,7 +564,10 @@ class FormulaReader(Reader):
 
 
 def constant(text, place):
-    """Return the number for which a text without variables stands, as a fraction: ``"1/3"`` or ``"pi/3"``."""
+    """Return the number for which a text without variables stands, as a fraction: ``"1/3"`` or ``"pi/3"``.
+
+    ``place`` names the text in error messages.
+    """
     # PI is a fraction with more digits than any number in the C text
     return FormulaReader(text, place, {}, ("pi",), is_constant=True).whole().value(AnyFunctions(), {"pi": PI})
 
@@ -752,7 +758,10 @@ class CReader(Reader):
     # functions
 
     def new_name(self, what):
-        """Return the next word, which must be a name that is not in use so far, in this text or in C."""
+        """Return the next word, which must be a name that is not in use so far, in this text or in C.
+
+        ``what`` says in messages which name is expected.
+        """
         name = self.take_name(what)
         known = [self.names, self.parameters, self.kernels, RESERVED, *self.inline.values()]
         for end in REALS.values():
@@ -865,7 +874,10 @@ class CReader(Reader):
         return words == [token.text for token in self.tokens[self.position : self.position + len(words)]]
 
     def body(self, asks_far=False):
-        """Read statements up to a closing brace, where the scope of their variables ends; return a Body."""
+        """Read statements up to a closing brace, where the scope of their variables ends; return a Body.
+
+        With ``asks_far``, one statement may test angles for the range of symrot_sin and symrot_cos.
+        """
         outer, self.names, self.assigned = self.names, set(self.names), set()
         statements, far = [], []
         while not self.accept("}"):
@@ -912,7 +924,7 @@ class CReader(Reader):
 
 
 def run(body, numbers, inputs):
-    """Run the ``body`` of a C function; return a map of its outputs, and the angles that it tests for their range."""
+    """Run a C ``body`` on ``inputs`` in the arithmetic ``numbers``; return outputs, and angles whose range it tests."""
     names, outputs = dict(inputs), {}
     for target, expression in body.statements:
         value = expression.value(numbers, names)
@@ -939,7 +951,7 @@ ROUNDING_SHAPE = {
 def check_shape(value, shape, place):
     """Raise ValueError if a value does not have the types in ``shape``, such as ``{"name": str, "sizes": [str]}``.
 
-    Other entries of the value are ignored.
+    Other entries of the value are ignored; ``place`` names the value in error messages.
     """
     if isinstance(shape, type):
         need(isinstance(value, shape), f"{place}: expected a text, as the schema says, got {quoted(value)}")
@@ -1083,7 +1095,7 @@ class Specification:
 
 
 def draw_hypothesis(members, names):
-    """Define random values for symbols that a law assumes to form a rotation matrix or a unit vector."""
+    """Define random values for the symbols ``members``, which a law assumes to be a rotation matrix or unit vector."""
     # 2*v*v^T + 2*q0*[v]x + (2*q0^2 - 1)*1 for the unit quaternion (q0, v)
     # nine symbols are a matrix, row by row
     vector = [names.numbers.draw() for _ in range(4 if len(members) == 9 else len(members))]
@@ -1137,7 +1149,10 @@ LEAST = {"double": Fraction(1, 2**55), "float": Fraction(1, 2**26)}  # a quarter
 
 
 def check_series(series, functions, real):
-    """Check the polynomial that replaces a function near x = 0; return ``functions`` with the function so replaced."""
+    """Check the polynomial that replaces a function near x = 0, for numbers of the C type ``real``.
+
+    Return ``functions`` with a function that computes the polynomial near x = 0.
+    """
     name, split_text, coefficient_texts, rest_text = series
     place = f"series of {quoted(name)}"
     split, rest = constant(split_text, place), constant(rest_text, place)
@@ -1297,7 +1312,7 @@ class BoxPoint(NamedTuple):
 
 
 def hexadecimal(text, place):
-    """Return the value, a double, of a hexadecimal text such as 0x1.8p+3."""
+    """Return the value, a double, of a hexadecimal text such as 0x1.8p+3; ``place`` names the text in messages."""
     try:
         return float.fromhex(text)
     except (ValueError, OverflowError):

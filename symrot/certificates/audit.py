@@ -2,7 +2,7 @@
 
 A certificate is a JSON file of statements about an emitted C kernel, with proofs. After the check from the files alone
 (exact_check.py), symrot derives and proves the same statements again, so that a correct certificate of another kernel
-is refused.
+is refused. ``data`` is the content of a certificate, ``path`` its path, and ``source`` the C text.
 """
 
 import json

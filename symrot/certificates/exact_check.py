@@ -452,10 +452,12 @@ def complete(cases):
 
 
 def functions_of(text, name, files):
-    """Return a map from the name of each function in a C text to (whether it is static, type, arguments, body)."""
+    """Return a map from the name of each function in a C text to (whether it is static, type, arguments, body).
+
+    The text may include only <math.h>, the header of the kernel ``name``, and symrot_math.h if it is in ``files``.
+    """
     odd = re.search(r"\\|\?\?|//|[\0-\x09\x0b-\x1f]", text)
     require(not odd, f"expected no backslash, trigraph, // comment or control character, got {odd and odd[0]!r}")
-    # the certified files decide the includes that the text may have
     known = ["#include <math.h>", f'#include "{name}.h"', *['#include "symrot_math.h"'] * ("symrot_math.h" in files)]
     lines = [line for line in re.sub(r"/\*.*?\*/", " ", text, flags=re.S).split("\n") if line.strip() not in known]
     functions, (*chunks, end) = {}, re.split(r"^\}$", "\n".join(lines), flags=re.M)

@@ -111,7 +111,10 @@ def _rounded(value: Any, digits: int) -> float:
 
 
 def _point(name: str, suffix: str, y: float, x: float) -> str:
-    """Return a row of a C table of test points: y, x, the rounded exact value, its error in ulp, and the ulp."""
+    """Return a row of a C table of test points: y, x, the rounded exact value, its error in ulp, and the ulp.
+
+    ``name`` is the function, such as ``"sin"``; ``suffix`` is ``"f"`` for floats and ``""`` for doubles.
+    """
     from mpmath import floor, log, mp, mpf
 
     # an ulp is the distance between neighbouring numbers

@@ -216,8 +216,10 @@ def _is_zero(value: Any) -> bool:
 
 
 def _turning(x: _Power, sign: int, functions: tuple[str, str]) -> tuple[_Power, _Power]:
-    """Return the power series (sin x, cos x) if ``sign`` is -1, or (sinh x, cosh x) if ``sign`` is 1."""
-    # ``functions``: the names of the two, for the first coefficients
+    """Return the power series (sin x, cos x) if ``sign`` is -1, or (sinh x, cosh x) if ``sign`` is 1.
+
+    ``functions`` has the names of the two functions.
+    """
     rates = x.rates
     s, c = ([_SCALAR[name](iv.mpf(x.terms[0]))] for name in functions)
     for n in range(len(rates)):
@@ -389,12 +391,14 @@ def _halves(box: Box, name: str) -> Iterator[dict[str, tuple[Fraction, Fraction]
 
 
 def _gains(problem: "_Problem", box: Box, whole: list[float]) -> dict[str, float]:
-    """Return a map: input -> fraction by which the largest bound decreases if the input's range is halved."""
+    """Return a map: input -> fraction by which the largest bound decreases if the input's range is halved.
+
+    ``whole`` are the bounds on the whole box; inputs without a gain are left out.
+    """
     gains = {}
     for name, (low, high) in box.items():
         if low < high:
             halves = max(max(problem.bounds(half)) for half in _halves(box, name))
-            # inputs without a gain are left out; ``whole`` are the bounds on the whole box
             if halves < max(whole):
                 gains[name] = 1.0 if max(whole) == inf else 1 - halves / max(whole)
     return gains
@@ -549,7 +553,7 @@ class _Problem:
         ]
 
     def _enclosure(self, values: Mapping[str, Any], span: Any) -> dict[str, Any] | None:
-        """Return ranges that no motion from the box leaves during the step; None if none are found."""
+        """Return ranges that no motion leaves that starts in ``values`` and lasts ``span``; None if none are found."""
         around = dict(values) | {"t": values["t"] + span}
         for _ in range(ATTEMPTS):
             slopes = self.rates.evaluate(around, _Functions(_SCALAR), _number).values()
@@ -564,8 +568,10 @@ class _Problem:
         return None
 
     def _step_coefficients(self, values: Mapping[str, Any], span: Any, order: int) -> list[Any]:
-        """Return, for each state, an interval with the coefficient of h^``order`` in the Taylor series of the step."""
-        # h is the step size; ``span`` is the range of its values
+        """Return, for each state, an interval with the coefficient of h^``order`` in the Taylor series of the step.
+
+        ``values`` and ``span`` are the ranges of the inputs and of h.
+        """
         # the coefficients of a Taylor method above its own order are zero
         if isinstance(self.method, TaylorSeries):
             return [0] * len(self.states)
@@ -573,7 +579,6 @@ class _Problem:
         size = _Power((span, iv.mpf(1), *(0,) * (count - 2)))
         start = {name: _Power.of(value, count) for name, value in values.items() if name != SIZE}
         functions = _Functions({name: _of_any(name) for name in _OF_SERIES})
-        # valid for all states of the box
         after = stepped(
             self.rates, self.method, start, size, functions, lambda value: _Power.of(_number(value), count)
         )  # fmt: skip

@@ -297,8 +297,10 @@ class Derivation(PrintedPage):
         return True
 
     def _read(self, text: str, sides: tuple[Any, Any] = (S.Zero, S.Zero)) -> list[Any]:
-        """Return the values of the sides of an equation in LaTeX: two for ``X = Y``, one for ``X`` alone."""
-        # symbols in the ``sides`` of the equation need no definition on the page
+        """Return the values of the sides of an equation in LaTeX: two for ``X = Y``, one for ``X`` alone.
+
+        Symbols of the formulas ``sides`` need no declared meaning.
+        """
         used = {symbol for side in sides for symbol in side.free_symbols}
         names = {key(formula(symbol)): symbol for symbol in used} | self.names
         chains = parts(text)

@@ -341,7 +341,10 @@ def _emitted(path: str) -> str:
 
 
 def lines(data: Data, compared: bool = True) -> list[str]:
-    """Return the lines that `symrot certify` prints about a certificate."""
+    """Return the lines that `symrot certify` prints about a certificate.
+
+    ``compared`` says whether object code was compared in this call, and not in an earlier one.
+    """
     rows = [("domain", data["domain"]), *(("laws", f"{law['law']}: proven") for law in data["laws"])]
     if data["coq"]:
         rows.append(("Coq", f"theorem {data['coq']['theorem']} of {data['coq']['file']} (`symrot prove` checks it)"))
@@ -355,7 +358,6 @@ def lines(data: Data, compared: bool = True) -> list[str]:
         worst = max(part["outputs"], key=lambda item: float.fromhex(item["absolute"]))
         most = f"{float.fromhex(worst['absolute']):.3g}"
         rows.append(("rounding", f"{part['precision']}: error at most {most} on the box ({worst['output']})"))
-    # otherwise the verdicts on object code are from an earlier call
     if compared:
         rows += [("object code", line) for line in object_code.lines(data.get("objects"))]
     elif data.get("objects"):

@@ -269,14 +269,16 @@ LINK_IN_HTML = re.compile(r'<a href="(?P<page>\w+)\.html">(?P<label>.*?)</a>')
 
 
 def _present(directory: Path, chosen: Sequence[str], suffix: str) -> set[str]:
-    """Return the names of the chosen derivations and of those whose pages are in a directory already."""
+    """Return the names of the ``chosen`` pages and of those whose files (name and ``suffix``) are in ``directory``."""
     return {name for name in _page_names() if name in chosen or (directory / f"{name}{suffix}").is_file()}
 
 
 def _only_links_to(present: set[str], link: re.Pattern[str], text: str) -> str:
-    """Return ``text`` with each link to a page that is not in ``present`` replaced by the words of the link."""
+    """Return ``text`` with each link to a page that is not in ``present`` replaced by the words of the link.
+
+    ``link`` matches a link, with the groups "page" and "label".
+    """
     missing = set(_page_names()) - present
-    # ``link`` has the groups "page" (derivation) and "label" (words of the link)
     return link.sub(lambda match: match["label"] if match["page"] in missing else match[0], text)
 
 

@@ -77,11 +77,13 @@ def kernel_files(kernel: KernelText, target: str, bounds: Mapping[str, Any] | No
 def certificate_files(
     kernel: KernelText, directory: Path, bounds: Mapping[str, Any] | None = None
 ) -> dict[str, str]:  # fmt: skip
-    """Return the certificate file of a kernel, as a map from file name to text; empty if it has no certificate."""
+    """Return the certificate file of a kernel, as a map from file name to text; empty if it has no certificate.
+
+    Verdicts on object code are copied from a certificate in ``directory`` if it is about the same C text.
+    """
     if not kernel.has_certificate:
         return {}
     name, certificate = f"{kernel.name}.cert.json", kernel.certificate(bounds)
-    # verdicts on object code are copied from the certificate in the folder if they still hold
     data, present = json.loads(certificate), _slots(directory / name)
     if is_step(data):
         same = "bounds" in present and all(

@@ -87,7 +87,7 @@ def step_method(name: str, order: int | None = None, jacobian: Sequence[str] = (
 
 
 def step_text(scene: SceneSource, step: str, order: int | None = None, jacobian: Sequence[str] = ()) -> KernelText:
-    """Return the texts of one time step of a scene by the method ``step``, such as ``"rk4"``."""
+    """Return the texts of one time step of a scene; ``step`` is ``"exact"`` or a method of :func:`step_method`."""
     # a library kernel has no motion
     if isinstance(scene, str) and is_kernel(scene):
         raise InputError(f"step: expected a scene, because only a motion has steps, got the kernel {scene!r}")

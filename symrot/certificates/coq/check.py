@@ -191,8 +191,11 @@ def _levels(sources: Mapping[str, str]) -> list[list[str]]:
 
 
 def _compile(compiler: str, place: Path, name: str, seconds: float) -> tuple[str | None, str]:
-    """Compile the file ``NAME.v`` with Coq; return Coq's error message (None if there is none) and Coq's output."""
-    # Coq writes files of its own into the folder ``place``
+    """Compile the file ``NAME.v`` in the folder ``place``, for at most ``seconds``.
+
+    Return Coq's error message (None if there is none) and what Coq prints.
+    """
+    # Coq writes files of its own into the folder
     command = [compiler, "-q", "-R", ".", "symrot", f"{name}.v"]
     try:
         done = run_tool(command, seconds, place)

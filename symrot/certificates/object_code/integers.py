@@ -59,7 +59,7 @@ def memory_place(state: MachineState, instruction: Instruction, operand: Memory)
 def relocated_place(state: MachineState, instruction: Instruction, kinds: tuple[str, ...]) -> tuple[str, int]:
     """Return (base, offset) of the address that the linker fills into an instruction.
 
-    NotUnderstood is raised unless the relocation has one of ``kinds``.
+    NotUnderstood is raised unless the kind of the relocation, such as ``"R_X86_64_PC32"``, is in ``kinds``.
     """
     relocation = instruction.relocation
     if relocation is None or relocation.kind not in kinds:

@@ -110,8 +110,10 @@ def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
 
 
 def _fused(suffix: str, order: str, negated: bool, subtracted: tuple[bool, ...]) -> Numeric:
-    """Return the function that executes a fused multiply-add a*b + c, whose operands are numbered by ``order``."""
-    # "132": a is operand 1, b operand 3 and c operand 2
+    """Return the function that executes a fused multiply-add a*b + c, with signs from ``negated`` and ``subtracted``.
+
+    ``order`` has the numbers of the operands: for "132", a is operand 1, b is operand 3 and c is operand 2.
+    """
     places = tuple(int(digit) - 1 for digit in order)
 
     def fused(lane_subtracted: bool) -> Callable[..., int]:

@@ -156,7 +156,7 @@ class MachineState:
     def set_vector(self, name: str, words: Words, is_vex: bool) -> None:
         """Write the low words of a vector register.
 
-        A VEX instruction (``v...``) sets the register's other words to zero.
+        With ``is_vex`` (an instruction with the prefix ``v``), the register's other words become zero.
         """
         if name not in VECTORS:
             raise NotUnderstood(f"expected a register that kernels use, got {name}")

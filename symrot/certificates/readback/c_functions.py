@@ -1,6 +1,7 @@
 """The functions in a C text, each as a list of tokens; C that symrot does not emit raises an error.
 
-This module shares no code with the emitter, so that a mistake there cannot hide here.
+This module shares no code with the emitter, so that a mistake there cannot hide here. ``where`` is the name of a file,
+for error messages.
 """
 
 import re

@@ -212,7 +212,10 @@ def _slope_at(a: Array, b: Array) -> Array:
 
 
 def arc_ratio_terms(s: Array, c: Array, radius: Array) -> tuple[Array, Array, Array]:
-    """Return intervals of atan2(s, c)/s and of its derivatives by s and by c, for s, c >= 0, not both 0."""
+    """Return intervals of atan2(s, c)/s and of its derivatives by s and by c, for s, c >= 0, not both 0.
+
+    ``radius`` has intervals of sqrt(s^2 + c^2).
+    """
     # With s = r sin(a) and c = r cos(a), these are 1/(r sinc a), -4 a g(2a)/(r sinc a)^2 and -1/r^2, which are finite
     # at a = 0; here g(x) = (x - sin x)/x^3 is ``sine_gap``.
     angle = np.clip(arc_tangent(s, c), 0.0, pi / 2 + SLACK)

@@ -233,12 +233,12 @@ class _GraphReader:
         return self.put(kind, *(self.read(i) for i in operands(node)))
 
     def squares(self, index: int, depth: int = 0) -> list[tuple[int, int]] | None:
-        """Return, for each term x^2 of a sum, x and the number of roundings: a, 2; b, 3; c, 3 for a^2 + (b^2 + c^2).
+        """Return (x, roundings) for each term x^2 of a sum: (a, 2), (b, 3), (c, 3) for a^2 + (b^2 + c^2).
 
-        The result is None if the operation ``index`` is no sum of squares.
+        The result is None for another operation. ``depth`` is the number of additions from here to the sum.
         """
         node = self.source[index]
-        # one rounding in the square, and one in each addition on the way to the sum (``depth``)
+        # one rounding in the square, and one in each addition
         if node[0] == "mul" and node[1] == node[2]:
             return [(node[1], depth + 1)]
         if node[0] == "add":

@@ -59,9 +59,10 @@ a { color: inherit; }
 
 
 def html_document(page: Page, top: str = "", bottom: str = "", style: str = "", font: str = "") -> str:
-    """Return an HTML document with a page, the HTML text ``top`` above the page, and ``bottom`` below it."""
-    # ``style`` is CSS after the usual rules; ``font`` is the address of the font's file, which is embedded if it is
-    # empty
+    """Return an HTML document with a page, the HTML text ``top`` above the page, and ``bottom`` below it.
+
+    ``style`` is CSS after the usual rules; ``font`` is the address of the font's file, empty to embed the font.
+    """
     parts = [*filter(None, [top]), f"<h1>{prose(page.title)}</h1>"]
     for opening in page.opening:
         parts += [_figure(opening)] if isinstance(opening, Figure) else _passage(opening)
