@@ -176,10 +176,7 @@ def _on_rule(claim: Claim) -> tuple[None, Verdict] | None:
 
 
 def _was_near_relation(claim: Claim) -> bool:
-    """Return whether :func:`_on_name` has already compared the whole equation with the relations that symrot derives.
-
-    Then :func:`_near_relation` would find nothing new.
-    """
+    """Return whether :func:`_on_name` has already compared the claim with all known relations."""
     if claim.relation is None or claim.context:
         return False
     named = related_formula(claim)
@@ -297,9 +294,8 @@ def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
 
 
 def _domain(claim: Claim) -> Diagnosis:
-    """Return the diagnosis "domain" for a true claim with only one side defined everywhere, as in ``x == x**2/x``.
-
-    Its code is "none" otherwise.
+    """Return the diagnosis "domain" for a true claim with only one side defined everywhere, ``x == x**2/x``; else
+    "none".
     """
     assert claim.relation is not None
     sides = [claim.with_relation(("==", side, side)) for side in claim.relation[1:]]

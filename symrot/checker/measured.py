@@ -118,7 +118,7 @@ def _rounded(claim: Claim, sides: list[Node], factors: dict[str, Node], measured
 
 
 def _is_irrational(claim: Claim, value: Node) -> bool:
-    """Return whether the number ``value`` is irrational, so that a whole number can equal it only after rounding."""
+    """Return whether the value of the tree ``value`` is irrational."""
     number_of_unit = claim.interpreter().read(value)
     return bool(getattr(number_of_unit, "is_number", False)) and not number_of_unit.is_Rational
 
@@ -142,7 +142,7 @@ def _to_digits(worked: Claim, measured: Measured, unit: str, is_right: bool) -> 
 
 
 def _with_number(source: str, digits: str, unit: str, right: str, is_right: bool) -> tuple[Repair, ...]:
-    """Return (repair,): ``source`` with the number ``right`` for ``digits`` before ``unit``, on its right side if
+    """Return (repair,): ``source`` with ``right`` for the number ``digits`` before ``unit``, the last one if
     ``is_right``.
     """
     places = [*re.finditer(rf"(?<![\w.^]){re.escape(digits)}(?=[ *·⋅]*{re.escape(unit)})", source)]

@@ -483,7 +483,7 @@ def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _has_indices(claim: Claim) -> bool:
-    """Return whether a claim is in index notation: ``I_ik = m*a_i*a_k`` has a pair of indices and one of them alone."""
+    """Return whether a claim is in index notation, as ``I_ik = m*a_i*a_k`` with the indices i and k."""
     assert claim.relation is not None
     names = {name for side in claim.relation[1:] for name in _names(side)}
     pairs = {name.rpartition("_")[2] for name in names if re.fullmatch(r"\w+_[ijkl]{2}", name)}

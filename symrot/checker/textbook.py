@@ -156,7 +156,7 @@ def _prove(claim: Claim, condition: Condition) -> None:
     hypotheses = tuple(read_relation(source, f"{claim.id}: condition", declared) for source in condition.hypotheses)
     if decide_equation(replace(claim, hypotheses=(*claim.hypotheses, *hypotheses)).equation).verdict != "true":
         texts = " and ".join(condition.hypotheses)
-        raise InputError(f"{claim.id}: condition: expected one under which the claim is true, got {texts!r}")
+        raise InputError(f"{claim.id}: expected a condition under which the claim is true, got {texts!r}")
 
 
 def _correction(claim: Claim, verdict: Verdict, formula: PrintedFormula | None) -> tuple[str, dict[str, Node]]:

@@ -141,7 +141,7 @@ def test_formulas_that_hold_under_a_condition_on_an_angle_are_listed(survey):
 def test_a_condition_under_which_a_claim_is_not_proven_is_refused():
     source = document("brown")
     claim = next(claim for claim in read_claims(source.path) if claim.id == "brown-prism-equation-axes")
-    with pytest.raises(InputError, match="expected one under which the claim is true, got 'cos"):
+    with pytest.raises(InputError, match="expected a condition under which the claim is true, got 'cos"):
         finding_of(source.claims[claim.id], claim, True, None, Condition(claim.id, ("cos(f) == 0",), ""))
 
 

@@ -14,7 +14,7 @@ IMAGINARY = Node("name", "i")
 
 
 def has_arrays(sides: Sequence[Node]) -> bool:
-    """Return whether formulas call a function for quaternions or contain ``eye(4)``, which is written as 1."""
+    """Return whether formulas call a function for quaternions, such as ``qmul``, or contain ``eye(4)``."""
     # Pauli's matrices are computed as real 4 x 4 matrices
     nodes = [node for side in sides for _, node in walk(side)]
     return UNIT in nodes or any(node.kind == "call" and node.value in QUATERNION for node in nodes)

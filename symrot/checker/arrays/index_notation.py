@@ -29,7 +29,9 @@ MOST_ENTRIES, WIDTH = 81, 9
 
 
 def written_out(relation: Relation) -> tuple[Relation, str]:
-    """Return an equation with delta_ij or epsilon_ijk written out in components, and a note, empty for other equations.
+    """Return an equation with delta_ij or epsilon_ijk written out in components, and a note for the user.
+
+    Other equations are returned unchanged, with an empty note.
 
     Raises
     ------
@@ -64,8 +66,8 @@ def written_out(relation: Relation) -> tuple[Relation, str]:
 
 
 def component_of_cross(pair: Sequence[Node], index: str, used: str) -> Node | None:
-    """Return ``epsilon_ijk a_j b_k`` for the component ``index``, i, of a x b; None unless a and b, the ``pair``, are
-    names.
+    """Return ``epsilon_ijk a_j b_k``, the component i of a x b; ``pair`` is a and b, ``index`` is i. None unless both
+    are names.
     """
     left, right = pair
     free = [letter for letter in "pqrskjlmni" if letter not in used + index]
@@ -144,7 +146,7 @@ def _flat(factors: Sequence[Node]) -> Node:
 
 
 def _counts(term: Node) -> Counter[str]:
-    """Return how often each index occurs in a term; an index inside a square counts twice."""
+    """Return how often each index occurs in a term: i twice in ``a_i b_i`` and in ``a_i^2``."""
     counts: Counter[str] = Counter(_indices(term))
     for part in term.args:
         own = _free_counts(part) if term.value == "integral_over_body" else _counts(part)

@@ -122,7 +122,7 @@ def _is_inverse(node: Node) -> bool:
 
 
 def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, bool]:
-    """Return the bold capital letters among ``vectors`` that are matrices, mapped to whether they depend on time."""
+    """Return the bold capital letters that are matrices, not vectors, each with True if it depends on time."""
     matrices: dict[str, bool] = {}
     nodes = [node for side in sides for _, node in walk(side)]
     for node in nodes:
@@ -166,7 +166,7 @@ def rate_matrices(relation: tuple[str, Node, Node]) -> dict[str, bool]:
 
 
 def without_time(node: Node, names: Collection[str]) -> Node:
-    """Return a tree with R in place of R(t) for matrices ``names``: their entries, not their names, depend on time."""
+    """Return a tree with R in place of R(t) for each matrix R in ``names``, whose entries depend on time."""
     if node.kind == "call" and node.value in names and node.args == (TIME,):
         return Node("name", node.value, (), node.span)
     return replace(node, args=tuple(without_time(child, names) for child in node.args))

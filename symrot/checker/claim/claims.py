@@ -260,7 +260,7 @@ def relation_text(relation: Relation) -> str:
 
 
 def _differences(left: Any, right: Any, where: str) -> list[Expr]:
-    """Return the differences left - right of a hypothesis that is an equation, one for each entry of a matrix."""
+    """Return left - right of a hypothesis that is an equation: one formula, or one for each entry of a matrix."""
     try:
         lefts, rights, _ = matched_sides(left, right)
     except ShapeMismatch:

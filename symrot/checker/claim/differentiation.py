@@ -21,7 +21,7 @@ __all__ = ["as_functions", "is_rule"]
 
 
 def as_functions(claim: Claim) -> Claim | None:
-    """Return a rule of differentiation with functions of the time t, ``diff(x(t), t)`` for ``diff(x, q)``.
+    """Return a rule of differentiation with q renamed to t and x to x(t): ``diff(x(t), t)`` for ``diff(x, q)``.
 
     None for other claims.
     """

@@ -349,7 +349,7 @@ COORDINATES = re.compile(r"[xyzr]|xi|eta|zeta|[rs]_[xyz123]")
 
 
 def _integral_over_body(scope: Scope, node: Node) -> Any:
-    """Return an integral over a body of unknown shape, such as ∫ x^2 dm, with one new symbol per product of
+    """Return an integral such as ∫ x^2 dm over a body of unknown shape: a new symbol for each product of
     coordinates.
     """
     value = scope.evaluate(node.args[0])

@@ -90,7 +90,7 @@ class TypedNotation:
         return replace(node, args=tuple(args))
 
     def _in_full(self, node: Node) -> Node:
-        """Return a formula inside ``diff(..)`` with ``f(t)`` for a function f of time; f alone would be a constant."""
+        """Return a formula with ``f(t)`` for each function f of time, as it must be written inside ``diff(..)``."""
         name = self.spelling.get(str(node.value), node.value) if node.kind in ("name", "call") else node.value
         return replace(node, value=name, args=tuple(map(self._in_full, node.args)))
 

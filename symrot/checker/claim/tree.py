@@ -171,7 +171,7 @@ _WRITE: dict[str, Callable[[Node], str]] = {
 
 
 def with_names(node: Node, names: Mapping[str, str]) -> Node:
-    """Return a tree with other names of symbols: ``names`` maps old to new ones. Functions of time keep theirs."""
+    """Return a tree with new names of symbols, by the map ``names`` from old to new; functions keep their names."""
     if node.kind == "name" and node.value in names:
         return replace(node, value=names[str(node.value)])
     return replace(node, args=tuple(with_names(child, names) for child in node.args))

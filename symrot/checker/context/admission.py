@@ -80,7 +80,9 @@ def is_usual_for_body(context: Context, sequence: str) -> bool:
 
 
 def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
-    """Yield each contradiction between a formula's ``name`` and a claim about ``quantity``: "for the space frame"."""
+    """Yield words for each contradiction between a formula's ``name`` and a claim about ``quantity``: "for another
+    axis".
+    """
     is_relation = name.startswith("relation for ") or not quantity
     meaning = None if is_relation else context.meaning_of(quantity)
     if not is_relation and not is_component(name, quantity):
@@ -244,7 +246,7 @@ def same_rotation(sequence: str) -> str:
 
 
 def _is_symbol_of(meaning: Meaning, symbol: str) -> bool:
-    """Return whether ``symbol`` of a derived formula can have a meaning, as dphi can be a rate of precession."""
+    """Return whether a meaning fits ``symbol`` of a derived formula, as "rate of precession" fits dphi."""
     pattern = meaning.quantity.symbols
     if not pattern:
         return True

@@ -379,9 +379,8 @@ def _quantity(plain: str, words: str, prefix: str) -> tuple[Quantity, str]:
     ]
     if phrases:
         start, _, phrase, quantity = min(phrases, key=lambda entry: entry[:2])
-        if not meaningful_words(
-            plain[:start]
-        ):  # the quantity comes first: "mass" is not what "distance of the mass" names
+        # the quantity comes first: "mass" is not what "distance of the mass" names
+        if not meaningful_words(plain[:start]):
             return quantity, phrase
     for word, instead in AMBIGUOUS.items():
         if word in plain.split():

@@ -329,7 +329,7 @@ def _true(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _false(verdict: Verdict, decision: Decision) -> Verdict:
-    """Return the verdict "false" on a claim, with a point where its formula differs from the one that it means."""
+    """Return the verdict "false" on a claim, with a point at which its formula differs from the known one."""
     return replace(verdict, verdict="false", counterexample=decision.counterexample, reason="")
 
 

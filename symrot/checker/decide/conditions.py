@@ -194,8 +194,6 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
 
 
 def _split(poly: PolyElement, place: int, generator: PolyElement) -> tuple[PolyElement, PolyElement]:
-    """Return polynomials (a, b) with poly = a + b*generator, where a lacks the ``generator``, the unknown number
-    ``place``.
-    """
+    """Return polynomials (a, b) with poly = a + b*generator, a without the ``generator``, whose index is ``place``."""
     without = poly.new({mono: c for mono, c in poly.items() if not mono[place]})
     return without, (poly - without).exquo(generator) if poly != without else poly.ring.zero

@@ -250,7 +250,7 @@ class _ClaimCase(Case):
 
     @property
     def lacks_evidence(self) -> bool:
-        """Whether the search for a counterexample must go on."""
+        """Whether no counterexample is known, and the search for one must go on."""
         # known conditions on the signs of roots end the search; under hypotheses it goes on, since they ignore these
         return self.counterexample is None and (bool(self.ring.hypotheses) or self.branches is None)
 
@@ -332,8 +332,8 @@ def nearby_witness(case: _ClaimCase) -> None:
 
 
 def branch(case: _ClaimCase) -> Decision | None:
-    """Return "true" if a claim's text implies the signs that it needs: x >= 0, by a sqrt(x), for ``sqrt(x**2) == x``;
-    or None.
+    """Return "true" if a claim's text implies the signs that it needs, as sqrt(x) does for ``sqrt(x**2) == x``; or
+    None.
     """
     case.branches, rings = _branches(case.ring, case.numerators)
     case.rely_on((*case.proof_rings, *rings))
@@ -360,10 +360,7 @@ def entail(case: _ClaimCase) -> Decision | None:
 
 
 def distant_witness(case: _ClaimCase) -> None:
-    """Search for a counterexample among many random points that obey the hypotheses, and store it in ``case``.
-
-    It comes after :func:`nearby_witness`, which tries simple points.
-    """
+    """Search for a counterexample among many random points that obey the hypotheses, and store it in ``case``."""
     if case.lacks_evidence:
         searches = [case.within_domain(case.hypotheses.witness)]
         searches += [case.hypotheses.checked(closed_form_witness)] if case.ring.hypotheses else []

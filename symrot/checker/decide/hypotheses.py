@@ -315,8 +315,8 @@ class Hypotheses:
     def _by_enclosures(
         self, left: Expr, right: Expr, entry: tuple[int, int] | None, attempts: int
     ) -> Counterexample | None:
-        """Return a point where intervals prove that the sides differ, since they enclose the values and are disjoint;
-        or None.
+        """Return a point where the intervals that enclose the two sides are disjoint, so that the sides differ; or
+        None.
         """
         leaves = {place: leaf for leaf, place in self.ring.symbols.items()}
         involved = occurring([*self.constraints.zeros, *self.constraints.products])

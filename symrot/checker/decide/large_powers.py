@@ -48,7 +48,7 @@ DIGITS_WRITTEN = (10, 20, 30, 40, 50)
 
 
 def degree_of(formulas: Sequence[Expr]) -> int:
-    """Return an upper bound on the degree of multiplied out ``formulas`` in symbols, sines and cosines."""
+    """Return an upper bound on the degree of ``formulas``, multiplied out, in symbols, sines and cosines."""
     # a large degree shows early that an expansion would take too long
     plain = sum(map(_size, formulas)) <= LARGEST_DEGREE
     bases = {} if plain else _base_multiples(formulas)

@@ -69,8 +69,8 @@ _EMPTY_RANGE = re.compile(r"^(.+) < (\w+) < \1$")
 
 
 def positive_symbols(conditions: Iterable[Any]) -> dict[Expr, Expr]:
-    """Return the symbols that conditions make positive or nonnegative, each with a SymPy symbol that is assumed to be
-    so.
+    """Return a map from each symbol that conditions make positive or nonnegative to a SymPy symbol with this
+    assumption.
     """
     signed = _with_positive_symbols(_Conditions.of(_signs(conditions)).ranges)
     return {
@@ -81,8 +81,8 @@ def positive_symbols(conditions: Iterable[Any]) -> dict[Expr, Expr]:
 
 
 def with_domain(requirement: Requirement, conditions: Iterable[Any]) -> Requirement:
-    """Return a requirement that includes the conditions on its quantities: ``x > 0`` for ``x >= 0`` under
-    ``x != 0``.
+    """Return ``requirement`` joined with ``conditions`` on the same quantities: ``x > 0`` for ``x >= 0`` and ``x !=
+    0``.
     """
     signs = _signs(conditions)
     if not requirement.signs or not signs:
@@ -360,7 +360,7 @@ class _Conditions:
         }
 
     def _simpler(self, entry: tuple[Mapping[Expr, int], int, str]) -> tuple[Mapping[Expr, int], int, str] | None:
-        """Return a condition without its factors of known sign, or None if it need not be stored any more."""
+        """Return a condition on a product without factors of known sign; None if it always holds or becomes a range."""
         # ({x: 1, y: 1}, -1, ">= 0") is -x*y >= 0
         factors, direction, sign = entry
         bounds = {factor: _bound(factor) for factor in factors}
@@ -514,7 +514,7 @@ def _product_text(factors: Mapping[Expr, int], direction: int, sign: str) -> str
 
 
 def _with_positive_symbols(ranges: Mapping[Expr, _Range]) -> dict[Expr, Expr]:
-    """Return the symbols with positive or nonnegative ranges, each with a SymPy symbol that has this assumption."""
+    """Return a map from each symbol with a positive or nonnegative range to a SymPy symbol with this assumption."""
     values: dict[Expr, Expr] = {}
     for quantity, own in ranges.items():
         if quantity.is_Symbol and own.low is not None and own.low.is_nonnegative:
@@ -533,7 +533,7 @@ def _holds(formula: Expr, sign: str, positive: Mapping[Expr, Expr]) -> bool:
 
 
 def _follows(quantity: Expr, own: _Range, positive: Mapping[Expr, Expr]) -> bool:
-    """Return whether a range of a compound quantity follows from the signs of its symbols."""
+    """Return whether the range of a quantity such as x + y follows from the signs of its symbols."""
     if quantity.is_Symbol or own.high is not None or own.low is None:
         return False
     # x + y >= 0 follows from x >= 0 and y >= 0
@@ -562,7 +562,9 @@ def _range_text(quantity: Expr, own: _Range) -> str:
 
 
 def _one_sided(quantity: Expr, root: Expr, sign: str) -> str:
-    """Return the text ``quantity sign root``; a difference that is compared with zero becomes two sides: ``x >= y``."""
+    """Return the text ``quantity sign root``, such as ``x >= 2``; a difference compared with zero becomes ``x >=
+    y``.
+    """
     terms = quantity.args if quantity.is_Add else ()
     positive = [term for term in terms if not term.could_extract_minus_sign()]
     if root == 0 and len(terms) == 2 and len(positive) == 1:

@@ -155,7 +155,7 @@ class _Drawing:
         raise _DeadEnd
 
     def completed(self) -> RealPoint:
-        """Return the finished point: free unknowns get values, then the unknowns that were expressed by others."""
+        """Return the finished point: free unknowns get values, then the unknowns that equations were solved for."""
         later = {place for place, _, _ in self.solved}
         for place in sorted(self.constraints.free - later - self.values.keys()):
             self.values[place] = self.field.convert(self.drawn(place), QQ)
@@ -271,7 +271,7 @@ class _Drawing:
         return False
 
     def guess(self) -> bool:
-        """Set one unknown to a simple random number; return True, since that is always possible."""
+        """Set one unknown to a simple random number, and return True."""
         poly = self.source.choice(self.zeros)
         # an unknown of a random equation
         place = self.source.choice(sorted(occurring([poly])))
@@ -311,7 +311,7 @@ class _Drawing:
     def adjoined(self, factor: PolyElement, place: int) -> Any:
         """Return an irrational root of ``factor``, a polynomial in one unknown, and add it to the number field.
 
-        _DeadEnd if that is impossible.
+        Raise _DeadEnd if that is impossible.
         """
         degree = factor.degrees()[place]
         numbers = [

@@ -230,7 +230,7 @@ class CalculusPart(NamesPart):
         return Node("call", "integrate", (integrand, *ranges))
 
     def has_limits(self) -> bool:
-        """Return whether limits follow an integral sign; the name of a body below the sign is no limit."""
+        """Return whether limits follow an integral sign, and not the name of a body below the sign."""
         lower = self.peek()
         marks = {item.text for item in takewhile(lambda item: isinstance(item, tree.Script), self.items[self.index :])}
         is_body = isinstance(lower, tree.Script) and tree.alone(lower.inside).text in ("V", "B", "m", "M", "\\mathcal")

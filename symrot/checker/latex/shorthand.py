@@ -137,7 +137,7 @@ def without_definitions(hypotheses: Sequence[str], claim: str) -> list[str]:
 
 
 def _after_power(pieces: Sequence[Token], place: int) -> int:
-    r"""Return the place after a power of one token, as in ``c^2_\theta``; return ``place`` if there is no power."""
+    r"""Return the position after a power of one token, as in ``c^2_\theta``; return ``place`` if there is no power."""
     if pieces[place].text != "^" or place + 4 > len(pieces):
         return place
     is_group = pieces[place + 1].text == "{" and pieces[place + 3].text == "}"

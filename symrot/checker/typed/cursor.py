@@ -61,7 +61,7 @@ class Vocabulary:
     vectors: frozenset[str] = frozenset()  # names that, for example, cross products and hats show to be vectors
 
     def function(self, name: str) -> str | None:
-        """Return the name of the built-in or declared function that a name means; None if it means no function."""
+        """Return the name of the function that ``name`` means, asin for arcsin; None if it means no function."""
         if name in self.symbols or (name in ROTATIONS and name in self.alone):
             return None
         if name in BUILT_IN or name in self.functions or name in DEFINED:

@@ -1,4 +1,7 @@
-"""Parsing functions without brackets, ``sin 2x`` and ``√x``, and derivatives as quotients, ``dx/dt``."""
+"""Parsing functions without brackets, ``sin 2x`` and ``√x``, and derivatives as quotients, ``dx/dt``.
+
+A ``place`` counts tokens from the cursor.
+"""
 
 import re
 
@@ -134,7 +137,7 @@ class OpenFunctionsPart(Cursor):
         return self.other_reading("slash after argument", slash.start, function.start, below.end) != usual
 
     def root(self, token: Token) -> Node:
-        """Parse the formula after a root sign √, which has no bar to show its end; return the square root."""
+        """Parse the formula after a root sign √ without a bar, and return its square root."""
         self.plain = True
         self.deeper()
         first = self.token()
@@ -221,7 +224,9 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "diff", (operand, *variables), self.span(token.start))
 
     def end_of_bracket(self) -> int | None:
-        """Return how many tokens the bracket at the cursor has if ``/dx`` follows it, as in ``(x^2)/dx``; or None."""
+        """Return the number of tokens of the bracket at the cursor if ``/dx`` follows it, as in ``(x^2)/dx``; otherwise
+        None.
+        """
         depth, place = 0, 0
         while self.token(place).kind != "end":
             depth += (self.token(place).text == "(") - (self.token(place).text == ")")
@@ -247,28 +252,19 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "diff", (operand, Node("name", variable)), self.span(token.start))
 
     def order_at(self, place: int) -> tuple[int, int]:
-        """Return (order, next place) of a derivative: order 2 if ``^2`` or ² is at ``place``, else 1.
-
-        Places count tokens from the cursor.
-        """
+        """Return (order, next place) of a derivative: order 2 if ``^2`` or ² is at ``place``, otherwise 1."""
         token, after = self.token(place), self.token(place + 1)
         if token.text in ("^", "**") and after.text.isdigit():
             return int(after.text), place + 2
         return (int(token.text), place + 1) if token.kind == "power" and token.text.isdigit() else (1, place)
 
     def tight_name(self, place: int) -> tuple[str, int]:
-        """Return (name, next place) for the name at ``place``; the name is empty if a blank is before it.
-
-        Places count tokens from the cursor.
-        """
+        """Return (name, next place) for the name at ``place``; the name is empty if a blank is before it."""
         token = self.token(place)
         return (token.text, place + 1) if token.kind == "name" and token.tight else ("", place)
 
     def differential(self, place: int) -> tuple[str, int]:
-        """Return (``x``, next place) if the differential ``dx`` is at ``place``; otherwise the text is empty.
-
-        Places count tokens from the cursor.
-        """
+        """Return (x, next place) if the differential ``dx`` is at ``place``; otherwise an empty text in place of x."""
         token = self.token(place)
         if token.kind != "name" or not token.text.startswith("d"):
             return "", place

@@ -197,8 +197,8 @@ def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> I
 def _with_vectors(
     relation: Relation, vectors: list[Vector], define: Sequence[tuple[str, Node]]
 ) -> tuple[Relation, list[Vector], bool]:
-    """Return a relation with ``eye(n)`` for I or 1, ``vectors`` with further ones of the relation, and whether it has I
-    or 1.
+    """Return a relation with ``eye(n)`` for I or 1, ``vectors`` and the relation's other vectors, and whether it has
+    eye(n).
     """
     # defined names are no new vectors
     named = {name for name, _ in define} | {vector.name for vector in vectors}

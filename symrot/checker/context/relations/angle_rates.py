@@ -95,8 +95,8 @@ ENTRY = re.compile(r"[RACQT]_?([1-3])_?([1-3])")
 
 
 def substitutions_of_entries(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield each Substitution for a claim such as ``R_31 = ..``: R_31 becomes that entry of the stated sequence's
-    matrix.
+    """Yield each Substitution for a claim such as ``R_31 = ..``: R_31 becomes its formula by the stated Euler
+    sequence.
     """
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides) - {TIME}, key=str)}
     entries = {atom: match for atom, name in names.items() if (match := ENTRY.fullmatch(name))}
