@@ -2,7 +2,7 @@
 
 A closed form consists of two C files, compiled in parallel: ``name.c`` computes the constants of a motion, and
 ``name_at.c`` contains the loops over samples. Double-double arithmetic (sums of two doubles) requires that every
-operation is rounded separately, which each prepared motion tests first.
+operation is rounded separately. Each motion tests this before it is computed.
 """
 
 import ctypes

@@ -1,4 +1,4 @@
-"""Straight-line programs of the library's kernels, derived from their formulas; constants such as pi become numbers."""
+"""Straight-line programs of the library's kernels, in which constants such as pi are numbers."""
 
 from collections.abc import Iterable, Mapping
 from functools import cache

@@ -102,7 +102,7 @@ ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
 
 
 class Solved(NamedTuple):
-    """Trajectories to compute by one closed form: their indices ``rows``, and their constants as arrays."""
+    """The trajectories ``rows``, which one closed form computes, with their constants as arrays (``batch``)."""
 
     form: ClosedForm
     rows: Rows

@@ -65,7 +65,7 @@ def follow_sensitivities(problem: Problem, keys: Sequence[str]) -> tuple[Sensiti
     Parameters
     ----------
     problem : Problem
-        The motions with their times; its method does not matter.
+        The motions and the sample times.
     keys : sequence of str
         The variables, see :func:`symrot.propagation.sensitivities.variables.read_variables`.
 

@@ -73,7 +73,7 @@ def rational_witness(
     domain = [ring.ratio(formula) for formula in ring.domain]
 
     def point(choices: Sequence[tuple[Fraction, ...]]) -> dict[int, Fraction] | None:
-        """Return the value of every variable for one choice of the free ones, or None if it is no counterexample."""
+        """Return the point with the values ``choices`` of the free variables; None if it is no counterexample."""
         values: dict[int, Fraction] = {}
         for coordinate, choice in zip(coordinates, choices, strict=True):
             values.update(zip(coordinate.generators, choice, strict=True))
@@ -462,7 +462,10 @@ def _angles_are_free(ring: FormulaRing) -> bool:
 
 
 def _variables(expression: Expr) -> list[Expr]:
-    """Return symbols, functions of time and their derivatives in an expression, outermost first, in a fixed order."""
+    """Return the symbols, functions of time and derivatives in an expression, each once, sorted by their text.
+
+    The t of f(t) does not count.
+    """
     variables: list[Expr] = []
     stack = [expression]
     while stack:

@@ -12,7 +12,7 @@ MOST_TERMS = 60  # largest number of terms of a polynomial that is tested for be
 
 
 def square_under_root(radicand: Node) -> tuple[Node, Node] | None:
-    """Return (u, v) with ``radicand = u^2 v``, so that its root is abs(u) sqrt(v); None if it contains no square."""
+    """Return (u, v) with ``radicand = u^2 v``, whose root is ``abs(u)*sqrt(v)``; None if it contains no square."""
     root, rest = _split(radicand)
     # a sum such as t**2 - 2*c*t + c**2 may be the square of a polynomial
     if rest != ONE and (more := _root_of_sum(rest)) is not None:

@@ -82,7 +82,7 @@ def has_switches(node: Node) -> bool:
 
 
 def condition_error(node: Node) -> str:
-    """Return what a message says is expected instead of the first wrong condition of ``where``; empty without one.
+    """Return how the first wrong condition of ``where`` should be written, for a message; empty if none is wrong.
 
     ``where(1 < t < 2, 1, 0)`` gives "one comparison at a time: ..".
     """

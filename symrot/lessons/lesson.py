@@ -10,7 +10,7 @@ __all__ = ["Lesson", "Mistake", "Number"]
 
 @dataclass(frozen=True)
 class Mistake:
-    """A wrong formula that students write, which the checker refutes when the page is printed.
+    """A wrong formula that students write; the checker refutes it when the page is printed.
 
     Attributes
     ----------

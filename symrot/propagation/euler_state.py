@@ -86,7 +86,7 @@ class _Kernel(NamedTuple):
 
 
 class _Block(NamedTuple):
-    """Interval of a motion in which one Euler sequence is used: first time, last time, s, and states."""
+    """Interval of a motion with one Euler sequence: first and last time, s, and a function from times to states."""
 
     first: float
     last: float
@@ -252,7 +252,7 @@ class EulerMotion(Motion):
         return states, Stats(accepted, rejected, evaluations, perf_counter() - began, switches)
 
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return a function from n times, s, within ``span`` to omega and quaternion, shape (n, 7)."""
+        """Return a function from n times, s, within ``span`` to the states, shape (n, N)."""
         sides = [list(self._blocks(end)) if end != self.start else [] for end in span]
 
         def at(times: Floats) -> Floats:

@@ -274,7 +274,7 @@ def _bends(spline: Any) -> list[float]:
 
 
 def _torque_source(torque: Any, switching: Sequence[float]) -> TorqueSource:
-    """Return a torque, in any form that :func:`symrot.propagator` accepts, as an object with a common interface."""
+    """Return a torque, in any form that :func:`symrot.propagator` accepts, as a :class:`TorqueSource`."""
     if isinstance(torque, ctypes._CFuncPtr):  # type: ignore[attr-defined]
         return _CFunction(torque)
     if callable(torque):

@@ -351,7 +351,7 @@ class RestartableMotion(Motion):
 
     @abstractmethod
     def from_start(self, initial: Initial) -> "RestartableMotion":
-        """Return the motion from another initial state with equations of the same form, which is not checked."""
+        """Return the motion from another initial state; whether the equations keep their form is not checked."""
 
 
 class SteppedInC(ABC):

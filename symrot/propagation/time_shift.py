@@ -32,7 +32,7 @@ __all__ = ["ShiftedParameters", "clock", "compiled", "starts_far", "time_shifted
 
 
 def starts_far(start: float, low: float, high: float) -> bool:
-    """Return whether all times from ``low`` to ``high`` lie between half and twice the start, which is not 0."""
+    """Return whether the start is not 0 and all times from ``low`` to ``high`` lie between half and twice the start."""
     # A clock with 0 at the start pays only there: a motion that goes farther loses no more digits than a motion of
     # that length from t = 0.
     nearest, farthest = sorted((0.5 * start, 2.0 * start))

@@ -43,9 +43,9 @@ class Invariant(NamedTuple):
     values : array, shape (n,)
         Values of the quantity at the sample times.
     scale : float
-        Largest magnitude along the trajectory, by which the drift is divided. For an energy it is the largest magnitude
-        of energy and kinetic energy; for a component of the angular momentum, of the whole vector; for a spin, of the
-        spin. For the norm of the quaternion it is 1.
+        The number by which the drift is divided: the largest magnitude of the quantity along the trajectory, for an
+        energy also of the kinetic energy, and for a component of the angular momentum of the whole vector. For the norm
+        of the quaternion it is 1.
     drift : float
         Largest change since the start, relative to ``scale``.
 

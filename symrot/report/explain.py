@@ -143,10 +143,10 @@ def _samples(plan: Plan) -> "list[PlanRow]":
 
 
 def facts(plan: Plan) -> "PlanReport":
-    """Return the table `symrot explain` as data for JSON.
+    """Return the table of `symrot explain` as data for JSON.
 
-    In each row, ``operations`` counts the remaining operations by kind, and ``saved`` is the number of operations that
-    the row's rule saves.
+    In each row, ``operations`` has the number of remaining operations of each kind; ``saved`` is the number of
+    operations that the row's rule saves.
     """
     scene = plan.scene
     ladder = _ladder(plan)

@@ -139,7 +139,7 @@ def load(path: str | Path) -> SavedTrajectory:
     Returns
     -------
     SavedTrajectory
-        The samples with their labels, and the events with theirs.
+        The samples and the events, with labels.
 
     Raises
     ------

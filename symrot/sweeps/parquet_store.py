@@ -35,7 +35,7 @@ DESCRIPTION, STATISTICS = "_sweep.json", "_statistics.parquet"  # readers of Par
 
 # A file gets its final name when it is complete, so that every file with such a name has all its rows.
 class ParquetStore:
-    """The store of a sweep in the folder at ``path``. Results of the same sweep there are continued.
+    """The store of a sweep in the folder ``path``; if it holds results of the same sweep, they are continued.
 
     Raises
     ------
@@ -106,7 +106,7 @@ class ParquetStore:
         write(self._file(chunk.start), lambda stream: writer(table, stream, compression="zstd"))
 
     def _metadata(self) -> dict[str, str]:
-        """Return unit, meaning and frame of all columns, as JSON in the file; pandas shows them as ``attrs``."""
+        """Return unit, meaning and frame of all columns as JSON text for a file; pandas shows them as ``attrs``."""
         by_column = {
             name: variable
             for variable in self.header.variables

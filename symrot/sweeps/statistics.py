@@ -223,7 +223,10 @@ def order_statistics(blocks: Blocks, low: Floats, high: Floats, ranks: NDArray[n
 
 @dataclass
 class _Search:
-    """A search for values with given ranks, in an interval of keys (integers in the order of the values)."""
+    """A search in one column for the values of given ranks; their keys lie between ``first`` and ``last``.
+
+    A key is an integer; keys have the same order as the values (:func:`_keys`).
+    """
 
     column: int
     first: int

@@ -37,7 +37,7 @@ IDENTITY, ROWS, FINISHED, REMOVED = "symrot_sweep", "symrot_rows", "symrot_finis
 
 
 class ZarrStore:
-    """The store of a sweep in the folder at ``path``. Results of the same sweep there are continued.
+    """The store of a sweep in the folder ``path``; if it holds results of the same sweep, they are continued.
 
     Raises
     ------

@@ -231,7 +231,7 @@ class Driven:
 
 
 def turned_about(axis: int, q: Sequence[Any]) -> list[Any]:
-    """Return the quaternion of the attitude that a body reaches from ``q`` by half a turn about its axis ``axis``."""
+    """Return the attitude ``q`` after half a turn about the body axis ``axis`` (0, 1 or 2), as a quaternion."""
     product: list[Any] = [None] * 4
     product[0], product[axis + 1] = -q[axis + 1], q[0]
     product[(axis + 1) % 3 + 1], product[(axis + 2) % 3 + 1] = q[(axis + 2) % 3 + 1], -q[(axis + 1) % 3 + 1]

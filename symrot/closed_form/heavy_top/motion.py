@@ -48,8 +48,8 @@ def motion(
     Parameters
     ----------
     inertia : 3 numbers
-        Principal moments of inertia with respect to the fixed point, kg m^2; those about the two axes across the axis
-        of the centre of mass are equal. Fractions, ints and floats are taken at their exact values.
+        Principal moments of inertia with respect to the fixed point, kg m^2; those about the two axes normal to
+        the axis of the centre of mass are equal. Fractions, ints and floats are taken at their exact values.
     weight : number
         Weight, N.
     center_of_mass : 3 numbers

@@ -1,9 +1,9 @@
 """A symmetric body under a constant torque about its axis, at any time, in closed form.
 
-In axes that rotate with its transverse angular velocity (normal to the axis, of constant length W), the body rotates at
-``(W, 0, Omega)``. The axial rate Omega grows steadily at the sweep rate s; at resonance it is zero. The attitude
-consists of parabolic cylinder functions of ``x = Omega/sqrt(s)`` with the parameter ``kappa = W/sqrt(s)``: asymptotic
-series far from resonance, Taylor series near it.
+The transverse angular velocity, normal to the axis, has the constant length W. In axes that rotate with it, the body
+rotates at ``(W, 0, Omega)``. The axial rate Omega grows at the constant sweep rate s; at resonance it is zero. Attitude
+components are parabolic cylinder functions of the scaled time ``x = Omega/sqrt(s)`` with the parameter
+``kappa = W/sqrt(s)``: asymptotic series far from resonance, Taylor series near it.
 
 The formulas are in :file:`spin_up.h`. Source: Zener, Proc. R. Soc. A 137 (1932) 696, for the same equation of a
 two-level system. Proof: ``derivations/driven_rotation.md``.

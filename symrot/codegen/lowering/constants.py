@@ -32,7 +32,7 @@ class Gather:
     variables : iterable of Symbol
         Symbols that change with time or state; all other symbols are constants.
     flat : bool
-        Whether a sum inside another sum is merged into the outer sum, so that their constants are combined.
+        Whether a sum inside another sum is merged into the outer sum, so that the constants of both are combined.
     """
 
     def __init__(self, variables: Iterable[Symbol], flat: bool = False) -> None:

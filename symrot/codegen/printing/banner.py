@@ -26,7 +26,7 @@ CONTRACT = (  # lines in the head of a C file: place of the certificate, its ass
 
 @dataclass(frozen=True)
 class Description:
-    """Texts in the head comment of an emitted file that do not follow from its program."""
+    """Texts in the head comment of an emitted file that do not follow from the program."""
 
     title: str  # what the kernel computes
     domain: str  # for which inputs it is valid

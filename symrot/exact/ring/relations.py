@@ -31,7 +31,7 @@ class Rule:
 
     @property
     def polynomial(self) -> PolyElement:
-        """The polynomial ``generator^power - replacement`` of the ring, which the rule says is zero."""
+        """The polynomial ``generator^power - replacement`` of the ring, which is zero by the rule."""
         return self.replacement.ring.gens[self.generator] ** self.power - self.replacement
 
 

@@ -425,7 +425,7 @@ class _Integration:
         self.epoch, rest = two_sum(self.epoch, now)
         self.rhs, p = clock(self.epoch)
         self.p = np.array(p, dtype=np.float64)
-        # the epoch is rounded to a double
+        # this is the present time minus the epoch, which is rounded to a double
         return float(rest)
 
     def _judge_pace(self, t: float, stop: float) -> None:

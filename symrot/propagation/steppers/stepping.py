@@ -317,7 +317,7 @@ class Stepper(ABC):
         self.new_parameters: Any = ctypes.c_double * self.parameters
 
     def _function(self, ending: str, result: Any, *arguments: Any) -> Callable[..., Any]:
-        """Return the library's C function ``symrot_NAME`` plus an ending such as ``_dense``, with ctypes declared."""
+        """Return a C function of the library by the ending of its name, such as ``_dense``, with types for ctypes."""
         try:
             function = getattr(self._library, f"symrot_{self.name}{ending}")
         except AttributeError as error:

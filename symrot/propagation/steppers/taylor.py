@@ -192,8 +192,8 @@ class _Stepper(Stepper):
         self._jet = self._function("_jet", None, real, pointer, pointer, real, integer, pointer)
         if self._function("_carry", real, real, real)(1.0, 2.0**-60) != 2.0**-60:
             raise CompilerError(
-                f"the compiled kernel {path} ignores rounding errors, which it should carry from step to step: the "
-                "compiler removed this code; compile without -ffast-math"
+                f"the compiled kernel {path} ignores rounding errors: the compiler removed the code that adds them in "
+                "the next step; compile without -ffast-math"
             )
 
     def row_length(self) -> int:

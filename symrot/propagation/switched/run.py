@@ -389,7 +389,7 @@ class SwitchedRun(RunState):
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
     ) -> tuple[list[Guard], list[Guard]]:
-        """Return the guards that are negative just after the start of ``piece``, and those that are at its end."""
+        """Return the guards that are negative just after the start of ``piece``, and the guards negative at its end."""
         formulas = [guard.formula for guard in regime.guards]
         # such a function should have switched before the piece or within it; active: guards that can end the regime
         first, last = (
@@ -509,7 +509,7 @@ class SwitchedRun(RunState):
             self._wake(other)
 
     def _returns(self, mode: str) -> bool:
-        """Return whether the function ``mode`` must be held, because its switch would restore earlier modes."""
+        """Return whether ``mode`` must be held at its jump, because its switch would only restore earlier modes."""
         # all modes would be as they were before at this time: the same switches would repeat without end
         first = self.visited.get(self._state(flip=mode))
         if first is None:
