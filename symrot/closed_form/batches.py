@@ -210,10 +210,11 @@ def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floa
 def free_bodies_of_tensors(
     entries: Sequence[Column], omega: Floats, start: Floats
 ) -> tuple[Batch | None, NDArray[np.bool_]]:
-    """Return a batch of motions of free bodies in any axes, and for each motion whether the batch computes it exactly.
+    """Return the motions of n free bodies in any axes as a batch, and for each motion whether the batch is exact.
 
     ``entries`` are the tensor components xx, yy, zz, xy, xz and yz, kg m^2.
     """
+    # without a batch if a shared component is outside the range of pairs
     settled = np.ones(len(omega), np.bool_)
     principal = bodies.principal_bodies(entries, omega)
     if principal is None:

@@ -139,7 +139,7 @@ def _is_driven(scene: Scene) -> bool:
 
 
 def _driven_axis(scene: Scene) -> int | None:
-    """Return the index of the principal axis about which the body rotates at all times; None if there is none."""
+    """Return the index of the principal axis about which the body rotates at all times, or None if it does not."""
     if not _is_driven(scene):
         return None
     push, turning = torque_and_damping(scene)[0], _only_axis(scene.initial.omega_b)

@@ -33,7 +33,7 @@ ONCE_AROUND = 6.0
 
 @dataclass(frozen=True)
 class Surface:
-    """The surface of a solid: lines, which are drawn, and triangles, which hide the lines behind them.
+    """The surface of a solid: lines to be drawn, and triangles that hide the lines behind them.
 
     Attributes
     ----------

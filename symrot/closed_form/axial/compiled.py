@@ -162,9 +162,9 @@ class Constants:
         ]  # fmt: skip
 
     def _turning(self, transverse: bool) -> tuple[int, int, list[float]]:
-        """Return (turn, bits, fixed): a body's rotation by 1 rad changes an angle by ``turn/2**bits`` revolutions.
+        """Return (turn, bits, fixed) for the angle lag if ``transverse``, otherwise for half the angle of rotation.
 
-        The angle is lag if ``transverse``, otherwise half the angle of rotation.
+        A rotation by 1 rad changes the angle by ``turn/2**bits`` revolutions; ``fixed`` are constants for C.
         """
         turn, bits = _HALF
         if transverse:
@@ -203,7 +203,7 @@ class Constants:
     def omega_rows(self, one: Any, other: Any) -> list[Any]:
         """Return the matrix, row by row, that maps (cos(lag), sin(lag), axial rate) to the angular velocity.
 
-        ``one`` and ``other`` are the initial rates, rad/s, about the next two axes after the driven axis.
+        ``one`` and ``other`` are the initial rates, rad/s, about the next two axes, cyclically, after the driven axis.
         """
         # C multiplies cosine and sine by the damping factor
         rows: list[list[Any]] = [[0.0] * 3 for _ in range(3)]

@@ -221,7 +221,7 @@ def _names(entry: dict[str, Any], key: str, place: str) -> tuple[str, ...]:
 
 
 def _editable(entry: dict[str, Any], define: Sequence[tuple[str, Node]], place: str) -> tuple[str, ...]:
-    """Return the parts of a claim that repairs may change: those listed by its key ``editable``, by default both
+    """Return the parts of a claim that repairs may change: those that its key ``editable`` lists, by default both
     sides.
     """
     parts = tuple(entry.get("editable", SIDES))
