@@ -844,7 +844,7 @@ class CReader(Reader):
             size = self.index()
             self.take("]")
             return Parameter(name, "array", size, is_input)
-        self.need(not is_input, f"expected `{self.real} {name}` without const, as a number by value")
+        self.need(not is_input, f"expected `{self.real} {name}` without const, as C passes a number by value")
         return Parameter(name, "value", 1, True)
 
     def loops(self):
@@ -1377,7 +1377,8 @@ def check_precision(name, data, specification, kernels):
     real = readback["type"]
     need(
         real in REALS and name == f"symrot_{data['kernel']}{REALS[real]}",
-        f"{quoted(name)}: a function has another name or type: expected symrot_{data['kernel']}, for float with f",
+        f"{quoted(name)}: a function has another name or type: expected symrot_{data['kernel']} for double, or "
+        f"symrot_{data['kernel']}f for float",
     )
     functions = specification.functions
     for series in readback["series"]:

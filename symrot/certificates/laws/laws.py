@@ -114,7 +114,7 @@ def _hypothesis_names(name: str, law: Law) -> tuple[str, ...]:
     symbols = sorted({symbol for relation in law.relations for symbol in relation.free_symbols}, key=str)
     # only unit vectors, unit quaternions and rotation matrices are known
     if hypotheses(symbols) != law.relations:
-        expected = "hypotheses that some numbers have squares that sum to one, or are the entries of a rotation"
+        expected = "the hypotheses that squares of some symbols sum to one, or that they form a rotation matrix"
         raise CertificateError(f"{name}: expected {expected}, for {law.text!r}, got other hypotheses")
     return tuple(map(str, symbols))
 
