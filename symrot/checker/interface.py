@@ -71,8 +71,8 @@ def check(
         Hypotheses. If the claim is a text: texts ``"a == b"``, ``"x > 0"``, ``"x != 0"``. If it is a SymPy value:
         equations ``Eq(a, b)``, or expressions; ``a - b`` means that a - b is zero.
     units : mapping of str to str, optional
-        Units by the name of a symbol, ``{"x": "m"}``. Names such as ``I1``, ``omega_1``, ``g``, ``t`` and ``phi`` have
-        their usual units; units of further names are inferred from the claim. Only ``.dimension`` depends on units.
+        Units by the name of a symbol, ``{"x": "m"}``. Names such as ``I1``, ``omega_1`` and ``g``, and the symbols of
+        symrot, have their usual units; the claim may imply others. Only ``.dimension`` depends on units.
     repair : bool
         Whether to diagnose a claim that is not true and to look for true formulas near it.
     where : sequence of str

@@ -1,4 +1,4 @@
-"""Claims about a body whose axis of symmetry is x or y, decided with z in its place, as in derived formulas."""
+"""Claims about a body with the axis of symmetry x or y, decided as claims about the axis z of the derived formulas."""
 
 import re
 from collections.abc import Mapping

@@ -362,7 +362,7 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Ve
 def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
     """Return the verdict on ``L = T - V`` after ``I = m L^2`` with L renamed to L_1 in the earlier line.
 
-    Return ``verdict`` if no letter has two meanings, or if two meanings do not make the claim true.
+    Return ``verdict`` if no letter has two meanings, or if the claim is false with two meanings too.
     """
     assert claim.relation is not None
     _, left, right = claim.relation

@@ -165,7 +165,7 @@ def _correction(claim: Claim, verdict: Verdict, formula: PrintedFormula | None) 
     Raises
     ------
     InputError
-        For a correction of a part that is not printed, or one that the exact engine does not prove.
+        For a part that may not be corrected, and for a correction that the exact engine does not prove.
     """
     origin = "search"  # the nearest repair, unless the errata propose a correction or ask to derive it
     changes: Mapping[str, str] = verdict.repairs[0].edited if verdict.repairs else {}

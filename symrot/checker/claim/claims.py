@@ -35,11 +35,11 @@ class Definitions:
     Attributes
     ----------
     values : mapping
-        Symbols and definitions by name.
+        Name of a symbol or a definition -> its value.
     functions : frozenset of str
         Names of functions of time.
     divisors, radicands : tuple
-        Formulas in the definitions' texts that are divisors, and formulas under even roots there.
+        The divisors in the texts of the definitions, and the formulas under even roots in these texts.
     bases : tuple of Expr
         Bases of powers whose exponents are not numbers.
     """
@@ -70,21 +70,21 @@ class Claim:
     printed : str
         The decimal number that a document prints for ``value``.
     alternatives : tuple of Relation
-        Other equations that the text may stand for, if the document lost characters.
+        Other equations that the text may mean, for example if a document lost characters.
     implied : bool
         Whether undeclared names become real symbols and functions of time.
     sources : mapping
-        The texts that were read, by key, for error messages.
+        Key such as ``"define.0"`` -> the text that was read, for error messages.
     units : mapping
-        Units by name.
+        Name -> unit, ``{"x": "m"}``.
     notes : tuple of str
         Sentences about how the text is read.
     editable : tuple of str
-        The parts that repairs may change: ``"left"``, ``"right"``, and names of definitions. The other parts are what
-        the claim is measured against.
+        The parts that repairs may change: ``"left"``, ``"right"``, and names of definitions. They leave the other
+        parts as they are.
     has_parts : bool
-        Whether the text's equation was split: one of complex numbers into its real and imaginary parts, or one in
-        index notation into its components.
+        Whether the equation was split: a complex one into real and imaginary parts, or one in index notation into
+        components.
     context : Context
         Statements in words about the names of the claim and about the body, such as ``"rod"``.
     """
@@ -185,7 +185,7 @@ class Claim:
         Raises
         ------
         InputError
-            For a definition that has no value in SymPy, with its place.
+            If a definition has no value in SymPy; the message gives its position.
         """
         interpreter = Interpreter(implied=self.implied, functions=set(self.functions))
         values = interpreter.values
@@ -222,7 +222,7 @@ class Claim:
         Raises
         ------
         InputError
-            For a piece that has no value in SymPy, with its place.
+            If a part of the claim has no value in SymPy; the message gives its position.
         """
         assert self.relation is not None
         interpreter = self.interpreter()

@@ -43,7 +43,7 @@ LONGEST_TEXT = 20_000
 MOST_PIECES = 5_000
 MOST_READINGS = 6
 MOST_DOUBTS = 40
-"""The most readings of one text, and the most ambiguous places of a text that are examined."""
+"""The most readings of one text, and the most ambiguous pieces of a text that are examined."""
 
 DOT_OF_PRODUCTS = ("(", None, None, ")", "·", "(", None, None, ")")
 """The tokens of ``(R a)·(R b)``, with None in place of each name."""
@@ -73,7 +73,7 @@ class Chain:
     signs : tuple of str
     sides : tuple of Node
     both_signs : bool
-        Whether the typed line has a sign ±; it then stands for two lines, and this is one of them.
+        Whether this is one of the two lines that a typed line with ± stands for.
     """
 
     signs: tuple[str, ...]
@@ -103,7 +103,7 @@ class Reading:
     plain : bool
         Whether the text uses notation that is not SymPy syntax.
     doubts : tuple of Doubt
-        The ambiguous places of the text.
+        The ambiguous pieces of the text.
     notes : tuple of str
         Sentences about how the text is read.
     spelling : dict
@@ -111,9 +111,9 @@ class Reading:
     timed : frozenset of str
         Names that are functions of time.
     vectors : mapping of str to bool
-        Names that are vectors because of the way in which they are used; True for one with a hat.
+        Names that the text uses as vectors; True for a name with a hat.
     flipped : tuple of str
-        The excerpts of the text to which this reading gives their less usual meaning.
+        The ambiguous pieces of the text that have their less usual meaning in this reading.
     """
 
     lines: tuple[Chain, ...]
@@ -163,9 +163,9 @@ class _Text:
         whole : bool
             True to keep a word such as ``mgl`` as one name; False to split it into names where that is usual.
         as_sympy : bool
-            Whether ``dx/dt`` is a quotient of two names.
+            Whether ``dx/dt`` is a quotient of two names, not a derivative.
         flips : collection of (str, int)
-            The keys of ambiguous places (:class:`Doubt`) that get their less usual meaning.
+            The keys of ambiguous pieces (:class:`Doubt`) that get their less usual meaning.
         one_side : bool
             Whether the text is a formula without a relation.
         """

@@ -45,7 +45,7 @@ class Scope(ABC):
     source, where : str
         The text being read and its place, for error messages.
     values : dict
-        Symbols and definitions by name.
+        Name of a symbol or a definition -> its value.
     functions : set of str
         Functions of time.
     implied : bool
@@ -99,9 +99,7 @@ class Scope(ABC):
         return value
 
     def within_nesting(self, value: Expr, node: Node) -> None:
-        """Raise InputError if ``value`` already contains the largest number of functions and roots inside each
-        other.
-        """
+        """Raise InputError if another function or root around ``value`` would be nested too deeply."""
         if nesting(value) >= MOST_NESTED:
             raise self.fail(node, f"at most {MOST_NESTED} functions and roots inside each other")
 

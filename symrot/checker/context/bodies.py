@@ -23,7 +23,7 @@ class Kind:
     synonyms : tuple of str
         Other names.
     formulas : tuple of str
-        The phrases that stand for it in the names of derived formulas.
+        Phrases for this body in the names of derived formulas, such as "hollow cylinder".
     shape : str
         The name of this shape in :mod:`symrot.inertia.shapes`, or an empty text.
     thin : tuple (str, str) or empty

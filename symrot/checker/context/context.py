@@ -157,7 +157,7 @@ class Context:
         return " ".join(words for words in own if words)
 
     def fits(self, names: set[str]) -> bool:
-        """Return whether the text with the names ``names`` has every name that the context describes."""
+        """Return whether every name that the context describes is among ``names``, those of a text."""
         return all(any(meaning.is_of(name) for name in names) for meaning in self.meanings)
 
     def check_names(self, names: set[str]) -> None:

@@ -334,7 +334,7 @@ def _false(verdict: Verdict, decision: Decision) -> Verdict:
 
 
 def _decided(claim: Claim, left: Node, right: Node) -> Decision:
-    """Return the decision on the equation of two trees whose names are those of a claim."""
+    """Return the decision on ``left == right``, two trees with the names of a claim."""
     return decide_equation(claim.with_relation(("==", left, right), alternatives=()).equation)
 
 

@@ -26,7 +26,7 @@ class Quantity:
     synonyms : tuple of str
         Other phrases for it.
     formulas : tuple of str
-        Phrases, one of which is in the name of each derived formula for the quantity.
+        Phrases: the name of a derived formula for the quantity contains at least one of these.
     symbols : str
         A pattern of the symbols that derived formulas use for it; empty if they use none.
     unit : str

@@ -230,7 +230,7 @@ class _ClaimCase(Case):
     ----------
     equation : Equation
     nonzero_factors : set of int
-        Indices, in the ring's list of divisors, of those that are nonzero by a hypothesis.
+        Indices of the ring's divisors that a hypothesis states to be nonzero.
     numerators : list of PolyElement
         The numerators of left - right for the unproven entries, reduced by the hypotheses.
     branches : list of Requirement or None

@@ -1,7 +1,7 @@
 """The hypotheses of a claim: points where they hold, and whether they imply the claim or can hold at all.
 
-A claim says nothing if its hypotheses hold nowhere, or if its sides are real nowhere: it is refused if that can be
-proven, and undecided if no point is known at which it says something.
+A claim is refused if its hypotheses provably hold nowhere, or if its sides are provably real nowhere. It is undecided
+if no point is known where the hypotheses hold and the sides are real.
 """
 
 from collections.abc import Iterable, Iterator, Sequence

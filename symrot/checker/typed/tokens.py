@@ -30,7 +30,7 @@ class Token(NamedTuple):
     text : str
         The text in ASCII: ``omega_1`` for ω₁.
     start, end : int
-        Its place in the source.
+        Its first position in the source, and the position after it.
     spaced, breaks : bool
         Whether blanks, or the end of a line, are before it.
     """

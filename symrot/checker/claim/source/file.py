@@ -45,12 +45,12 @@ class Refusal:
 
 
 def read_claims(path: str | Path) -> list[Claim]:
-    """Return the claims of a TOML file; raise InputError if one of them cannot be read.
+    """Return the claims of a TOML file.
 
     Raises
     ------
     InputError
-        Naming the file, the claim, the key, and the expected value.
+        If a claim cannot be read; the message names the file, the claim, the key and the expected value.
     """
     entries = read_entries(path)
     for entry in entries:

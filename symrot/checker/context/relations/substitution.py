@@ -1,6 +1,6 @@
 """Deciding claims by substitution: each quantity is replaced by its formula in independent coordinates of a motion.
 
-A claim follows from these formulas if and only if it becomes an identity, whatever it is solved for.
+A claim follows from these formulas if and only if it becomes an identity.
 """
 
 from collections.abc import Iterable, Sequence
