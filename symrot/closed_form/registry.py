@@ -74,10 +74,7 @@ def _symmetric_about(scene: Scene, axis: int) -> bool:
 
 
 def _only_axis(vector: tuple[Fraction, ...]) -> int | None:
-    """Return the index (0, 1 or 2) of the only nonzero component of a vector: ``(0, 0, 5)`` gives 2.
-
-    None if no component, or more than one, is nonzero.
-    """
+    """Return the index of the only nonzero component of a vector, or None: ``(0, 0, 5)`` gives 2, (1, 1, 0) None."""
     along = [axis for axis, component in enumerate(vector) if component != 0]
     return along[0] if len(along) == 1 else None
 

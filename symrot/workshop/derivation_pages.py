@@ -159,7 +159,7 @@ def _appendices(derivations: Sequence[str]) -> list[str]:
 
 
 def _chapters(chosen: Sequence[str]) -> dict[str, list[str]]:
-    """Return a map from the title of each chapter to its pages in ``chosen``, by name."""
+    """Return a map from the title of each chapter to the names of its pages that are in ``chosen``."""
     whole = READING_ORDER | {APPENDICES: _appendices(names())}
     chapters = {title: [name for name in members if name in chosen] for title, members in whole.items()}
     return {title: members for title, members in chapters.items() if members}
