@@ -290,7 +290,7 @@ def _parts(scene: Scene) -> tuple[Any, ...]:
 def _values(scene: Scene) -> dict[str, Any]:
     """Return title, source, initial state, span, output and tolerance of a scene, by their keys in the scene file.
 
-    If one of them was replaced after reading, :meth:`Scene.to_dict` writes the new value.
+    :meth:`Scene.to_dict` writes these present values, which may have been replaced after reading.
     """
     return {
         "title": scene.title, "source": scene.source, "initial": scene.initial, "span": scene.span,

@@ -177,7 +177,7 @@ def _of_scene(path: Path, data: Data, method: Method) -> str:
 def _bounds(path: Path, data: Data, method: Method, source: str, rerun: bool) -> str:
     """Compute the bounds in a step's certificate again; return a sentence that says that they agree.
 
-    CertificateError is raised if they differ.
+    CertificateError is raised if they differ. If ``rerun`` is false, stored bounds of rounding errors may be used.
     """
     name, rates = data["kernel"], rates_of(data)
     try:
@@ -187,7 +187,6 @@ def _bounds(path: Path, data: Data, method: Method, source: str, rerun: bool) ->
             place: (Fraction(float.fromhex(low)), Fraction(float.fromhex(high)))
             for place, (low, high) in section["box"].items()
         }
-        # ``rerun``: search for the bounds of rounding errors again
         check_section(section, operations, None, rerun)
         for index, (symbol, _, value) in enumerate(data["rates"]["parameters"]):
             low, high = box.get(f"p[{index}]", (Fraction(0), Fraction(0)))

@@ -35,7 +35,7 @@ def is_stated(context: Context) -> bool:
 
 
 def substitutions_of_axis_angles(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the interpretations of a claim as ``tan(theta) = A/C tan(gamma)`` for a free symmetric top, if any."""
+    """Yield the Substitution for a claim that means ``tan(theta) = A/C tan(gamma)`` for a free symmetric top."""
     if context.body is not None and "free symmetric" not in context.body.kind.title:
         return
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}
