@@ -155,7 +155,7 @@ def _total(sums: Sequence[Floats], size: int) -> Floats:
 def _deviation(blocks: Blocks, survey: _Survey) -> Floats:
     """Return the standard deviation of each column, with divisor n as numpy.std; NaN counts as missing."""
     sums = []
-    # divided by a power of 2, which loses no digit, the squares of tiny and huge differences stay in the range of doubles
+    # divided by a power of 2, which loses no digit, tiny and huge differences have squares in the range of doubles
     _, exponent = np.frexp(np.maximum(survey.high - survey.mean, survey.mean - survey.low))
     for block in blocks():
         squares = np.ldexp(block - survey.mean, -exponent) ** 2

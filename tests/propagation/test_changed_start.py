@@ -205,6 +205,6 @@ def test_another_attitude_keeps_an_angular_velocity_given_in_space():
     turned = propagate.propagator(own)(attitude={"quaternion": q})
     many = propagate_ensemble(own, quaternion=[q, [0, 2, 0, 0]])
     assert np.array_equal(again.omega, single.omega) and np.array_equal(turned.omega, single.omega)
-    for motion in (single, many[0], many[1]):
-        assert np.abs(motion.omega_space[0] - [0.3, 0.7, 1.1]).max() < 1e-15
+    for each in (single, many[0], many[1]):
+        assert np.abs(each.omega_space[0] - [0.3, 0.7, 1.1]).max() < 1e-15
     assert np.abs(many.omega[0] - single.omega).max() < 1e-14
