@@ -1,8 +1,8 @@
 """The reader of claims: from text to trees, without Python's ``eval`` and without SymPy.
 
-It reads SymPy syntax, and formulas as people type them, such as ``2x`` and ``ω₁``. A typed text may have several
-interpretations (readings), as ``1/2m`` has. Each ambiguous piece of a text has a key (kind, position); ``flips`` are
-the keys of those that get their less usual meaning.
+It reads SymPy syntax, and formulas as people type them, such as ``2x``. A typed text may have several interpretations
+(readings), as ``1/2m`` has. Each ambiguous piece of a text has a key (kind, position); ``flips`` are the keys of the
+pieces with their less usual meaning.
 """
 
 import re

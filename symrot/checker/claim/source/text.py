@@ -155,7 +155,9 @@ def claim_of_relation(
 
 
 def _with_own_name(relation: Relation) -> tuple[Relation, str]:
-    """Return ``I = n.T*I*n`` with the left side renamed to I_n, and a note on it; other equations unchanged."""
+    """Return ``I_n = n.T*I*n`` for ``I = n.T*I*n``, and a note for the user; other equations unchanged, with an empty
+    note.
+    """
     sign, left, right = relation
     first, *rest = right.args if right.kind == "product" else (right,)
     is_form = first.kind == "transpose" and len(rest) > 1 and rest[-1] == first.args[0] and rest[-1].kind == "name"
