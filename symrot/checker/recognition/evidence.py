@@ -373,6 +373,10 @@ def keeps_places(named: NamedFormula, known: Identification) -> bool:
     entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(ENTRY, named.name)
     if entry and own and own[1] not in (entry[1], entry[1][::-1]):
         return False
+    if known.name.startswith(("pitch angle of a rotation matrix", "second angle of")) and not all(
+        re.fullmatch(ENTRY, new) for new in known.mapping.values()
+    ):
+        return False  # asin of a letter is any angle
     angle_of = re.match(r"(first|third) angle of (ZXZ|ZYZ) of a rotation matrix", known.name)
     if angle_of and re.fullmatch(LAST_ANGLE if angle_of[1] == "first" else FIRST_ANGLE, named.name):
         return False

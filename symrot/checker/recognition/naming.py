@@ -594,5 +594,7 @@ def _without_function(value: Any) -> tuple[Any, str]:
     factor, function = value.as_coeff_Mul()
     if not isinstance(function, acos | asin | atan2):
         return value, ""
+    if factor < 0 and isinstance(function, asin):
+        factor, function = -factor, asin(-function.args[0], evaluate=False)  # asin is odd: -asin(u) is asin(-u)
     inside = Matrix(function.args) if isinstance(function, atan2) else function.args[0]
     return inside, f", {f'{factor} ' * (factor != 1)}{function.func}"
