@@ -31,7 +31,9 @@ __all__ = [
     "has_word",
     "is_evident",
     "is_in_usual_sequence",
+    "is_inverted",
     "is_of_body",
+    "is_steady",
     "is_unusual",
     "keeps_places",
     "misfit_of",
@@ -189,6 +191,7 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     letters, words = names_in(named.formula), words_of(named)
     quantities = len(quantities_in(named.formula))
     count = len(letters | names_in(named.side)) if named.side.kind == "product" else quantities  # an equation
+    count += is_steady(near.known.name) and TIME in [node for _, node in walk(named.formula)]  # t is a letter of it
     is_new = not quantities_in(near.tree) <= quantities_in(named.formula)
     is_special = near.is_symmetric and not OF_ANGLES.search(near.known.name)
     if is_new and (
@@ -197,6 +200,10 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
         return False  # a special case: the missing letter is zero, or equal to another one
     if near.code in ("overall_sign", "sign_of_term") and re.fullmatch("lambda|sigma|s", named.name):
         return False  # the root of a growth rate, whose square has the other sign
+    if near.code == "sign_of_term" and is_steady(near.known.name):
+        return False  # alpha may be a deceleration
+    if is_inverted(named, near) or _is_multiple_of_period(named, near):
+        return True
     if near.has_other_unit and near.code in SAFE_BY_UNIT:
         is_energy = near.known.name.startswith("kinetic energy") and near.known.name.endswith("rolls")
         has_tension = "T" in letters | names_in(named.side) and claim.context.body is None
@@ -236,6 +243,32 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     is_exact = is_sum and not near.renamed and near.code == "sign_of_term"
     least = LEAST_SYMBOLS_EDITED + (not is_sum and near.code != "exponent") - is_exact
     return max(count, near.array_letters) >= least
+
+
+def is_steady(known: str) -> bool:
+    """Return whether ``known`` names a formula for constant angular acceleration."""
+    return "constant angular acceleration" in known
+
+
+def is_inverted(named: NamedFormula, near: Near) -> bool:
+    """Return whether a claim is the equation of motion of a pendulum with the wrong sign, ``theta'' = g/l*sin(theta)``.
+
+    For an angle from the upright position this sign is right.
+    """
+    is_motion = named.is_rate and len(named.side.args) > 2 and "pendulum" in near.known.name
+    return is_motion and near.code in ("sign_of_term", "overall_sign") and not has_terms(named.formula)
+
+
+def _is_multiple_of_period(named: NamedFormula, near: Near) -> bool:
+    """Return whether a claim gives a multiple of a known period: ``pi*sqrt(L/g)`` for ``2*pi*sqrt(L/g)``."""
+    # the factor before the root is 2 pi for all bodies, the one in it depends on the body
+    roots = [
+        {node for _, node in walk(tree) if node.kind == "call" and node.value == "sqrt"}
+        for tree in (named.formula, near.tree)
+    ]
+    has_pi = all(any(node.value == "pi" for _, node in walk(tree)) for tree in (named.formula, near.tree))
+    is_period = near.known.name.startswith("period of") and re.fullmatch("T(_[a-z]+)?", named.name) is not None
+    return is_period and near.code == "factor" and has_pi and bool(roots[0]) and roots[0] == roots[1]
 
 
 def _is_stated(claim: Claim, named: NamedFormula, near: Near) -> bool:

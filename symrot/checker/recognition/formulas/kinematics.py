@@ -245,6 +245,9 @@ def _euler_angles() -> Iterator[Named]:
             yield f"{word} angle of {name} of a rotation matrix, atan2", PARAMETERS, pair
     assert matrix[2, 0] == -sin(pitch)
     yield "pitch angle of a unit quaternion, asin", PARAMETERS, -quaternion.quaternion_to_dcm(Q)[2, 0]
+    assert euler.dcm("XYZ")[0, 2] == sin(pitch)
+    of_xyz = expand(quaternion.quaternion_to_dcm(Q)[0, 2])
+    yield "second angle of XYZ of a unit quaternion, asin", PARAMETERS, of_xyz
     yield PITCH, PARAMETERS, -ENTRIES[2, 0]
     assert euler.dcm("ZXZ")[2, 2] == euler.dcm("ZYZ")[2, 2] == cos(symbols.theta)
     yield SECOND_ANGLE_OF_MATRIX, PARAMETERS, ENTRIES[2, 2]
