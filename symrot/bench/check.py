@@ -63,7 +63,7 @@ def timed(claim: str) -> Timed:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Print the median and the largest time of each group of claims, or of the groups that are named."""
+    """Print the median and the largest time of the claims in each group; ``arguments`` may name the groups."""
     listing = "--list" in arguments
     groups = [argument for argument in arguments if argument != "--list"] or [*LIMITS]
     lists = {group: claims(group) for group in groups}

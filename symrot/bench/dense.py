@@ -34,8 +34,9 @@ class Sampled(NamedTuple):
 
 
 def _heyoka(problem: Problem, tolerance: float, times: Floats) -> dict[str, Callable[[], Floats]]:
-    """Return heyoka's methods of sampling a motion at ``times`` by name, as functions; empty if heyoka is not
-    installed.
+    """Return the functions with which heyoka can sample a motion at ``times``, each under its name.
+
+    Empty if heyoka is not installed.
     """
     try:
         import heyoka

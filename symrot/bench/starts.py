@@ -109,7 +109,7 @@ def _start(scene: Scene) -> tuple[Floats, Floats]:
 
 
 def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int) -> tuple[float, float, float]:
-    """Time two functions alternately; return the medians, us, of each and of their difference."""
+    """Time two functions alternately; return the median times of both, us, and the median of their difference."""
     times = np.empty((rounds, 3))
     for k in range(rounds):
         began = process_time_ns()

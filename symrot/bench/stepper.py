@@ -32,7 +32,9 @@ Floats = NDArray[np.float64]
 
 
 class Measurement(NamedTuple):
-    """The result of one stepper: evaluations of the rates, seconds of each round, largest error at the end."""
+    """The result of one stepper: evaluations of the rates, its time in each round, s, and the largest error at
+    the end.
+    """
 
     name: str
     evaluations: int

@@ -221,7 +221,7 @@ def _entry(tool: Compiler, source: str, name: str, flags: tuple[str, ...]) -> st
 
 
 def store(key: str, text: str) -> None:
-    """Store a small text in the cache under a key, which may be any string."""
+    """Store a small text in the cache; ``key`` is any string."""
     try:
         _keep(_text_name(key), f"{_digest(text)}\n{text}".encode())
     except CompilerError:

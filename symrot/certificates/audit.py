@@ -2,7 +2,7 @@
 
 A certificate is a JSON file of statements about an emitted C kernel, with proofs. After the check from the files alone
 (exact_check.py), symrot derives and proves the same statements again, so that a correct certificate of another kernel
-is refused.
+is refused. ``data`` is the content of a certificate, ``path`` its path, and ``source`` the C text.
 """
 
 import json
@@ -140,7 +140,7 @@ def _audited(path: Path, data: Data, symrot_statement: Callable[[Data], Data | N
     if statement is None:
         return [
             *findings,
-            f"symrot has no kernel {name}: its formulas and laws are only those that the certificate states",
+            f"symrot has no kernel {name}, so its formulas and laws were not compared with symrot's own",
         ]
     _compare(path, data, statement)
     return [
@@ -165,12 +165,12 @@ def _check_others(path: Path, data: Data, source: str) -> list[str]:
 
 
 def _unchecked_objects(data: Data) -> list[str]:
-    """Return a list with the sentence "its verdicts on object code were not checked: ..".
+    """Return a list with the sentence "its verdicts on object code were not checked; ..".
 
     The list is empty if the certificate has no verdicts on object code.
     """
     # a verdict holds only for the machine where it was made
-    finding = "its verdicts on object code were not checked: --object compares an object file of yours"
+    finding = "its verdicts on object code were not checked; pass your object file by --object to compare it"
     return [finding] if data.get("objects") else []
 
 

@@ -216,8 +216,10 @@ def _as_lists(value: Any) -> Any:
 
 
 def _readback(kernel: KernelUnderTest, suffix: str, real: str) -> Data:
-    """Return the ``readback`` entry of one C function: its operations, and the proof that they give the formulas."""
-    # ``suffix`` is the end of the function's name, such as "f", and ``real`` the type of its numbers, such as "float"
+    """Return the ``readback`` entry of one C function: its operations, and the proof that they give the formulas.
+
+    ``suffix`` is ``""`` with numbers of the C type ``real`` = ``"double"``, and ``"f"`` with ``"float"``.
+    """
     name, file = f"symrot_{kernel.name}{suffix}", f"{kernel.name}.c"
     text = kernel.files[file]
     one, batch = read_kernel(text, name, file), read_batch(text, f"{name}_batch", file)
@@ -295,8 +297,10 @@ WIDTH = 118
 
 
 def _layout(value: Any, indent: int = 0, key: str = "") -> str:
-    """Return a value as JSON text, in which an object or list that fits on one line is written on one line."""
-    # ``indent`` blanks come before the value's lines; its ``key`` takes room on the first line
+    """Return a value as JSON text, in which an object or list that fits on one line is written on one line.
+
+    ``indent`` blanks come before the lines; ``key``, the name of the value, takes room on the first line.
+    """
     flat = json.dumps(value, ensure_ascii=False)
     if len(flat) + indent + len(key) <= WIDTH or not isinstance(value, (dict, list)) or not value:
         return flat

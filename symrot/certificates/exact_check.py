@@ -194,7 +194,7 @@ class Evaluator:
 
 
 class KernelCheck:
-    """The check that a C function computes its formulas, in its versions for one sample and for many (``_batch``)."""
+    """The check that a kernel's C functions, for one sample and for many (``_batch``), compute its formulas."""
 
     def __init__(self, name, data, c_functions):
         self.name, self.readback, self.spec, self.c_functions = name, data["readback"][name], data["spec"], c_functions
@@ -242,7 +242,7 @@ class KernelCheck:
         return written, exact * self.symbols["pi"] if times_pi else exact
 
     def run(self, body, places, targets=(), tested=()):
-        """Evaluate the statements ``body`` of a C function as :meth:`Evaluator.run` does, and return the same.
+        """Evaluate the statements ``body`` of a C function as :meth:`Evaluator.run` does, and return its result.
 
         ValueError is raised if a function of limited range has an argument that is not in ``tested``.
         """
@@ -362,7 +362,7 @@ def hypotheses(values):
 
 
 def prove(law, case, formulas):
-    """Raise ValueError if the proof of a law is wrong for ``case``, one choice of a branch of each conditional."""
+    """Raise ValueError if a law's proof is wrong for one ``case``: one choice of a branch of each conditional."""
     witness = {name: Fraction(text) for name, text in law["witness"].items()} | {"pi": PI}
     there, reader = (
         Evaluator(witness, FloatFunctions(), cases={}),
@@ -452,10 +452,12 @@ def complete(cases):
 
 
 def functions_of(text, name, files):
-    """Return a map from the name of each function in a C text to (whether it is static, type, arguments, body)."""
+    """Return a map from the name of each function in a C text to (whether it is static, type, arguments, body).
+
+    The text may include only <math.h>, the header of the kernel ``name``, and symrot_math.h if it is in ``files``.
+    """
     odd = re.search(r"\\|\?\?|//|[\0-\x09\x0b-\x1f]", text)
     require(not odd, f"expected no backslash, trigraph, // comment or control character, got {odd and odd[0]!r}")
-    # the certified files decide the includes that the text may have
     known = ["#include <math.h>", f'#include "{name}.h"', *['#include "symrot_math.h"'] * ("symrot_math.h" in files)]
     lines = [line for line in re.sub(r"/\*.*?\*/", " ", text, flags=re.S).split("\n") if line.strip() not in known]
     functions, (*chunks, end) = {}, re.split(r"^\}$", "\n".join(lines), flags=re.M)

@@ -1,7 +1,7 @@
 """The effect of compiler flags on a certificate: bits and error bounds hold, only the bounds hold, or nothing holds.
 
 A certificate is about the operations of the C text, each rounded once to nearest. A flag that lets the compiler round
-elsewhere makes it void. With contraction (a*b + c rounded once) only the error bounds hold.
+elsewhere makes the certificate void. With contraction (a*b + c rounded once) only the error bounds hold.
 """
 
 import re
@@ -150,7 +150,7 @@ class FlagRemark:
 
 @dataclass(frozen=True)
 class FlagEffect:
-    """The effect of a command's compiler flags: "bits", "bounds" or "nothing" still holds, with remarks."""
+    """The effect of compiler flags: ``holds`` is "bits", "bounds" or "nothing", and ``remarks`` give the reasons."""
 
     holds: str
     remarks: tuple[FlagRemark, ...]

@@ -289,7 +289,10 @@ EXACT_FUNCTIONS |= {"copysign": Decimal.copy_sign}
 
 
 class Decimals(Arithmetic):
-    """An arithmetic of 190-digit numbers, in which sin, cos, sqrt, abs, atan2 and copysign have their exact values."""
+    """An arithmetic of 190-digit numbers with sin, cos, sqrt, abs, atan2 and copysign.
+
+    Other functions have random values.
+    """
 
     def __init__(self):
         super().__init__()
@@ -385,7 +388,7 @@ class Token(NamedTuple):
 
 
 def tokens(text, place):
-    """Return the words (tokens) of a text; each word is as long as possible, as a C compiler splits a text."""
+    """Return the words (tokens) of a text, each as long as possible, as in C; ``place`` names the text in messages."""
     words, start, line = [], 0, 1
     while start < len(text):
         match = TOKEN.match(text, start)
@@ -414,7 +417,7 @@ class Reader:
         return f"{self.place}, line {self.token.line}"
 
     def refuse(self, expectation):
-        """Raise ValueError with the line number, the expected text and the next word."""
+        """Raise ValueError with the line number, the text ``expectation`` and the next word."""
         raise ValueError(f"{self.here()}: expected {expectation}, got {quoted(self.token.text)}")
 
     def need(self, holds, sentence):
@@ -441,7 +444,10 @@ class Reader:
                 self.refuse(f"`{word.text}` of `{phrase}`")
 
     def take_name(self, what):
-        """Return the next word, which must be a name; refuse names of macros, and names with a leading underscore."""
+        """Return the next word, which must be a name; ``what`` says in messages which name is expected.
+
+        Names of macros and names with a leading underscore are refused.
+        """
         if self.token.kind != "name" or self.token.text.startswith(("_", "SYMROT_")):
             self.refuse(what)
         return self.advance()
@@ -561,7 +567,10 @@ class FormulaReader(Reader):
 
 
 def constant(text, place):
-    """Return the number for which a text without variables stands, as a fraction: ``"1/3"`` or ``"pi/3"``."""
+    """Return the number for which a text without variables stands, as a fraction: ``"1/3"`` or ``"pi/3"``.
+
+    ``place`` names the text in error messages.
+    """
     # PI is a fraction with more digits than any number in the C text
     return FormulaReader(text, place, {}, ("pi",), is_constant=True).whole().value(AnyFunctions(), {"pi": PI})
 
@@ -586,7 +595,7 @@ COUNTERS = {"double": "uint64_t", "float": "uint32_t"}
 class Parameter(NamedTuple):
     """A parameter of a C function.
 
-    Its form is "value" (a number), "array" (the components of one sample) or "samples" (those of all samples).
+    Its form is "value" (a number), "array" (the components of one sample) or "samples" (the components of all samples).
     """
 
     name: str
@@ -752,7 +761,10 @@ class CReader(Reader):
     # functions
 
     def new_name(self, what):
-        """Return the next word, which must be a name without a meaning so far, in this text or in C."""
+        """Return the next word, which must be a name that is not in use so far, in this text or in C.
+
+        ``what`` says in messages which name is expected.
+        """
         name = self.take_name(what)
         known = [self.names, self.parameters, self.kernels, RESERVED, *self.inline.values()]
         for end in REALS.values():
@@ -772,7 +784,7 @@ class CReader(Reader):
         self.check_weight()
 
     def inline_function(self):
-        """Read a helper function (local variables, then its value) and store it; it may call only functions above."""
+        """Read and store a helper function (local variables, then its value); it may call only functions above it."""
         self.take("static inline")
         if self.token.text not in REALS:
             self.refuse("double or float")
@@ -797,7 +809,7 @@ class CReader(Reader):
         self.inline[self.real][name] = Definition(parameters, local, result, self.weight)
 
     def kernel(self):
-        """Read and store a function that writes arrays: for n samples if n is its first parameter, else for one."""
+        """Read and store a function that writes arrays, for n samples if n is its first parameter, else for one."""
         start = self.position
         self.take("void")
         name = self.new_name("the name of a function")
@@ -835,7 +847,7 @@ class CReader(Reader):
             size = self.index()
             self.take("]")
             return Parameter(name, "array", size, is_input)
-        self.need(not is_input, f"expected `{self.real} {name}` without const, as a number by value")
+        self.need(not is_input, f"expected `{self.real} {name}` without const, as C passes a number by value")
         return Parameter(name, "value", 1, True)
 
     def loops(self):
@@ -865,7 +877,10 @@ class CReader(Reader):
         return words == [token.text for token in self.tokens[self.position : self.position + len(words)]]
 
     def body(self, asks_far=False):
-        """Read statements up to a closing brace, which ends the scope of their variables; return them as a Body."""
+        """Read statements up to a closing brace, where the scope of their variables ends; return a Body.
+
+        With ``asks_far``, one statement may test angles for the range of symrot_sin and symrot_cos.
+        """
         outer, self.names, self.assigned = self.names, set(self.names), set()
         statements, far = [], []
         while not self.accept("}"):
@@ -912,7 +927,7 @@ class CReader(Reader):
 
 
 def run(body, numbers, inputs):
-    """Run the ``body`` of a C function; return a map of its outputs, and the angles that it tests for their range."""
+    """Run a C ``body`` on ``inputs`` in the arithmetic ``numbers``; return outputs, and angles whose range it tests."""
     names, outputs = dict(inputs), {}
     for target, expression in body.statements:
         value = expression.value(numbers, names)
@@ -937,7 +952,10 @@ ROUNDING_SHAPE = {
 
 
 def check_shape(value, shape, place):
-    """Raise ValueError if a value does not have the types in ``shape``; other parts of the value are ignored."""
+    """Raise ValueError if a value does not have the types in ``shape``, such as ``{"name": str, "sizes": [str]}``.
+
+    Other entries of the value are ignored; ``place`` names the value in error messages.
+    """
     if isinstance(shape, type):
         need(isinstance(value, shape), f"{place}: expected a text, as the schema says, got {quoted(value)}")
     elif isinstance(shape, tuple):
@@ -1022,7 +1040,7 @@ def is_name(text):
 
 
 def defined_functions(definitions):
-    """Return the functions of x, y, z, w that a certificate defines, by name; each may call those above it."""
+    """Return the functions that a certificate defines, as a map from name to Definition; each may call earlier ones."""
     functions = {}
     for name, text in definitions:
         new = is_name(name) and name not in functions
@@ -1048,7 +1066,7 @@ class Specification:
             all(is_name(symbol) and symbol not in functions for symbol in symbols)
             and len({*symbols}) == len(symbols)
             and len({*places}) == len(places),
-            "an input has no valid name, or two inputs have the same: expected a name and an index text for each",
+            "an input has no valid name, or two inputs have the same: expected a different name for each",
         )
         slots = {symbol for place, symbol, _ in data["inputs"] + spec["formulas"] if place.startswith("p[")}
         need(slots == {*spec["parameters"]}, "the parameters differ from the inputs p[0], p[1], ..: expected the same")
@@ -1080,7 +1098,7 @@ class Specification:
 
 
 def draw_hypothesis(members, names):
-    """Define random values for symbols that a law assumes to form a rotation matrix or a unit vector."""
+    """Define random values for the symbols ``members``, so that they form a rotation matrix or a unit vector."""
     # 2*v*v^T + 2*q0*[v]x + (2*q0^2 - 1)*1 for the unit quaternion (q0, v)
     # nine symbols are a matrix, row by row
     vector = [names.numbers.draw() for _ in range(4 if len(members) == 9 else len(members))]
@@ -1101,7 +1119,7 @@ def draw_hypothesis(members, names):
 def check_law(law, specification, points):
     """Raise ValueError if an expression of a law, which must be zero, is not zero to 60 digits at random points."""
     place = f"the law {quoted(law['law'])}"
-    need(law["vanishing"], f"{place} does not follow: expected an expression that vanishes, got none")
+    need(law["vanishing"], f"{place} does not follow: expected at least one expression that must be zero, got none")
     members = law["given"]
     need(
         all(is_name(name) for name in members),
@@ -1123,7 +1141,7 @@ def check_law(law, specification, points):
             # An analytic expression that is not identically zero passes at a random point with negligible probability.
             # ``size`` is its value if all symbols are random and unrelated.
             small = min(max(abs(size) / 10**60, Decimal("1e-70")), Decimal("1e-40"))
-            need(abs(rest) <= small, f"{place} does not follow: expected 0 to 60 digits, got {rest:.3}")
+            need(abs(rest) <= small, f"{place} does not follow from formulas: expected 0 to 60 digits, got {rest:.3}")
 
 
 # --- series and constants ---------------------------------------------------------------------------------------------
@@ -1134,7 +1152,10 @@ LEAST = {"double": Fraction(1, 2**55), "float": Fraction(1, 2**26)}  # a quarter
 
 
 def check_series(series, functions, real):
-    """Check the polynomial that replaces a function near x = 0; return ``functions`` with the function so replaced."""
+    """Check the polynomial that replaces a function near x = 0, for numbers of the C type ``real``.
+
+    Return ``functions`` with a function that computes the polynomial near x = 0.
+    """
     name, split_text, coefficient_texts, rest_text = series
     place = f"series of {quoted(name)}"
     split, rest = constant(split_text, place), constant(rest_text, place)
@@ -1194,7 +1215,7 @@ def array_sizes(data, is_input):
     for place, *_ in data["inputs"] if is_input else data["spec"]["formulas"]:
         name, component = component_of(place)
         right = component == sizes.get(name, 0) and not (place == name and name in sizes)
-        need(right, f"{quoted(place)}: expected the inputs and outputs of the certificate to list arguments in order")
+        need(right, f"{quoted(place)}: expected components in order, such as q[0], q[1], in the certificate")
         sizes[name] = component + 1
     return sizes
 
@@ -1286,7 +1307,7 @@ def check_formulas(name, kernel, data, point):
 
 
 class BoxPoint(NamedTuple):
-    """A random point of the box for which rounding errors are bounded: inputs, exact outputs and their bounds."""
+    """A random point of the box for which rounding errors are bounded: inputs, exact outputs, and bounds of errors."""
 
     inputs: dict
     exact: dict
@@ -1294,7 +1315,7 @@ class BoxPoint(NamedTuple):
 
 
 def hexadecimal(text, place):
-    """Return the value, a double, of a hexadecimal text such as 0x1.8p+3."""
+    """Return the value, a double, of a hexadecimal text such as 0x1.8p+3; ``place`` names the text in messages."""
     try:
         return float.fromhex(text)
     except (ValueError, OverflowError):
@@ -1359,7 +1380,8 @@ def check_precision(name, data, specification, kernels):
     real = readback["type"]
     need(
         real in REALS and name == f"symrot_{data['kernel']}{REALS[real]}",
-        f"{quoted(name)}: a function has another name or type: expected symrot_{data['kernel']}, for float with f",
+        f"{quoted(name)}: a function has another name or type: expected symrot_{data['kernel']} for double, or "
+        f"symrot_{data['kernel']}f for float",
     )
     functions = specification.functions
     for series in readback["series"]:
@@ -1372,7 +1394,8 @@ def check_precision(name, data, specification, kernels):
         kernel = kernels[function]
         need(
             kernel.real == real and kernel.shape in shapes,
-            f"{function}: expected a function of {real} for {min(shapes)}",
+            f"{function}: expected a function of {real} numbers for "
+            f"{'one sample' if function == name else 'many samples'}",
         )
         check_formulas(function, kernel, data, point)
         if box_point:

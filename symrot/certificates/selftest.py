@@ -1,7 +1,7 @@
 """The self-test: check that this machine's C functions and arithmetic are as accurate as the certificates assume.
 
 ``symrot selftest`` compiles ``symrot_selftest.c``, which holds values of sine, cosine, arc tangent and square root to
-60 digits (by mpmath), rounded once. It runs inside this process, so that it detects a loaded library that changed the
+60 digits (by mpmath), rounded once. The test runs inside this process, because a loaded library may have changed the
 arithmetic.
 """
 
@@ -111,7 +111,10 @@ def _rounded(value: Any, digits: int) -> float:
 
 
 def _point(name: str, suffix: str, y: float, x: float) -> str:
-    """Return a row of a C table of test points: y, x, the rounded exact value, its error in ulp, and the ulp."""
+    """Return a row of a C table of test points: y, x, the rounded exact value, its error in ulp, and the ulp.
+
+    ``name`` is the function, such as ``"sin"``; ``suffix`` is ``"f"`` for floats and ``""`` for doubles.
+    """
     from mpmath import floor, log, mp, mpf
 
     # an ulp is the distance between neighbouring numbers
@@ -233,7 +236,7 @@ def run_selftest(bits: bool = True, flags: Sequence[str] = FLAGS) -> SelfTest:
     Raises
     ------
     CompilerError
-        If there is no compiler, or it rejects the text, as it does with -ffast-math.
+        If there is no compiler, or it rejects the text, as with -ffast-math.
     """
     from symrot.build.cache import build, compiler
 

@@ -1,4 +1,4 @@
-"""The certificate of an emitted time step: its C text computes the formula of its method, for any state and size.
+"""The certificate of an emitted time step: the C text computes the formula of a method, for any state and step size.
 
 The formula, the method applied to the derived rates, is too long to expand. So C text and formula are computed at
 random points, exactly, as residues: integers modulo a prime. Functions such as sin are random functions there.
@@ -238,7 +238,7 @@ def rates_of(data: Data) -> Program:
 
 
 def _folded(node: Node) -> Node:
-    """Return a formula in which quotients of numbers are fractions again: ``1/3`` as text is a quotient of 1 and 3."""
+    """Return a formula in which each quotient of two numbers, such as 1 / 3, is one number, the fraction 1/3."""
     if node[0] == "call":
         return ("call", node[1], tuple(map(_folded, node[2])))
     if node[0] in ("number", "symbol"):
@@ -253,8 +253,9 @@ def _folded(node: Node) -> Node:
 
 
 def bounds_of_step(
-    operations: Operations, rates: Program, method: Method, box: Mapping[str, tuple[Fraction, Fraction]]
-) -> Data:
+    operations: Operations, rates: Program, method: Method, box: Mapping[str, tuple[Fraction, Fraction]],
+    fresh: bool = False,
+) -> Data:  # fmt: skip
     """Return the section ``bounds`` of the certificate of a step: rounding and truncation on a box.
 
     Parameters
@@ -267,8 +268,10 @@ def bounds_of_step(
         The method of the step.
     box : mapping
         Ranges of the inputs by their places, such as ``"x[0]"`` and ``"dt"``.
+    fresh : bool
+        Whether to compute bounds of rounding errors even if the user's cache has them.
     """
-    rounding = rounding_section(operations, None, box, budget=EVALUATIONS)
+    rounding = rounding_section(operations, None, box, budget=EVALUATIONS, fresh=fresh)
     symbols = _symbols_by_place(step_signature(rates, operations.name))
     ranges = {}
     for place, ends in rounding["box"].items():

@@ -1,7 +1,8 @@
 """Bounds of the truncation error of one time step on a box of states and step sizes, in interval arithmetic.
 
-The exact motion and a step of order n differ by h^(n+1) (a - b): a is a Taylor coefficient of the motion, b one of the
-step. Intervals contain both, on a box that the motion provably does not leave.
+The exact motion and a step of order n and size h differ by h^(n+1) (a - b), where a and b are coefficients of Taylor
+series, of the motion and of the step. Intervals contain both, on a box that no motion leaves during the step. A defect
+is the amount by which a method violates an order condition, because its coefficients are rounded.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -67,7 +68,7 @@ def _undefined(name: str) -> Callable[..., Any]:
 
 
 def _positive(x: Any) -> Any:
-    """Return an interval of positive numbers unchanged; raise ZeroDivisionError for any other one."""
+    """Return the interval ``x`` if all its numbers are positive; otherwise raise ZeroDivisionError."""
     if not x.a > 0:
         raise ZeroDivisionError
     return x
@@ -95,7 +96,7 @@ def _over(above: Any, below: Any) -> Any:
 
 
 class _Functions(dict[str, Callable[..., Any]]):
-    """A map from names to functions of power series; a function that is not in it raises InputError when called."""
+    """A map from names to functions; the value of any other name is a function that raises InputError."""
 
     def __missing__(self, name: str) -> Callable[..., Any]:
         return _undefined(name)
@@ -167,7 +168,10 @@ class _Power:
         return result if exponent >= 0 else 1 / result
 
     def integrated(self, start: Any, slope: "_Power") -> "_Power":
-        """Return the series f(x(h)): x is this series, ``start`` is f(x(0)), and ``slope`` is the series f'(x(h))."""
+        """Return the series f(x(h)), where this series is x(h).
+
+        ``start`` is f(x(0)), and ``slope`` is the series f'(x(h)).
+        """
         # for example, ``slope`` is 1/x if f is the logarithm
         rates = self.rates
         return _Power((start, *(_dot(slope.terms[: n + 1], rates[n::-1]) / (n + 1) for n in range(len(rates)))))
@@ -203,7 +207,7 @@ class _Majorant(_Power):
 
 
 def _dot(a: Sequence[Any], b: Sequence[Any]) -> Any:
-    """Return the sum of the products ``a[i]*b[i]``; exact zeros, which are integers, cost nothing."""
+    """Return the sum of the products ``a[i]*b[i]``, without those that have the integer 0 as a factor."""
     return sum((x * y for x, y in zip(a, b, strict=True) if not (_is_zero(x) or _is_zero(y))), start=0)
 
 
@@ -212,8 +216,10 @@ def _is_zero(value: Any) -> bool:
 
 
 def _turning(x: _Power, sign: int, functions: tuple[str, str]) -> tuple[_Power, _Power]:
-    """Return the power series (sin x, cos x) if ``sign`` is -1, or (sinh x, cosh x) if ``sign`` is 1."""
-    # ``functions``: the names of the two, for the first coefficients
+    """Return the power series (sin x, cos x) if ``sign`` is -1, or (sinh x, cosh x) if ``sign`` is 1.
+
+    ``functions`` has the names of the two functions.
+    """
     rates = x.rates
     s, c = ([_SCALAR[name](iv.mpf(x.terms[0]))] for name in functions)
     for n in range(len(rates)):
@@ -385,12 +391,14 @@ def _halves(box: Box, name: str) -> Iterator[dict[str, tuple[Fraction, Fraction]
 
 
 def _gains(problem: "_Problem", box: Box, whole: list[float]) -> dict[str, float]:
-    """Return, for each input, the fraction by which halving the box in it decreases the largest bound."""
+    """Return a map: input -> fraction by which the largest bound decreases if the input's range is halved.
+
+    ``whole`` are the bounds on the whole box; inputs without a gain are left out.
+    """
     gains = {}
     for name, (low, high) in box.items():
         if low < high:
             halves = max(max(problem.bounds(half)) for half in _halves(box, name))
-            # other inputs are left out; ``whole`` are the bounds on the whole box
             if halves < max(whole):
                 gains[name] = 1.0 if max(whole) == inf else 1 - halves / max(whole)
     return gains
@@ -526,7 +534,7 @@ class _Problem:
             return [inf] * len(self.states)
 
     def _defective(self, values: Mapping[str, Any], size: Any) -> list[Any]:
-        """Return, for each state, a bound of the error that the method's defects cause (see ``require_order``)."""
+        """Return, for each state, a bound of the error that the defects of the method cause."""
         # valid for all states in the box ``values`` and all sizes up to ``size``
         count = len(self.defects) + 1
         largest = {name: _Majorant.of(iv.mpf(abs(value).b), count) for name, value in values.items()}
@@ -545,7 +553,7 @@ class _Problem:
         ]
 
     def _enclosure(self, values: Mapping[str, Any], span: Any) -> dict[str, Any] | None:
-        """Return ranges that no motion from the box leaves during the step; None if none are found."""
+        """Return ranges that contain all motions from ``values`` at the times ``span``; None if none are found."""
         around = dict(values) | {"t": values["t"] + span}
         for _ in range(ATTEMPTS):
             slopes = self.rates.evaluate(around, _Functions(_SCALAR), _number).values()
@@ -560,8 +568,10 @@ class _Problem:
         return None
 
     def _step_coefficients(self, values: Mapping[str, Any], span: Any, order: int) -> list[Any]:
-        """Return, for each state, an interval with the coefficient of h^``order`` in the series of the step."""
-        # h is the step size; ``span`` is the range of its values
+        """Return, for each state, an interval with the coefficient of h^``order`` in the Taylor series of the step.
+
+        ``values`` and ``span`` are the ranges of the inputs and of h.
+        """
         # the coefficients of a Taylor method above its own order are zero
         if isinstance(self.method, TaylorSeries):
             return [0] * len(self.states)
@@ -569,7 +579,6 @@ class _Problem:
         size = _Power((span, iv.mpf(1), *(0,) * (count - 2)))
         start = {name: _Power.of(value, count) for name, value in values.items() if name != SIZE}
         functions = _Functions({name: _of_any(name) for name in _OF_SERIES})
-        # valid for all states of the box
         after = stepped(
             self.rates, self.method, start, size, functions, lambda value: _Power.of(_number(value), count)
         )  # fmt: skip

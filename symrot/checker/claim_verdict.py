@@ -1,4 +1,7 @@
-"""The verdict on one claim: the claim is decided, or recognised as a known formula, and diagnosed if it is not true."""
+"""The verdict on one claim: the claim is decided, or recognised as a known formula, and diagnosed if it is not true.
+
+The functions ``_on_..`` recognise a claim. They return (None, verdict): None stands in place of a decision.
+"""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -163,7 +166,7 @@ def _on_name(
 
 
 def _on_rule(claim: Claim) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) for a rule of differentiation, such as ``(u v)' = u' v + u v'``; otherwise None."""
+    """Return (None, verdict) for a rule of differentiation, such as ``(u v)' = u' v + u v'``; None for other claims."""
     if claim.relation is None or open_formula(claim) is None or (general := as_functions(claim)) is None:
         return None
     decision, verdict = _decide(general)  # for all functions u(t) and v(t)
@@ -173,10 +176,7 @@ def _on_rule(claim: Claim) -> tuple[None, Verdict] | None:
 
 
 def _was_near_relation(claim: Claim) -> bool:
-    """Return whether :func:`_on_name` has already compared the whole equation with the relations that symrot derives.
-
-    Then :func:`_near_relation` would find nothing new.
-    """
+    """Return whether :func:`_on_name` has already compared the claim with all known relations."""
     if claim.relation is None or claim.context:
         return False
     named = related_formula(claim)
@@ -208,7 +208,7 @@ def _on_motion(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) for a claim that is a known relation, such as an impulse equation; otherwise None."""
+    """Return (None, verdict) for a known relation, such as an impulse equation; None for other claims."""
     if claim.relation is None or claim.hypotheses:
         return None
     from symrot.checker.recognition.naming import verdict_on_relation
@@ -230,7 +230,9 @@ def _on_determinant(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
 
 
 def _on_expanded(claim: Claim, repair: bool) -> tuple[None, Verdict] | None:
-    """Return (None, verdict) if a claim is a formula for a quantity after its hypotheses are substituted; else None."""
+    """Return (None, verdict) for a claim that gives a quantity's formula once hypotheses are put in; None for
+    others.
+    """
     expanded = claim.expanded  # hypotheses such as c1 = cos(alpha) are abbreviations
     if expanded is claim or expanded.hypotheses:
         return None
@@ -263,7 +265,7 @@ def _place_of(claim: Claim) -> Iterator[None]:
 
 
 def _completed(claim: Claim, verdict: Verdict, start: float) -> Verdict:
-    """Return a verdict with the check of units, and the name, source and time of the claim, begun at ``start``."""
+    """Return ``verdict`` with the check of units, the claim's name and source, and the seconds since ``start``."""
     if claim.relation is not None:
         hypotheses = [relation[1:] for relation in claim.hypotheses]
         dimensions = check_dimensions(claim.relation[1:], claim.define, hypotheses, claim.units)
@@ -292,9 +294,8 @@ def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
 
 
 def _domain(claim: Claim) -> Diagnosis:
-    """Return the diagnosis "domain" for a true claim with only one side defined everywhere, as in ``x == x**2/x``.
-
-    Its code is "none" otherwise.
+    """Return the diagnosis "domain" for a true claim with only one side defined everywhere, ``x == x**2/x``; else
+    "none".
     """
     assert claim.relation is not None
     sides = [claim.with_relation(("==", side, side)) for side in claim.relation[1:]]

@@ -15,7 +15,7 @@ __all__ = ["brought_back"]
 
 
 def brought_back(verdict: Verdict, original: Callable[[Relation], Relation], note: str) -> Verdict:
-    """Return the verdict on a claim from that on an equivalent one: ``original`` rewrites each repair.
+    """Return ``verdict``, on an equivalent claim, for the typed claim: ``original`` rewrites each repair.
 
     ``note`` tells the user about the equivalent claim.
     """

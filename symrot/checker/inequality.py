@@ -155,7 +155,7 @@ def _counterexample(claim: Claim, difference: Expr, strict: bool) -> Counterexam
 
 
 def _points(symbols: list[Any]) -> Iterator[Mapping[Any, Expr]]:
-    """Yield points with simple values that have the signs which are assumed for the symbols."""
+    """Yield points with simple values of the assumed signs for ``symbols``."""
     allowed = [
         [v for v in VALUES if not (s.is_positive and v <= 0) and not (s.is_nonnegative and v < 0)] for s in symbols
     ]

@@ -71,8 +71,8 @@ def check(
         Hypotheses. If the claim is a text: texts ``"a == b"``, ``"x > 0"``, ``"x != 0"``. If it is a SymPy value:
         equations ``Eq(a, b)``, or expressions; ``a - b`` means that a - b is zero.
     units : mapping of str to str, optional
-        Units by the name of a symbol, ``{"x": "m"}``. Other names have conventional units (``I1``, ``omega_1``, ``g``,
-        ``t``, ``phi``), those of the symbols of symrot, or inferred ones. Only ``.dimension`` depends on units.
+        Units by the name of a symbol, ``{"x": "m"}``. Names such as ``I1``, ``omega_1`` and ``g``, and the symbols of
+        symrot, have their usual units; the claim may imply others. Only ``.dimension`` depends on units.
     repair : bool
         Whether to diagnose a claim that is not true and to look for true formulas near it.
     where : sequence of str
@@ -88,8 +88,9 @@ def check(
     Returns
     -------
     Verdict
-        ``.verdict`` is ``"true"``, ``"false"``, ``"conditional"`` or ``"undecided"``; ``.dimension`` says whether the
-        units fit.
+        ``.verdict`` is ``"true"``, ``"false"``, ``"conditional"`` or ``"undecided"``. For a claim that names a
+        formula, such as ``"I = m r^2/2"``, it may be ``"recognised"``, ``"doubtful"`` or ``"definition"``.
+        ``.dimension`` says whether the units fit.
 
     Raises
     ------

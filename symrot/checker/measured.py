@@ -67,7 +67,9 @@ def with_units(claim: Claim, measured: Measured, decide: Callable[[Claim], Verdi
 
 
 def _right_number(claim: Claim, sides: list[Node], factors: dict[str, Node], measured: Measured) -> dict[str, Any]:
-    """Return the fields of a verdict that correct the whole number on the right of a false equation with units."""
+    """Return a diagnosis and repairs that correct the whole number on the right of ``2 m = 300 cm``, a false
+    equation.
+    """
     # sides: with names in place of units; factors: name of a unit -> its factor to SI units
     left, right = sides
     digits, unit = _decimal(right, measured.text, r"\d+")
@@ -75,6 +77,7 @@ def _right_number(claim: Claim, sides: list[Node], factors: dict[str, Node], mea
         value = claim.interpreter().read(product([_in_si(left, factors), Node("inv", None, (factors[unit],))]))
     except (InputError, KeyError):
         value = None
+    # no number of digits can be right
     if not getattr(value, "is_Rational", False):
         return {"diagnosis": Diagnosis("none", ""), "repairs": ()}
     unit_typed = measured.units[unit].text
@@ -91,7 +94,7 @@ def _in_si(tree: Node, factors: dict[str, Node]) -> Node:
 
 
 def _rounded(claim: Claim, sides: list[Node], factors: dict[str, Node], measured: Measured) -> Verdict | None:
-    """Return the verdict on an equation with a rounded number and its unit on one side; None for other equations."""
+    """Return the verdict on an equation with a rounded number and unit on one side; None for other equations."""
     verdicts = []
     for side, other in (sides, sides[::-1]):
         digits, unit = _decimal(side, measured.text)
@@ -115,7 +118,7 @@ def _rounded(claim: Claim, sides: list[Node], factors: dict[str, Node], measured
 
 
 def _is_irrational(claim: Claim, value: Node) -> bool:
-    """Return whether the number ``value`` is irrational, so that a whole number can equal it only after rounding."""
+    """Return whether the value of the tree ``value`` is irrational."""
     number_of_unit = claim.interpreter().read(value)
     return bool(getattr(number_of_unit, "is_number", False)) and not number_of_unit.is_Rational
 
@@ -139,7 +142,9 @@ def _to_digits(worked: Claim, measured: Measured, unit: str, is_right: bool) -> 
 
 
 def _with_number(source: str, digits: str, unit: str, right: str, is_right: bool) -> tuple[Repair, ...]:
-    """Return (repair,): the text ``source`` with the number ``right`` in place of ``digits`` before a unit."""
+    """Return (repair,): ``source`` with ``right`` for the number ``digits`` before ``unit``, the last one if
+    ``is_right``.
+    """
     places = [*re.finditer(rf"(?<![\w.^]){re.escape(digits)}(?=[ *·⋅]*{re.escape(unit)})", source)]
     if not places:
         return ()
@@ -183,7 +188,7 @@ def in_degrees(claim: Claim, verdict: Verdict, decide: Callable[[Claim], Verdict
 
 
 def _is_large_angle(node: Node) -> bool:
-    """Return whether a tree is the sine (or the like) of a number of more than a full turn, probably in degrees."""
+    """Return whether a tree is a circular function of a number above a full turn, such as ``sin(30)``."""
     return (
         node.kind == "call" and node.value in CIRCULAR and node.args[0].kind == "number" and node.args[0].value >= TURN
     )

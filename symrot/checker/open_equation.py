@@ -58,7 +58,9 @@ def _open(verdict: Verdict, reason: str) -> Verdict:
 
 
 def _values(claim: Claim, letter: Node, once: bool) -> str | None:
-    """Return the real values of ``letter`` for which the claim's equation holds, such as ``"x == 2"``, or None."""
+    """Return the real values of ``letter`` that solve the claim's equation, as text, ``"x == 2"``; None if not
+    known.
+    """
     left, right = claim.equation.left, claim.equation.right
     symbol = claim.interpreter().read(letter)
     if not all(isinstance(side, Expr) for side in (left, right)):
@@ -85,7 +87,10 @@ def _values(claim: Claim, letter: Node, once: bool) -> str | None:
 
 
 def _roots(difference: Expr, symbol: Symbol, name: str) -> str | None:
-    """Return the real roots of ``difference``, if any, as text: ``"x == -2 and x == 2"`` for x^2 - 4."""
+    """Return all real zeros of ``difference`` as text, ``"x == -2 and x == 2"`` for x^2 - 4; None if none are known.
+
+    ``name`` is the name of ``symbol``.
+    """
     try:
         polynomial = Poly(difference, symbol, domain="QQ")
     except PolynomialError:

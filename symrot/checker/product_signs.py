@@ -56,7 +56,7 @@ def with_minus_sign(claim: Claim) -> Claim:
 
 
 def in_claim(verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim from that on the equivalent claim of :func:`with_minus_sign`."""
+    """Return ``verdict``, on the claim of :func:`with_minus_sign`, for the original claim."""
     return brought_back(verdict, _changed, NOTE)
 
 
@@ -74,7 +74,7 @@ def _negative(tree: Node) -> Node:
 
 
 def _is_product(tree: Node) -> bool:
-    """Return whether a tree is a product of inertia by its name: I_xy, I_xy(t), or the time derivative of one."""
+    """Return whether a tree has the name of a product of inertia: I_xy, I_xy(t), or the time derivative of one."""
     if is_derivative(tree):
         return _is_product(tree.args[0])
     is_function = tree.kind == "call" and [argument.value for argument in tree.args] == ["t"]

@@ -62,7 +62,11 @@ def _scientific(tree: Node) -> tuple[Node, int]:
 
 
 def _long_whole(node: Node, source: str, value: Node) -> str:
-    """Return the digits of a whole number that rounds ``value``, as 157 does for ``1500*2*pi/60``; otherwise ""."""
+    """Return the digits of ``node``, as typed in ``source``, if it is an integer that may round ``value``; otherwise
+    "".
+
+    157 may round ``1500*2*pi/60``.
+    """
     sign, inner = ("-", node.args[0]) if node.kind == "neg" else ("", node)
     digits = source[inner.span[0] : inner.span[1]]
     is_rough = any(  # pi, a root or a decimal number

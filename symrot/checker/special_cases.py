@@ -22,7 +22,9 @@ FACTOR, OTHER = "factor_", "other_"
 
 
 def for_complex_numbers(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return "conditional" for a claim such as ``|z|^2 = z^2``, true for real z only; otherwise ``verdict``."""
+    """Return the verdict "conditional" on a claim such as ``|z|^2 = z^2``, true for real z only; otherwise
+    ``verdict``.
+    """
     if verdict.verdict != "true" or claim.relation is None or claim.define or claim.hypotheses or claim.has_parts:
         return verdict
     nodes = [node for side in claim.relation[1:] for _, node in walk(side)]
@@ -51,9 +53,8 @@ def for_complex_numbers(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def for_special_directions(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return "conditional" for a claim such as ``F·d = F d``, true for two vectors in special directions only.
-
-    Others keep their ``verdict``.
+    """Return the verdict "conditional" on a claim such as ``F·d = F d``, true for special directions only; else
+    ``verdict``.
     """
     if verdict.verdict != "false" or claim.relation is None or claim.hypotheses:
         return verdict
@@ -81,14 +82,14 @@ def for_special_directions(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _columns(name: str) -> Iterator[Node]:
-    """Yield the columns of the three components of a vector of this name, as constants and as functions of time."""
+    """Yield two columns with the three components of a vector ``name``: as constants, and as functions of time."""
     for axes in ("xyz", "123"):
         yield Vector(name, axes=axes).components
         yield Vector(name, timed=True, axes=axes).components
 
 
 def _has_only_lengths(side: Node) -> bool:
-    """Return whether a side has vectors, but only inside their lengths: as ``|a| |b|``, which is ``a b`` in books."""
+    """Return whether a side has vectors, but only inside their lengths, as in ``|a| |b|``."""
     calls = [node for _, node in walk(side) if node.kind == "call" and node.value in ("dot", "cross")]
     return bool(calls) and all(node.value == "dot" and node.args[0] == node.args[1] for node in calls) and all(
         node.args[0].kind == "name" for node in calls

@@ -1,4 +1,4 @@
-"""Claims about a body whose axis of symmetry is x or y, decided with z in its place, as in derived formulas."""
+"""Claims about a body with the axis of symmetry x or y, decided as claims about the axis z of the derived formulas."""
 
 import re
 from collections.abc import Mapping
@@ -30,7 +30,7 @@ def with_axis_z(claim: Claim) -> Claim:
 
 
 def in_claim(verdict: Verdict, axis: str) -> Verdict:
-    """Return the verdict on a claim with ``axis`` as axis of symmetry from that on the equivalent claim with axis z."""
+    """Return ``verdict``, on the equivalent claim about the axis z, for the original claim about ``axis``."""
     back = {new: old for old, new in TURNED[axis].items()}
     note = f"{axis} is the axis of symmetry of the body; in the names of derived formulas it is z"
     return brought_back(verdict, lambda relation: _renamed(relation, back), note)

@@ -172,7 +172,7 @@ def _is_false_by_context(verdict: Verdict, stated: Context) -> bool:
 
 
 def _is_unknown(reading: tuple[Reading, Verdict]) -> bool:
-    """Return whether the verdict on a reading is "definition": symrot derives no formula like it."""
+    """Return whether the verdict on a reading is "definition": the reading is no formula that symrot derives."""
     return reading[1].verdict == "definition"
 
 
@@ -360,7 +360,10 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Ve
 
 
 def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim such as ``L = T - V`` after ``I = m L^2``, with L_1 for the earlier L."""
+    """Return the verdict on ``L = T - V`` after ``I = m L^2`` with L renamed to L_1 in the earlier line.
+
+    Return ``verdict`` if no letter has two meanings, or if the claim is false with two meanings too.
+    """
     assert claim.relation is not None
     _, left, right = claim.relation
     name, others = str(left.value), {own for own, tree in claim.define if left in [node for _, node in walk(tree)]}
@@ -378,7 +381,7 @@ def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _on_zero_powers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
-    """Return, in a tuple, a note on the convention ``0^0 = 1`` for a true claim with a power ``x^0``; otherwise ()."""
+    """Return (note,), on the convention ``0^0 = 1``, for a true claim with a power ``x^0``; () for other claims."""
     sides = claim.relation[1:] if claim.relation else ()
     nodes = [node for side in sides for _, node in walk(side)]
     powers = [node.args[0] for node in nodes if node.kind == "power" and node.args[1] == number(0)]
@@ -387,7 +390,7 @@ def _on_zero_powers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
 
 
 def _on_numbers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
-    """Return a tuple with a note on a true claim such as ``A B = B A``, false for some matrices; otherwise ()."""
+    """Return (note,) for a true claim such as ``A B = B A`` whose letters are read as numbers; () for other claims."""
     if verdict.verdict != "true" or claim.relation is None:
         return ()
     known = {*dict(claim.define), *claim.symbols}
@@ -420,7 +423,9 @@ def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
 
 
 def _with_inverse(source: str, place: str, typed: str) -> str:
-    """Return an equation with ``q**(-1)`` at ``place``, "left" or "right", if the typed claim has it there."""
+    """Return the equation ``source`` with ``q**(-1)`` for q*/|q|^2 on its side ``place``, if ``typed`` writes a
+    power.
+    """
     relation = _relation_of(source)
     if relation is None or relation[0] != "==":
         return source
@@ -478,7 +483,7 @@ def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _has_indices(claim: Claim) -> bool:
-    """Return whether a claim is in index notation: ``I_ik = m*a_i*a_k`` has a pair of indices and one of them alone."""
+    """Return whether a claim is in index notation, as ``I_ik = m*a_i*a_k`` with the indices i and k."""
     assert claim.relation is not None
     names = {name for side in claim.relation[1:] for name in _names(side)}
     pairs = {name.rpartition("_")[2] for name in names if re.fullmatch(r"\w+_[ijkl]{2}", name)}
@@ -530,7 +535,9 @@ def _on_parts(
 def _with_fitting_line(
     claims: Sequence[Claim], lines: Sequence[tuple[str, Collection[str], Verdict]], notation: Notation, verdict: Verdict
 ) -> Verdict:
-    """Return the verdict on equations that contradict each other, with the single edit that makes them fit together."""
+    """Return the verdict on lines that contradict each other, with the one edit of a line that makes all of them
+    fit.
+    """
     if len(lines) != len(claims) or len(lines) > MOST_LINES or any(claim.hypotheses for claim in claims):
         return verdict
     from symrot.checker.recognition.naming import recognised_edits  # it takes longer to import than most checks
@@ -564,7 +571,7 @@ def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], 
 
 
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
-    """Return the verdicts on the equations of a chain ``name = a = b``, with ``name = b`` for a false ``a = b``."""
+    """Return the verdicts on a chain ``name = a = b``; that on ``name = b`` replaces a "false" on ``a = b``."""
     named = named_formula(line[0]) if len(line) > 1 else None
     if named is None or line[0].relation is None or line[0].relation[1] != named.side:
         return list(verdicts)

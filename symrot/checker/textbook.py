@@ -1,7 +1,7 @@
 """Verdicts on the claims of a document, with allowance for characters that the extraction of its text lost.
 
-Each claim equates the printed formula (left) and the right result. If it is false, but true after lost characters such
-as minus signs are put back on the left, the document may have no error.
+The left side of a claim is the printed formula, the right side the formula that it should equal. If a claim is true
+only after lost characters, such as minus signs, are put back on the left, the document may have no error.
 """
 
 from collections import Counter
@@ -53,7 +53,7 @@ class Finding:
     right : str
         The right formula, or the right digits of a worked number, if the claim is not true.
     parts, corrected : mapping of str to Node
-        The trees of the claim by place (side or name of a definition), and the corrected trees.
+        The trees of the claim, and the corrected trees: ``{"left": tree, "R": tree}`` for a side and a definition.
     origin : str
         What the corrected formula comes from: the ``"search"`` for repairs, a ``"derivation"`` from the reference, or
         the ``"proposal"`` of a person.
@@ -156,16 +156,16 @@ def _prove(claim: Claim, condition: Condition) -> None:
     hypotheses = tuple(read_relation(source, f"{claim.id}: condition", declared) for source in condition.hypotheses)
     if decide_equation(replace(claim, hypotheses=(*claim.hypotheses, *hypotheses)).equation).verdict != "true":
         texts = " and ".join(condition.hypotheses)
-        raise InputError(f"{claim.id}: condition: expected one under which the claim is true, got {texts!r}")
+        raise InputError(f"{claim.id}: expected a condition under which the claim is true, got {texts!r}")
 
 
 def _correction(claim: Claim, verdict: Verdict, formula: PrintedFormula | None) -> tuple[str, dict[str, Node]]:
-    """Return the origin of the correction of a false claim, and the corrected parts by side or definition.
+    """Return "search", "derivation" or "proposal", the origin of a correction, and the corrected trees: {"left": tree}.
 
     Raises
     ------
     InputError
-        For a correction of a part that is not printed, or one that the exact engine does not prove.
+        For a part that may not be corrected, and for a correction that the exact engine does not prove.
     """
     origin = "search"  # the nearest repair, unless the errata propose a correction or ask to derive it
     changes: Mapping[str, str] = verdict.repairs[0].edited if verdict.repairs else {}
@@ -179,7 +179,8 @@ def _correction(claim: Claim, verdict: Verdict, formula: PrintedFormula | None) 
     trees = {}
     for place, source in changes.items():
         if place not in claim.editable:
-            raise InputError(f"{claim.id}: {origin}: expected one of {', '.join(claim.editable)}, got {place!r}")
+            parts = ", ".join(claim.editable)
+            raise InputError(f"{claim.id}: {origin}: expected a part that may be corrected ({parts}), got {place!r}")
         trees[place] = read_expression(source, f"{claim.id}: {place}", Declared(names, claim.functions))
     if origin != "search" and decide_equation(claim.with_parts(trees).equation).verdict != "true":
         got = " and ".join(changes.values()) or "none"
@@ -191,7 +192,7 @@ def _correction(claim: Claim, verdict: Verdict, formula: PrintedFormula | None) 
 
 
 def _inner(kinds: Collection[str]) -> Callable[[Node], Node]:
-    """Return a function that removes the sign of nodes of certain kinds: it maps ``-a`` to a for "neg"."""
+    """Return a function that maps a node of one of ``kinds`` to its argument: ``-a`` to a for "neg"."""
     return lambda node: node.args[0] if node.kind in kinds else node
 
 
@@ -228,7 +229,8 @@ def _is_reading(claim: Claim, other: tuple[str, Node, Node], lost: Collection[st
 
 
 def differs_by_lost_characters(printed: Node, right: Node, lost: Collection[str]) -> bool:
-    """Return whether two formulas differ only in lost characters, or in their order if ``lost`` has "token order".
+    """Return whether two formulas are equal without the characters ``lost``; "token order" also allows any order of
+    letters.
 
     Examples
     --------

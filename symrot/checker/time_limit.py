@@ -20,7 +20,9 @@ class TimeUp(BaseException):
 
 @contextmanager
 def processor_seconds(limit: float) -> Iterator[None]:
-    """Raise TimeUp inside a ``with`` block after ``limit`` seconds of computing, if a timer of the system is free."""
+    """Raise TimeUp in a ``with`` block after ``limit`` seconds of computing; no limit if the system's timer is in
+    use.
+    """
     if not _timer_is_free():  # no ITIMER_PROF, another thread, inside another limit, or in use by the program
         yield
         return

@@ -149,7 +149,10 @@ class Identification:
 
     @property
     def renaming(self) -> str:
-        """The symbols that have other names in the claim, as text: ``"with a for dphi"``; empty if all names agree."""
+        """The renamed symbols as text: "with a for dphi" if the claim writes a where the known formula has dphi.
+
+        Empty if no name differs.
+        """
         pairs = ", ".join(f"{other} for {own}" for own, other in self.mapping.items())
         return f"with {pairs}" if pairs else ""
 

@@ -45,7 +45,7 @@ PAGES: dict[str, Callable[[Any], str]] = {
 
 
 class _Formatter(HelpFormatter):
-    """A help formatter that measures the terminal without the module shutil, which is slow to import."""
+    """A help formatter that measures the terminal without the module shutil, because that module is slow to import."""
 
     def __init__(self, prog: str) -> None:
         super().__init__(prog, width=_columns() - 2)

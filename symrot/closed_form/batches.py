@@ -1,8 +1,12 @@
-"""Constants of many motions in closed form, computed as arrays; every bit is the same as for single motions.
+"""Constants of many motions in closed form, as arrays (a batch); every bit is the same as for single motions.
 
-A double-double number is a sum hi + lo of two doubles. Sums in which all digits may cancel are computed in integers,
-one motion after the other; all other constants are computed in double-double arithmetic, for all motions at once.
+One call of C computes a batch. Arguments: ``omega`` are the initial angular velocities, shape (n, 3); ``start`` are the
+initial attitudes that :func:`attitudes` returns; ``across`` and ``own`` are moments of inertia about an axis normal to
+the symmetry axis and about the symmetry axis. A double-double number is a sum hi + lo of two doubles.
 """
+
+# Sums in which all digits may cancel are computed in integers, one motion after the other; all other constants are
+# computed in double-double arithmetic, for all motions at once.
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
@@ -169,10 +173,7 @@ def _noticed(omega: Floats) -> Floats:
 
 
 def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of one free body from n initial states as a batch, which one call of C computes.
-
-    ``omega`` are angular velocities that pass :func:`usual`, ``start`` is the result of :func:`attitudes`.
-    """
+    """Return the motions of one free body from n initial states as a batch; ``omega`` must pass :func:`usual`."""
     # start: shape (n, 8), or (8,) if all motions share the attitude
     exact = np.empty((len(omega), 8))
     exact[:, :6] = body.gaps
@@ -188,7 +189,7 @@ def free_bodies(body: FreeRigidBody, omega: Floats, start: Floats) -> Batch:
 
 
 def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floats) -> Batch:
-    """Return the motions of free bodies with given principal moments, kg m^2, as a batch, see :func:`free_bodies`."""
+    """Return the motions of n free bodies with the principal moments ``moments``, kg m^2, as a batch."""
     omega, n = _noticed(omega), len(omega)
     exact, pairs = np.empty((n, 8)), _columns(moments, n)
     if not pairs[:, 1::2].any():  # the low parts are zero, since moments are doubles
@@ -210,10 +211,11 @@ def free_bodies_of_moments(moments: Sequence[Column], omega: Floats, start: Floa
 def free_bodies_of_tensors(
     entries: Sequence[Column], omega: Floats, start: Floats
 ) -> tuple[Batch | None, NDArray[np.bool_]]:
-    """Return a batch of motions of free bodies in any axes, and for each motion whether the batch computes it exactly.
+    """Return the motions of n free bodies in any axes as a batch, and for each motion whether the batch is exact.
 
     ``entries`` are the tensor components xx, yy, zz, xy, xz and yz, kg m^2.
     """
+    # without a batch if a shared component is outside the range of pairs
     settled = np.ones(len(omega), np.bool_)
     principal = bodies.principal_bodies(entries, omega)
     if principal is None:
@@ -234,11 +236,7 @@ def _integers(values: list[float]) -> list[int]:
 def tops(
     across: Column, own: Column, pull: Floats, frame: Frame, omega: Floats, start: Floats,
 ) -> Batch:  # fmt: skip
-    """Return the motions of n symmetric heavy tops as a batch, which one call of C computes.
-
-    ``start`` is the result of :func:`turned` for ``frame``, the axes of the formulas.
-    """
-    # across, own: moments of inertia about an axis normal to the symmetry axis and about the symmetry axis;
+    """Return the motions of n symmetric heavy tops as a batch; ``start`` are attitudes that :func:`turned` returns."""
     # pull: weight times distance of the centre of mass from the fixed point, N m, as hi and lo
     rates = _pairs(np.ascontiguousarray(omega[:, frame.named]))
     axes = None if frame.axes is None else np.array(frame.axes)
@@ -246,11 +244,7 @@ def tops(
 
 
 def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of n symmetric gyrostats as a batch, which one call of C computes.
-
-    ``rotor`` is the angular momentum of the rotor along the body axis ``axis`` (0, 1 or 2).
-    """
-    # across, own: moments of inertia about an axis normal to the symmetry axis and about the symmetry axis
+    """Return the motions of n symmetric gyrostats as a batch; ``rotor`` is an angular momentum along ``axis``."""
     named = [(axis + 1) % 3, (axis + 2) % 3, axis]
     rates = _pairs(np.ascontiguousarray(omega[:, named]))
     constants = [_together([across, own], len(omega)), _together([rotor], len(omega))]
@@ -258,11 +252,7 @@ def gyrostats(across: Column, own: Column, rotor: Column, axis: int, omega: Floa
 
 
 def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floats, start: Floats) -> Batch:
-    """Return the motions of n symmetric bodies, each under a constant torque about its body axis ``axis``, as a batch.
-
-    ``across`` and ``own`` are moments of inertia about an axis normal to ``axis`` and about ``axis``.
-    """
-    # omega and start have one row for each motion
+    """Return the motions of n symmetric bodies under a constant torque about the body axis ``axis``, as a batch."""
     numbers = np.empty((len(omega), 20))
     numbers[:, :6] = _columns([across, own, torque], len(omega))
     numbers[:, 6:12] = _pairs(omega[:, [axis - 2, axis - 1, axis]])
@@ -271,10 +261,7 @@ def spin_ups(across: Column, own: Column, torque: Column, axis: int, omega: Floa
 
 
 def driven(constants: Constants | Sequence[Constants], omega: Floats, start: Floats) -> Batch:
-    """Return the motions of n bodies driven about one axis as a batch, which one call of C computes.
-
-    ``constants`` is one body for all motions, or a list with one body for each.
-    """
+    """Return the motions of n bodies driven about one axis as a batch; ``constants`` is one body or a list of n."""
     bodies = [constants] * len(omega) if isinstance(constants, Constants) else constants
     axis = bodies[0].axis
     turned: NDArray[np.bool_] = (omega[:, [axis - 2, axis - 1]] != 0).any(axis=1)

@@ -2,7 +2,7 @@
 
 A closed form consists of two C files, compiled in parallel: ``name.c`` computes the constants of a motion, and
 ``name_at.c`` contains the loops over samples. Double-double arithmetic (sums of two doubles) requires that every
-operation is rounded separately, which each prepared motion tests first.
+operation is rounded separately. Each motion tests this before it is computed.
 """
 
 import ctypes
@@ -50,15 +50,13 @@ def _files() -> dict[str, Path]:
 
 
 def source(name: str) -> str:
-    """Return the text of the C file ``name.c`` with the texts of its headers in place of their includes.
-
-    Each header is inserted only once.
-    """
+    """Return the text of the C file ``name.c``, in which the text of each header replaces its ``#include`` line."""
     return joined(name)
 
 
 def joined(*names: str) -> str:
-    """Return the texts of the C files ``names`` as one, with the texts of their headers in place of their includes."""
+    """Return the texts of several C files as one text, in which the text of each header replaces its ``#include``."""
+    # a header is inserted only where it is included first
     places, seen = _files(), set()
 
     def text(file: str) -> str:
@@ -74,9 +72,9 @@ def joined(*names: str) -> str:
 
 
 def begin(name: str) -> list[library.Building]:
-    """Start to compile the libraries of a closed form, such as ``"free_body"``, and return the compilations.
+    """Start to compile the C files of a closed form, such as ``"free_body"``, in the background.
 
-    They run in the background.
+    The result has one compilation for each C file.
 
     Raises
     ------
@@ -94,10 +92,8 @@ def begin(name: str) -> list[library.Building]:
 
 
 def loaded(name: str) -> bool:
-    """Return whether the libraries of the closed form ``name`` are loaded in this process.
-
-    If they are, no compiler is needed.
-    """
+    """Return whether the compiled libraries of the closed form ``name`` are loaded in this process."""
+    # if so, no compiler is needed
     return name in _loaded
 
 

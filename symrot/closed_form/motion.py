@@ -1,4 +1,4 @@
-"""The base class of motions in closed form, which compute angular velocity and attitude at any time."""
+"""The base class of motions in closed form: angular velocity and attitude at any time."""
 
 import ctypes
 from abc import ABC, abstractmethod

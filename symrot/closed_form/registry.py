@@ -74,10 +74,7 @@ def _symmetric_about(scene: Scene, axis: int) -> bool:
 
 
 def _only_axis(vector: tuple[Fraction, ...]) -> int | None:
-    """Return the index (0, 1 or 2) of the only nonzero component of a vector: ``(0, 0, 5)`` gives 2.
-
-    None if no component, or more than one, is nonzero.
-    """
+    """Return the index of the only nonzero component of a vector, or None: ``(0, 0, 5)`` gives 2, (1, 1, 0) None."""
     along = [axis for axis, component in enumerate(vector) if component != 0]
     return along[0] if len(along) == 1 else None
 
@@ -139,7 +136,7 @@ def _is_driven(scene: Scene) -> bool:
 
 
 def _driven_axis(scene: Scene) -> int | None:
-    """Return the index of the principal axis about which the body rotates at all times; None if there is none."""
+    """Return the index of the principal axis about which the body rotates at all times, or None if it does not."""
     if not _is_driven(scene):
         return None
     push, turning = torque_and_damping(scene)[0], _only_axis(scene.initial.omega_b)

@@ -57,10 +57,7 @@ class Formulas:
 
     @property
     def explicit(self) -> "Formulas":
-        """The same outputs as formulas in the inputs alone.
-
-        The symbol of each intermediate quantity is replaced by its formula.
-        """
+        """The same outputs as formulas in the inputs alone: ``u + 1`` with u = a*b becomes ``a*b + 1``."""
         outputs = []
         for name, formula in self.outputs:
             for symbol, value in reversed(self.named):
@@ -172,9 +169,9 @@ def _single_operations(program: Program) -> Program:
 
 
 def _slopes(formula: Expr, value: Symbol | None = None) -> dict[Symbol, Expr]:
-    """Return the partial derivatives of a formula, by the symbols in it.
+    """Return the partial derivatives of a formula, by the symbols in the formula.
 
-    ``value`` is the symbol of the temporary that holds the formula's value, or None.
+    They may contain ``value``, the symbol for the formula itself: y = sqrt(a) has the derivative 1/(2 y).
     """
     held = sorted(formula.free_symbols, key=str)
     above, below = formula.as_numer_denom()
@@ -227,9 +224,9 @@ def _backward(value: Formulas, entries: Entries) -> Formulas:
 
 
 def _symbol(named: list[tuple[Symbol, Expr]], name: str, slope: Expr) -> Expr:
-    """Return a new symbol for the derivative ``slope``, and append it with its formula to ``named``.
+    """Return a new symbol ``name`` for the derivative ``slope``, and append the pair (symbol, slope) to ``named``.
 
-    A number times a symbol is returned unchanged.
+    If ``slope`` is a number times a symbol, it is returned instead.
     """
     if not slope.args or slope.as_coeff_Mul()[1].is_Symbol:
         return slope

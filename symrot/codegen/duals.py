@@ -1,4 +1,4 @@
-"""Dual numbers: a value with its derivatives, which are numbers of any kind (floats, Fractions, symbols, ..).
+"""Dual numbers: a value together with its derivatives. All are numbers of any kind (floats, Fractions, symbols, ..).
 
 A computation that is written once for any kind of number, evaluated with dual numbers, also gives the derivatives of
 its results (forward accumulation). Source: A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., section 3.1.
@@ -71,7 +71,7 @@ class Dual:
 
 
 def dual_functions(functions: Mapping[str, Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
-    """Return functions of dual numbers by name, such as ``"sin"``; ``functions`` are their versions for plain numbers.
+    """Return functions of dual numbers, by name; ``functions`` are the same functions for plain numbers.
 
     Raises
     ------

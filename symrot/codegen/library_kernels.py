@@ -1,4 +1,4 @@
-"""Straight-line programs of the library's kernels, derived from their formulas; constants such as pi become numbers."""
+"""Straight-line programs of the library's kernels, in which constants such as pi are numbers."""
 
 from collections.abc import Iterable, Mapping
 from functools import cache
@@ -46,7 +46,7 @@ def _ways(name: str, kernel: Definition) -> Iterable[Formulas]:
 
 
 def _with(node: Node, values: Mapping[str, Node]) -> Node:
-    """Return a formula in which each symbol with a name in ``values`` is replaced by the formula stored there."""
+    """Return a formula with symbols replaced: ``2*x`` with ``{"x": a + b}`` as ``values`` gives ``2*(a + b)``."""
     if not children(node):
         return values.get(node[1], node) if node[0] == "symbol" else node
     if node[0] == "call":

@@ -1,7 +1,7 @@
 """Recording of straight-line programs: numbers that append each operation on them to a record.
 
-A method is written once for any kind of number. Evaluated with such numbers, it leaves a record of its operations,
-which becomes a program.
+A method is written once for any kind of number. If it is evaluated with recording numbers, the record of the operations
+becomes a program.
 """
 
 from collections import Counter
@@ -23,7 +23,7 @@ ANONYMOUS = "#"  # first letter of temporaries that get their names later
 class Recorder:
     """A record of the operations of one computation, from which :meth:`program` makes a straight-line program.
 
-    Its method ``symbol`` returns an input.
+    The method ``symbol`` returns an input of the program.
     """
 
     def __init__(self) -> None:

@@ -115,7 +115,7 @@ def rate_derivatives(equations: Equations, variables: Sequence[str]) -> tuple[Fo
 def rates_jacobian_program(
     equations: Equations, name: str, chained: Formulas, arguments: Sequence[Argument]
 ) -> Lowered:
-    """Return the program of the rates and their derivatives, in the way that needs the fewest operations.
+    """Return the program, with the fewest operations, that computes the rates and their derivatives.
 
     ``chained`` and ``arguments`` are the result of :func:`rate_derivatives`.
     """
@@ -133,9 +133,9 @@ def rates_jacobian_program(
 
 
 def _variables(equations: Equations, name: str) -> tuple[Symbol, ...]:
-    """Return the symbols of a name: all states for ``"y"``, a group such as ``"omega"``, or one symbol.
+    """Return the symbols for which a name stands: all states for ``"y"``, three for ``"omega"``, one for ``"q0"``.
 
-    Raise InputError if there are none.
+    Raise InputError if the equations contain no such symbol.
     """
     families = {"omega": symbols.omega_b, "q": symbols.quaternion, "angles": symbols.angles}
     states = [state for state in equations.states if name == "y" or state in families.get(name, ())]
@@ -179,7 +179,7 @@ def _quantities(equations: Equations, conserved: Mapping[str, Expr]) -> Lowered:
 def derive_scene_kernel(
     structure: Structure, on_rates: Callable[[Program, str], object] = lambda rates, source: None
 ) -> SceneKernel:
-    """Derive the kernel of a planned motion: programs of its rates, of energy and momentum, of conserved quantities.
+    """Return the kernel of a scene: programs of the rates, of energy and momentum, and of conserved quantities.
 
     ``on_rates`` is called early, with the program and the C text of the rates.
     """

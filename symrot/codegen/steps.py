@@ -45,7 +45,7 @@ class RungeKutta:
 
     @property
     def formula(self) -> str:
-        """The method in words, such as its name and order, for the head comment of an emitted step."""
+        """The method in words, such as ``"explicit Runge-Kutta method rk4 of order 4 with 4 stages"``."""
         return f"explicit Runge-Kutta method {self.name} of order {self.order} with {len(self.nodes)} stages"
 
 
@@ -58,13 +58,13 @@ class TaylorSeries:
 
     @property
     def formula(self) -> str:
-        """The method in words, with its order, for the head comment of an emitted step."""
+        """The method in words, such as ``"Taylor series of the motion up to dt^8"``."""
         return f"Taylor series of the motion up to dt^{self.order}"
 
 
 @dataclass(frozen=True)
 class WithDerivatives:
-    """A method of time steps (``plain``) whose step also computes the exact derivatives of the new state by inputs."""
+    """The method ``plain``, whose step also computes the exact derivatives of the new state by the inputs ``by``."""
 
     plain: RungeKutta | TaylorSeries
     # "x" (all states), "omega", "q", "p" (all parameters), "dt", "t", one state or one parameter
@@ -82,7 +82,7 @@ class WithDerivatives:
 
     @property
     def formula(self) -> str:
-        """The method in words, and the inputs of its derivatives, for the head comment of an emitted step."""
+        """The method in words, such as ``"Taylor series of the motion up to dt^8, and its derivatives by x"``."""
         return f"{self.plain.formula}, and its derivatives by {', '.join(self.by)}"
 
 
@@ -152,7 +152,7 @@ def stepped(
 
 
 def without_factors(rates: Program) -> tuple[Program, list[Fraction]]:
-    """Return the rates without the numbers that multiply whole formulas (1/2 in ``1/2*(a - b)``), and these numbers."""
+    """Return the rates without leading numeric factors, and the factors: ``1/2*(a - b)`` gives a - b and 1/2."""
     # a step multiplies its weights by these numbers once, instead of each rate at each stage
     outputs, factors = [], []
     for name, node in rates.outputs:

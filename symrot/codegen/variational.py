@@ -29,8 +29,9 @@ def variational_program(rates: Program, columns: Sequence[Collection[str]]) -> P
     Returns
     -------
     Program
-        Its states are y, then the derivative of y by each variable: ``omega_1_by_1`` is that of omega_1 by the first.
-        Its parameters are p, then, for each variable, the derivatives of the parameters named in ``columns``.
+        Its states are y, then the derivatives of y by each variable, such as ``omega_1_by_1``, the derivative of
+        omega_1 by variable 1. Its parameters are p, then the derivatives, by each variable, of the parameters named in
+        ``columns``.
     """
     inputs = {argument.name: argument for argument in rates.signature.arguments}
     states, parameters = inputs["y"].components, inputs["p"].components if "p" in inputs else ()

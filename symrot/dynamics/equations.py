@@ -192,7 +192,10 @@ def _motion(structure: Structure) -> tuple[Motion, tuple[Symbol, ...], list[Expr
 
 
 def equations_of_motion(structure: Structure) -> Equations:
-    """Return the equations of motion for a structure, which says which constants of a scene are zero, equal or free."""
+    """Return the equations of motion of all scenes that have a given structure.
+
+    The structure says which constants are zero, equal or free.
+    """
     motion, attitude, relations = _motion(structure)
     laws = tuple(torque_law(torque, motion) for torque in structure.torques)
     torque = reduce(add, (law.torque for law in laws), zeros(3, 1))

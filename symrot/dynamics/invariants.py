@@ -106,7 +106,8 @@ def _reason(name: str, holds: bool, equations: Equations, kinds: Sequence[str]) 
         return "the gravity gradient is constant in axes that rotate with the orbit"
     if name == "angular momentum":
         return f"{acting} changes only the direction of the angular momentum in the body"
-    return f"{acting} has no moment about this axis, fixed in space"
+    axis = "the vertical" if name.startswith("vertical") else f"the space axis {name[-1]}"
+    return f"{acting} has no moment about {axis}"
 
 
 def _listed(kinds: Sequence[str]) -> str:

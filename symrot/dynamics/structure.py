@@ -131,7 +131,7 @@ class FormulaTorque(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """The kind of the torque, which is always ``"expression"``; :class:`FieldTorque` has the same attribute."""
+        """The kind of the torque, always ``"expression"``; :class:`FieldTorque` has an attribute of this name too."""
         return "expression"
 
     @property

@@ -1,7 +1,7 @@
 """Table of the kinds of torque that a scene may have, each with its fields, units and default values.
 
 :mod:`symrot.dynamics.torques` contains the formulas of the torques and their potentials. The functions that read scenes
-use only this table, which needs only the standard library.
+use only this table, because it needs only the standard library.
 """
 
 from fractions import Fraction

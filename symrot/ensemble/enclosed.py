@@ -28,7 +28,7 @@ class Enclosed:
         self.high, self.low, self.error = high, low, error
 
     def rounded(self) -> tuple[Floats, NDArray[np.bool_]]:
-        """Return the numbers as doubles, and where each double is certainly the exact number rounded."""
+        """Return the numbers rounded to doubles, and for each number whether the rounding is certainly correct."""
         # a bound of 0 belongs to an exact number; twice the bound covers the rounding of low + error
         below, above = (self.high + (self.low + 2 * sign * self.error) for sign in (-1.0, 1.0))
         return self.high + 0.0, np.isfinite(self.high) & (below == self.high) & (above == self.high)
@@ -71,13 +71,14 @@ class Enclosed:
 
 
 def _made(high: Floats, low: Floats, error: Floats, size: Floats) -> Enclosed:
-    """Return numbers whose error is infinite where the operands or results leave the range of exact error terms."""
+    """Return the numbers ``high + low``, with an infinite error where ``size`` is not between LEAST and MOST."""
+    # size: of the largest operand or result; outside these limits, error terms are not exact
     safe = (size == 0) | (size > LEAST) & (size < MOST)
     return Enclosed(high, low, np.where(safe, error, np.inf))
 
 
 def exact(value: Fraction | Floats, count: int = 1) -> Enclosed:
-    """Return an array of doubles as exact numbers, or ``count`` copies of one fraction."""
+    """Return an array of doubles as exact numbers, or ``count`` copies of a fraction with the error of rounding."""
     if isinstance(value, Fraction):
         high, low = pair(value)
         error = 0.0 if Fraction(high) + Fraction(low) == value else ERROR * abs(high)

@@ -102,7 +102,7 @@ ALONE_LOSES_BELOW = {"free_body": 1e4, "axial": 1e3, "spin_up": 1e3}
 
 
 class Solved(NamedTuple):
-    """Trajectories to compute by one closed form: their indices ``rows``, and their constants as arrays."""
+    """The trajectories ``rows``, which one closed form computes, with their constants as arrays (``batch``)."""
 
     form: ClosedForm
     rows: Rows
@@ -271,7 +271,7 @@ class _Part(NamedTuple):
 def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Rows, "Batch | None", Any]]:
     """Yield groups of the trajectories ``rows``, all of one closed form, as (indices, batch, usual).
 
-    ``usual`` tells which trajectories the batch computes correctly. If ``batch`` is None, it computes none.
+    ``usual`` tells which trajectories the batch computes correctly. If ``batch`` is None, all are computed alone.
     """
     make = BATCHES.get(kind.form.library) if kind.form else None
     if make is None:

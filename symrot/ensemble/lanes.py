@@ -86,7 +86,7 @@ def translation_unit(
 
 
 def wrap_translation_unit(definitions: str, width: int | None = None) -> str:
-    """Return the C source of a library that integrates motions in SIMD lanes, from the C text of their Taylor series.
+    """Return the C source of a library that integrates motions in SIMD lanes; ``definitions`` are the Taylor series.
 
     ``width`` is as for :func:`translation_unit`.
     """
@@ -138,8 +138,7 @@ class Lanes:
         carry.argtypes, carry.restype = (ctypes.c_double, ctypes.c_double), ctypes.c_double
         if carry(1.0, 2.0**-60) != 2.0**-60:
             raise CompilerError(
-                f"the compiled kernel {path} does not compute the rounding errors of its sums, with which it must "
-                "correct them; compile without -ffast-math"
+                f"the compiled kernel {path} computes wrong rounding errors of sums; compile without -ffast-math"
             )
 
     def jet(self, t: float, y: Sequence[float], p: Sequence[float], unit: float = 1.0) -> Floats:
@@ -154,10 +153,7 @@ class Lanes:
         return coefficients
 
     def work(self, job: _Job, interrupted: Callable[[], bool] = bool) -> None:
-        """Integrate all motions of a job to their ends, or until ``interrupted()`` returns true.
-
-        The job holds the addresses of the results.
-        """
+        """Integrate all motions of a job; stop early if ``interrupted()`` returns true."""
         memory = ctypes.create_string_buffer(self._memory)
         self._library.symrot_lanes_clear(memory)
         while not interrupted() and self._run(memory, ctypes.addressof(job), STEPS_PER_CALL) != DONE:
@@ -196,7 +192,7 @@ def _legs(t0: float, times: Floats, n: int) -> _Legs:
 
 
 class LaneIntegration:
-    """The integration of many motions in SIMD lanes, with checked arguments; it can be run any number of times.
+    """The integration of many motions in SIMD lanes; :meth:`run` can be called any number of times.
 
     Parameters
     ----------
@@ -213,7 +209,7 @@ class LaneIntegration:
     max_steps : int
         Largest number of steps of one motion.
     workers : int
-        Number of threads; each thread integrates a part of the motions.
+        Number of threads; each thread integrates some of the motions.
     epoch : float
         Time of the scene, s, from which ``t0`` and ``times`` are counted. Times in messages are times of the scene.
     """
@@ -234,8 +230,8 @@ class LaneIntegration:
         self._rows = self._places(("motion", "first", "count", "row"), self.legs.rows)
 
     def _places(self, names: Sequence[str], table: NDArray[Any]) -> dict[str, int]:
-        """Return the memory address of each row of ``table``, by the row's name."""
-        # one column per leg: one motion in one direction of time
+        """Return a map from each of ``names`` to the memory address of the row of ``table`` with the same number."""
+        # table has one column for each leg: one motion in one direction of time
         place = address(table)
         return {name: place + 8 * self.total * k for k, name in enumerate(names)}
 
@@ -286,10 +282,7 @@ def follow(*arguments: Any, **options: Any) -> Outcome:
 
 
 def _share(library: Lanes, jobs: list[Any]) -> None:
-    """Integrate the jobs, each in its own thread; an interrupt (Ctrl-C) stops all threads.
-
-    Each job fills its own rows of the arrays of states.
-    """
+    """Integrate the jobs, each in its own thread; an interrupt (Ctrl-C) stops all threads."""
     if len(jobs) == 1:
         library.work(jobs[0])
         return

@@ -98,8 +98,7 @@ def follow(problem: Problem, method: str) -> Followed:
 
 
 def _together(parts: Sequence[Followed], groups: Sequence[Integers]) -> Followed:
-    """Join the results for groups of motions to one result, in the order of the ensemble."""
-    # groups[k]: the indices, in the ensemble, of the motions in parts[k]
+    """Join the results ``parts`` to one, in the order of the ensemble; ``groups[k]`` are the indices of part k."""
     order = np.argsort(np.concatenate(groups), kind="stable")
 
     def joined(arrays: Sequence[Any]) -> Any:
@@ -121,7 +120,7 @@ def _together(parts: Sequence[Followed], groups: Sequence[Integers]) -> Followed
 
 
 def _follow(problem: Problem, method: str, rows: Integers) -> Followed:
-    """Return the samples of motions with the same equations: in closed form, in SIMD lanes, or one by one."""
+    """Return the samples of motions that have the same plan: in closed form, in SIMD lanes, or one by one."""
     count = len(problem.variation)
     solved = _solved(problem, method)
     by_steps = np.ones(count, dtype=bool)
@@ -161,7 +160,7 @@ def _follow(problem: Problem, method: str, rows: Integers) -> Followed:
 def _switched(
     problem: Problem, method: str, stepped: Sequence[int], omega: Floats, quaternion: Floats | None
 ) -> Followed:
-    """Compute motions under torques with jumps or kinks one by one; return their methods, messages and costs.
+    """Compute motions under torques with jumps or kinks one by one, and return methods, messages and costs.
 
     The samples are written into ``omega`` and ``quaternion``.
     """
@@ -246,7 +245,7 @@ class _Stepped:
         return times - self.epoch if self.epoch else times
 
     def clock(self, k: int, make: Callable[[Plan, SceneKernel], Any] = epoch.compiled) -> Any:
-        """Return a function that gives the compiled rates and parameters of motion k for times since an epoch.
+        """Return a function from an epoch to the rates and parameters of motion k with time counted from the epoch.
 
         None if the rates do not depend on time.
         """
@@ -260,7 +259,7 @@ class _Stepped:
         return epoch.clock(moving, self.numbers.constants(k), self.epoch, make)
 
     def read(self, states: Floats, omega: Floats, quaternion: Floats | None) -> None:
-        """Compute ``omega`` and ``quaternion`` from the integrated states, shape (n, m, N), and write them there."""
+        """Write the samples that follow from the states, shape (n, m, N), into ``omega`` and ``quaternion``."""
         chosen = np.asarray(self.chosen)
         whole = len(chosen) == len(omega) and bool((chosen == np.arange(len(omega))).all())
         rows = slice(None) if whole else chosen  # a slice needs no copies
@@ -290,10 +289,7 @@ class _Stepped:
         return tuple([(name, node) for name, node in parameters if name in needed])
 
     def one_by_one(self, integrate: Callable[[int, Floats], tuple[Floats, Any]]) -> lanes.Outcome:
-        """Integrate all trajectories, one after the other, and return their states, costs and messages.
-
-        ``integrate(k, times)`` returns the states and the cost of trajectory k.
-        """
+        """Integrate all trajectories one after the other; ``integrate(k, times)`` returns states and cost of one."""
         samples = self.times.shape[-1]
         states = np.full((len(self.chosen), samples, len(self.plan.states)), np.nan)
         steps, evaluations = (np.zeros(len(self.chosen), dtype=np.int64) for _ in range(2))
@@ -323,7 +319,7 @@ def _taylor(stepped: _Stepped, method: str) -> lanes.Outcome:
 
 
 def _one_by_one(stepped: _Stepped) -> lanes.Outcome:
-    """Integrate the trajectories ``stepped`` one after the other; return their states, costs and messages."""
+    """Integrate the trajectories ``stepped`` one after the other by Taylor series."""
     problem, (plan, kernel) = stepped.problem, stepped.moved
     path = taylor_library(plan, kernel, problem.tolerance, projected=False)
 

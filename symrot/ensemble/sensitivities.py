@@ -60,12 +60,12 @@ BLOCK = 1 << 22  # numbers of one block of motions that are in memory beside the
 
 
 def follow_sensitivities(problem: Problem, keys: Sequence[str]) -> tuple[Sensitivities, tuple[str, ...]]:
-    """Return the derivatives of all motions of a problem at its times, and for each motion why they stopped early.
+    """Return the derivatives of all motions of a problem, and for each motion why the derivatives stopped early.
 
     Parameters
     ----------
     problem : Problem
-        The motions with their times; its method does not matter.
+        The motions and the sample times.
     keys : sequence of str
         The variables, see :func:`symrot.propagation.sensitivities.variables.read_variables`.
 

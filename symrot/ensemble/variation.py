@@ -148,7 +148,7 @@ class Variation:
         return structure.torques[torque].prefix
 
     def constants_beside(self, name: str) -> list[float]:
-        """Return the values that do not vary in the same vector or tensor as ``name``: that of I_yy for ``"I_xx"``."""
+        """Return the constants in the vector or tensor of ``name`` that do not vary: I_yy, I_zz, I_xy, .. for I_xx."""
         place = self.places[name]
         same = [key for key, other in self.places.items() if other[:2] == place[:2] and key not in self.columns]
         values = {self.constant(key) for key in same if not isinstance(self.places[key].entry, str)}

@@ -20,7 +20,7 @@ MOST_RINGS = 2000
 
 @dataclass
 class _Budget:
-    """The state of one decision, which bounds its work."""
+    """What remains of the budget of one decision, and the results stored for this decision."""
 
     left: int = MOST_RINGS  # number of formulas that may still be converted to polynomials
     results: dict[Hashable, Any] = field(default_factory=dict)  # stored conversions

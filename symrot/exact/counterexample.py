@@ -73,7 +73,7 @@ def rational_witness(
     domain = [ring.ratio(formula) for formula in ring.domain]
 
     def point(choices: Sequence[tuple[Fraction, ...]]) -> dict[int, Fraction] | None:
-        """Return the value of every variable for one choice of the free ones, or None if it is no counterexample."""
+        """Return the point with the values ``choices`` of the free variables; None if it is no counterexample."""
         values: dict[int, Fraction] = {}
         for coordinate, choice in zip(coordinates, choices, strict=True):
             values.update(zip(coordinate.generators, choice, strict=True))
@@ -191,7 +191,10 @@ def closed_form_witness(
 def _move_within(
     formulas: Sequence[Expr], values: dict[Expr, Expr], movable: Sequence[Expr], simple: Sequence[Expr]
 ) -> None:
-    """Change ``values``, the values of a point, so that negative ``formulas`` become nonnegative, if possible."""
+    """Give one of the symbols ``movable`` another value for each formula that is negative at the point ``values``.
+
+    The formula becomes nonnegative, or the value stays. ``simple`` are the values tried.
+    """
     for formula in formulas:
         if _seems_nonnegative(formula, values) and _nonnegative(formula, values):
             continue
@@ -237,13 +240,14 @@ def _nonzero(formula: Expr, values: dict[Expr, Expr]) -> bool:
 
 
 def _is_flat(formula: Expr, deep: int = MOST_NESTED) -> bool:
-    """Return whether functions are nested at most ``deep`` levels, so that SymPy substitutes numbers quickly."""
+    """Return whether functions are nested at most ``deep`` levels in a formula."""
+    # SymPy then substitutes numbers quickly
     inside = deep - formula.is_Function
     return inside >= 0 and all(_is_flat(part, inside) for part in formula.args if part.args)
 
 
 def _shortest(number: Expr) -> Expr:
-    """Return a closed-form number as a rational if it is rational, as ``sqrt(4) + 1`` is, else unchanged."""
+    """Return a closed-form number as a rational, if it is one: 3 for ``sqrt(4) + 1``; otherwise unchanged."""
     if number.is_Rational or not number.is_number:
         return number
     try:
@@ -330,11 +334,9 @@ def _simple_sphere(size: int) -> tuple[tuple[Fraction, ...], ...]:
 
 
 def _random_sphere(size: int) -> Callable[[Random], tuple[Fraction, ...]]:
-    """Return a function that draws random rational unit vectors with ``size`` components.
+    """Return a function that draws random rational unit vectors with ``size`` components."""
 
-    It maps random points of a plane to the sphere (stereographic projection).
-    """
-
+    # stereographic projection of random points of a plane
     def draw(source: Random) -> tuple[Fraction, ...]:
         flat = [Fraction(source.randint(-9, 9), source.randint(1, 5)) for _ in range(size - 1)]
         square = sum((value * value for value in flat), Fraction(0))
@@ -344,12 +346,10 @@ def _random_sphere(size: int) -> Callable[[Random], tuple[Fraction, ...]]:
 
 
 def _random_number(leaf: Expr) -> Callable[[Random], tuple[Fraction, ...]]:
-    """Return a function that draws random rational numbers as values of the symbol ``leaf``.
-
-    They agree with its assumptions, such as positive or integer.
-    """
+    """Return a function that draws random rational values of the symbol ``leaf``."""
 
     def draw(source: Random) -> tuple[Fraction, ...]:
+        # if no value fits the symbol's assumptions, such as positive, the point is refused later
         for _ in range(20):
             value = Fraction(source.randint(-20, 20), 1 if leaf.is_integer else source.randint(1, 4))
             if fits_assumptions(leaf, value):
@@ -360,9 +360,9 @@ def _random_number(leaf: Expr) -> Callable[[Random], tuple[Fraction, ...]]:
 
 
 def _solve(hypothesis: PolyElement, generator: int, values: dict[int, Fraction]) -> bool:
-    """Store the value of the variable ``generator`` that satisfies a hypothesis linear in it.
+    """Solve a hypothesis for a variable in which it is linear, and store the result in ``values`` under ``generator``.
 
-    Return False if there is no such value.
+    Return False if there is no solution.
     """
     values[generator] = Fraction(0)
     # another variable has no value yet
@@ -458,7 +458,10 @@ def _angles_are_free(ring: FormulaRing) -> bool:
 
 
 def _variables(expression: Expr) -> list[Expr]:
-    """Return symbols, functions of time and their derivatives in an expression, outermost first, in a fixed order."""
+    """Return the symbols, functions of time and derivatives in an expression, each once, sorted by their text.
+
+    The t of f(t) does not count.
+    """
     variables: list[Expr] = []
     stack = [expression]
     while stack:

@@ -55,9 +55,9 @@ class Decision:
     reason : str
         The reason why a claim is undecided; otherwise empty.
     residual : Expr or Matrix or None
-        The normal form of left - right, from :func:`symrot.exact.decide.decide` alone.
+        The normal form of left - right; only :func:`symrot.exact.decide.decide` stores it.
     stopped_by : tuple of Expr
-        The terms about which too little is known to decide, from :func:`symrot.exact.decide.decide` alone.
+        The terms about which too little is known to decide; only :func:`symrot.exact.decide.decide` stores them.
     products : int
         The number of products of terms that expanding the formulas of a claim took.
     """
@@ -89,7 +89,7 @@ class Case(ABC):
     unproven : list of int
         Indices of the entries for which no proof of equality is known.
     proof_rings : tuple of FormulaRing
-        The rings, besides ``ring``, in which the entries proven so far were proven equal. A stage that proves the last
+        The rings, besides ``ring``, that the proofs of entries need, as far as they exist. A stage that proves the last
         entry passes them to :meth:`rely_on`, which stores them in ``rings``.
     rings : tuple of FormulaRing
         The same rings once all entries are proven; empty until then. Read these for a verdict: their divisors, assumed

@@ -235,9 +235,9 @@ def _lifted(ring: FormulaRing, equations: Sequence[tuple[Expr, Expr]]) -> Lift:
 
 
 def _combination(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> list[tuple[Expr, Fraction]] | None:
-    """Return a polynomial as pairs (inverse function or pi, factor), or None.
+    """Return the pairs (leaf, number) of a sum of multiples: (asin(x), 2) and (pi, -1) for ``2*asin(x) - pi``.
 
-    ``2*asin(x) - pi`` gives (asin(x), 2) and (pi, -1).
+    None: ``factor`` is not a sum of multiples of inverse functions and pi.
     """
     terms = []
     for mono, coefficient in factor.items():

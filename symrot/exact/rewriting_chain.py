@@ -48,7 +48,7 @@ def chains(left: Any, right: Any, relations: Sequence[Any] = ()) -> tuple[Chain,
     left, right : Expr or Matrix
         Two sides of a proven equation, of the same shape.
     relations : sequence of Expr or Eq
-        Its hypotheses.
+        The hypotheses of the equation.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def _chain(left: Expr, right: Expr, hypotheses: list[Expr]) -> tuple[Link, ...]:
 
 
 def _reversed(start: Expr, way: list[Link]) -> Iterator[Link]:
-    """Yield the links of the chain from ``start`` through ``way`` in reverse: for a = b = c those of c = b = a."""
+    """Yield a chain in reverse: if ``start`` and ``way`` are a and b = c, the links b and a."""
     places = [start, *(link.expression for link in way)]
     for number in range(len(way) - 1, -1, -1):
         # each reason stays between the same two expressions

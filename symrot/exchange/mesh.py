@@ -94,9 +94,9 @@ def mesh(path: str | Path, *, mass: Any = None, density: Any = None, scale: Any 
 
 
 def read_mesh(path: Path, where: str, *, mass: Any, density: Any, scale: Any, flip: bool) -> MeshBody:
-    """Return the mass properties and the surface of a mesh file; ``where`` is its place in error messages.
+    """Return the mass properties and the surface of a mesh file.
 
-    The other arguments are those of :func:`mesh`.
+    ``where`` names the file in error messages; the other arguments are explained at :func:`mesh`.
     """
     if (mass is None) == (density is None):
         amounts = "both" if mass is not None else "neither"

@@ -61,7 +61,7 @@ def _of_axis_angle(values: Numbers, angles: Angles) -> Tensor:
 
 
 def _of_euler(values: Numbers, angles: Angles) -> Tensor:
-    """Return the rotation matrix of three Euler angles; the sequence and the unit are those of ``angles``."""
+    """Return the rotation matrix of three Euler angles; ``angles`` gives their sequence and unit."""
     total = matrix(IDENTITY)
     for letter, value in zip(angles.sequence, values, strict=True):
         step = _elementary("xyz".index(letter.lower()), angles.angle(value))

@@ -142,7 +142,7 @@ def _listed(names: list[str]) -> str:
 
 
 def read_robot(path: str | Path) -> tuple[Format, Element, bytes]:
-    """Return the format of a robot file (URDF, MJCF or SDF, by its root element), the root element, and the bytes."""
+    """Return the format of a robot file (URDF, MJCF or SDF), its root element, and its bytes."""
     content, root = read_xml(Path(path), str(path))
     if root.tag not in FORMATS:
         tags = ", ".join(f"<{tag}> ({form.name})" for tag, form in FORMATS.items())
@@ -218,7 +218,10 @@ def _inertial(element: Element, reason: str) -> Element:
 def _body(
     element: Element, mass: Fraction, center: tuple[Fraction, ...], tensor: Tensor, rotation: Tensor | None
 ) -> Inertial:
-    """Return the inertial of a link in the link's axes, from a tensor about the centre of mass in axes of its own."""
+    """Return the inertial of a link in the axes of the link.
+
+    ``tensor`` is about the centre of mass, in axes that ``rotation`` maps to the axes of the link.
+    """
     x, y, z = center
     # rotation maps the tensor's axes to the link's; None: they agree
     turned = tensor if rotation is None else _symmetric(rotate(tensor, rotation))

@@ -125,7 +125,7 @@ def _point(vertex: Floats) -> str:
 
 
 def shells(surface: Surface) -> Indices:
-    """Return for each triangle the number, from 0, of its shell: a part that shares no vertex with the others."""
+    """Return for each triangle the number, from 0, of its shell; different shells have no vertex in common."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 

@@ -62,7 +62,9 @@ def _lower(powers: Exponents, axis: int) -> Exponents:
 
 
 def _coefficients(corners: tuple[Corner, Corner, Corner], degree: int, one: Any) -> dict[Exponents, Any]:
-    """Return the coefficients of 1/((1 - a.v)(1 - b.v)(1 - c.v)) up to a degree, by the exponents of v."""
+    """Return a map from (l, m, n) to the coefficient of s^l t^m u^n in 1/((1 - a.v)(1 - b.v)(1 - c.v)), up to a
+    degree.
+    """
     before: dict[Exponents, Any] = {}
     # a, b, c: three arrays each, with an entry for each triangle; one recurrence for each factor
     for corner in corners:

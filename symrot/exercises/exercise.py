@@ -69,7 +69,7 @@ class Question:
     Attributes
     ----------
     key : str
-        Its letter, ``"a"``.
+        The letter of the question, ``"a"``.
     kind : str
         ``"formula"`` or ``"number"``.
     prompt : str

@@ -111,7 +111,7 @@ def chain(
 
 @dataclass(frozen=True)
 class Problem:
-    """An exercise before its quantities get numbers.
+    """An exercise whose quantities have no numbers yet.
 
     Attributes
     ----------

@@ -88,7 +88,7 @@ class ExerciseSheet:
         return self.print("moodle")
 
     def json(self) -> str:
-        """Return the sheet as JSON text, which ``symrot grade`` reads."""
+        """Return the sheet as JSON text; ``symrot grade`` reads such a text."""
         return self.print("json")
 
     def _repr_markdown_(self) -> str:
@@ -160,7 +160,7 @@ def _exercise(name: str, seed: int) -> Exercise:
 def read_sheet(data: Any, where: str) -> ExerciseSheet:
     """Return the sheet that JSON data describe; ``where`` is the file for error messages.
 
-    Raise InputError if the data are not those of a sheet, or have another schema (number of the format).
+    Raise InputError if the data are no sheet, or have another schema (number of the format).
     """
     try:
         if data["schema"] != SCHEMA:

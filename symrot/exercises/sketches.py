@@ -65,7 +65,7 @@ def _arrow(x: float, y: float, to_x: float, to_y: float, width: str = USUAL) -> 
 
 
 def _span(x: float, y: float, to_x: float, to_y: float) -> str:
-    """Return a thin arrow with two heads, which marks a length."""
+    """Return a thin arrow with two heads that marks a length."""
     angle = degrees(atan2(to_y - y, to_x - x))
     return _line(x, y, to_x, to_y, THIN) + _head(to_x, to_y, angle) + _head(x, y, angle + 180)
 
@@ -84,7 +84,7 @@ def _arc(
 
 
 def _turn(x: float, y: float, wide: float, high: float, first: float, last: float) -> str:
-    """Return a curved arrow along an ellipse; the parameters are those of :func:`_arc`."""
+    """Return a curved arrow along an ellipse; the parameters are explained at :func:`_arc`."""
     end = radians(last)
     sense = 1 if last > first else -1
     angle = degrees(atan2(sense * high * cos(end), -sense * wide * sin(end)))
@@ -350,7 +350,7 @@ def unbalanced_rotor() -> str:
 
 
 def satellite_with_wheel() -> str:
-    """Return an SVG drawing of a satellite with a reaction wheel, which rotates the opposite way."""
+    """Return an SVG drawing of a satellite and its reaction wheel, which rotate in opposite directions."""
     return _drawing(
         "A satellite with a reaction wheel", 260, 190,
         _box(75, 60, 90, 90, 50), _line(20, 95, 75, 95), _line(190, 95, 245, 95), _ellipse(120, 105, 30, 11),

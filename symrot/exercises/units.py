@@ -1,6 +1,7 @@
 """Exact numbers with units: the factor of a unit to SI units, and the text and LaTeX of a measured number."""
 
 import re
+from functools import lru_cache
 from typing import Any
 
 from sympy import Expr, Integer, Rational, pi
@@ -29,6 +30,7 @@ _SIGNS = (
 )
 
 
+@lru_cache(maxsize=1024)
 def unit_of(text: str) -> UnitProduct | None:
     """Return a unit such as ``kg m^2/s``, parsed from text, or None if the text is not a unit.
 

@@ -211,7 +211,7 @@ def projected_quaternions() -> Picture:
 
 
 def angular_velocity() -> Picture:
-    """Draw the velocity of a point of a rotating body, which is perpendicular to the axis and to the radius."""
+    """Draw the velocity of a point of a rotating body, perpendicular to the axis and to the radius."""
     picture, view = Picture(), View(azimuth=35, elevation=22, scale=150)
     axis = unit((0.25, 0.1, 1.0))
     point = np.array([0.3, 0.75, 0.75])

@@ -170,9 +170,9 @@ def cone_vectors(moments: tuple[float, float], nutation: float) -> tuple[Floats,
 
 
 def _cones(moments: tuple[float, float], nutation: float, view: View) -> Picture:
-    """Draw the body cone and the space cone of a free symmetric body, which touch along omega.
+    """Draw the body cone and the space cone of a free symmetric body; they touch along omega.
 
-    The arguments ``moments`` and ``nutation`` are those of :func:`cone_vectors`.
+    The arguments are explained at :func:`cone_vectors`.
     """
     momentum, omega, axis = cone_vectors(moments, nutation)
     picture = Picture()
@@ -202,7 +202,7 @@ def direct_cones() -> Picture:
 
 
 def retrograde_cones() -> Picture:
-    """Draw the cones of a flat body: the space cone is inside the body cone, which rolls around it."""
+    """Draw the cones of a flat body: the body cone encloses the space cone and rolls around it."""
     return _cones((1.0, 1.7), np.radians(26), View(azimuth=-75, elevation=24, scale=150))
 
 
@@ -214,7 +214,7 @@ def rates() -> Picture:
 
 
 def _components(times: Floats, omega: Floats, at: tuple[float, float, float] = (1.0, 1.0, 1.0)) -> Picture:
-    """Plot the components of omega over time; ``at`` gives the place of each label as a fraction of the span."""
+    """Plot the components of omega over time, with labels at the fractions ``at`` of the span."""
     picture = Picture()
     limit = 1.12 * float(np.abs(omega).max())
     axes = Axes(picture, (times[0], times[-1]), (-limit, limit), (420, 200))

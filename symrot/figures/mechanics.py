@@ -19,7 +19,7 @@ __all__ = [
 
 
 def momentum_and_rate() -> Picture:
-    """Draw the energy ellipsoid with omega, and with the angular momentum, which is normal to the surface there."""
+    """Draw the energy ellipsoid with omega and the angular momentum; the momentum is normal to the surface at omega."""
     picture, view = Picture(), View(azimuth=-28, elevation=20, scale=120)
     moments = np.array([0.55, 1.0, 2.2])
     axes = 1 / np.sqrt(moments)

@@ -33,7 +33,7 @@ ONCE_AROUND = 6.0
 
 @dataclass(frozen=True)
 class Surface:
-    """The surface of a solid: lines, which are drawn, and triangles, which hide the lines behind them.
+    """The surface of a solid: lines to be drawn, and triangles that hide the lines behind them.
 
     Attributes
     ----------
@@ -59,12 +59,17 @@ class Surface:
         first, second, third = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
         area = second[:, 0] * third[:, 1] - second[:, 1] * third[:, 0]
         seen = np.abs(area) > 1e-9
-        first, second, third, area = first[seen], second[seen], third[seen], area[seen]
+        corners, first, second, third, area = corners[seen], first[seen], second[seen], third[seen], area[seen]
+        low, high = corners[:, :, :2].min(axis=1).T - 1e-9, corners[:, :, :2].max(axis=1).T + 1e-9
         for number, place in enumerate(places):
-            x, y, depth = place[0] - first[:, 0], place[1] - first[:, 1], place[2]
-            b = (x * third[:, 1] - y * third[:, 0]) / area
-            c = (second[:, 0] * y - second[:, 1] * x) / area
-            before = first[:, 2] + b * second[:, 2] + c * third[:, 2] > depth + AHEAD
+            px, py, depth = place
+            # a triangle hides only points inside the rectangle around its picture
+            near = np.flatnonzero((low[0] < px) & (px < high[0]) & (low[1] < py) & (py < high[1]))
+            a, u, v, size = first[near], second[near], third[near], area[near]
+            x, y = px - a[:, 0], py - a[:, 1]
+            b = (x * v[:, 1] - y * v[:, 0]) / size
+            c = (u[:, 0] * y - u[:, 1] * x) / size
+            before = a[:, 2] + b * u[:, 2] + c * v[:, 2] > depth + AHEAD
             hidden[number] = bool(np.any((b > 1e-6) & (c > 1e-6) & (b + c < 1 - 1e-6) & before))
         return hidden
 

@@ -1,4 +1,4 @@
-"""The table of figures, with captions, for the page of each derivation."""
+"""The figures with their captions, for the page of each derivation."""
 
 from symrot.figures import attitude, free_bodies, mechanics, tops
 from symrot.figures.solids import solid_figures

@@ -61,7 +61,7 @@ class View:
 
 @dataclass(frozen=True)
 class Plane:
-    """A view of a plane in a picture, with x to the right and y upward, each with its own scale."""
+    """A view of a plane in a picture: x to the right and y upward, with two different scales."""
 
     scale: float = 100.0
     origin: tuple[float, float] = (0.0, 0.0)

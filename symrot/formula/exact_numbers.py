@@ -156,7 +156,7 @@ def _bits_for(value: Fraction) -> int:
 
 
 def without_turns(value: Fraction) -> Fraction:
-    """Return an angle, rad, plus a multiple of 2 pi such that it lies between -pi and pi; the error is below 2^-300."""
+    """Return the angle between -pi and pi, rad, that equals ``value`` up to whole turns, with an error below 2^-300."""
     magnitude = max(0, value.numerator.bit_length() - value.denominator.bit_length())
     turn = 2 * (PI if magnitude < 8 else _pi(BITS + magnitude))
     return value - round(value / turn) * turn

@@ -83,7 +83,7 @@ class Program:
         return sum((operations(node) for _, node in self.temporaries + self.outputs), Counter())
 
     def vanishing(self, zeros: Collection[str]) -> frozenset[str]:
-        """Return the outputs that are zero if the inputs ``zeros`` are zero, as ``a*b`` is for a."""
+        """Return the outputs that are zero if the inputs ``zeros`` are zero: an output ``a*b`` if a is zero."""
         known = set(zeros)
         for name, node in (*self.temporaries, *self.outputs):
             # an output that is zero only because its terms cancel does not count

@@ -12,7 +12,7 @@ MOST_TERMS = 60  # largest number of terms of a polynomial that is tested for be
 
 
 def square_under_root(radicand: Node) -> tuple[Node, Node] | None:
-    """Return (u, v) with ``radicand = u^2 v``, so that its root is abs(u) sqrt(v); None if it contains no square."""
+    """Return (u, v) with ``radicand = u^2 v``, whose root is ``abs(u)*sqrt(v)``; None if it contains no square."""
     root, rest = _split(radicand)
     # a sum such as t**2 - 2*c*t + c**2 may be the square of a polynomial
     if rest != ONE and (more := _root_of_sum(rest)) is not None:
@@ -21,7 +21,7 @@ def square_under_root(radicand: Node) -> tuple[Node, Node] | None:
 
 
 def _split(node: Node) -> tuple[Node, Node]:
-    """Return (u, v) with node = u^2 v, as in (a, b) for ``a**2*b``; u is 1 if no factor is written as a square."""
+    """Return (u, v) with ``node = u^2 v``: (a, b) for ``a**2*b``; u is 1 if no factor is written as a square."""
     kind = node[0]
     if kind in ("*", "/"):
         (a, v), (b, w) = map(_split, children(node))

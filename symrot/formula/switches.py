@@ -82,7 +82,7 @@ def has_switches(node: Node) -> bool:
 
 
 def condition_error(node: Node) -> str:
-    """Return what a message says is expected instead of the first wrong condition of ``where``; empty without one.
+    """Return how the first wrong condition of ``where`` should be written, for a message; empty if none is wrong.
 
     ``where(1 < t < 2, 1, 0)`` gives "one comparison at a time: ..".
     """
@@ -150,9 +150,9 @@ def placed(node: Node, values: Mapping[str, Node]) -> Node:
 
 
 def on_line(node: Node) -> tuple[Any, int]:
-    """Return (key, sign): the formulas ``t - 1`` and ``2 - 2*t``, being proportional, have the same key.
+    """Return (key, sign) of a formula; proportional formulas have equal keys.
 
-    Their signs differ.
+    ``t - 1`` and ``2 - 2*t`` have the same key and different signs.
     """
     polynomial = as_polynomial(node, {})
     if polynomial is None or not polynomial.terms:

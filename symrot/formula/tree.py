@@ -268,7 +268,7 @@ ODD = {"sqrt", "sin", "tan", "sinh", "tanh", "asin", "atan", "abs"}  # functions
 
 
 def vanishes(node: Node, zeros: Collection[str]) -> bool:
-    """Return whether a formula, as it is written, is zero if the symbols ``zeros`` are zero, as ``a*b`` is for a."""
+    """Return whether a formula, as it is written, is zero if the symbols ``zeros`` are zero: ``a*b`` is if a is."""
     kind = node[0]
     if kind in ("number", "symbol"):
         return node[1] == 0 if kind == "number" else node[1] in zeros

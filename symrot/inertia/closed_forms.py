@@ -30,7 +30,10 @@ def _table() -> dict[str, dict[str, str]]:
 
 @cache
 def closed_form(shape: str) -> dict[str, Node]:
-    """Return the formulas of a uniform shape of mass ``m``, by name: ``"cone"`` has ``center_z``, height/4."""
+    """Return the formulas of a uniform shape of mass ``m``, each under its name.
+
+    The shape ``"cone"`` has the formula ``height/4`` under the name ``center_z``.
+    """
     # measure (volume, area or length), center_x to center_z, and xx to yz of the inertia tensor about the centre
     return {key: parse(text) for key, text in _table()[shape].items()}
 

@@ -208,7 +208,10 @@ def _prefix(where: str) -> str:
 
 
 def find_shape(name: object, where: str = "") -> Shape:
-    """Return the shape called ``name``, such as ``"cone"``; another value raises InputError, which lists all names."""
+    """Return the shape called ``name``, such as ``"cone"``.
+
+    Any other value raises InputError; the message lists all names.
+    """
     if not isinstance(name, str) or name not in SHAPES:
         raise InputError(f"{_prefix(where)}expected a shape, one of {', '.join(SHAPES)}; got {show(name)}")
     return SHAPES[name]
@@ -303,7 +306,7 @@ def scalar_names(shape: Shape) -> tuple[str, ...]:
 
 
 def scalars(shape: Shape, dimensions: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a shape's dimensions as numbers by name, points split into coordinates.
+    """Return a map from the name of each scalar dimension to its number; points are split into coordinates.
 
     The points ``((0, 0, 0), (1, 0, 0), ..)`` give ``x1 = 0, y1 = 0, z1 = 0, x2 = 1, ..``.
     """

@@ -147,7 +147,8 @@ def about_point(inertia: Any, mass: Any, offset: Any) -> Tensor:
 
 
 def about_center_of_mass(inertia: Any, mass: Any, offset: Any) -> Tensor:
-    """Return the inertia tensor about the centre of mass from the tensor about a point; ``offset``, m, joins
-    the two.
+    """Return the inertia tensor about the centre of mass from the tensor about a point.
+
+    ``offset``, m, is the vector between the point and the centre of mass.
     """
     return subtract(inertia, inertia_of_point(mass, offset))

@@ -74,7 +74,7 @@ def result(
 ) -> tuple[Argument, tuple[Expr, ...]]:
     """Return (output argument, formulas of its components) as :class:`Definition` stores them; a matrix row by row.
 
-    The other arguments are those of :func:`argument`.
+    The other arguments are explained at :func:`argument`.
     """
     return argument(name, "out", components, meaning, unit), tuple(formulas)
 

@@ -1,4 +1,4 @@
-"""The table of kernels, by name, in the order in which they are printed."""
+"""The table of kernels: names and definitions, in the order in which they are printed."""
 
 from collections.abc import Callable
 from functools import cache

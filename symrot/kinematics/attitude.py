@@ -43,7 +43,8 @@ def chart(name: str) -> Chart:
 
 
 def convert(source: str, target: str, values: Sequence[Any] | Matrix | None = None) -> ImmutableMatrix:
-    """Return the parameters of the description ``target`` as expressions in those of ``source``, shape (n, 1).
+    """Return the parameters of the description ``target``, shape (n, 1), as expressions in the parameters of
+    ``source``.
 
     Parameters
     ----------

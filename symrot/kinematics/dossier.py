@@ -1,7 +1,7 @@
 """The singularities of an Euler sequence: where gimbal lock occurs, how the rates grow there, which sequences to use.
 
 Every entry is derived from :func:`symrot.kinematics.euler.rate_jacobian`. A sequence is regular at an attitude where it
-is not in gimbal lock.
+is not in gimbal lock. At gimbal lock, no angle rates rotate the body about one axis, the lost axis.
 """
 
 from collections.abc import Iterable

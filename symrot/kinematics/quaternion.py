@@ -280,7 +280,7 @@ def _constant(determinant: Expr, inverse: ImmutableMatrix, _: Expr) -> tuple[Exp
 
 @cache
 def chart() -> Chart:
-    """Return the chart (attitude description) of unit quaternions, which is singular nowhere.
+    """Return the chart (attitude description) of unit quaternions; it is singular nowhere.
 
     It describes every attitude twice, by q and -q.
     """

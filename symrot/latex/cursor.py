@@ -39,7 +39,9 @@ class Cursor:
         self.enter(row)
 
     def fail(self, expected: str, item: Node | None = None) -> InputError:
-        """Return an InputError that names the text ``expected`` and the position of ``item`` or of the next item."""
+        """Return an InputError that says what was ``expected`` at the position of ``item``, by default of the next
+        item.
+        """
         return complaint(self.source, self.where, (item or self.peek()).start, expected)
 
     def enter(self, node: Node) -> None:

@@ -35,7 +35,9 @@ class _Reader:
         return complaint(self.source, self.where, token.start, expected)
 
     def row(self, closing: str, *stops: str) -> Row:
-        """Parse items up to a token whose kind or text is in ``stops``, which stays unread; return the row of items."""
+        """Parse and return the items before a token with a kind or text in ``stops``; ``closing`` is named in an error
+        message.
+        """
         items: list[Node] = []
         first = token = self.tokens[self.place]
         while token.kind not in stops and token.text not in stops:

@@ -111,7 +111,7 @@ LESSONS = {
                 "The ratio of the spin angle's rate to the component of the precession along the axis is positive, so "
                 "the precession is direct:",
                 "\\frac{\\dot\\psi}{\\dot\\phi \\cos\\theta}",
-                "The ratio of both does not depend on the motion.",
+                "The ratio of these two rates does not depend on the motion.",
                 "1",
             ),
         ),

@@ -10,7 +10,7 @@ __all__ = ["Lesson", "Mistake", "Number"]
 
 @dataclass(frozen=True)
 class Mistake:
-    """A wrong formula that students write, which the checker refutes when the page is printed.
+    """A wrong formula that students write; the checker refutes it when the page is printed.
 
     Attributes
     ----------
@@ -55,6 +55,7 @@ class Number:
         The first words of the step's claim. The formula is the right side of the step's equation: the expression
         displayed on the page, or the right side that the step proves if the page displays a text.
     unit : str
+        Unit of the number; empty for a pure number.
     entry : int or None
         Index of the entry if the right side is a matrix, counted row by row from 0.
     where : mapping of Symbol to Expr

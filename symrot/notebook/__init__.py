@@ -1,1 +1,1 @@
-"""Pictures, tables and formulas as which a notebook displays symrot's objects: trajectories, verdicts, .."""
+"""Pictures, tables and formulas that a notebook displays for symrot's objects: trajectories, verdicts, .."""

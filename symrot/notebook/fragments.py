@@ -21,7 +21,7 @@ def heading(title: str, remark: str = "") -> str:
 def table(rows: Iterable[Sequence[str]], head: Sequence[str] = ()) -> str:
     """Return an HTML table with the given rows below the titles ``head``.
 
-    Cells are escaped, except those of the class :class:`Markup`.
+    Text in cells is escaped, except text of the class :class:`Markup`.
     """
     lines = [_row(head, "th")] if head else []
     lines += [_row(row, "td") for row in rows]

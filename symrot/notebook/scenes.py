@@ -66,9 +66,9 @@ def propagator(one: Propagator) -> str:
 
 
 def ensemble(one: Ensemble) -> str:
-    """Return an HTML table about the motions of an ensemble: number, samples, method, percentiles at the last time.
+    """Return an HTML table about the motions of an ensemble: number, samples, method, percentiles of omega at the end.
 
-    The percentiles are those of the angular velocity's components. Motions that ended early are not among them.
+    Motions that ended early are left out of the percentiles.
     """
     import numpy as np
 

@@ -122,7 +122,7 @@ def _prefix(number: int, names: list[str], known: set[str]) -> str:
 
 
 def constants_of(scene: Scene, structure: Structure) -> dict[str, Fraction]:
-    """Return the exact values, by name, of the constants that the structure leaves free: ``{"A": Fraction(1), ..}``."""
+    """Return the exact values of the constants that the structure leaves free, such as ``{"A": Fraction(1), ..}``."""
     inertia, pattern = scene.body.inertia, structure.inertia
     constants: dict[str, Fraction] = {}
     if isinstance(pattern, PrincipalInertia):

@@ -70,21 +70,21 @@ class Plan:
 
     @cached_property
     def constants(self) -> dict[str, Fraction]:
-        """The exact values, by name, of all constants in the equations, including those of the initial state."""
+        """The exact values of all constants in the equations and of the initial state, such as ``{"A":
+        Fraction(1)}``.
+        """
         # Modes, which stand for functions such as sign, are 1; propagation sets them to the values that belong to the
         # state.
         return self.scene_constants | self.start_constants
 
     @cached_property
     def scene_constants(self) -> dict[str, Fraction]:
-        """The exact values, by name, of the constants of body and torques, such as ``{"A": Fraction(1)}``."""
+        """The exact values of the constants of body and torques, such as ``{"A": Fraction(1)}``."""
         return constants_of(self.scene, self.structure)
 
     @property
     def start_constants(self) -> dict[str, Fraction]:
-        """The exact values, by name, of constants that belong to the initial state, such as ``{"omega_3":
-        Fraction(3)}``.
-        """
+        """The exact values of the constants that belong to the initial state, such as ``{"omega_3": Fraction(3)}``."""
         initial = self.scene.initial
         return {name: initial[part][place] for name, part, place in self._start_places}
 
@@ -147,8 +147,8 @@ class Plan:
 
     @cached_property
     def _shared(self) -> dict[str, Any]:
-        """The attributes of a plan, by name, that are the same for every initial state; :meth:`from_start`
-        copies them.
+        """The attributes of a plan that are the same for every initial state, as a dict; :meth:`from_start` copies
+        them.
         """
         names = ("structure", "rows", "scene_constants", "states", "_places", "_start_places")
         attributes: dict[str, Any] = {name: getattr(self, name) for name in names}

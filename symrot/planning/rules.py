@@ -306,8 +306,9 @@ def _constant(scene: Scene, *axes: int) -> tuple[Pattern | None, Pattern | None,
 
 
 def _no_moment_about(torque: TorqueStructure, axis: int) -> bool:
-    """Return whether a torque never has a component along the symmetry axis ``axis``, 0 to 2, which keeps the spin
-    constant.
+    """Return whether a torque never has a component along the symmetry axis ``axis``, 0 to 2.
+
+    The spin about this axis is then constant.
     """
     if isinstance(torque, FormulaTorque):
         return torque.frame == "body" and torque.formulas[axis].strip() in ("0", "0.0")

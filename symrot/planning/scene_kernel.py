@@ -1,6 +1,6 @@
 """Kernels of plans as saved data: a kernel consists of the equations of a plan as programs, and of their C text.
 
-A program is a list of arithmetic operations without branches, which can be printed as C or as Python. The cache stores
+A program is a list of arithmetic operations without branches, and can be printed as C or as Python. The cache stores
 kernels as JSON, and the propagator assigns values to their parameters. No SymPy.
 """
 

@@ -297,8 +297,10 @@ class Derivation(PrintedPage):
         return True
 
     def _read(self, text: str, sides: tuple[Any, Any] = (S.Zero, S.Zero)) -> list[Any]:
-        """Return the values of the sides of an equation in LaTeX: two for ``X = Y``, one for ``X`` alone."""
-        # symbols in the ``sides`` of the equation need no definition on the page
+        """Return the values of the sides of an equation in LaTeX: two for ``X = Y``, one for ``X`` alone.
+
+        Symbols of the formulas ``sides`` need no declared meaning.
+        """
         used = {symbol for side in sides for symbol in side.free_symbols}
         names = {key(formula(symbol)): symbol for symbol in used} | self.names
         chains = parts(text)
@@ -364,7 +366,7 @@ def _tidied(conditions: Sequence[Any]) -> list[Any]:
 
 
 def _factors(expression: Expr) -> list[Expr]:
-    """Return the factors of a polynomial, such as ``[x, x + 1]`` for ``x**2 + x``, or ``[expression]`` without any."""
+    """Return the factors of a polynomial: ``[x, x + 1]`` for ``x**2 + x``, or ``[expression]`` if it has no other."""
     plain = not expression.is_number and expression.is_polynomial(*expression.free_symbols)
     factors = [base for base, _ in factor_list(expression)[1]] if plain else []
     return factors if len(factors) > 1 else [expression]
@@ -375,7 +377,7 @@ def _shape(side: Any) -> Any:
 
 
 def _as_side(display: Any, side: Any) -> Any:
-    """Return ``display``, which the page prints instead of ``side``, in the shape of ``side``."""
+    """Return ``display``, which the page prints instead of ``side``, as a matrix if ``side`` is a matrix."""
     display = _frozen(display)
     if isinstance(side, MatrixBase) and not isinstance(display, MatrixBase):
         # the zero matrix; below, a number stands for this multiple of the identity matrix

@@ -191,23 +191,24 @@ def grows_late(plan: Plan) -> bool:
 
 
 def _degree(node: Node) -> int:
-    """Return a formula's degree as a polynomial in time and states: 3 for ``a*t**2*omega_1``."""
+    """Return how strongly a formula varies with time and states: its degree as a polynomial, 3 for ``a*t**2*omega_1``.
+
+    ``sin(t)`` counts as degree 1, ``1/t**2`` as degree 2.
+    """
     if node[0] == "symbol":
         return int(node[1] in CHANGING)
     degrees = [_degree(child) for child in children(node)]
     if node[0] == "**":
-        # an estimate of how fast the formula can vary: 1/t**2 counts as t**2
         return degrees[0] * abs(int(node[2]))
     if node[0] == "call":
-        # a function of time or states is no polynomial, and counts as degree 1
         return min(1, max(degrees))
     return sum(degrees) if node[0] == "*" else max(degrees, default=0)
 
 
 def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[str, float]], Deviations] | None":
-    """Return a function from the rates' parameters to bounds on torque changes, which limit SciPy's steps.
+    """Return a function from the rates' parameters to bounds on torque changes (``Deviations``), for SciPy's steps.
 
-    None if no step needs a limit.
+    None: no torque can have a pulse that a step misses.
     """
     if not has_formulas(plan):
         return None
@@ -219,7 +220,6 @@ def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[st
         terms = enclosure(recurrences(kernel.rates))
     except InputError:  # no Taylor series, for example of abs
         return None
-    # None: no formula can have a pulse that a step misses
     return None if terms is None else deviations_of(terms)
 
 

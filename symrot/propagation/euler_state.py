@@ -86,7 +86,7 @@ class _Kernel(NamedTuple):
 
 
 class _Block(NamedTuple):
-    """Interval of a motion in which one Euler sequence is used: first time, last time, s, and states."""
+    """Interval of a motion with one Euler sequence: first and last time, s, and a function from times to states."""
 
     first: float
     last: float
@@ -235,10 +235,7 @@ class EulerMotion(Motion):
         return states
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return omega and quaternion at the times, shape (n, 7), and the cost.
-
-        Constant components of omega may be left out.
-        """
+        """Return the states at ``times``, s, shape (n, N), and the cost (steps, evaluations, seconds)."""
         began = perf_counter()
         self._count = [0, 0, 0, 0]
         states = np.empty((len(times), len(self.plan.states)))
@@ -255,7 +252,7 @@ class EulerMotion(Motion):
         return states, Stats(accepted, rejected, evaluations, perf_counter() - began, switches)
 
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
-        """Return a function from n times, s, within ``span`` to omega and quaternion, shape (n, 7)."""
+        """Return a function from n times, s, within ``span`` to the states, shape (n, N)."""
         sides = [list(self._blocks(end)) if end != self.start else [] for end in span]
 
         def at(times: Floats) -> Floats:

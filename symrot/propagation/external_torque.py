@@ -207,7 +207,7 @@ class _Table(TorqueSource):
         self.user, self.knots = _pieces(t, values, switching)
 
     def pointer_in(self, library: Path) -> Any:
-        """Return the C function that interpolates the table; ``library``, with the kernel, contains it."""
+        """Return the C function that interpolates the table, loaded with ctypes from the compiled file ``library``."""
         return ctypes.CDLL(str(library)).symrot_table_torque
 
     def check(self, low: float, high: float) -> None:
@@ -274,7 +274,7 @@ def _bends(spline: Any) -> list[float]:
 
 
 def _torque_source(torque: Any, switching: Sequence[float]) -> TorqueSource:
-    """Return a torque, in any form that :func:`symrot.propagator` accepts, as an object with a common interface."""
+    """Return a torque, in any form that :func:`symrot.propagator` accepts, as a :class:`TorqueSource`."""
     if isinstance(torque, ctypes._CFuncPtr):  # type: ignore[attr-defined]
         return _CFunction(torque)
     if callable(torque):
@@ -402,8 +402,9 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
             raise failure from failure.__cause__
 
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
-        """Return the states at ``times``, s, in any order, shape (n, N), and the cost of the motion."""
+        """Return the states at ``times``, s, shape (n, N), and the cost of the motion."""
         low, high = (float(times.min()), float(times.max())) if len(times) else (self.start, self.start)
+        # sample() sorts the times, so that in_order is not used
         return self._guarded(low, high, lambda: self.stepping.restarted().sample(times))
 
     def dense(self, span: tuple[float, float]) -> Recording:

@@ -31,7 +31,7 @@ class Choice(NamedTuple):
 
 
 def _automatic(plan: Plan) -> Choice:
-    """Return the first method that can follow the motion of a plan, with the reason."""
+    """Return the method that follows the motion of a plan if the user names none, with the reason."""
     if not plan.states:
         return Choice("constant", "the plan leaves no state to integrate")
     if form := exact_form(plan.scene):

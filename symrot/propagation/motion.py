@@ -128,9 +128,9 @@ class Setup:
 
     @cached_property
     def quantity_binding(self) -> Binding:
-        """Function from a plan to the parameters of the output quantities, two doubles for each parameter.
+        """Function from a plan to the parameters of the output quantities, each as a pair of doubles.
 
-        Their sum approximates the parameter to 31 digits.
+        The sum of a pair is right to 31 digits.
         """
         return Binding(self.kernel.quantity_parameters, self.plan, two_doubles)
 
@@ -141,9 +141,9 @@ class Setup:
 
     @cached_property
     def deviations(self) -> "Callable[[Mapping[str, float]], Deviations] | None":
-        """Function from the parameters of the rates to bounds on torque changes, which limit SciPy's steps.
+        """Function from the parameters of the rates to bounds on torque changes (``Deviations``), for SciPy's steps.
 
-        None if no step needs a limit.
+        None: no torque can have a pulse that a step misses.
         """
         return formula_deviations(self.plan, self.kernel)
 
@@ -271,9 +271,9 @@ class Motion(ABC):
         return dict(zip(names, self.setup.quantity_binding(self.plan)[::2], strict=True))
 
     def evaluate(self, t: Floats, states: Floats, names: Sequence[str]) -> Floats:
-        """Return output quantities, such as ``"omega_1 of t"``, shape (n, len(names)), from n states, shape (n, N).
+        """Return output quantities of the kernel at times ``t``, s after the epoch, shape (n, len(names)).
 
-        The times ``t`` are in s after the epoch.
+        The kernel calls omega_1 ``"omega_1 of t"``.
         """
         columns = [name.removesuffix(" of t") for name in names]
         if set(columns) <= set(self.plan.states):  # every quantity is a state
@@ -298,9 +298,9 @@ class Motion(ABC):
 
     @abstractmethod
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats | tuple[Floats, ...], Stats]:
-        """Return the states at times of the scene, s, shape (n, N), or two arrays for a closed form, and the cost.
+        """Return the states at ``times`` of the scene, s, shape (n, N), and the cost.
 
-        ``in_order``: the times are finite and never decrease.
+        A closed form returns omega and quaternion apart. ``in_order``: the times are finite and never decrease.
         """
 
     @abstractmethod
@@ -317,7 +317,7 @@ class Motion(ABC):
         return np.concatenate(states, axis=1) if isinstance(states, tuple) else states, stats
 
     def path(self, times: Floats) -> Callable[[Floats], Floats]:
-        """Return a function from n times of the scene, s, to the states, shape (n, N), from the start to ``times``."""
+        """Return the motion from the start to all ``times`` as a function from times of the scene, s, to states."""
         span = (
             (min(self.start, float(times.min())), max(self.start, float(times.max())))
             if len(times)
@@ -351,7 +351,7 @@ class RestartableMotion(Motion):
 
     @abstractmethod
     def from_start(self, initial: Initial) -> "RestartableMotion":
-        """Return the motion from another initial state with equations of the same form, which is not checked."""
+        """Return the motion from another initial state; whether the equations keep their form is not checked."""
 
 
 class SteppedInC(ABC):
@@ -393,7 +393,7 @@ class ShiftableMotion(RestartableMotion):
             raise error.later(motion.epoch) from None
 
     def _shifts(self, times: Floats) -> bool:
-        """Return whether these times of the scene, s, lie between half and twice the start, which is not 0."""
+        """Return whether the start is not 0 and all ``times`` of the scene, s, lie between half and twice the start."""
         if not (self.start and self.setup.allows_time_shift and len(times)):
             return False
         # they keep more digits on a clock that shows 0 at the start
@@ -401,7 +401,7 @@ class ShiftableMotion(RestartableMotion):
 
 
 def on_clock(motion: Motion, times: Floats) -> Motion:
-    """Return the motion with time counted from 0 or from its start, so that these times, s, keep the most digits."""
+    """Return the motion with time counted from 0 or from its start, whichever lets ``times``, s, keep more digits."""
     # its own clock, or one that shows 0 at the start
     return motion.on_own_clock if isinstance(motion, ShiftableMotion) and motion._shifts(times) else motion
 
@@ -513,7 +513,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def _clock(self) -> dop853.Clock:
-        """Function from an epoch, s, to a library whose rates take the time since it, and to their parameters."""
+        """Function from an epoch, s, to a library, whose rates take the time since the epoch, and their parameters."""
         # the epoch is a time on the clock of the motion
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch)
 
@@ -550,12 +550,15 @@ class SciPyMotion(ShiftableMotion):
 
     @cached_property
     def _clock(self) -> Callable[[float], Any]:
-        """Function from an epoch, s, to rates in Python that take the time since the epoch, and to their parameters."""
+        """Function from an epoch, s, to rates in Python, which take the time since the epoch, and their parameters."""
         # the epoch is a time on the clock of the motion
         return time_shift.clock(self.setup.shifted, self.plan.constants, self.epoch, python_rates)
 
     def deviations(self, parameters: Sequence[float]) -> "Deviations | None":
-        """Return bounds on changes of the rates, which limit SciPy's steps; None if no step needs a limit."""
+        """Return bounds on torque changes (``Deviations``) for SciPy's steps.
+
+        None: no torque can have a pulse that a step misses.
+        """
         if self.setup.deviations is None:
             return None
         names = [name for name, _ in self.kernel.rate_parameters]
@@ -596,7 +599,10 @@ class MotionInParts(Motion):
 
     @abstractmethod
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
-        """Return the motion from its start to ``end``, s, as polynomials and as a function from times to states."""
+        """Return the motion from its start to ``end``, s, as polynomials, and also as a function from times to states.
+
+        If the motion stops early, the error is appended to ``broken``.
+        """
 
 
 # ------------------------------------------------------------------------------------------------ from plans to motions

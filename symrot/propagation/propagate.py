@@ -150,7 +150,7 @@ def propagator(
 def _refuse_sensitivities(scene: Scene, torque: Any, state: str) -> None:
     """Raise InputError for motions without derivatives: Euler angles as state, or a torque without smooth formulas."""
     if state != "quaternion":
-        raise InputError(f"sensitivities: expected state='quaternion', the attitude to integrate, got {state!r}")
+        raise InputError(f"sensitivities: expected state='quaternion', got {state!r}; Euler angles have none")
     if torque is not None:
         raise InputError("sensitivities: expected torques with formulas, got a torque that is a function or a table")
     from symrot.propagation.sensitivities.variables import require_smooth

@@ -32,7 +32,7 @@ __all__ = ["ShiftedParameters", "clock", "compiled", "starts_far", "time_shifted
 
 
 def starts_far(start: float, low: float, high: float) -> bool:
-    """Return whether all times from ``low`` to ``high`` lie between half and twice the start, which is not 0."""
+    """Return whether the start is not 0 and all times from ``low`` to ``high`` lie between half and twice the start."""
     # A clock with 0 at the start pays only there: a motion that goes farther loses no more digits than a motion of
     # that length from t = 0.
     nearest, farthest = sorted((0.5 * start, 2.0 * start))
@@ -137,7 +137,7 @@ def clock(
     start: float = 0.0,
     make: Callable[[Plan, SceneKernel], Any] = compiled,
 ) -> Callable[[float], tuple[Any, list[float]]]:
-    """Return a function from an epoch, s, to rates that take the time since the epoch, and to their parameters."""
+    """Return a function from an epoch, s, to a pair: rates that take the time since the epoch, and their parameters."""
 
     # moving(), a plan and kernel as time_shifted returns them, is called on first use; make() turns them into the
     # library for DOP853 or the Python function for SciPy

@@ -43,9 +43,9 @@ class Invariant(NamedTuple):
     values : array, shape (n,)
         Values of the quantity at the sample times.
     scale : float
-        Largest magnitude along the trajectory, by which the drift is divided. For an energy it is the largest magnitude
-        of energy and kinetic energy; for a component of the angular momentum, of the whole vector; for a spin, of the
-        spin. For the norm of the quaternion it is 1.
+        The number by which the drift is divided: the largest magnitude of the quantity along the trajectory, for an
+        energy also of the kinetic energy, and for a component of the angular momentum of the whole vector. For the norm
+        of the quaternion it is 1.
     drift : float
         Largest change since the start, relative to ``scale``.
 
@@ -187,7 +187,10 @@ class Trajectory(MotionSamples):
         return self._states.T
 
     def _evaluate(self, *names: str) -> Floats:
-        """Return output quantities, such as ``"omega_1 of t"``, at the sample times, shape (n, len(names))."""
+        """Return output quantities of the kernel at the sample times, shape (n, len(names)).
+
+        The kernel calls omega_1 ``"omega_1 of t"``.
+        """
         columns = [name.removesuffix(" of t") for name in names]
         if set(columns) <= set(self.states):
             return self._states[:, [self.states.index(name) for name in columns]]
@@ -306,8 +309,8 @@ class Trajectory(MotionSamples):
             raise InputError(f"times: expected 2 or more as the number of new samples, got {times}")
         if not len(self):
             raise InputError(
-                "times: expected a list of sample times, because a number of samples divides the span of the present "
-                f"samples and the trajectory has none, got {times}"
+                f"times: expected a list of sample times, got {times}: a number of samples divides the span of the "
+                "present samples, but the trajectory has no samples"
             )
         return self.at(np.linspace(float(self.t.min()), float(self.t.max()), int(times)))
 

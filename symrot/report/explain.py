@@ -21,7 +21,9 @@ FREE = frozenset({"neg"})  # a minus sign counts as part of its addition or mult
 
 
 def _operations(structure: Structure) -> Counter[str]:
-    """Return the operations of one evaluation of a structure's equations of motion by kind, such as ``{"mul": 12}``."""
+    """Return how many operations of each kind one evaluation of the equations of motion needs, such as
+    ``{"mul": 12}``.
+    """
     from symrot.codegen.scene_kernels import rates_program
     from symrot.dynamics.equations import equations_of_motion
 
@@ -141,10 +143,10 @@ def _samples(plan: Plan) -> "list[PlanRow]":
 
 
 def facts(plan: Plan) -> "PlanReport":
-    """Return the table `symrot explain` as data for JSON.
+    """Return the table of `symrot explain` as data for JSON.
 
-    In each row, ``operations`` counts the remaining operations by kind, and ``saved`` is the number of operations that
-    the row's rule saves.
+    In each row, ``operations`` has the number of remaining operations of each kind; ``saved`` is the number of
+    operations that the row's rule saves.
     """
     scene = plan.scene
     ladder = _ladder(plan)

@@ -39,7 +39,7 @@ def literal(text: str) -> str:
 def draw(figure: Callable[[], Any], path: Path, dpi: int = 150, few_colours: bool = True) -> None:
     """Call ``figure`` for a matplotlib Figure in symrot's style, and write it to the file ``path``.
 
-    The other arguments are those of :func:`save_page`.
+    The other arguments are explained at :func:`save_page`.
     """
     import matplotlib
 
@@ -66,9 +66,9 @@ def save_page(page: Any, path: Path, dpi: int, few_colours: bool = True) -> None
 
 
 def _palette(page: Any, dpi: int, stream: BinaryIO) -> None:
-    """Write a figure into ``stream`` as a PNG with a palette of few colours, which makes the file small.
+    """Write a figure into ``stream`` as a PNG with a palette of few colours, so that the file is small.
 
-    This uses Pillow, which matplotlib requires anyway.
+    This uses Pillow; matplotlib requires it anyway.
     """
     from PIL import Image
     from PIL.PngImagePlugin import PngInfo

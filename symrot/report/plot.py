@@ -174,7 +174,7 @@ def _vertical(axes: Any, t: Floats, trajectory: Any) -> None:
 def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
     """Draw, for each conserved quantity, its largest relative change so far over time, on a logarithmic scale.
 
-    ``tolerance`` is that of the integration, drawn for comparison.
+    For comparison, a line shows ``tolerance``, the tolerance of the integration.
     """
     axes.set_title("Drift of conserved quantities, the largest so far")
     axes.set_ylabel("relative to its size")
@@ -318,7 +318,7 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
 def figure(trajectory: Any, tolerance: float) -> Any:
     """Return a matplotlib Figure with all panels of a motion on one page, drawn from the samples of ``trajectory``.
 
-    ``tolerance`` is that of the integration, a line in the panel of the conserved quantities.
+    ``tolerance``, the tolerance of the integration, is a line in the panel of the conserved quantities.
     """
     from matplotlib.figure import Figure
 

@@ -172,9 +172,9 @@ class RunReport(TypedDict):
 
 
 class PlanRow(TypedDict):
-    """A row of the table that explains a plan: an item computed or skipped, and the operations saved.
+    """A row of the table that explains a plan: a quantity that is computed or skipped, and the operations saved.
 
-    ``operations`` counts the remaining operations by kind; ``saved`` is the number of operations that the row saves.
+    ``operations`` has the number of remaining operations of each kind; ``saved`` is the number that the row saves.
     """
 
     item: str

@@ -75,7 +75,7 @@ def event_array(number: int, quantity: str) -> str:
 
 
 def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labelled]:
-    """Return the time and the quantities ``names`` of a trajectory with labels, as rows for tables and files.
+    """Return the time and the quantities ``names`` of a trajectory with labels, for tables and files.
 
     Raises
     ------

@@ -37,7 +37,7 @@ class Samples(ABC):
 
     @abstractmethod
     def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
-        """Return the time and the quantities ``quantities`` with their labels, as rows for tables.
+        """Return the time and the quantities ``quantities`` with their labels, for tables.
 
         The default (None) is the output quantities of the scene.
         """
@@ -53,9 +53,9 @@ class Samples(ABC):
         return conversions.quaternion_to_dcm(self.quaternion)
 
     def euler(self, sequence: str, degrees: bool = False) -> Floats:
-        """Return Euler angles in order of application, shape (..., 3), rad.
+        """Return Euler angles in order of application, shape (..., 3), rad or degrees.
 
-        At gimbal lock, see :func:`symrot.kinematics.conversions.quaternion_to_euler`.
+        At gimbal lock the third angle is 0.
         """
         return conversions.quaternion_to_euler(self.quaternion, sequence, degrees=degrees)[0]
 
@@ -180,7 +180,7 @@ class MotionSamples(Samples):
         return conversions.quaternion_to_axis(self.quaternion, self.axis_number)
 
     def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
-        """Return the time and the quantities ``quantities`` with their labels, as rows for tables.
+        """Return the time and the quantities ``quantities`` with their labels, for tables.
 
         The default (None) is the output quantities of the scene.
         """

@@ -116,7 +116,7 @@ class SavedTrajectory(Samples):
         return About(*(self.metadata[name] for name in About._fields))
 
     def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
-        """Return the time and the quantities ``quantities`` with their labels, as rows for tables.
+        """Return the time and the quantities ``quantities`` with their labels, for tables.
 
         The default (None) is all quantities in the file.
         """
@@ -139,7 +139,7 @@ def load(path: str | Path) -> SavedTrajectory:
     Returns
     -------
     SavedTrajectory
-        The samples with their labels, and the events with theirs.
+        The samples and the events, with labels.
 
     Raises
     ------
@@ -188,7 +188,7 @@ def _saved(content: Any) -> SavedTrajectory:
 def _items(content: Any, metadata: dict[str, Any], array: Any) -> list[Labelled]:
     """Return the quantities in an NPZ file with their labels, as the file's ``metadata`` describes them.
 
-    ``array(name)`` names the array of a quantity.
+    ``array`` is a function from a quantity's name to the name of its array in the file.
     """
     # the samples of a quantity, or those at an event
     items = []

@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 
 
 class Sensitivity(NamedTuple):
-    """Derivatives at n samples by one variable, or by the k components of a vector, which are then the last axis.
+    """Derivatives at n samples by one variable, or by a vector of k components, one after the other on the last axis.
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
         The derivatives, as in :class:`Sensitivity`; for an ensemble, with one more axis, the first, over the motions.
     t_events : tuple of arrays, shape (k, m)
         For each event, the derivatives of its k times, s per unit of the variable; NaN where the formula of the event
-        touches zero. Files of samples do not contain them.
+        touches zero. Files of samples do not contain these derivatives.
 
     Examples
     --------
@@ -103,7 +103,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
         return f"<Sensitivities by {', '.join(self.variables)}: {of}{samples} samples>"
 
     def of(self, motion: int) -> "Sensitivities":
-        """Return the derivatives of one motion of an ensemble, which is number ``motion`` from 0."""
+        """Return the derivatives of motion number ``motion``, from 0, of an ensemble."""
         omega, quaternion, rotation = (array[motion] for array in (self.omega, self.quaternion, self.rotation))
         return replace(self, omega=omega, quaternion=quaternion, rotation=rotation)
 
@@ -116,7 +116,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
         return {"variables": list(self.variables), "units": list(self.units), "groups": dict(self.groups)}
 
     def _labelled(self) -> list[Labelled]:
-        """Return the derivatives with labels, as rows for tables.
+        """Return the derivatives with labels, for tables.
 
         There are three quantities for each variable, such as ``omega_by_weight``, ``quaternion_by_weight`` and
         ``rotation_by_weight``.

@@ -142,9 +142,9 @@ def _four(value: Any, where: str) -> Quaternion:
 
 
 def _read_quaternion(value: Any, where: str) -> Attitude:
-    """Return the attitude that a quaternion ``value`` = [q0, q1, q2, q3] in a scene describes, of any norm except zero.
+    """Return the attitude of a quaternion ``value`` = [q0, q1, q2, q3] in a scene, of any norm except zero.
 
-    Another value raises InputError, which names the place ``where``.
+    Raise InputError for any other value; the message names the place ``where``.
     """
     q = _four(value, where)
     return Attitude(_unit(q), _dcm(q))

@@ -159,9 +159,9 @@ def number_path(content: Content, key: str, omega_b: Sequence[Fraction], body: B
 
 
 def replaces_shapes(key: str) -> bool:
-    """Return whether a key, such as ``I_xx``, sets a moment of inertia or the centre of mass.
+    """Return whether a change by ``key``, such as ``I_xx``, replaces the shapes of the body by moments of inertia.
 
-    These otherwise follow from the shapes of the body, which such a change replaces.
+    Such a key sets a moment of inertia or the centre of mass.
     """
     return key in (*TENSOR, "principal") or str(key).rpartition(".")[2].startswith("center_of_mass")
 
@@ -281,7 +281,7 @@ def _body_places(scene: _Scene, key: str) -> Iterator[Place]:
 
 
 def _names(scene: _Scene) -> list[str]:
-    """Return the short names of the torques' constants and the body's dimensions, which an error message lists."""
+    """Return the short names of the torques' constants and of the body's dimensions, for an error message."""
     names: list[str] = []
     for torque in scene.content.get("torque", ()):
         if torque["kind"] == "expression":
@@ -319,7 +319,7 @@ def _table(content: Content, path: Path, key: str) -> Any:
 
 
 def _vector(scene: _Scene, path: Path) -> Sequence[Any]:
-    """Return the three components of the vector at a path of the content, to change one of them."""
+    """Return the three components of the vector at a path of the content, for a change of a single component."""
     place: Any = scene.content
     if path[-1] == "center_of_mass" and "center_of_mass" in scene.content["body"]:
         path = ("body", "center_of_mass")

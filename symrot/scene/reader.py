@@ -60,7 +60,7 @@ def fail(where: str, expectation: str, value: object = ..., reason: str = "") ->
 def table(value: object, where: str, expectation: str = "a table") -> Mapping[str, Any]:
     """Return the value if it is a table (a mapping); raise InputError otherwise.
 
-    ``expectation`` is what the message says was expected there.
+    ``expectation``, such as "a table [body]", is part of the message.
     """
     if not isinstance(value, Mapping):
         fail(where, expectation, value)
@@ -68,7 +68,10 @@ def table(value: object, where: str, expectation: str = "a table") -> Mapping[st
 
 
 def read_table(value: object, where: str, entries: Mapping[str, Entry], what: str = "a table") -> dict[str, Any]:
-    """Return the values of a table by key, each read by its rule in ``entries``; a missing key gets its default."""
+    """Return a map from key to value of a table; the rules in ``entries`` say how each value is read.
+
+    A missing key gets its default.
+    """
     entries_by_key = table(value, where, f"{what} with the keys {', '.join(entries)}")
     for key in entries_by_key:
         if key not in entries:
@@ -137,7 +140,7 @@ def text(value: Any, where: str) -> str:
 
 
 def flag(value: Any, where: str) -> bool:
-    """Return the value if it is true or false; raise InputError, which names the place ``where``, otherwise."""
+    """Return the value if it is true or false; otherwise raise InputError with the place ``where``."""
     if not isinstance(value, bool):
         fail(where, "true or false", value)
     return value

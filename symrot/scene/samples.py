@@ -57,7 +57,7 @@ class Table(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """The kind of this torque, which is always ``"table"``; other torques have the same attribute."""
+        """The kind of this torque, always ``"table"``; other torques have an attribute of this name too."""
         return TABLE_KIND.kind
 
 

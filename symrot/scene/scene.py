@@ -271,13 +271,6 @@ class _Origin(NamedTuple):
     parts: tuple[Any, ...]
     scene_values: Mapping[str, Any]
 
-    def has_parts_of(self, scene: Scene) -> bool:
-        """Return whether ``scene`` still has the body and torques that were read from this content.
-
-        It does not if ``dataclasses.replace`` made a scene with another body or other torques.
-        """
-        return all(one is other for one, other in zip(self.parts, _parts(scene), strict=True))
-
 
 def _parts(scene: Scene) -> tuple[Any, ...]:
     """Return the parts of a scene that :meth:`Scene.to_dict` reads from the scene's file only: body, torques
@@ -290,7 +283,7 @@ def _parts(scene: Scene) -> tuple[Any, ...]:
 def _values(scene: Scene) -> dict[str, Any]:
     """Return title, source, initial state, span, output and tolerance of a scene, by their keys in the scene file.
 
-    If one of them was replaced after reading, :meth:`Scene.to_dict` writes the new value.
+    :meth:`Scene.to_dict` writes these present values, which may have been replaced after reading.
     """
     return {
         "title": scene.title, "source": scene.source, "initial": scene.initial, "span": scene.span,

@@ -1,4 +1,4 @@
-"""The option ``--set KEY=VALUE`` of the commands, which changes values of a scene. Standard library only."""
+"""The option ``--set KEY=VALUE`` of the commands; it changes values of a scene. Standard library only."""
 
 from collections.abc import Sequence
 from decimal import Decimal

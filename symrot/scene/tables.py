@@ -185,7 +185,7 @@ def _read_output(value: Any, where: str) -> Output:
 
 
 def read_tolerance(tolerance: float) -> float:
-    """Return a tolerance that a Python call or an option passes, as a float, after a check of its range.
+    """Return the tolerance of a propagation, given as a number or text, as a float.
 
     Raises
     ------

@@ -60,7 +60,7 @@ class Torque(NamedTuple):
     frame: str = "body"
 
     def number(self, name: str) -> Fraction:
-        """Return the constant ``name`` of the torque, which is a number, such as ``"weight"``."""
+        """Return the number that is the constant ``name`` of the torque, such as ``"weight"``."""
         value = self.values[name]
         assert isinstance(value, Fraction)
         return value

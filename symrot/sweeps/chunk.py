@@ -90,7 +90,7 @@ def compute(job: Job, start: int, stop: int) -> Chunk:
 
 
 def _inputs(job: Job, draws: Draws, messages: dict[int, str]) -> tuple[_Inputs, Rows]:
-    """Return the arguments of the ensemble, and the numbers of the rows of ``draws`` that give a valid scene."""
+    """Return the arguments of the ensemble, and the indices of the rows of ``draws`` that give a valid scene."""
     n, scene = len(draws.values), job.scene
     inputs = _Inputs(np.tile([float(x) for x in scene.initial.omega_b], (n, 1)), draws.attitudes, {})
     rows = np.arange(n)

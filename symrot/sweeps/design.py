@@ -29,7 +29,7 @@ MOST_TRAJECTORIES = 10**12
 
 @dataclass(frozen=True)
 class Axis:
-    """One value that varies: its place in the scene, and the law of its values, such as a normal distribution."""
+    """One value that varies: a number of the scene, and the law of its values, such as a normal distribution."""
 
     target: Target
     law: Law
@@ -148,14 +148,14 @@ def _require_apart(axes: Sequence[Axis]) -> None:
     if initial and rates:
         raise InputError(
             f"vary: expected angular velocities either by name or by path in the scene file, got both {rates[0]} and "
-            "a path in initial"
+            "a path that starts with 'initial'"
         )
     paths = any(axis.target.path[:1] in (("body",), ("torque",)) for axis in axes)
     constants = [axis.target.name for axis in axes if not axis.target.path and axis.target.name not in rates]
     if paths and constants:
         raise InputError(
             f"vary: expected constants either by name or by path in the scene file, got both {constants[0]} and a "
-            "path in body or torque"
+            "path that starts with 'body' or 'torque'"
         )
 
 

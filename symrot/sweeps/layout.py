@@ -170,7 +170,7 @@ def arrays_of(chunk: Chunk, names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
 
 
 def messages_of(chunk: Chunk) -> NDArray[Any]:
-    """Return the messages of a chunk, one text for each trajectory; it is empty for a trajectory that was computed."""
+    """Return the messages of a chunk, one text for each trajectory; the text of a computed one is empty."""
     texts = np.full(chunk.stop - chunk.start, "", dtype=object)
     for row, message in chunk.messages.items():
         texts[row] = message

@@ -149,7 +149,7 @@ def _read(text: object, scene: Scene, times: Floats) -> list[SweepOutput]:
 
 
 def _reduced(reduction: str, time: float) -> str:
-    """Return the end of an output's meaning that names its reduction: ``", at t = 2.5 s"``; empty for all times."""
+    """Return the end of an output's description: ``", at t = 2.5 s"`` for ``omega_1@2.5``; empty for ``omega_1``."""
     if not reduction:
         return ""
     return f", {REDUCTIONS[reduction][0]}" if reduction in REDUCTIONS else f", at t = {time!r} s"

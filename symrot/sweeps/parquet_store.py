@@ -35,7 +35,7 @@ DESCRIPTION, STATISTICS = "_sweep.json", "_statistics.parquet"  # readers of Par
 
 # A file gets its final name when it is complete, so that every file with such a name has all its rows.
 class ParquetStore:
-    """The store of a sweep in the folder at ``path``. Results of the same sweep there are continued.
+    """The store of a sweep in the folder ``path``; if it holds results of the same sweep, they are continued.
 
     Raises
     ------
@@ -55,7 +55,9 @@ class ParquetStore:
                 other = json.loads(description.read_text(encoding="utf-8"))
                 identity, rows = other["identity"], int(other["rows"])
             except (OSError, LookupError, ValueError, TypeError):
-                raise InputError(f"{expectation}, got something else; choose another name") from None
+                raise InputError(
+                    f"{expectation}, got a file or folder with other content; choose another name"
+                ) from None
             if different := difference(header.identity, identity):
                 raise InputError(
                     f"{expectation}, got the results of a sweep with a different {different}; choose another name"
@@ -73,7 +75,7 @@ class ParquetStore:
 
     @property
     def only_statistics(self) -> str:
-        """Empty: this store has the values of the outputs, not only statistics of them."""
+        """Always an empty text: this store has the values of the outputs, not only statistics."""
         return ""
 
     def pending(self) -> list[tuple[int, int]]:
@@ -104,7 +106,7 @@ class ParquetStore:
         write(self._file(chunk.start), lambda stream: writer(table, stream, compression="zstd"))
 
     def _metadata(self) -> dict[str, str]:
-        """Return unit, meaning and frame of all columns, as JSON in the file; pandas shows them as ``attrs``."""
+        """Return unit, meaning and frame of all columns as JSON text for a file; pandas shows them as ``attrs``."""
         by_column = {
             name: variable
             for variable in self.header.variables
@@ -142,7 +144,7 @@ class ParquetStore:
         return np.asarray(rows["value"].to_numpy().reshape(shape))
 
     def has(self, name: str) -> bool:
-        """Return whether the array ``name`` can be read from one column: input, output, status or message."""
+        """Return whether ``name`` is stored in one column of the files: an input, output, status or message."""
         # not an attitude: each of its four components has a column of its own
         columns = (variable.name for variable in self.header.variables if variable.dimensions in ((), (TIME,)))
         return name in (STATUS, MESSAGE, *columns)

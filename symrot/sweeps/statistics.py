@@ -223,7 +223,10 @@ def order_statistics(blocks: Blocks, low: Floats, high: Floats, ranks: NDArray[n
 
 @dataclass
 class _Search:
-    """A search for values with given ranks, in an interval of keys (integers in the order of the values)."""
+    """A search in one column for the values of given ranks; their keys lie between ``first`` and ``last``.
+
+    A key is an integer; keys have the same order as the values (:func:`_keys`).
+    """
 
     column: int
     first: int
@@ -234,7 +237,7 @@ class _Search:
 
 
 def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, int], float]) -> list[_Search]:
-    """Read all values once, to finish ``searches`` for given ranks or to return them with narrower intervals."""
+    """Read all values once; put results into ``values``, and return the unfinished searches with narrower intervals."""
     open_searches = []
     for search in searches:
         if search.first == search.last:
@@ -264,7 +267,7 @@ def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, i
     narrower = []
     for k, search in enumerate(open_searches):
         if small[k]:
-            # few values: the results go into values, under (column, rank)
+            # few values are sorted; the key of a result is (column, rank)
             ordered = _values(np.sort(np.concatenate(members[k])))
             values |= {(search.column, rank): float(ordered[r]) for r, rank in search.ranks.items()}
         else:
@@ -273,11 +276,11 @@ def _narrowed(blocks: Blocks, searches: list[_Search], values: dict[tuple[int, i
 
 
 def _split(search: _Search, counts: NDArray[np.int64], shift: int) -> list[_Search]:
-    """Split a search into searches in those parts of its interval that contain one of its ranks.
+    """Return searches in those parts of an interval that contain the ranks; ``counts`` are numbers of values per part.
 
-    Parts have ``2^shift`` keys. For ``counts`` 5 and 7, rank 6 becomes rank 1 of the second part.
+    For ``counts`` 5 and 7, rank 6 becomes rank 1 of a search in the second part.
     """
-    # rank 0 is the smallest value
+    # rank 0 is the smallest value; each part has 2^shift keys
     ends = np.cumsum(counts)
     parts: dict[int, _Search] = {}
     for rank, whole in search.ranks.items():

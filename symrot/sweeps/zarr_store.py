@@ -37,7 +37,7 @@ IDENTITY, ROWS, FINISHED, REMOVED = "symrot_sweep", "symrot_rows", "symrot_finis
 
 
 class ZarrStore:
-    """The store of a sweep in the folder at ``path``. Results of the same sweep there are continued.
+    """The store of a sweep in the folder ``path``; if it holds results of the same sweep, they are continued.
 
     Raises
     ------
@@ -68,7 +68,7 @@ class ZarrStore:
             attributes = dict(zarr.open_group(str(self.path), mode="r").attrs)
             identity, rows = json.loads(attributes[IDENTITY]), int(attributes[ROWS])
         except (OSError, LookupError, ValueError, TypeError):
-            raise InputError(f"{expectation}, got something else at this path; choose another name") from None
+            raise InputError(f"{expectation}, got a file or folder with other content; choose another name") from None
         if different := difference(header.identity, identity):
             raise InputError(
                 f"{expectation}, got the results of a sweep with a different {different}; choose another name"

@@ -1,1 +1,1 @@
-"""Animated pages: one offline HTML file per scene, which computes the motion in the browser; and films."""
+"""Animated pages (one offline HTML file per scene that computes the motion in the browser) and films."""

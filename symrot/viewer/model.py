@@ -155,7 +155,7 @@ def _free_structure(scene: Scene) -> Any:
 
 
 def _facts(scene: Scene, is_driven: bool) -> dict[str, Any]:
-    """Return the data about a scene that every page needs, by name.
+    """Return a map with the data about a scene that every page needs.
 
     ``is_driven`` says whether a torque without a formula acts.
     """
@@ -217,7 +217,10 @@ def _orbit_constant(plan: Plan) -> str:
 
 
 def _rest(value: Fraction) -> float:
-    """Return a number minus its nearest double, as a double: the page adds both, which gives 32 digits in all."""
+    """Return a number minus its nearest double, as a double.
+
+    The page adds the two doubles and has 32 digits in all.
+    """
     return float(value - Fraction(float(value)))
 
 
@@ -265,7 +268,7 @@ def _played(motion: Trajectory, reason: str) -> dict[str, Any]:
 
 
 def _reference(times: Floats, states: Floats) -> dict[str, str]:
-    """Return times and states computed by symrot as data for the page, which compares its own results with them."""
+    """Return times and states computed by symrot as data; the page compares its results with them."""
     return {"t": _packed(times), "y": _packed(states)}
 
 
@@ -284,7 +287,9 @@ def _tableau() -> dict[str, Any]:
 
 
 def _angle_kernels(sequence: str) -> dict[str, Program]:
-    """Return the page's two functions by name: from quaternion to Euler angles of ``sequence``, and back."""
+    """Return two functions of the page, under their names: from quaternion to Euler angles of ``sequence``, and
+    back.
+    """
     from symrot.codegen.library_kernels import kernel_program
 
     angles = f"euler_{'' if sequence.isupper() else 'extrinsic_'}{sequence.lower()}"

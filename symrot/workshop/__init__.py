@@ -1,2 +1,3 @@
-"""The functions behind the commands that emit, certify, audit and bound kernels, print derivations, check the
-install."""
+"""The functions behind symrot's commands: emit, certify, audit and bound kernels, print derivations, check the
+installation.
+"""

@@ -57,7 +57,7 @@ def table_faults() -> list[str]:
 
 
 def understated(required: Mapping[str, BoundTask]) -> list[str]:
-    """Return the keys of bounds in the table that are below the error at the worst point stored with them."""
+    """Return the keys of tasks whose stored bound is missing, infinite, or smaller than the error at a stored point."""
     # ``required`` maps keys to tasks: the search for the largest rounding error of one output on one box
     return [key for key, task in required.items() if not _is_consistent(task, STORE.get(key))]
 

@@ -71,7 +71,7 @@ def rounding_problem(
 def _check_unit(
     group: Sequence[str], kernel_problem: RoundingProblem, box: Mapping[str, tuple[Fraction, Fraction]]
 ) -> None:
-    """Raise InputError if the box contains no unit quaternion, because then every bound would hold vacuously."""
+    """Raise InputError if the box contains no unit quaternion: a bound on such a box would say nothing."""
     # ``group`` lists the four components of the quaternion, such as "q[1]"
     ends = [sorted(box[place], key=abs) for place in group]
     least = sum(near * near for (near, far) in ends if near * far > 0)
@@ -82,7 +82,10 @@ def _check_unit(
 
 
 def _operations(kernel: KernelText, precision: str) -> Operations:
-    """Return the operations of a kernel's C function in ``precision``, which is double for a scene."""
+    """Return the operations of a kernel's C function in ``precision``, ``"double"`` or ``"float"``.
+
+    InputError is raised for a scene's kernel in ``"float"``.
+    """
     if precision != "double" and isinstance(kernel, SceneText):
         raise InputError(f"--precision: expected double for a scene, whose kernel is in double only, got {precision}")
     # the prefix symrot_ is left out of the operations' name
@@ -111,7 +114,7 @@ def _known_text(kernel: str) -> KernelText:
 
 
 def section(kernel: KernelText, ranges: Sequence[str]) -> dict[str, Any]:
-    """Return the section ``rounding`` of a kernel's certificate; a library kernel's has bounds for floats too."""
+    """Return the section ``rounding`` of a kernel's certificate; for a library kernel it has bounds for floats too."""
     operations, kernel_problem, box = rounding_problem(kernel, ranges, "double")
     single = rounding_problem(kernel, ranges, "float")[0] if isinstance(kernel, LibraryText) else None
     with _in_scene_names(kernel):

@@ -1,6 +1,6 @@
 """Comparison of a kernel's files on disk with the emitted ones, to explain a failed hash.
 
-It names the first changed line, and the first output that is no longer computed by its formula.
+The result names the first changed line, and the first output whose C text no longer computes its formula.
 """
 
 from pathlib import Path
@@ -30,7 +30,7 @@ def kernel_of(name: str) -> str | None:
 
 
 def difference(certificate: Path) -> str:
-    """Return ": " and the first difference between a kernel's files and the emitted ones, or ``""`` without any."""
+    """Return ": " and the first difference between a kernel's files and the emitted ones; ``""`` if there is none."""
     name = certificate.name.removesuffix(".cert.json")
     # ``certificate`` is the path of NAME.cert.json, next to the files
     kernel = kernel_of(name)

@@ -116,11 +116,11 @@ class OutputError:
     Attributes
     ----------
     output : str
-        Index text of the output, such as ``"dq[0]"``.
+        The output, such as ``"dq[0]"``.
     bound : float
         No computed value on the box differs by more than this from the exact value; in the unit of the output.
     pointwise : float
-        The largest bound found at a single point of the box. The method cannot give a ``bound`` below this number.
+        The largest bound at a single point of the box; ``bound`` cannot be smaller than this number.
     converged : bool
         Whether ``bound`` is about as small as this method can make it.
     modulo_turns : bool
@@ -194,7 +194,7 @@ class LargestBox:
     target : float
         The largest error that is allowed, in the unit of the outputs.
     size : float
-        Width of the box, relative to the width of the box from which the search started.
+        The factor by which ranges are wider than in the box from which the search started.
     box : mapping of str to (float, float)
         A map from each input, such as ``"theta"``, ``"omega[0]"`` or ``"y[2]"``, to its range, in the input's unit.
     error : float
@@ -452,7 +452,7 @@ def _check_precision(precision: str) -> None:
 
 
 def _ranges(box: Ranges) -> Sequence[str]:
-    """Return the ranges of inputs as texts NAME=LOW:HIGH; ``box`` has them as a map or as such texts."""
+    """Return the ranges of inputs as texts NAME=LOW:HIGH; ``box`` is a map from names to ranges, or has these texts."""
     if isinstance(box, str):
         raise InputError(f"box: expected a mapping or a list of texts NAME=LOW:HIGH, got one text, {box[:60]!r}")
     if not isinstance(box, Mapping):

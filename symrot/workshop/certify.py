@@ -47,7 +47,10 @@ MANY = 12  # smallest number of certificates that several processes audit at onc
 
 
 def _proven_statement(data: Data) -> Data | None:
-    """Return the statements that symrot proves about the kernel of the certificate ``data``; None if it is unknown."""
+    """Return the statements that symrot proves about the kernel named in the certificate ``data``.
+
+    The result is None for an unknown kernel.
+    """
     name = data["kernel"]
     scene = str(data["regenerate"]).removeprefix("symrot emit ").removesuffix(" --target c")
     if not is_kernel(name):
@@ -197,7 +200,7 @@ def certify(
     kernel: str, ranges: Sequence[str] = (), directory: Path | None = None, objects: bool = False,
     bounds: bool = True, progress: Callable[[str], object] = lambda text: None,
 ) -> tuple[Data, list[Path]]:  # fmt: skip
-    """Return the certificate of a kernel, parts of which may come from the cache, and the paths of the written files.
+    """Return the certificate of a kernel, and the paths of the written files; proofs may come from the cache.
 
     Parameters
     ----------
@@ -312,8 +315,10 @@ def proofs(data: Data) -> tuple[str, ...]:
 
 
 def _emitted(path: str) -> str:
-    """Return the kernel or shipped scene to which the C file or certificate at ``path`` belongs, if it is unedited."""
-    # otherwise raise InputError or CertificateError
+    """Return the name of the kernel or shipped scene whose C file or certificate is at ``path``.
+
+    InputError or CertificateError is raised for any other file, and for a file that was edited.
+    """
     file = Path(path)
     name = file.name.removesuffix(".c").removesuffix(".cert.json")
     kernel = kernel_of(name)
@@ -339,7 +344,10 @@ def _emitted(path: str) -> str:
 
 
 def lines(data: Data, compared: bool = True) -> list[str]:
-    """Return the lines that `symrot certify` prints about a certificate."""
+    """Return the lines that `symrot certify` prints about a certificate.
+
+    ``compared`` says whether object code was compared in this call, and not in an earlier one.
+    """
     rows = [("domain", data["domain"]), *(("laws", f"{law['law']}: proven") for law in data["laws"])]
     if data["coq"]:
         rows.append(("Coq", f"theorem {data['coq']['theorem']} of {data['coq']['file']} (`symrot prove` checks it)"))
@@ -353,7 +361,6 @@ def lines(data: Data, compared: bool = True) -> list[str]:
         worst = max(part["outputs"], key=lambda item: float.fromhex(item["absolute"]))
         most = f"{float.fromhex(worst['absolute']):.3g}"
         rows.append(("rounding", f"{part['precision']}: error at most {most} on the box ({worst['output']})"))
-    # otherwise the verdicts on object code are from an earlier call
     if compared:
         rows += [("object code", line) for line in object_code.lines(data.get("objects"))]
     elif data.get("objects"):

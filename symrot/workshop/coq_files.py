@@ -54,7 +54,7 @@ def facts(directory: Path, written: list[Path], result: CoqResult | None) -> dic
 
 
 def lines(directory: Path, result: CoqResult | None) -> list[str]:
-    """Return lines of text about Coq's result, from :func:`prove`; None means that nothing was checked."""
+    """Return lines of text about ``result``, as :func:`prove` returned it; None means that nothing was checked."""
     if result is None:
         count = sum(len(coq_file(name).theorems) for name in coq_file_names())
         return [f"{count} theorems written to {directory}, not checked: {MISSING}"]

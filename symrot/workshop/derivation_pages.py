@@ -85,7 +85,7 @@ def illustrated(page: Page) -> PrintedPage:
 
 
 def _with_figures(page: Page) -> tuple[Page, list[Figure]]:
-    """Return a derivation's page with figures below the headings of their sections, and the figures for its top."""
+    """Return a page with each figure below the heading of its section, and the figures for the top of the page."""
     figures = figures_of(page.name)
     by_section: dict[str, list[Figure]] = {}
     for figure in figures:
@@ -154,12 +154,12 @@ def _page_names() -> tuple[str, ...]:
 
 
 def _appendices(derivations: Sequence[str]) -> list[str]:
-    """Return the names of the appendices of some derivations; a derivation without an appendix has none in the list."""
+    """Return the names of the appendices that some of the ``derivations`` have, in the same order."""
     return [f"{name}{APPENDIX}" for name in derivations if LESSONS[name].library]
 
 
 def _chapters(chosen: Sequence[str]) -> dict[str, list[str]]:
-    """Return a map from the title of a chapter to the names of those of its pages that are in ``chosen``."""
+    """Return a map from the title of each chapter to the names of its pages that are in ``chosen``."""
     whole = READING_ORDER | {APPENDICES: _appendices(names())}
     chapters = {title: [name for name in members if name in chosen] for title, members in whole.items()}
     return {title: members for title, members in chapters.items() if members}
@@ -269,14 +269,16 @@ LINK_IN_HTML = re.compile(r'<a href="(?P<page>\w+)\.html">(?P<label>.*?)</a>')
 
 
 def _present(directory: Path, chosen: Sequence[str], suffix: str) -> set[str]:
-    """Return the names of the chosen derivations and of those whose pages are in a directory already."""
+    """Return the names of the ``chosen`` pages and of those whose files (name and ``suffix``) are in ``directory``."""
     return {name for name in _page_names() if name in chosen or (directory / f"{name}{suffix}").is_file()}
 
 
 def _only_links_to(present: set[str], link: re.Pattern[str], text: str) -> str:
-    """Return the text of a page, in which links to derivations that are not in ``present`` are plain text."""
+    """Return ``text`` with each link to a page that is not in ``present`` replaced by the words of the link.
+
+    ``link`` matches a link, with the groups "page" and "label".
+    """
     missing = set(_page_names()) - present
-    # ``link`` has the groups "page" (derivation) and "label" (words of the link)
     return link.sub(lambda match: match["label"] if match["page"] in missing else match[0], text)
 
 
@@ -349,7 +351,7 @@ def check(directory: Path | str, say: Say = _quiet) -> list[tuple[Path, str]]:
 
 
 def _left_over(directory: Path, printed: dict[str, str]) -> list[Path]:
-    """Return the files in a directory that symrot printed earlier and that are not in ``printed``, today's files."""
+    """Return the files that symrot printed into a directory earlier and that are not in ``printed`` now."""
     files = [*sorted(directory.glob("*.md")), *sorted(directory.glob("figures/*.svg"))]
     others = (path for path in files if path.relative_to(directory).as_posix() not in printed and path.is_file())
     return [path for path in others if _mark(path).encode() in path.read_bytes()]

@@ -38,7 +38,8 @@ class Emitted(_Texts):
 
     Notes
     -----
-    In C the function is named ``symrot_`` and the kernel's name (property ``function``), elsewhere as the kernel.
+    In C the function's name is ``symrot_`` and the kernel's name (property ``function``); in other languages it is the
+    kernel's name.
     The certificate of a library kernel states error bounds on the standard ranges of its inputs; that of a scene's
     kernel states the bounds that were passed to :func:`emit`.
 

@@ -81,7 +81,10 @@ def _check_finite(name: str, ends: Ends, text: str) -> None:
 
 
 def _place(kernel_problem: RoundingProblem, inputs: SceneInputs | None, name: str, text: str) -> str:
-    """Return the input component that ``name`` means, such as ``angles[1]``, or the name of a scene's constant."""
+    """Return the input component that ``name`` means, such as ``angles[1]``, or the name of a scene's constant.
+
+    ``text`` is the whole range, NAME=LOW:HIGH, for messages.
+    """
     for place, symbol in kernel_problem.symbols.items():
         if name in (place, symbol):
             return place
@@ -91,6 +94,5 @@ def _place(kernel_problem: RoundingProblem, inputs: SceneInputs | None, name: st
     known = [*kernel_problem.symbols.values(), *constants]
     hint = nearest(name, known)
     what = "an input of the kernel or a constant in its parameters" if constants else "an input"
-    # ``text`` is the whole range, NAME=LOW:HIGH
     message = f"--box {text[:60]}: expected {what}, one of {', '.join(known)}, got {name[:60]!r}"
     raise InputError(f"{message} ({hint})" if hint else message)

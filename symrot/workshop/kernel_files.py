@@ -77,11 +77,13 @@ def kernel_files(kernel: KernelText, target: str, bounds: Mapping[str, Any] | No
 def certificate_files(
     kernel: KernelText, directory: Path, bounds: Mapping[str, Any] | None = None
 ) -> dict[str, str]:  # fmt: skip
-    """Return the certificate file of a kernel, as a map from file name to text; empty if it has no certificate."""
+    """Return the certificate file of a kernel, as a map from file name to text; empty if it has no certificate.
+
+    Verdicts on object code are copied from a certificate in ``directory`` if it is about the same C text.
+    """
     if not kernel.has_certificate:
         return {}
     name, certificate = f"{kernel.name}.cert.json", kernel.certificate(bounds)
-    # verdicts on object code are copied from the certificate in the folder if they still hold
     data, present = json.loads(certificate), _slots(directory / name)
     if is_step(data):
         same = "bounds" in present and all(
@@ -93,7 +95,10 @@ def certificate_files(
 
 
 def stored_bounds(kernel: KernelText, directory: Path | None) -> Mapping[str, Any] | None:
-    """Return the rounding bounds of a scene's kernel, read from its certificate in a folder and checked, or None."""
+    """Return the rounding bounds in a scene kernel's certificate in ``directory``, after they were checked.
+
+    The result is None if there are none, or if they do not hold for the kernel.
+    """
     # a library kernel has bounds of its own
     if directory is None or not isinstance(kernel, SceneText):
         return None
@@ -104,7 +109,6 @@ def stored_bounds(kernel: KernelText, directory: Path | None) -> Mapping[str, An
     try:
         check_section(section, operations, None)
         check_bounds(section, operations, None)
-    # the bounds belong to other operations, or do not hold
     except CertificateError:
         return None
     return section

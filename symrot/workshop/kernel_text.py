@@ -77,7 +77,7 @@ class KernelText(ABC):
 
     @abstractmethod
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
-        """Return the kernel with its formulas, laws and texts, the object from which its certificate is made."""
+        """Return the kernel's formulas, laws and texts as one object, from which the certificate is made."""
 
     def rounding(self, bounds: Bounds | None) -> Bounds | None:
         """Return the section ``rounding`` of the certificate, which states ``bounds``; None if there are no bounds."""
@@ -118,7 +118,7 @@ class KernelText(ABC):
 
 
 class LibraryText(KernelText):
-    """The texts of a kernel of the library, which has its own box of inputs and bounds of rounding errors on it."""
+    """The texts of a library kernel; its bounds of rounding errors hold on standard ranges of the inputs."""
 
     folders: ClassVar[Mapping[str, str]] = {"numpy": "../numpy", "js": "../js", "jax": "../jax"}
 

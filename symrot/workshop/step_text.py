@@ -87,7 +87,7 @@ def step_method(name: str, order: int | None = None, jacobian: Sequence[str] = (
 
 
 def step_text(scene: SceneSource, step: str, order: int | None = None, jacobian: Sequence[str] = ()) -> KernelText:
-    """Return the texts of one time step of a scene by the method ``step``, such as ``"rk4"``."""
+    """Return the texts of one time step of a scene; ``step`` is ``"exact"`` or a method of :func:`step_method`."""
     # a library kernel has no motion
     if isinstance(scene, str) and is_kernel(scene):
         raise InputError(f"step: expected a scene, because only a motion has steps, got the kernel {scene!r}")
@@ -192,7 +192,7 @@ class StepText(StepFiles):
 
     @cached_property
     def certified(self) -> StepUnderTest:
-        """The step with its method and texts, the object from which its certificate is made."""
+        """The method and the texts of the step as one object, from which the certificate is made."""
         description = self._description("c")
         return StepUnderTest(
             self.name, description.title, description.command, self._rates_program, self.method,

@@ -135,7 +135,7 @@ def test_results_of_another_sweep_are_refused(tmp_path, name, options, word):
 def test_other_files_are_refused_and_stay(tmp_path, name):
     (tmp_path / name).mkdir()
     (tmp_path / name / "letter.txt").write_text("dear reader")
-    with pytest.raises(InputError, match="got something else"):
+    with pytest.raises(InputError, match="got a file or folder with other content"):
         sweep(path=tmp_path / name)
     assert (tmp_path / name / "letter.txt").read_text() == "dear reader"
 

@@ -75,7 +75,7 @@ def test_a_proposal_that_is_not_proven_is_refused():
     data = source.claims[claim.id]
     with pytest.raises(InputError, match="expected a formula that is true"):
         finding_of(data, claim, True, _entry(left="Matrix([[phi], [theta], [theta]])"))
-    with pytest.raises(InputError, match="expected one of left, got 'right'"):
+    with pytest.raises(InputError, match=r"expected a part that may be corrected \(left\), got 'right'"):
         finding_of(data, claim, True, _entry(right="Matrix([[phi], [theta], [phi]])"))
 
 
@@ -141,7 +141,7 @@ def test_formulas_that_hold_under_a_condition_on_an_angle_are_listed(survey):
 def test_a_condition_under_which_a_claim_is_not_proven_is_refused():
     source = document("brown")
     claim = next(claim for claim in read_claims(source.path) if claim.id == "brown-prism-equation-axes")
-    with pytest.raises(InputError, match="expected one under which the claim is true, got 'cos"):
+    with pytest.raises(InputError, match="expected a condition under which the claim is true, got 'cos"):
         finding_of(source.claims[claim.id], claim, True, None, Condition(claim.id, ("cos(f) == 0",), ""))
 
 

@@ -35,7 +35,7 @@ def _function(name: str) -> Any:
 def heyoka_code(name: str) -> tuple[Any, Any, Any]:
     """Return the addresses of the three functions that heyoka compiles for a kernel.
 
-    One computes a single sample; the others compute one sample, or ``LANES`` samples, of a batch.
+    They compute a single sample, one sample of a batch, and ``LANES`` samples of a batch.
 
     Raises
     ------

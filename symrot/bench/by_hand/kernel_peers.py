@@ -78,9 +78,7 @@ TEXTBOOK: dict[str, Callable[[], list[sympy.Expr]]] = {
 
 
 def derivatives_of(name: str) -> tuple[str, list[tuple[str, str]]]:
-    """Return the kernel that the kernel ``name`` extends by derivatives, and the list of these derivatives as pairs
-    (output, input).
-    """
+    """Return the name of the kernel ``name`` without its derivatives, and the derivatives as pairs (output, input)."""
     entries = [output.split(BY) for output in _outputs(kernel_program(name).signature) if BY in output]
     # A kernel without derivatives gives its own name and an empty list.
     return name.split(BY)[0], [(output, variable) for output, variable in entries]
@@ -191,8 +189,9 @@ def counted(text: str, name: str) -> Counter[str]:
 
 
 def casadi_function(name: str, program: Callable[[str], Program] = textbook_program) -> tuple[Any, Counter[str]]:
-    """Return CasADi's function from a kernel's inputs (one vector) to its values and derivatives, and the operations by
-    kind.
+    """Return CasADi's function from a kernel's inputs (one vector) to its values and derivatives.
+
+    The second result says how many operations of each kind the function needs.
 
     Parameters
     ----------
@@ -226,7 +225,7 @@ def casadi_function(name: str, program: Callable[[str], Program] = textbook_prog
 
 
 def casadi_counts(x: Any, outputs: Any) -> tuple[Any, Counter[str]]:
-    """Return a function of CasADi from ``x`` to ``outputs``, and its number of operations by kind.
+    """Return a function of CasADi from ``x`` to ``outputs``, and how many operations of each kind it needs.
 
     Common subexpressions are computed once.
     """

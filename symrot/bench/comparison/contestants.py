@@ -34,7 +34,7 @@ ADAPTIVE = tuple(float(Fraction(1, 10**k)) for k in range(2, 14))  # SciPy takes
 
 
 class Contestant(NamedTuple):
-    """A method with its settings, which gives one curve of time and error in a work-precision study."""
+    """A method with its settings; in a work-precision study each contestant has one curve of time and error."""
 
     name: str
     # the name that selects the contestant in --methods

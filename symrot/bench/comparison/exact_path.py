@@ -43,7 +43,10 @@ def as_mpf(value: Any) -> Any:
 
 
 def exact_parameters(parameters: Parameters, plan: Plan) -> dict[str, Fraction]:
-    """Return the exact parameters of a kernel by name, such as ``(C - B)/A``, from the exact constants in ``plan``."""
+    """Return a map from the name of each parameter of a kernel to its exact value, for the exact constants of ``plan``.
+
+    Such a parameter is ``(C - B)/A``.
+    """
     values = {"pi": number.PI, **plan.constants}
     return {name: Fraction(evaluate(node, values, EXACT_FUNCTIONS)) for name, node in parameters}
 

@@ -58,7 +58,7 @@ class Problem:
 
     @cached_property
     def parameters(self) -> dict[str, float]:
-        """The parameters of the rates dy/dt, such as (C - B)/A, by name."""
+        """The values of the parameters of the rates dy/dt, such as (C - B)/A, as a map from their names."""
         return dict(zip((name for name, _ in self.kernel.rate_parameters), self.p, strict=True))
 
     @property

@@ -315,7 +315,9 @@ def _long_state(general: Problem, y: Any, end: float) -> State:
 
 
 def _long_number(value: Fraction) -> Any:
-    """Return a fraction as long double, correct to the last bit: the nearest double plus what its rounding left out."""
+    """Return a fraction as long double, correct to the last bit: the nearest double plus the rounding error of this
+    double.
+    """
     first = float(value)
     return np.longdouble(first) + np.longdouble(float(value - Fraction(first)))
 

@@ -127,7 +127,7 @@ def _symrot(case: Case, scene: Scene) -> Callable[[], Floats]:
 
 
 def _error(computed: Floats, exact: Floats) -> float:
-    """Return the largest error of the columns of ``computed``, each relative to the largest number of the column in
+    """Return the largest error of ``computed``, each column relative to the largest number of the column in
     ``exact``.
     """
     return float((np.abs(computed - exact).max(axis=0) / np.abs(exact).max(axis=0)).max())

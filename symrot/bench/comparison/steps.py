@@ -65,7 +65,9 @@ def _inputs(step: StepText) -> list[str]:
 
 
 def _symforce(step: StepText) -> tuple[str, Counter[str]]:
-    """Return the C text of one step, in which SymForce found the common terms, and its operations by kind."""
+    """Return the C text of one step, in which SymForce found the common terms, and its number of operations of each
+    kind.
+    """
     sf: Any = import_module("symforce.symbolic")
     values = {name: sf.Symbol(name) for name in _inputs(step)}
     functions = {name: getattr(sf, name) for name in FUNCTIONS}
@@ -91,7 +93,7 @@ def _symforce(step: StepText) -> tuple[str, Counter[str]]:
 
 
 def _casadi(step: StepText) -> tuple[str, Counter[str]]:
-    """Return the C text of one step as CasADi generates it, and its operations by kind."""
+    """Return the C text of one step as CasADi generates it, and its number of operations of each kind."""
     import casadi
 
     names = _inputs(step)
@@ -200,7 +202,9 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _times(step: StepText, texts: dict[str, str], rounds: int) -> dict[str, float]:
-    """Return the least seconds per step by tool; raise AssertionError if two tools' states after a step differ."""
+    """Return a map from each tool to its least time per step, s; raise AssertionError if the results of two tools
+    differ.
+    """
     runs = {tool: _run(step, text) for tool, text in texts.items()}
     results = {tool: np.array(run()[1]) for tool, run in runs.items()}
     for tool, result in results.items():

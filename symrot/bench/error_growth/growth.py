@@ -206,6 +206,6 @@ def exponent(revolutions: Floats, errors: Floats) -> float:
 
 
 def median_curve(curves: list[Any], name: str) -> Floats:
-    """Return the median over several curves of the error ``name``, a field of :class:`Curve` such as ``attitude``."""
+    """Return the median of several curves of errors at each time; ``name`` is the error, such as ``attitude``."""
     medians: Floats = np.exp(np.median(np.log(np.array([getattr(c, name) for c in curves]) + 1e-18), axis=0))
     return medians

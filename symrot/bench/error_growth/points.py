@@ -122,9 +122,10 @@ def carried(scene: Scene, stop: float, steps: tuple[float, ...], size: Any = (1.
 
 
 def _strain(first: Floats, last: Floats) -> float:
-    """Return the strain of moved points: the ratio distance after / distance before differs among pairs of points.
+    """Return ``r_max/r_min - 1``, where r is the distance between two points after a motion divided by the distance
+    before.
 
-    The strain is the largest ratio divided by the smallest, minus 1.
+    The result is zero if all distances grow by the same factor.
     """
     pairs = np.triu_indices(len(first), 1)
     before, after = (np.linalg.norm(each[pairs[0]] - each[pairs[1]], axis=1) for each in (first, last))

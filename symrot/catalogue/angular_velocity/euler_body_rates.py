@@ -45,15 +45,15 @@ def derive() -> Derivation:
     d.section("The argument, for ZXZ")
     _argument(d)
     d.section("The other intrinsic sequences")
-    _tabulate(d, "The matrices of the other sequences about axes of the body, the inverse matrix, the determinant, "
-              "and the angles of gimbal lock.",
+    _tabulate(d, "The table has, for the other sequences about axes of the body, the matrix $B$, its inverse, its "
+              "determinant, and the angles of gimbal lock.",
               [sequence for sequence in INTRINSIC_SEQUENCES if sequence != EXAMPLE])  # fmt: skip
     d.section("The extrinsic sequences")
     _tabulate(
         d,
-        "The matrices, the determinant and the angles of gimbal lock for the sequences about axes of space. Such an "
-        "extrinsic sequence, for example xyz, equals the intrinsic sequence with the reversed name, ZYX, if the angles "
-        "are in reversed order too.",
+        "The table has, for the sequences about axes of space, the matrices, the determinant and the angles of gimbal "
+        "lock. An extrinsic sequence such as xyz equals the intrinsic sequence with the reversed name, ZYX, if the "
+        "angles are in reversed order too.",
         EXTRINSIC_SEQUENCES,
     )
     d.section("The direction cosine matrices")

@@ -37,7 +37,7 @@ def derive() -> Derivation:
         _locked(d, EXAMPLE, point)
     d.passage(f"Sequences that are regular wherever {EXAMPLE} is in gimbal lock: {_regular(EXAMPLE)}.")
     others = [sequence for sequence in INTRINSIC_SEQUENCES if sequence != EXAMPLE]
-    d.section("How close to gimbal lock, for the other sequences")
+    d.section(f"How close to gimbal lock, for the sequences other than {EXAMPLE}")
     d.tabulate(
         "The cosine $c$ of the angle between the first and the last axis determines how close an attitude is to gimbal "
         r"lock: the eigenvalues of $B^{\mathsf T} B$ are $1$ and $1 \pm c$, and $B^{-1} \det B$ is finite at every "
@@ -52,7 +52,7 @@ def derive() -> Derivation:
             for sequence in others
         ],
     )
-    d.section("What is lost at gimbal lock, for the other sequences")
+    d.section(f"What is lost at gimbal lock, for the sequences other than {EXAMPLE}")
     d.tabulate(
         "The table gives for each singular angle: the combination of angles on which the attitude depends; the "
         "direction $n$ (in body components) about which the body cannot rotate; the limit of the product of the "

@@ -140,8 +140,8 @@ def _moving(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  
         display=r"\omega_b \times d + u",
     )
     d.step(
-        "The acceleration of $Q$ is that of the point of the body at the same place, plus the Coriolis acceleration "
-        r"$2\,\omega \times u$, plus the relative acceleration $w$.",
+        "The acceleration of $Q$ is the sum of three: the acceleration of the point of the body where $Q$ is, the "
+        r"Coriolis acceleration $2\,\omega \times u$, and the relative acceleration $w$.",
         dcm_sb.T * (rate(velocity, moving) - A),
         DOMEGA.cross(D) + OMEGA.cross(OMEGA.cross(D)) + 2 * OMEGA.cross(U) + W,
         because=r"the rate of $u$ and the rate of the offset $d$ each contribute $\omega \times u$",
@@ -151,7 +151,8 @@ def _moving(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  
         board=(
             (
                 r"The rate of $R \left( \omega_b \times d + u \right)$ in body components is the rate of the vector in "
-                r"brackets, plus $\omega_b$ times this vector, since $\dot R = R\,[\omega_b]_\times$:",
+                r"brackets, plus the cross product of $\omega_b$ and this vector, because "
+                r"$\dot R = R\,[\omega_b]_\times$:",
                 r"\left( \dot\omega_b \times d + \omega_b \times u + w \right) + \omega_b \times \left( \omega_b "
                 r"\times d + u \right)",
             ),

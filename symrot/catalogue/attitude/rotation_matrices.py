@@ -17,7 +17,7 @@ SIZES = (2, 3, 4, 5)
 def skew_dimension(size: int) -> int:
     """Return the dimension of the space of skew matrices (``S + S^T = 0``) with ``size`` rows: 3 for size 3.
 
-    The dimension is computed as that of the space of all matrices, minus the rank of the map S -> S + S^T.
+    It is ``size^2`` minus the rank of the linear map S -> S + S^T.
     """
     images = []
     for i, j in product(range(size), repeat=2):

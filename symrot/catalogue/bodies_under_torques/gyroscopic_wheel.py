@@ -85,8 +85,8 @@ def _level(d: Derivation, torque: Matrix, line: Matrix) -> None:
     axle = Matrix(dcm("ZXZ")).subs(level)[:, 2]
     d.notation({"a": axle, r"\dot L_s": torque.subs(level), "c_3": ARM, "W": W})
     d.step(
-        "If the axle is horizontal, the torque of precession does not contain $A$. The torque is the product of the "
-        "axial moment of inertia and the rates of spin and precession.",
+        "If the axle is horizontal, the torque that the precession needs does not contain $A$. It is the product of "
+        "the axial moment of inertia and the rates of spin and precession.",
         torque.subs(level),
         C * SPIN * PRECESSION * line,
         because=r"$\cos\frac\pi2 = 0$; the result is exact for slow and fast precession",

@@ -105,7 +105,7 @@ def _potential(d: Derivation, kinetic: Expr, lagrangian: Expr) -> Expr:
         }
     )
     d.step(
-        r"The energy is that of one coordinate $\theta$ in an effective potential $U$.",
+        r"The energy is the energy of the single coordinate $\theta$, moving in an effective potential $U$.",
         (kinetic + W * ARM * cos(THETA)).subs(rates),
         HALF * A * DTHETA**2 + potential,
         because="the rates of the cyclic angles are substituted",
@@ -184,7 +184,7 @@ def _steady(d: Derivation, potential: Expr) -> None:
     )
     d.step(
         "The sum and the product of the two rates of steady precession have simple forms. For a fast top the rates are "
-        r"therefore close to $p_\psi / (A \cos\theta)$, as without weight, and to $W c_3 / p_\psi$.",
+        r"therefore close to $p_\psi / (A \cos\theta)$, the rate without weight, and to $W c_3 / p_\psi$.",
         Matrix([fast + slow, fast * slow]),
         Matrix([P_PSI, W * ARM]) / (A * cos(THETA)),
         because="the coefficients of the quadratic equation give sum and product of its roots (Vieta)",

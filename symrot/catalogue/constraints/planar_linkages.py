@@ -79,8 +79,8 @@ def _slider(d: Derivation) -> None:
     center = Matrix([place, place * sin(PHI) / cos(PHI)])
     d.define("The instantaneous centre of the rod is on the line of the crank, straight above the slider:", "c", center)
     d.step(
-        "Both ends of the rod, $A$ at the crank and $B$ at the slider, move perpendicular to their lines from the "
-        "instantaneous centre.",
+        "Both ends of the rod, $A$ at the crank and $B$ at the slider, move perpendicular to the lines that join "
+        "them to the instantaneous centre.",
         Matrix([(pin - center).dot(rate(pin, MOTION)), (slider - center).dot(Matrix([velocity, 0]))]),
         0,
         because="$A$ moves perpendicular to the crank, and $B$ along the line of the slider",

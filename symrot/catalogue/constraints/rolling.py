@@ -171,8 +171,9 @@ def _nonholonomic(d: Derivation) -> None:
         named=r"[\text{turn}, \text{roll}] = \frac{\partial\,\text{roll}}{\partial (x, y, \psi, \theta)}\,\text{turn}",
     )
     d.step(
-        "A second Lie bracket completes four independent directions. So the wheel can reach every position with every "
-        "heading and angle, and the constraint is not equivalent to an equation between the coordinates.",
+        "The two motions, their Lie bracket and a second Lie bracket are four independent directions. So the wheel "
+        "can reach every position with every heading and angle, and the constraint is not equivalent to an equation "
+        "between the coordinates.",
         Matrix.hstack(roll, turn, aside, aside.jacobian(state) * turn).det(),
         -(R**2),
         because="the determinant of the four directions is not zero",

@@ -36,8 +36,8 @@ def _forces(d: Derivation) -> None:
     d.notation({"v_d": V + OMEGA.cross(OTHER)})
     second = Matrix(symbols.torque_b)
     d.step(
-        "The power of a force on a body is the power that it has at a reference point plus the power of its moment. "
-        "The reference point of the body has the velocity $v$, and $r$ leads from there to the force.",
+        "The power of a force on a body is the force times the velocity $v$ of a reference point of the body, plus the "
+        r"moment of the force about this point times $\omega$. The vector $r$ leads from this point to the force.",
         FORCE.dot(V + OMEGA.cross(POINT)),
         FORCE.dot(V) + POINT.cross(FORCE).dot(OMEGA),
         because="the factors of a triple product may be permuted cyclically",

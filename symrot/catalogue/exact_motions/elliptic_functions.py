@@ -159,9 +159,9 @@ def _theta(d: Derivation) -> None:
     )
     d.step(
         r"The function $\mathrm{H} = \Theta\,\mathrm{sn}$ has the logarithmic derivative $Z + "
-        r"\mathrm{cn}\,\mathrm{dn} / \mathrm{sn}$. The derivative of this sum is $c - 1/\mathrm{sn}^2$, where that of "
-        r"$Z$ is $c - \mu\,\mathrm{sn}^2$ with the same constant $c$. A shift of $u$ by half a period, $i K'$, turns "
-        r"$\mu\,\mathrm{sn}^2$ into $1/\mathrm{sn}^2$.",
+        r"\mathrm{cn}\,\mathrm{dn} / \mathrm{sn}$. The derivative of this sum is $c - 1/\mathrm{sn}^2$; the "
+        r"derivative of $Z$ is $c - \mu\,\mathrm{sn}^2$ with the same constant $c$. A shift of $u$ by half a period, "
+        r"$i K'$, turns $\mu\,\mathrm{sn}^2$ into $1/\mathrm{sn}^2$.",
         DN**2 + rate(CN * DN / SN, along),
         1 - 1 / SN**2,
         because=r"$\mathrm{dn}^2 = 1 - \mu\,\mathrm{sn}^2$",

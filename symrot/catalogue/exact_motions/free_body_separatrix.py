@@ -63,8 +63,8 @@ def derive() -> Derivation:
     rising, falling = 2 * h / (1 + h**2), (1 - h**2) / (1 + h**2)
     d.notation({"h": h, r"\tanh p\,t": rising, r"\mathrm{sech}\,p\,t": falling}, _share(P))
     d.step(
-        r"The fractions for the hyperbolic functions are right: their derivatives are those of $\tanh p\,t$ and "
-        r"$\mathrm{sech}\,p\,t$, and so are their values at $t = 0$.",
+        r"The fractions equal $\tanh p\,t$ and $\mathrm{sech}\,p\,t$: they have the same derivatives as these "
+        "functions, and the same values at $t = 0$.",
         rate(Matrix([rising, falling]), _share(P)),
         P * Matrix([falling**2, -rising * falling]),
         because=r"$\dot h = \tfrac{p}{2} (1 - h^2)$",

@@ -19,9 +19,9 @@ def derive() -> Derivation:
         about=(
             "A free body with two equal moments precesses regularly: its symmetry axis moves around the fixed angular "
             "momentum at a constant rate and a constant angle, and in body axes the angular velocity moves around the "
-            "symmetry axis. The body cone, which the angular velocity describes in the body, rolls on the space cone, "
-            "which it describes in space. It rolls on the outside (direct precession), or it encloses the space cone "
-            "(retrograde precession)."
+            "symmetry axis. The angular velocity describes a cone in the body (the body cone) and a cone in space (the "
+            "space cone). The body cone rolls on the outside of the space cone (direct precession), or it encloses "
+            "the space cone (retrograde precession)."
         ),
     )
     a, c = symbols.A, symbols.C
@@ -99,8 +99,8 @@ def derive() -> Derivation:
         named=r"\omega \cdot (L \times e_3)",
     )
     d.step(
-        "The angles of angular momentum and angular velocity to the symmetry axis determine the two cones. The "
-        "tangents of these angles have a constant ratio.",
+        "The two cones follow from two angles: from the symmetry axis to the angular momentum, and to the angular "
+        "velocity. The tangents of these angles have a constant ratio.",
         squared(Matrix(momentum[:2])) / momentum[2] ** 2,
         (a / c) ** 2 * squared(Matrix(OMEGA[:2])) / symbols.omega_3**2,
         because=r"the transverse part of $L$ is $A$ times the transverse part of $\omega$, the axial part is $C$ times "
@@ -113,12 +113,12 @@ def derive() -> Derivation:
     d.section("Direct or retrograde")
     d.passage(
         r"The precession has the component $\frac{L \cdot e_3}{A}$ along the symmetry axis, and the rate of the spin "
-        r"angle is $\dot\psi = \frac{A - C}{A}\,\omega_3$. The precession is called direct if both have the same "
-        "sign, and retrograde otherwise."
+        r"angle is $\dot\psi = \frac{A - C}{A}\,\omega_3$. The precession is called direct if these two rates have "
+        "the same sign, and retrograde otherwise."
     )
     ratio = spin / (momentum.dot(AXIS) / a)
     d.step(
-        "The ratio of both does not depend on the motion.",
+        "The ratio of these two rates does not depend on the motion.",
         ratio,
         (a - c) / c,
         because=r"$\omega_3$ cancels",

@@ -107,8 +107,8 @@ def _center(d: Derivation) -> None:
     tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
     d.notation(sums_over(MASSES, POINTS) | {"x": PLACE, "v": V, "M": mass, "I": tensor})
     d.step(
-        "The angular momentum of a body is that of its total mass at the centre of mass, plus that of the rotation "
-        "about the centre of mass.",
+        "The angular momentum of a body is the angular momentum of its total mass, moving with the centre of mass, "
+        "plus the angular momentum of the rotation about the centre of mass.",
         momentum,
         PLACE.cross(mass * V) + tensor * OMEGA,
         because=rf"the mixed terms contain the factor ${COUNT} m_i\,r_i = 0$",

@@ -14,7 +14,8 @@ PLACE = Matrix([Symbol(f"r_i{axis}") for axis in "xyz"])
 def sums_over(masses: Sequence[Expr], places: Sequence[Matrix]) -> dict[str, Any]:
     r"""Return the meanings of ``m_i``, ``r_i`` and ``\sum_i`` for :meth:`symrot.proof.derivation.Derivation.notation`.
 
-    The sum stands before its terms in parentheses. ``masses`` and ``places`` are those of the particles, in order.
+    The sum stands before its terms in parentheses. ``masses`` and ``places`` are the masses and positions of the
+    particles.
 
     Examples
     --------

@@ -40,7 +40,7 @@ class TheoremResult:
 
 @dataclass(frozen=True)
 class CoqResult:
-    """The result of checking files of theorems with Coq; its truth value is True if there are no problems.
+    """The result of checking files of theorems with Coq; ``bool(result)`` is True if there are no problems.
 
     Attributes
     ----------
@@ -67,7 +67,10 @@ class CoqResult:
 
 
 def coqc() -> str | None:
-    """Return the path of Coq's compiler, ``coqc`` or what the variable ``COQC`` names; None if it is not installed."""
+    """Return the path of Coq's compiler ``coqc``, or of the one named in the environment variable ``COQC``.
+
+    The result is None if it is not installed.
+    """
     return shutil.which(os.environ.get("COQC") or "coqc")
 
 
@@ -188,8 +191,11 @@ def _levels(sources: Mapping[str, str]) -> list[list[str]]:
 
 
 def _compile(compiler: str, place: Path, name: str, seconds: float) -> tuple[str | None, str]:
-    """Compile the file ``NAME.v`` with Coq; return Coq's error message (None if there is none) and Coq's output."""
-    # Coq writes files of its own into the folder ``place``
+    """Compile the file ``NAME.v`` in the folder ``place``, for at most ``seconds``.
+
+    Return Coq's error message (None if there is none) and what Coq prints.
+    """
+    # Coq writes files of its own into the folder
     command = [compiler, "-q", "-R", ".", "symrot", f"{name}.v"]
     try:
         done = run_tool(command, seconds, place)

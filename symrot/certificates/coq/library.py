@@ -115,7 +115,7 @@ def _theorem_about(kernel: str) -> tuple[str, Theorem] | None:
 
 
 def coq_section(kernel: str) -> dict[str, Any] | None:
-    """Return the ``coq`` section of a kernel's certificate, which states the theorem about the kernel, or None.
+    """Return the ``coq`` section of a kernel's certificate, with the theorem about the kernel; None without a theorem.
 
     Parameters
     ----------

@@ -75,7 +75,10 @@ def _wrapped(text: str) -> str:
 
 
 def _path(name: str, parameters: Sequence[str]) -> tuple[str, str]:
-    """Return a matrix function of time as Coq text, ``fun u => dcm (q0 u)``, and its value at t, ``dcm (q0 t)``."""
+    """Return a matrix function of time as Coq text, and its value at t.
+
+    ``"dcm"`` and ``["q0", "q1"]`` give ``fun u => dcm (q0 u) (q1 u)`` and ``dcm (q0 t) (q1 t)``.
+    """
     return (f"fun u => {name} " + " ".join(f"({each} u)" for each in parameters),
             f"{name} " + " ".join(f"({each} t)" for each in parameters))  # fmt: skip
 

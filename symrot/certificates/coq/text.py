@@ -101,12 +101,12 @@ def folded(text: str, indent: int = 0) -> str:
 
 
 def comment(text: str) -> str:
-    """Return a Coq comment in folded lines; comment marks inside the text are split so that they cannot end it."""
+    """Return a Coq comment in folded lines; comment marks inside ``text`` are split, so that none ends the comment."""
     return folded("(* " + text.replace("(*", "( *").replace("*)", "* )") + " *)", 3)
 
 
 def _record(formulas: Sequence[Expr]) -> str:
-    """Return formulas as Coq text of one vector, quaternion or matrix (row by row); a single formula stays a number."""
+    """Return formulas as Coq text of one vector, quaternion or matrix (row by row); a single formula gives a number."""
     if len(formulas) == 1:
         return folded(f"  {coq_expression(formulas[0])}", 4)
     texts = [_within(formula, _ATOM) for formula in formulas]

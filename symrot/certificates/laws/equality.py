@@ -257,11 +257,10 @@ class _EqualityProver:
         return product
 
     def _truncated(self, name: str, split: Fraction, written: list[Fraction]) -> Truncation:
-        """Return the Taylor series of the function ``name``, as the C text has it, with a bound of its error.
+        """Return the Taylor series of the function ``name``, which the C text uses for x^2 < ``split``.
 
-        CertificateError is raised if the text's coefficients, ``written``, are not the exact ones, rounded.
+        The result has a bound of the error. CertificateError is raised if the coefficients ``written`` are wrong.
         """
-        # the C text uses the series where x^2 < ``split``
         exact = REMOVABLE[name].taylor(len(written) + 1)
         for value, true in zip(written, exact, strict=False):
             if not IntendedConstant(value, true, False).rounds(self.operations.precision):

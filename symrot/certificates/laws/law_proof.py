@@ -173,7 +173,10 @@ class LawProver(FormulaReader):
         return self.decided[left, right] == ">="
 
     def generator(self, meaning: str) -> PolyElement:
-        """Return an unused variable of the ring for a function value; raise OutOfGenerators if there is none."""
+        """Return an unused variable of the ring for a function value; ``meaning`` is its text, such as ``"sin(x)"``.
+
+        OutOfGenerators is raised if there is none.
+        """
         if self.generator_count == self.pool:
             raise OutOfGenerators
         self.generator_count += 1
@@ -360,7 +363,7 @@ class LawProver(FormulaReader):
         return known
 
     def _pair(self, unit: PolyElement, angle: PolyElement) -> tuple[Quotient, Quotient]:
-        """Return the pair (cosine, sine) of the base ``angle``, such as x/2, each a variable of the ring."""
+        """Return (cosine, sine) of ``angle``, the base angle of ``unit``: x/2 of x; each is a variable of the ring."""
         # ``unit`` is the monomial of the angle without the number, such as x
         if unit not in self.angle_functions:
             cosine, sine = self.generator(f"cos({angle})"), self.generator(f"sin({angle})")
@@ -372,7 +375,7 @@ class LawProver(FormulaReader):
     # --- cofactors ----------------------------------------------------------------------------------------------------
 
     def remainder(self, value: PolyElement) -> PolyElement:
-        """Return the remainder of a polynomial after division by the relations; if it is 0, so is the polynomial."""
+        """Return the remainder of a polynomial after division by the relations; if it is 0, the polynomial is 0."""
         # several hypotheses are left to :meth:`cofactors`
         basis = [*self.rules, *(self.hypotheses if len(self.hypotheses) == 1 else ())]
         return value.rem(basis) if basis else value
@@ -398,9 +401,12 @@ class LawProver(FormulaReader):
         return tuple((place, str(cofactor)) for place, cofactor in enumerate(by_relation) if cofactor)
 
     def _combined(self, value: PolyElement, degree: int) -> tuple[list[PolyElement], PolyElement]:
-        """Return (cofactors, rest) such that ``value`` is the sum of cofactors times relations, plus the rest."""
+        """Return (cofactors, rest) such that ``value`` is the sum of cofactors times relations, plus the rest.
+
+        Cofactors of hypotheses have at most the degree ``degree``.
+        """
         by_rules, remainder = value.div(self.rules) if self.rules else ([], value)
-        # cofactors of the hypotheses have at most the degree ``degree``; without such cofactors the rest is not zero
+        # without cofactors of that degree the rest is not zero
         by_hypotheses = _combination(remainder, self.hypotheses, degree)
         return (list(by_rules), remainder) if by_hypotheses is None else ([*by_rules, *by_hypotheses], self.ring.zero)
 

@@ -110,11 +110,11 @@ def hypotheses(symbols: Sequence[Symbol]) -> tuple[Expr, ...]:
 
 
 def _hypothesis_names(name: str, law: Law) -> tuple[str, ...]:
-    """Return the names of the symbols in the hypotheses of a law, the relations that it presupposes."""
+    """Return the names of the symbols in a law's hypotheses, the relations that the law presupposes."""
     symbols = sorted({symbol for relation in law.relations for symbol in relation.free_symbols}, key=str)
     # only unit vectors, unit quaternions and rotation matrices are known
     if hypotheses(symbols) != law.relations:
-        expected = "hypotheses that some numbers have squares that sum to one, or are the entries of a rotation"
+        expected = "the hypotheses that squares of some symbols sum to one, or that they form a rotation matrix"
         raise CertificateError(f"{name}: expected {expected}, for {law.text!r}, got other hypotheses")
     return tuple(map(str, symbols))
 
@@ -128,7 +128,7 @@ UNIT: dict[int, tuple[int, ...]] = {
 
 
 def _witness(name: str, law: Law, hypothesis_names: Sequence[str], names: Sequence[str]) -> tuple[tuple[str, str], ...]:
-    """Return a point at which the law's hypotheses hold, as pairs (input, exact number as text)."""
+    """Return a point at which a law's hypotheses hold, as pairs (name, exact number) for the inputs ``names``."""
     point: dict[str, Expr] = {each: Rational(2 * k + 3, 7) for k, each in enumerate(names)}
     numbers = UNIT.get(4 if len(hypothesis_names) == ENTRIES else len(hypothesis_names), ())
     unit = tuple(Rational(each) / sqrt(sum(n * n for n in numbers)) for each in numbers)

@@ -1,1 +1,1 @@
-"""Proofs that compiled object code performs the same roundings as the C text it was compiled from."""
+"""Proofs that compiled object code performs the same roundings as the C text from which it was compiled."""

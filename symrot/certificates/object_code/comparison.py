@@ -130,10 +130,13 @@ def compare_function(text: Operations, function: CFunction, listing: Listing) ->
 def _compare(
     text: Operations, function: CFunction, listing: Listing, start: tuple[str, int], top: int
 ) -> ObjectVerdict:
-    """Return the verdict on a C function and its machine code at ``start``, for one alignment of the stack."""
+    """Return the verdict on a C function and its machine code at ``start``, for one alignment of the stack.
+
+    ``top`` is the offset of the return address on the stack.
+    """
     width, terms = WIDTH[text.precision], Terms()
     expected = _terms_from_operations(text, terms, width)
-    # ``top``, the stack offset of the return address, fixes the alignment by its remainder modulo 64
+    # the remainder of ``top`` modulo 64 is the alignment
     pointers = [p for p in function.parameters if p.size > 0]
     arrays = {p.name: ArrayArgument(p.name, p.size * width // 8, not p.is_const) for p in pointers}
     numbers = tuple(p.name for p in function.parameters if p.size == 0)
@@ -158,7 +161,7 @@ def _compare(
 
 
 def _terms_from_operations(text: Operations, terms: Terms, width: int) -> list[int]:
-    """Return the outputs that the C text computes as terms, symbolic values of ``width`` bits in ``terms``."""
+    """Return the outputs of the C text as symbolic terms of ``width`` bits, added to the store ``terms``."""
     known: list[int] = []
     binary = {"add": terms.add, "sub": terms.sub, "mul": terms.mul, "div": terms.div, "copysign": terms.copysign}
     unary = {"neg": terms.neg, "abs": terms.abs, "sqrt": terms.sqrt}
@@ -218,12 +221,11 @@ def _cases(
 ) -> Iterable[tuple[str, str]]:
     """Yield, for each combination of comparison outcomes, the first output that differs and the reason.
 
-    Both texts are empty if all outputs agree.
+    Both texts are empty if all outputs agree. ``expected`` are outputs of the C text, ``got`` of the machine code.
     """
     waiting = [dict(known)]
     while waiting:
         case = waiting.pop()
-        # ``expected``: the outputs of the C text, ``got``: those of the machine code
         first, second = terms.rebuilt(expected, case), terms.rebuilt(got, case)
         # ``fused``: the machine code has fused multiply-adds
         if first == second or (fused and _apart_from_zeros(terms, first, second)):
@@ -262,7 +264,7 @@ def _is_exact(terms: Terms, product: int) -> bool:
 
 
 def _difference(terms: Terms, expected: int, got: int) -> str:
-    """Return a sentence that shows the first difference between two unequal terms, from C text and object code."""
+    """Return a sentence with the first difference of the terms ``expected`` (C text) and ``got`` (object code)."""
     while True:
         first, second = terms.operands(expected), terms.operands(got)
         left, right = terms.nodes[expected], terms.nodes[got]

@@ -59,7 +59,7 @@ def memory_place(state: MachineState, instruction: Instruction, operand: Memory)
 def relocated_place(state: MachineState, instruction: Instruction, kinds: tuple[str, ...]) -> tuple[str, int]:
     """Return (base, offset) of the address that the linker fills into an instruction.
 
-    NotUnderstood is raised unless the relocation has one of ``kinds``.
+    NotUnderstood is raised unless the kind of the relocation, such as ``"R_X86_64_PC32"``, is in ``kinds``.
     """
     relocation = instruction.relocation
     if relocation is None or relocation.kind not in kinds:
@@ -113,7 +113,7 @@ def write(state: MachineState, instruction: Instruction, operand: object, words:
 
 
 def _size(instruction: Instruction) -> int:
-    """Return the number of bytes on which an instruction acts: the size of its first operand that has one."""
+    """Return the number of bytes on which an instruction acts: the size of its first operand whose size is known."""
     for operand in instruction.operands:
         if isinstance(operand, Register) and operand.name in GENERAL:
             return GENERAL[operand.name][1]
@@ -298,7 +298,7 @@ def pop_words(state: MachineState) -> Words:
 
 
 def stack_place(state: MachineState) -> tuple[str, int]:
-    """Return the address, base and offset, to which the stack pointer points."""
+    """Return the address (base and offset) to which the stack pointer points."""
     node = state.context.terms.nodes[state.whole(state.general["rsp"])]
     if node[0] != "address" or node[2] != STACK:
         raise NotUnderstood("expected a stack pointer that points into the stack, got another value")

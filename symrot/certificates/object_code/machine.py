@@ -223,9 +223,11 @@ FLOW: dict[str, Callable[[MachineState, Instruction, tuple[str, int]], tuple[str
 
 
 def _call_library(state: MachineState, name: str, on_stack: int) -> None:
-    """Execute a call of the C library function ``name``; registers that the call may change become unknown."""
+    """Execute a call of the C library function ``name``; registers that the call may change become unknown.
+
+    ``on_stack`` is 0 for a call instruction, and 8 for a jump, because the return address is then on the stack.
+    """
     terms = state.context.terms
-    # ``on_stack``: 8 if the code jumps to the function, with the return address on the stack; 0 for a call instruction
     _, offset = stack_place(state)
     if (offset + on_stack) % 16:
         raise NotUnderstood("expected a stack pointer aligned to 16 bytes at a call, got another")

@@ -96,7 +96,7 @@ def _bitwise(operation: Callable[..., int]) -> Numeric:
 
 
 def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
-    """Return the function that executes a comparison: result bits are 1 where an outcome is among ``outcomes``."""
+    """Return the function that compares numbers; the bits of a result are all 1 for ``outcomes``, otherwise all 0."""
     by_number = list(PREDICATES.values())
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
@@ -110,8 +110,10 @@ def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
 
 
 def _fused(suffix: str, order: str, negated: bool, subtracted: tuple[bool, ...]) -> Numeric:
-    """Return the function that executes a fused multiply-add a*b + c, whose operands are numbered by ``order``."""
-    # "132": a is operand 1, b operand 3 and c operand 2
+    """Return the function that executes a fused multiply-add a*b + c, with signs from ``negated`` and ``subtracted``.
+
+    ``order`` has the numbers of the operands: for "132", a is operand 1, b is operand 3 and c is operand 2.
+    """
     places = tuple(int(digit) - 1 for digit in order)
 
     def fused(lane_subtracted: bool) -> Callable[..., int]:
@@ -136,7 +138,7 @@ def _greater(terms: Terms, a: int, b: int) -> int:
 
 
 def _blended(suffix: str) -> Numeric:
-    """Return the function that executes a blend: the second source where the third is negative, else the first."""
+    """Return the function that executes a blend: take the second source where the third is negative, else the first."""
 
     def one(terms: Terms, a: int, b: int, mask: int) -> int:
         # the sign bit of the mask decides
@@ -159,7 +161,7 @@ def _same(state: MachineState, sources: list[Words], _: int) -> Words:
 
 
 def _shifted(width: int, shift: Callable[[int, int, int], int]) -> Numeric:
-    """Return the function that shifts constants, where ``shift`` takes (number, count, ``width``)."""
+    """Return the function that shifts each constant of ``width`` bits; ``shift(number, count, width)`` shifts one."""
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:
         terms, results = state.context.terms, list[int]()

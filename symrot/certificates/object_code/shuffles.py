@@ -27,7 +27,7 @@ def _pick(places: Sequence[int]) -> Shuffle:
 
 
 def _by_constant(places: Callable[[int, int], Sequence[int]]) -> Shuffle:
-    """Return the function that picks the words ``places(constant, k)`` from block k, of 128 bits, of each source."""
+    """Return a function that picks the words ``places(constant, k)`` from block k (128 bits) of the sources."""
 
     def shuffle(state: MachineState, sources: list[Words], constant: int) -> Words:
         picked: Words = []

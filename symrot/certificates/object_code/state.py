@@ -85,7 +85,7 @@ class MachineState:
     flags: tuple[str, tuple[int, ...]] = ("unknown", ())
 
     def branch(self, pair: Pair, outcomes: Outcomes) -> "MachineState":
-        """Return a copy of the state after a branch: comparing the two terms of ``pair`` has one of ``outcomes``."""
+        """Return a copy of the state on the branch where comparing the two terms ``pair`` has one of ``outcomes``."""
         return replace(
             self,
             general={name: list(words) for name, words in self.general.items()},
@@ -156,7 +156,7 @@ class MachineState:
     def set_vector(self, name: str, words: Words, is_vex: bool) -> None:
         """Write the low words of a vector register.
 
-        A VEX instruction (``v...``) sets the register's other words to zero.
+        With ``is_vex`` (an instruction with the prefix ``v``), the register's other words become zero.
         """
         if name not in VECTORS:
             raise NotUnderstood(f"expected a register that kernels use, got {name}")

@@ -51,7 +51,7 @@ def number_from_bits(bits: int, width: int) -> float:
 
 
 def _bits_from_number(value: float, width: int) -> int | None:
-    """Return the bits of a number rounded to ``width`` bits; None for a NaN or an overflow."""
+    """Return the bits of the float or double of ``width`` bits nearest to ``value``; None for NaN or overflow."""
     number, whole = _FORMATS[width]
     try:
         return None if value != value else int(unpack(whole, pack(number, value))[0])
@@ -249,7 +249,7 @@ class Terms:
     # --- rounded operations -------------------------------------------------------------------------------------------
 
     def _folded(self, a: int, b: int, operation: Callable[[float, float], float]) -> int | None:
-        """Return an operation on two constant terms as a constant term, or None if a term is not a finite constant."""
+        """Return ``operation`` of two constant terms as a constant term; None if a term is no finite constant."""
         x, y = self._value(a), self._value(b)
         if x is None or y is None or not (isfinite(x) and isfinite(y)):
             return None
@@ -369,7 +369,7 @@ class Terms:
         return self._add("mask", width, outcomes, a, b)
 
     def choose(self, mask: int, x: int, y: int) -> int:
-        """Return the term that is ``x`` if all bits of a mask are 1, and ``y`` if all are 0."""
+        """Return the term that is ``x`` if all bits of the term ``mask`` are 1, and ``y`` if all are 0."""
         decided = self.constant(mask)
         if decided is not None and decided in (0, self._ones(mask)):
             return x if decided else y
@@ -398,7 +398,10 @@ class Terms:
         return ordered
 
     def rebuilt(self, roots: Iterable[int], known: Known, fused: bool = True) -> list[int]:
-        """Return the terms ``roots``, simplified by the comparison outcomes that ``known`` leaves possible."""
+        """Return the terms ``roots``, simplified by the comparison outcomes that ``known`` leaves possible.
+
+        If ``fused`` is false, each fused a*b + c becomes a rounded product and a rounded sum.
+        """
         roots = list(roots)
         new: dict[int, int] = {}
         for index in self.order(roots):
@@ -437,7 +440,8 @@ class Terms:
         return int(_CONSTRUCTORS[kind](self, *operands))
 
     def without_signs_of_zero(self, roots: Iterable[int]) -> list[int]:
-        """Return terms simplified by -(a + b) = (-a) + (-b), which fails only in the sign of a sum that is zero."""
+        """Return the terms ``roots``, simplified by -(a + b) = (-a) + (-b); only the signs of zeros may change."""
+        # for -0 + 0 the two sides differ
         roots = list(roots)
         new: dict[int, int] = {}
         for index in self.order(roots):

@@ -1,6 +1,7 @@
 """The functions in a C text, each as a list of tokens; C that symrot does not emit raises an error.
 
-This module shares no code with the emitter, so that a mistake there cannot hide here.
+This module shares no code with the emitter, so that a mistake there cannot hide here. ``where`` is the name of a file,
+for error messages.
 """
 
 import re
@@ -104,7 +105,7 @@ class Cursor:
         return self.tokens[self.index - 1]
 
     def fail(self, expected: str, got: str = "") -> CertificateError:
-        """Return a CertificateError that names the line, the expected text, and ``got``, by default the text there."""
+        """Return a CertificateError that names the line, ``expected`` and ``got`` (default: the next token)."""
         at = min(self.index, len(self.tokens) - 1)
         if not got:
             got = repr(self.tokens[at].text) if 0 <= self.index < len(self.tokens) else "the end"

@@ -2,6 +2,7 @@
 
 Kernels in JavaScript use few words, so that replacing them gives C; other JavaScript is refused. Array sizes come from
 the C function of the same kernel. This module shares no code with the emitter.
+``where`` is the name of a file, for error messages.
 """
 
 import re

@@ -2,6 +2,7 @@
 
 Kernels in JAX use few words, so that replacing them gives C; other Python is refused. Array sizes come from the C
 function of the same kernel. This module shares no code with the emitter.
+``where`` is the name of a file, for error messages.
 """
 
 import re

@@ -1,6 +1,7 @@
 """The reader of emitted C: it returns the operations that the text performs, and refuses other C.
 
 A function works on one sample, or on a batch of many samples. This module shares no code with the emitter.
+``where`` is the name of a file, for error messages; ``scope`` has the names that are known at a line of the text.
 """
 
 from collections.abc import Mapping

@@ -73,8 +73,10 @@ class _ErrorPass:
         self.unit = 2.0 ** -DIGITS[self.precision]
 
     def rounded(self, exact: Array, factor: float = 1.0) -> tuple[Array, Array]:
-        """Return the intervals of computed values, and error bounds, of an operation with the ``exact`` results."""
-        # ``factor`` times half a unit in the last place of the largest exact result
+        """Return (intervals of the computed values, error bounds) of an operation with results in ``exact``.
+
+        An error is at most ``factor`` times half a unit in the last place of the largest result.
+        """
         error = intervals.half_ulp(intervals.magnitude(exact), self.precision) * factor
         if factor != 1.0:
             return intervals.widened(exact, error), error
@@ -88,8 +90,10 @@ class _ErrorPass:
         return self.centred.refined(node, operand_places(node), values, plain)
 
     def relative(self, exact: Array, units: float, least: float) -> tuple[Array, Array]:
-        """Return the intervals of computed values, and error bounds, of a function with a known relative error."""
-        # ``units`` unit roundoffs (2^-53 or 2^-24) of the largest exact value, plus ``least``
+        """Return (intervals of the computed values, error bounds) of a function with values in ``exact``.
+
+        An error is at most ``units`` unit roundoffs (2^-53 or 2^-24) of the largest value, plus ``least``.
+        """
         error = intervals.magnitude(exact) * (units * self.unit * (1 + 2.0**-20)) + least
         return intervals.widened(exact, error), error
 
@@ -114,8 +118,10 @@ def _constant(state: _ErrorPass, node: Node, operands: Sequence[Array]) -> tuple
 
 @cache
 def _constant_error(written: Fraction, precision: str, use_intended: bool) -> float:
-    """Return a bound of the distance between a constant of the C text, such as 0.3333, and its exact number, 1/3."""
-    # without ``use_intended``: to any number that rounds to the constant
+    """Return a bound of the distance between a constant of the C text, such as 0.3333, and its exact number, 1/3.
+
+    If ``use_intended`` is false, the exact number may be any that rounds to the constant.
+    """
     if is_short(written):
         return 0.0
     try:
@@ -259,7 +265,7 @@ GAP_CELLS = 8192
 def _gap_errors(own: OutputGraph, libm_ulp: float) -> tuple[Array, ...]:
     """Return error bounds of a function such as (x - sin x)/x^3 for 0 <= x <= GAP_END, cut into equal cells.
 
-    Entry i of array k is the bound on 2^k cells, from cell i on.
+    Entry i of array k is the bound on the 2^k cells that begin with cell i.
     """
     ends = np.linspace(0.0, GAP_END, GAP_CELLS + 1)
     boxes = np.stack([ends[:-1], ends[1:]])[:, None]

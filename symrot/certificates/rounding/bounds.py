@@ -484,7 +484,7 @@ def _check_precision(
 
 
 def error_at_point(task: BoundTask, at: Array) -> float:
-    """Return a task's error bound at the point ``at``, a lower limit for bounds on boxes that contain the point."""
+    """Return the error bound of a task at the single point ``at``; a bound on a box with this point is not smaller."""
     point = np.stack([at, at])[:, :, None]
     evaluation = evaluate(
         task.graph, point, np.full((len(task.graph.conditions), 1), -1, np.int8), task.region, task.libm_ulp

@@ -1,6 +1,6 @@
-"""Rounding bounds of a library kernel on its own box: a section of its certificate, and text for its header comment.
+"""Rounding bounds of a library kernel on the standard ranges of its inputs: for its certificate and header comment.
 
-Both come from the operations that are read from the C text, so that they agree.
+Both texts come from the operations that are read from the C text, so that they agree.
 """
 
 from collections.abc import Mapping

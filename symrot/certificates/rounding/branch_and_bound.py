@@ -97,7 +97,7 @@ class _BoundSearch:
         self.largest_value, self.turns = 0.0, False
 
     def evaluate(self, boxes: Array, decided: NDArray[np.int8]) -> Evaluation:
-        """Return the error bounds of boxes, given the branch of each condition on each box."""
+        """Return the error bounds of boxes; ``decided`` is the branch of each condition on each box."""
         count = boxes.shape[2]
         self.evaluations += count
         # CHUNK boxes at a time, to limit memory
@@ -115,7 +115,10 @@ class _BoundSearch:
         return Evaluation(*(np.concatenate([getattr(part, name) for part in chunks]) for name in _FIELDS))
 
     def parts(self, boxes: Array, decided: NDArray[np.int8]) -> _Parts:
-        """Return the boxes that contain allowed inputs, such as unit quaternions, each with its error bound."""
+        """Return the boxes that contain allowed inputs, such as unit quaternions, each with its error bound.
+
+        ``decided`` is the branch of each condition on each box.
+        """
         # each box is shrunk to the allowed inputs in it
         boxes = narrowed(boxes, self.region, self.graph.places)
         evaluation = self.evaluate(boxes, decided)
@@ -166,7 +169,7 @@ class _BoundSearch:
         return np.concatenate(boxes, axis=2), np.concatenate(decided, axis=1)
 
     def cut(self, parts: _Parts, branch: int) -> Array:
-        """Return the boxes of ``parts``, cut down to where their undecided condition takes ``branch``, 0 or 1."""
+        """Return the boxes of ``parts``, reduced to points at which the part's undecided condition takes ``branch``."""
         boxes = parts.boxes.copy()
         for number, (relation, i, j) in enumerate(self.graph.conditions):
             left, right = self.graph.nodes[i], self.graph.nodes[j]
@@ -192,7 +195,10 @@ class _BoundSearch:
     def best(
         self, parts: _Parts, relative: Array, otherwise: NDArray[np.int64]
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return, for each part, the input that it is best to halve, and the second best (-1 if not worth it)."""
+        """Return, for each part, the best input in which to halve it, and the second best input (or -1).
+
+        ``relative`` has the widths of the parts in each input; ``otherwise`` is the result if halving lowers no bound.
+        """
         # the best: shrinking its range lowers the bound most; ``relative``: widths relative to the whole box
         inputs, count = parts.boxes.shape[1:]
         middle = parts.boxes.mean(axis=0) + (parts.boxes - parts.boxes.mean(axis=0)) / SHRUNK
@@ -211,7 +217,6 @@ class _BoundSearch:
         # -1 if the gain of the second input is at most SECOND times the first gain
         second = np.argmax(gain, axis=1)
         worth = (gain[np.arange(count), second] > SECOND * (parts.bound - least)) & (least < parts.bound)
-        # ``otherwise``: the first input of a part whose bound no shrinking lowers
         return np.asarray(np.where(least < parts.bound, best, otherwise)), np.where(worth, second, -1)
 
 
@@ -263,7 +268,10 @@ def search(
 
 
 def _run_search(run: _BoundSearch, budget: int, target: float | None) -> SearchResult:
-    """Return the result of a search that ends when the bound is tight, or after ``budget`` evaluations."""
+    """Return the result of a search that ends when the bound is tight, or after ``budget`` evaluations.
+
+    With a ``target``, the search also ends when it is known whether the bound exceeds the target.
+    """
     graph, box = run.graph, run.box
     conditions = len(graph.conditions)
     parts = run.parts(box[:, :, None].copy(), np.full((conditions, 1), -1, np.int8))
@@ -279,7 +287,6 @@ def _run_search(run: _BoundSearch, budget: int, target: float | None) -> SearchR
             enough = max(enough, target)
         if parts.bound.max() <= enough or run.evaluations >= budget:
             break
-        # with a target, the search ends when it is known whether the bound exceeds it
         if target is not None and run.pointwise > target:
             break
         narrow = _narrow(run, batch)
@@ -302,8 +309,7 @@ def _narrow(run: _BoundSearch, parts: _Parts) -> NDArray[np.bool_]:
 
 
 def _spread(run: _BoundSearch, parts: _Parts) -> Array:
-    """Return, for each part, its width relative to the whole box, in the inputs on which its obstacle depends."""
-    # the largest of these widths
+    """Return how wide each part is, relative to the whole box: the largest width among the inputs of its obstacle."""
     width = np.where(run.width > 0, run.width, 1.0)
     relative = (parts.boxes[1] - parts.boxes[0]) / width[:, None]
     return np.asarray((relative * run.depends[np.maximum(parts.obstacle, 0)].T).max(axis=0, initial=0.0))

@@ -78,8 +78,10 @@ class CentredForms:
         )  # fmt: skip
 
     def close(self, node: Node, places: Sequence[int], error: Array | None) -> None:
-        """Append the mean value form of a node, with ``error``, the bound of the node's own rounding error, added."""
-        # ``places``: the indices of the node's operands; ``error`` is None for a node that is exact
+        """Append the mean value form of a node whose operands are the nodes ``places``.
+
+        ``error`` bounds the node's own rounding error and is added to the form; None means that the node is exact.
+        """
         form = self.waiting
         inputs, count = self.middle.shape
         zero = np.zeros(count)

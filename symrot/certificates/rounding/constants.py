@@ -28,7 +28,7 @@ class ExactRange:
 
     @classmethod
     def about(cls, value: Fraction) -> "ExactRange":
-        """Return a range that contains the exact number that ``value`` approximates to 2^-250."""
+        """Return a range that contains an exact number, such as pi; ``value`` approximates the number to 2^-250."""
         spare = SPARE * max(abs(value), Fraction(1))
         return cls(value - spare, value + spare)
 

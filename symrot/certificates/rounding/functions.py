@@ -152,13 +152,13 @@ _tangent_gap_factor = _EvenFunction(
 
 
 def tangent_gap_slope(x: Array) -> Array:
-    """Return intervals that contain the derivative of (sin x - x cos x)/x^3, which is ``tangent_gap``."""
+    """Return intervals that contain the derivative of ``tangent_gap``, (sin x - x cos x)/x^3."""
     # -x times j2(x)/x^2, which decreases from 1/15 at x = 0 until x = 5.7
     return negative(multiply_loosely(x, _tangent_gap_factor(x)))
 
 
 def sine_gap_slope(x: Array) -> Array:
-    """Return intervals that contain the derivative of (x - sin x)/x^3, which is ``sine_gap``."""
+    """Return intervals that contain the derivative of ``sine_gap``, (x - sin x)/x^3."""
     # -x I(x), where I(x), the integral of (1-s)^2 s sin(x s)/(2 x) over s from 0 to 1, decreases from 1/60 until x =
     # 4.4
     return negative(multiply_loosely(x, _sine_gap_factor(x)))
@@ -212,7 +212,10 @@ def _slope_at(a: Array, b: Array) -> Array:
 
 
 def arc_ratio_terms(s: Array, c: Array, radius: Array) -> tuple[Array, Array, Array]:
-    """Return intervals of atan2(s, c)/s and of its derivatives by s and by c, for s, c >= 0, not both 0."""
+    """Return intervals of atan2(s, c)/s and of its derivatives by s and by c, for s, c >= 0, not both 0.
+
+    ``radius`` has intervals of sqrt(s^2 + c^2).
+    """
     # With s = r sin(a) and c = r cos(a), these are 1/(r sinc a), -4 a g(2a)/(r sinc a)^2 and -1/r^2, which are finite
     # at a = 0; here g(x) = (x - sin x)/x^3 is ``sine_gap``.
     angle = np.clip(arc_tangent(s, c), 0.0, pi / 2 + SLACK)

@@ -39,7 +39,7 @@ def widened(values: Array, by: Array | float) -> Array:
 
 
 def hull(a: Array, b: Array) -> Array:
-    """Return the smallest intervals that contain both arguments."""
+    """Return the smallest intervals that contain the intervals ``a`` and ``b``."""
     return np.stack([np.minimum(a[0], b[0]), np.maximum(a[1], b[1])])
 
 

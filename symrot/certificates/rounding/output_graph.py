@@ -99,7 +99,7 @@ class OutputGraph:
 
     @cached_property
     def choices(self) -> tuple[tuple[str, bool], ...]:
-        """The conditions that compare rounded numbers: (text, whether their branches are equal modulo 2 pi)."""
+        """The conditionals that compare rounded numbers: (condition, whether its branches are equal modulo 2 pi)."""
         choices = []
         for number, (relation, i, j) in enumerate(self.conditions):
             if (self.exact[i] and self.exact[j]) or relation == "<":
@@ -235,10 +235,10 @@ class _GraphReader:
     def squares(self, index: int, depth: int = 0) -> list[tuple[int, int]] | None:
         """Return (x, roundings) for each term x^2 of a sum: (a, 2), (b, 3), (c, 3) for a^2 + (b^2 + c^2).
 
-        The result is None if it is no sum of squares.
+        The result is None for another operation. ``depth`` is the number of additions from here to the sum.
         """
         node = self.source[index]
-        # one rounding in the square, and one in each addition on the way to the sum (``depth``)
+        # one rounding in the square, and one in each addition
         if node[0] == "mul" and node[1] == node[2]:
             return [(node[1], depth + 1)]
         if node[0] == "add":

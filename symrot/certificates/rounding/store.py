@@ -88,8 +88,10 @@ class Store:
         self.memory: dict[str, SearchResult] = {}
 
     def get(self, key: str, with_table: bool = True) -> SearchResult | None:
-        """Return the bound stored under a key, or None if there is no such bound."""
-        # the table of bounds that comes with symrot
+        """Return the bound stored under a key, or None if there is no such bound.
+
+        If ``with_table`` is false, the table of bounds that comes with symrot is not searched.
+        """
         if with_table and key in table()["bounds"]:
             return _from_json(table()["bounds"][key])
         if key not in self.memory:

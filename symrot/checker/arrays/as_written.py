@@ -14,14 +14,14 @@ IMAGINARY = Node("name", "i")
 
 
 def has_arrays(sides: Sequence[Node]) -> bool:
-    """Return whether formulas call a function for quaternions or contain ``eye(4)``, which is written as 1."""
+    """Return whether formulas call a function for quaternions, such as ``qmul``, or contain ``eye(4)``."""
     # Pauli's matrices are computed as real 4 x 4 matrices
     nodes = [node for side in sides for _, node in walk(side)]
     return UNIT in nodes or any(node.kind == "call" and node.value in QUATERNION for node in nodes)
 
 
 def is_odd(sides: Sequence[Node]) -> bool:
-    """Return whether a repair, given by its sides, contains a term that no author writes, such as ``i^T``."""
+    """Return whether the two sides of a repair contain a term that no author writes, such as ``i^T``."""
     nodes = [node for side in sides for _, node in walk(as_written(side))]
     # the trace of a complex M is stored as two terms; an edit of one term alone leaves a ``trace(-i M)`` that cannot be
     # written as ``trace(M)`` again
@@ -29,13 +29,13 @@ def is_odd(sides: Sequence[Node]) -> bool:
 
 
 def _is_imaginary_trace(node: Node) -> bool:
-    """Return whether a formula is ``trace(-i M)``, which only stands for the imaginary part of ``trace(M)``."""
+    """Return whether a formula is ``trace(-i M)``, which stands for the imaginary part of ``trace(M)``."""
     inside = node.args[0].args[0] if node.value == "trace" and node.args[0].kind == "neg" else node
     return inside is not node and inside.kind == "product" and inside.args[0] == IMAGINARY
 
 
 def _trace(terms: Sequence[Node]) -> Node | None:
-    """Return ``trace(M)`` for the terms ``trace(M)/2`` and ``trace(-i M) i/2``, its two parts; None for other terms."""
+    """Return ``trace(M)`` for the two terms of ``trace(M)/2 + i*trace(-i M)/2``; None for other terms."""
     traces = [[factor for factor in term.args if factor.value == "trace"] for term in terms if term.kind == "product"]
     if len(terms) != 2 or [len(own) for own in traces] != [1, 1] or not _is_imaginary_trace(traces[1][0]):
         return None
@@ -47,7 +47,7 @@ def _trace(terms: Sequence[Node]) -> Node | None:
 
 
 def _determinant(factors: Sequence[Node]) -> Node | None:
-    """Return ``det(M)`` for the factors of ``1/2 (trace(M) trace(M) - trace(M M))``; None for other factors."""
+    """Return ``det(M)`` for the factors 1/2 and ``trace(M) trace(M) - trace(M M)``; None for other factors."""
     if len(factors) != 2 or factors[0] != Node("inv", None, (number(2),)) or factors[1].kind != "sum":
         return None
     square, *rest = factors[1].args
@@ -59,7 +59,9 @@ def _determinant(factors: Sequence[Node]) -> Node | None:
 
 
 def inverse_of(side: Node, source: str) -> Node | None:
-    """Return q if a side is the inverse of the quaternion q and its text ``source`` writes it as a power; else None."""
+    """Return q for a side ``conjugate(q)/dot(q, q)`` that the text ``source`` writes as a power, ``q^-1``; else
+    None.
+    """
     if not any(mark in source for mark in INVERSES) or side.kind != "product" or len(side.args) != 2:
         return None
     # ``q^{-1}`` is read as conjugate(q)/dot(q, q)
@@ -69,7 +71,7 @@ def inverse_of(side: Node, source: str) -> Node | None:
 
 
 def with_inverses(sides: Sequence[Node], source: str) -> list[Node]:
-    """Return the sides of a claim with ``q**(-1)`` for the formula of an inverse quaternion, ``q*/|q|^2``."""
+    """Return the sides with ``q**(-1)`` in place of ``conjugate(q)/dot(q, q)`` if ``source`` writes it as a power."""
     inner = [inverse_of(side, source) for side in sides]
     minus = negated(number(1))
     return [side if q is None else Node("power", None, (q, minus)) for side, q in zip(sides, inner, strict=True)]

@@ -1,6 +1,6 @@
 """Splitting formulas such as ``exp(i*x)`` into their real and imaginary parts, as trees.
 
-Two complex formulas are equal exactly if both their parts are.
+Two complex formulas are equal exactly if their real parts are equal and their imaginary parts are equal.
 """
 
 import re
@@ -57,7 +57,9 @@ def imaginary_unit(trees: Sequence[Node]) -> Node | None:
 
 
 def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node | None:
-    """Return the node of a letter i or j if its surroundings, such as ``|x + i*y|``, show the imaginary unit."""
+    """Return the node of a letter i or j that must be the imaginary unit, as i in ``|x + i*y|``; None if it need
+    not.
+    """
     own = next((node for node in nodes if (node.kind, node.value) == ("name", letter)), None)
     if own is None:
         return None
@@ -136,7 +138,7 @@ def substituted(tree: Node, numbers: Mapping[str, Node]) -> Node:
 
 
 def open_numbers(formulas: Sequence[Node], letter: str = "i") -> dict[str, Node]:
-    """Return complex numbers that nothing defines, such as z in ``|z|^2 = z z_bar``, each as ``Re_z + i*Im_z``.
+    """Return ``Re_z + i*Im_z`` for each complex number z that nothing defines, as in ``|z|^2 = z z_bar``.
 
     ``letter`` is the imaginary unit.
     """

@@ -29,7 +29,9 @@ MOST_ENTRIES, WIDTH = 81, 9
 
 
 def written_out(relation: Relation) -> tuple[Relation, str]:
-    """Return an equation with delta_ij or epsilon_ijk written out in components, and a note, empty for other equations.
+    """Return an equation with delta_ij or epsilon_ijk written out in components, and a note for the user.
+
+    Other equations are returned unchanged, with an empty note.
 
     Raises
     ------
@@ -64,7 +66,9 @@ def written_out(relation: Relation) -> tuple[Relation, str]:
 
 
 def component_of_cross(pair: Sequence[Node], index: str, used: str) -> Node | None:
-    """Return ``epsilon_ijk a_j b_k``, the component ``index`` of the cross product of the names ``pair``; else None."""
+    """Return ``epsilon_ijk a_j b_k``, the component i of a x b; ``pair`` is a and b, ``index`` is i. None unless both
+    are names.
+    """
     left, right = pair
     free = [letter for letter in "pqrskjlmni" if letter not in used + index]
     if left.kind != "name" or right.kind != "name" or len(free) < 2 or not re.fullmatch("[i-np-s]", index):
@@ -110,7 +114,7 @@ def _is_condition(left: Node, right: Node) -> bool:
 
 
 def _is_component(side: Node, other: Node) -> bool:
-    """Return whether ``side`` is a component such as v_i and ``other`` a formula without v, which so defines v."""
+    """Return whether ``side`` is a component such as v_i, and ``other`` a formula without v that defines it."""
     if not _indices(side) or _symbol(side):
         return False
     return str(side.value).rpartition("_")[0] not in {*_quantities(other)}
@@ -142,7 +146,7 @@ def _flat(factors: Sequence[Node]) -> Node:
 
 
 def _counts(term: Node) -> Counter[str]:
-    """Return how often each index occurs in a term; an index inside a square counts twice."""
+    """Return how often each index occurs in a term: i twice in ``a_i b_i`` and in ``a_i^2``."""
     counts: Counter[str] = Counter(_indices(term))
     for part in term.args:
         own = _free_counts(part) if term.value == "integral_over_body" else _counts(part)
@@ -164,7 +168,7 @@ def _once(counts: Counter[str]) -> Counter[str]:
 
 
 def _free(term: Node) -> tuple[str, ...]:
-    """Return the free indices of a term in alphabetical order, those that occur once: i and j for ``a_ik b_kj``."""
+    """Return the free indices of a term in alphabetical order: i and j for ``a_ik b_kj``."""
     counts = _counts(term)
     often = [index for index, count in counts.items() if count > 2]
     if often:
@@ -201,7 +205,7 @@ def _component(side: Node, values: Mapping[str, str]) -> Node:
 
 
 def _with_values(term: Node, values: Mapping[str, str]) -> Node:
-    """Return a term with the numbers ``values`` in place of its indices: A_12 for A_ij. A zero factor makes it zero."""
+    """Return a term with numbers in place of its indices: A_12 for A_ij and the ``values`` {"i": "1", "j": "2"}."""
     if term.kind == "call" and term.value == "integral_over_body":
         return replace(term, args=tuple(_as_coordinates(_component(part, values)) for part in term.args))
     if indices := _indices(term):

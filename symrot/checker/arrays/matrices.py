@@ -38,7 +38,9 @@ def matrices_of_entries(definitions: Sequence[tuple[str, Node]]) -> list[str]:
 
 
 def as_rotations(definitions: Sequence[tuple[str, Node]], names: Collection[str]) -> list[tuple[str, Node]]:
-    """Return definitions in which each matrix of ``names`` is a rotation instead of a matrix of any nine entries."""
+    """Return definitions in which each matrix of ``names`` is a rotation by free angles, not a matrix of nine free
+    entries.
+    """
     return [
         (name, _rotation(name, tree == matrix_of_entries(name, timed=True)) if name in names else tree)
         for name, tree in definitions
@@ -77,7 +79,9 @@ def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, .
 
 
 def _inverted_in_order(sides: Sequence[Node]) -> list[str]:
-    """Return the capital letters of ``(A B)^-1 = A^-1 B^-1``, whose order is wrong for matrices; else an empty list."""
+    """Return A and B for ``(A B)^-1 = A^-1 B^-1``, whose order is wrong for matrices; an empty list for other
+    equations.
+    """
     for side, other in (sides, sides[::-1]):
         base = side.args[0] if _is_inverse(side) else side
         if base is side or base.kind != "product" or other.kind != "product" or not all(map(_is_inverse, other.args)):
@@ -118,7 +122,7 @@ def _is_inverse(node: Node) -> bool:
 
 
 def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, bool]:
-    """Return the bold capital letters among ``vectors`` that are matrices, mapped to whether they depend on time."""
+    """Return the bold capital letters that are matrices, not vectors, each with True if it depends on time."""
     matrices: dict[str, bool] = {}
     nodes = [node for side in sides for _, node in walk(side)]
     for node in nodes:
@@ -139,7 +143,7 @@ def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, 
 
 
 def rate_matrices(relation: tuple[str, Node, Node]) -> dict[str, bool]:
-    """Return the matrices R of equations such as ``R' = skew(w) R``, mapped to whether R is a function of time."""
+    """Return {"R": True} for an equation such as ``R' = skew(w) R``; False if R does not depend on time."""
     matrices: dict[str, bool] = {}
     for side, other in (relation[1:], relation[:0:-1]):
         # R' is the derivative of R(t); R_dot is a symbol, beside a matrix R of plain symbols
@@ -162,7 +166,7 @@ def rate_matrices(relation: tuple[str, Node, Node]) -> dict[str, bool]:
 
 
 def without_time(node: Node, names: Collection[str]) -> Node:
-    """Return a tree with R in place of R(t) for matrices ``names``: their entries, not their names, depend on time."""
+    """Return a tree with R in place of R(t) for each matrix R in ``names``, whose entries depend on time."""
     if node.kind == "call" and node.value in names and node.args == (TIME,):
         return Node("name", node.value, (), node.span)
     return replace(node, args=tuple(without_time(child, names) for child in node.args))
@@ -196,7 +200,7 @@ def used_columns(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ..
 
 
 def _of_matrix(node: Node) -> Sequence[Node]:
-    """Return those arguments or factors of a node that must be matrices, such as A and B in ``A B A^T``."""
+    """Return the arguments or factors of a node that must be matrices, such as A and B in ``A B A^T``."""
     if node.kind == "transpose" or (node.kind == "call" and node.value in OF_MATRICES):
         return node.args
     if node.kind == "call" and node.value in ("cross", "dot") and all(side.kind == "product" for side in node.args):
@@ -216,7 +220,7 @@ def _of_matrix(node: Node) -> Sequence[Node]:
 
 
 def _of_form(factors: Sequence[Node]) -> list[Node]:
-    """Return the capital letters between a transposed column and a column, which are matrices: A in ``a^T A b``."""
+    """Return A for the factors of ``a^T A b``: the capital letters between a transposed column and a column."""
     first, *between, last = factors
     columns = [first.args[0] if first.kind == "transpose" else number(0), last]
     if not between or not all(column.kind == "name" and column.value[0].islower() for column in columns):
@@ -236,7 +240,9 @@ def _factors(node: Node) -> Iterator[str]:
 def with_lengths(
     relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]
 ) -> tuple[tuple[str, Node, Node], tuple[str, ...]]:
-    """Return a relation with lengths of vectors where only scalars fit, as in ``|a| |b| sin(x)``, and the vectors."""
+    """Return a relation with ``sqrt(dot(a, a))`` for a vector a where only a scalar fits, and the names of such
+    vectors.
+    """
     lengths = _Lengths(shapes)
     sign, left, right = relation
     left, right = lengths.read(left), lengths.read(right)

@@ -35,7 +35,7 @@ CALLS = ("sin", "cos", "sqrt", "Matrix", *OF_MATRICES)
 
 
 def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Relation, tuple[tuple[str, Node], ...]]:
-    """Return an equation of Pauli's matrices with scalars as multiples of the unit matrix, and its definitions.
+    """Return an equation of Pauli's matrices with ``2*eye(4)`` for a scalar 2, and the definitions of these matrices.
 
     Any other equation is returned unchanged, without definitions.
 
@@ -71,7 +71,7 @@ def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Rel
 
 
 def _is_product_of_matrices(node: Node) -> bool:
-    """Return whether a formula is a product with two of Pauli's matrices, or a power of one."""
+    """Return whether a formula is a product of two Pauli matrices, or a power of a Pauli matrix."""
     factors = [part for part in node.args if part.kind == "name" and part.value in NAMES]
     return (node.kind == "product" and len(factors) > 1) or (node.kind == "power" and bool(factors))
 

@@ -33,7 +33,7 @@ ENDINGS = ("_vec", "_v", "v")
 
 @dataclass(frozen=True)
 class Quaternions:
-    """The quaternions of an equation: their definitions, notes, and the equation with quaternion products."""
+    """The quaternions of an equation: their definitions, notes, and the equation with ``qmul(q, p)`` for products."""
 
     relation: tuple[str, Node, Node]
     definitions: tuple[tuple[str, Node], ...] = ()
@@ -44,7 +44,8 @@ class Quaternions:
 def used_quaternions(
     relation: tuple[str, Node, Node], vectors: Collection[str], shapes: Mapping[str, Shape], known: Collection[str]
 ) -> Quaternions:
-    """Return the quaternions of a relation, as q in ``q v q*``, and the relation with quaternion products.
+    """Return the quaternions that a relation uses, as q in ``q v q*``, and the relation with ``qmul(q, v)`` for
+    products.
 
     Parameters
     ----------
@@ -101,7 +102,7 @@ def _has_units(sides: Sequence[Node], others: Collection[str]) -> bool:
 
 
 def _of_units(relation: tuple[str, Node, Node]) -> Quaternions:
-    """Return an equation such as ``i j = k`` with quaternion products and with definitions of the units i, j, k."""
+    """Return the units i, j and k with their definitions, and the ``relation``, ``i j = k``, as ``qmul(i, j) = k``."""
     sign, left, right = relation
     reader = _Products(tuple(UNITS), set())
     sides = [reader.read(_without_squares(side)) for side in (left, right)]
@@ -114,7 +115,7 @@ def _of_units(relation: tuple[str, Node, Node]) -> Quaternions:
 
 
 def _by_components(relation: tuple[str, Node, Node], known: Collection[str]) -> Quaternions | None:
-    """Return an equation ``q = a + b i + c j + d k`` as that of q and the column ``[a, b, c, d]``, or None."""
+    """Return ``q = [a, b, c, d]``, a column, for an equation ``q = a + b i + c j + d k``; None for other equations."""
     sign, left, right = relation
     if left.kind != "name" or str(left.value)[0] not in LETTERS or {*UNITS, left.value} & {*known}:
         return None
@@ -127,9 +128,9 @@ def _by_components(relation: tuple[str, Node, Node], known: Collection[str]) -> 
 
 
 def _components(node: Node) -> tuple[list[Node], ...] | None:
-    """Return the terms without units of a formula, and the factors of i, j and k.
+    """Return [a], [s*x], [s*y], [] for ``a + s*(x*i + y*j)``: the terms without units, and the factors of i, j and k.
 
-    ``s*(x*i + y*j)`` gives [], [s*x], [s*y], [].
+    None if the formula is not linear in i, j and k.
     """
     if not {str(part.value) for _, part in walk(node) if part.kind == "name"} & {*UNITS}:
         return [node], [], [], []
@@ -202,7 +203,7 @@ def _quaternion_names(
                     add(factor)
         elif node.kind == "call" and node.value == CONJUGATE:
             add(node.args[0])
-    for factor in _turned(sides):
+    for factor in _turning_quaternion(sides):
         add(factor)
     used = {str(node.value) for node in everything if node.kind == "name"}
     for node in everything:
@@ -225,8 +226,8 @@ def _quaternion_names(
     return tuple(names)
 
 
-def _turned(sides: Sequence[Node]) -> Sequence[Node]:
-    """Return [q] if an equation's form shows a quaternion q, as ``v' = q v q`` or ``q' = 1/2 omega q``; else ()."""
+def _turning_quaternion(sides: Sequence[Node]) -> Sequence[Node]:
+    """Return [q] for an equation of a quaternion q such as ``q' = 1/2 omega q``; () for other equations."""
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         factors = [_bare(factor) for factor in other.args if factor.kind != "number" and factor.kind != "inv"]
         if other.kind != "product" or not all(factor.kind == "name" for factor in factors):
@@ -246,7 +247,9 @@ def _turned(sides: Sequence[Node]) -> Sequence[Node]:
 
 
 def _rotating(side: Node, other: Node) -> Node | None:
-    """Return the quaternion q if ``side`` is ``q v q^-1`` and ``other`` its vector, ``R v`` or ``v'``; else None."""
+    """Return q for a side ``q v q^-1`` if the ``other`` side is the rotated vector, written ``R v`` or ``v'``; else
+    None.
+    """
     if side.kind != "product" or len(side.args) != 3:
         return None
     # numbers commute: nobody would write such a product of numbers
@@ -268,7 +271,7 @@ def _is_inverse(node: Node) -> bool:
 
 
 def _vector_of_pair(node: Node) -> Sequence[Node]:
-    """Return [v] if a node is a quaternion written as a pair of a scalar and a vector, ``(0, v)``; otherwise []."""
+    """Return [v] for a quaternion written as a pair ``(0, v)`` of a number and a vector; [] for any other node."""
     inside = node.args[0] if node.kind == "call" and node.value == "Matrix" else node
     is_pair = inside.kind == "list" and len(inside.args) == 2 and inside.args[1].kind == "name"
     return inside.args[1:] if is_pair else ()
@@ -279,7 +282,7 @@ def _is_list(node: Node) -> bool:
 
 
 class _Products:
-    """A rewriter that finds products with quaternions in a tree and makes them Hamilton products."""
+    """A rewriter of trees that turns products of quaternions, ``q p``, into ``qmul(q, p)``."""
 
     def __init__(self, names: Sequence[str], vectors: set[str]) -> None:
         self.names, self.vectors = names, vectors
@@ -319,7 +322,9 @@ class _Products:
         return self.multiplied(node) if node.kind == "product" else node
 
     def is_rate(self, factor: Node) -> bool:
-        """Return whether a factor is an angular velocity by its name, and so far neither a quaternion nor a vector."""
+        """Return whether a factor has the name of an angular velocity, and is not yet known as a quaternion or
+        vector.
+        """
         return _is_angular(factor) and factor.value not in self.names and factor.value not in self.vectors
 
     def multiplied(self, node: Node) -> Node:
@@ -350,7 +355,7 @@ def _is_angular(node: Node) -> bool:
 
 
 def _of_one_shape(sides: Sequence[Node], shapes: Mapping[str, Shape]) -> tuple[Node, Node]:
-    """Return both sides in one shape: a scalar s equal to a quaternion becomes (s, 0, 0, 0)."""
+    """Return both sides with one shape: a scalar s becomes (s, 0, 0, 0) if the other side is a quaternion."""
     made = []
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         own, opposite = shape_of(side, shapes), shape_of(other, shapes)

@@ -1,6 +1,6 @@
-"""The matrix of a rotation that a text states by a quaternion, as R in ``q v q* = R v``.
+"""The matrix R of a rotation, from an equation such as ``R v = q v q*`` that states R by a quaternion q.
 
-The equation is meant for every vector v, so R is the matrix of the linear map on its other side.
+The equation holds for every vector v. So R is the matrix of the linear map from v to ``q v q*``.
 """
 
 from collections.abc import Collection
@@ -44,7 +44,7 @@ def as_matrix_of_map(relation: Relation, vectors: Collection[str], known: Collec
 
 
 def _is_image(image: Node, vector: Node) -> bool:
-    """Return whether ``image`` is the vector part of a product that contains ``vector`` once, as ``q v q*`` has v."""
+    """Return whether ``image`` is the vector part of a product, such as ``q v q*``, that contains ``vector`` v once."""
     # such a product is a linear map of the vector
     nodes = [node for _, node in walk(image)]
     return image.kind == "call" and image.value == "vector_part" and nodes.count(vector) == 1

@@ -1,4 +1,4 @@
-"""The atoms of formulas: the symbols, functions of time and derivatives on which the value of a formula depends."""
+"""The atoms of formulas: the symbols, functions of time and derivatives that occur in a formula."""
 
 from collections.abc import Iterable
 

@@ -35,11 +35,11 @@ class Definitions:
     Attributes
     ----------
     values : mapping
-        Symbols and definitions by name.
+        Name of a symbol or a definition -> its value.
     functions : frozenset of str
         Names of functions of time.
     divisors, radicands : tuple
-        Formulas in the definitions' texts that are divisors, and formulas under even roots there.
+        The divisors in the texts of the definitions, and the formulas under even roots in these texts.
     bases : tuple of Expr
         Bases of powers whose exponents are not numbers.
     """
@@ -70,21 +70,21 @@ class Claim:
     printed : str
         The decimal number that a document prints for ``value``.
     alternatives : tuple of Relation
-        Other equations that the text may stand for, if the document lost characters.
+        Other equations that the text may mean, for example if a document lost characters.
     implied : bool
         Whether undeclared names become real symbols and functions of time.
     sources : mapping
-        The texts that were read, by key, for error messages.
+        Key such as ``"define.0"`` -> the text that was read, for error messages.
     units : mapping
-        Units by name.
+        Name -> unit, ``{"x": "m"}``.
     notes : tuple of str
         Sentences about how the text is read.
     editable : tuple of str
-        The parts that repairs may change: ``"left"``, ``"right"``, and names of definitions. The other parts are what
-        the claim is measured against.
+        The parts that repairs may change: ``"left"``, ``"right"``, and names of definitions. They leave the other
+        parts as they are.
     has_parts : bool
-        Whether the text's equation was split: one of complex numbers into its real and imaginary parts, or one in
-        index notation into its components.
+        Whether the equation was split: a complex one into real and imaginary parts, or one in index notation into
+        components.
     context : Context
         Statements in words about the names of the claim and about the body, such as ``"rod"``.
     """
@@ -114,7 +114,7 @@ class Claim:
 
     @property
     def defining(self) -> dict[str, Node]:
-        """The names that hypotheses such as ``c1 == cos(alpha)`` define by a scalar formula, each with its formula."""
+        """The scalar formulas by which hypotheses define names: {"c1": cos(alpha)} for ``c1 == cos(alpha)``."""
         definitions: dict[str, Node] = {}
         for sign, left, right in self.hypotheses:
             inside = {str(node.value) for _, node in walk(right) if node.kind in ("name", "call")}
@@ -123,7 +123,9 @@ class Claim:
         return definitions
 
     def with_definitions(self, value: Any) -> Any:
-        """Return a SymPy value with the formulas that hypotheses define in place of names: ``cos(alpha)`` for c1."""
+        """Return a SymPy value with ``cos(alpha)`` for c1, if a hypothesis defines ``c1 == cos(alpha)``; likewise other
+        names.
+        """
         interpreter = self.interpreter()
         for name, tree in self.defining.items():
             value = value.xreplace({interpreter.read(Node("name", name)): interpreter.read(tree)})
@@ -131,7 +133,9 @@ class Claim:
 
     @property
     def expanded(self) -> "Claim":
-        """The claim with the formulas that hypotheses define in place of names, without these hypotheses."""
+        """The claim without hypotheses that are definitions: ``c1 == x`` with ``c1 == cos(alpha)`` becomes ``cos(alpha)
+        == x``.
+        """
         definitions = self.defining
         if self.relation is None or not definitions:
             return self
@@ -157,9 +161,7 @@ class Claim:
         return f"{self.id}: {key}" if self.id else ""
 
     def with_relation(self, relation: Relation, **changes: Any) -> "Claim":
-        """Return the claim with another equation, and with ``changes`` of other fields, which must leave
-        definitions unchanged.
-        """
+        """Return the claim with another equation, and with ``changes`` of other fields except the definitions."""
         other = replace(self, relation=relation, **changes)
         if "definitions" in self.__dict__:
             # computed values of definitions are reused
@@ -183,7 +185,7 @@ class Claim:
         Raises
         ------
         InputError
-            For a definition that has no value in SymPy, with its place.
+            If a definition has no value in SymPy; the message gives its position.
         """
         interpreter = Interpreter(implied=self.implied, functions=set(self.functions))
         values = interpreter.values
@@ -220,7 +222,7 @@ class Claim:
         Raises
         ------
         InputError
-            For a piece that has no value in SymPy, with its place.
+            If a part of the claim has no value in SymPy; the message gives its position.
         """
         assert self.relation is not None
         interpreter = self.interpreter()
@@ -258,7 +260,7 @@ def relation_text(relation: Relation) -> str:
 
 
 def _differences(left: Any, right: Any, where: str) -> list[Expr]:
-    """Return the differences left - right of a hypothesis that is an equation, one for each entry of a matrix."""
+    """Return left - right of a hypothesis that is an equation: one formula, or one for each entry of a matrix."""
     try:
         lefts, rights, _ = matched_sides(left, right)
     except ShapeMismatch:
@@ -267,9 +269,7 @@ def _differences(left: Any, right: Any, where: str) -> list[Expr]:
 
 
 def assumed_names(hypotheses: Sequence[Relation], sign: str) -> set[str]:
-    """Return the names that hypotheses assume to be positive, as ``x > 0`` does; with the sign ">=", to be
-    nonnegative.
-    """
+    """Return the names x of hypotheses ``x > 0``, or of ``x >= 0`` for the ``sign`` ">="."""
     mirrored = {">": "<", ">=": "<="}[sign]
     zero = ("number", 0)
     names = set()

@@ -21,10 +21,9 @@ __all__ = ["as_functions", "is_rule"]
 
 
 def as_functions(claim: Claim) -> Claim | None:
-    """Return a claim with functions of time for the letters that it differentiates: ``diff(x(t), t)`` for
-    ``diff(x, q)``.
+    """Return a rule of differentiation with q renamed to t and x to x(t): ``diff(x(t), t)`` for ``diff(x, q)``.
 
-    None if there are no such letters.
+    None for other claims.
     """
     assert claim.relation is not None
     sign, *sides = claim.relation
@@ -94,6 +93,8 @@ def _plain(value: Expr) -> Expr:
 
 
 def _is_of_formula(derivative: Node) -> bool:
-    """Return whether a derivative is that of a sum, product or power without further derivatives: ``diff(x*y, t)``."""
+    """Return whether a derivative is that of a sum, product or power, as ``diff(x*y, t)``, with no derivative
+    inside.
+    """
     inner = derivative.args[0]
     return inner.kind in ("sum", "product", "power") and not any(is_derivative(node) for _, node in walk(inner))

@@ -40,9 +40,7 @@ function."""
 
 
 def _of_scalar(function: Callable[[Expr], Expr], below: Callable[[Expr], Expr] | None = None) -> Any:
-    """Return a function that evaluates calls of a scalar function: it turns the tree of ``tan(x)`` into SymPy's
-    tan(x).
-    """
+    """Return a function that turns the tree of a call such as ``tan(x)`` into SymPy's tan(x)."""
 
     def call(scope: Scope, node: Node) -> Expr:
         value = scope.argument(node.args[0], f"as the argument of {node.value}")
@@ -247,8 +245,8 @@ def _of_blocks(scope: Scope, node: Node, rows: Any) -> ImmutableMatrix:
 
 
 def _block(cell: Any, height: int, width: int) -> ImmutableMatrix | None:
-    """Return an entry of a block matrix ``[[A, b], [0, 1]]`` as a matrix of the given size; None if its size
-    differs.
+    """Return an entry of a block matrix ``[[A, b], [0, 1]]`` as a matrix of ``height`` x ``width``; None if it does not
+    fit.
     """
     # a scalar 0 stands for a zero matrix of any size
     if cell == 0 and not is_matrix(cell):
@@ -268,7 +266,7 @@ def _qmul(scope: Scope, node: Node) -> ImmutableMatrix:
 
 
 def _quaternion(scope: Scope, node: Node) -> ImmutableMatrix:
-    """Return the four components of the quaternion that a tree means, scalar first; a vector gets the scalar part 0."""
+    """Return the four components of a quaternion, scalar part first; a vector v gives 0 and the components of v."""
     value = scope.evaluate(node)
     if isinstance(value, tuple):
         value = _of_blocks(scope, node, value)
@@ -351,7 +349,7 @@ COORDINATES = re.compile(r"[xyzr]|xi|eta|zeta|[rs]_[xyz123]")
 
 
 def _integral_over_body(scope: Scope, node: Node) -> Any:
-    """Return an integral over a body of unknown shape, such as ∫ x^2 dm, with one new symbol per product of
+    """Return an integral such as ∫ x^2 dm over a body of unknown shape: a new symbol for each product of
     coordinates.
     """
     value = scope.evaluate(node.args[0])

@@ -53,9 +53,8 @@ class NamedFormula(NamedTuple):
 
 
 def named_formula(claim: Claim) -> NamedFormula | None:
-    """Return T and its formula for a claim such as ``T = m v^2/2``, or None.
-
-    Nothing else in the claim may define T.
+    """Return T and its formula for a claim such as ``T = m v^2/2``; None if T has a definition, and for other
+    claims.
     """
     assert claim.relation is not None
     _, left, right = claim.relation
@@ -74,7 +73,9 @@ def named_formula(claim: Claim) -> NamedFormula | None:
 
 
 def open_formula(claim: Claim) -> NamedFormula | None:
-    """Return both sides of an equation for an unknown function L, such as ``diff(L, q) == 0``, or None."""
+    """Return both sides of an equation for an unknown function L, such as ``diff(L, q) == 0``; None for other
+    claims.
+    """
     assert claim.relation is not None
     _, left, right = claim.relation
     if not claim.implied or claim.hypotheses:
@@ -119,10 +120,7 @@ def _depends_on_time(derivative: Node) -> bool:
 
 
 def related_formula(claim: Claim) -> NamedFormula | None:
-    """Return the formula of a claim that holds only by the meaning of its letters, such as ``k^2 = I/m``.
-
-    None for an identity.
-    """
+    """Return an equation such as ``k^2 = I/m``, true only if its letters mean certain quantities; otherwise None."""
     assert claim.relation is not None
     left, right = _without_common_factors(*claim.relation[1:])
     known = _known(claim)
@@ -183,7 +181,9 @@ def _has_hidden_zero(claim: Claim, left: Node, right: Node) -> bool:
 
 
 def _says_something(claim: Claim, left: Node, right: Node) -> bool:
-    """Return whether both sides depend on letters, as neither ``z/z`` nor ``sin(a)^2 + cos(a)^2`` does."""
+    """Return whether the value of both sides depends on letters; that of ``z/z`` and of ``sin(a)^2 + cos(a)^2`` does
+    not.
+    """
     try:
         values = [claim.interpreter().read(side) for side in (left, right)]
         forms = [value if is_matrix(value) else normal_form(value) for value in values]
@@ -194,7 +194,7 @@ def _says_something(claim: Claim, left: Node, right: Node) -> bool:
 
 
 def _solved_for_vector(claim: Claim, left: Node, right: Node) -> NamedFormula | None:
-    """Return the formula that an equation gives for one of its vectors, v in ``v - u = w x r``, or None."""
+    """Return a vector of an equation and its formula: v and ``u + w x r`` for ``v - u = w x r``; or None."""
     terms = [*_terms(left), *map(negated, _terms(right))]
     generic = {name for name, tree in claim.define if is_components(name, tree)}
     everywhere = [node.value for term in terms for _, node in walk(term) if node.kind == "name"]
@@ -222,9 +222,7 @@ def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, boo
 
 
 def _letters_by_definition(claim: Claim, left: Node, right: Node) -> list[set[tuple[str, bool]]]:
-    """Return the quantities in ``F == k*x`` after the line ``F = m*a``, {m, a} and {k, x}; empty sets without such
-    a line.
-    """
+    """Return the quantities of each side with definitions put in: {m, a} and {k, x} for ``F == k*x`` if ``F = m*a``."""
     defined = {name: tree for name, tree in claim.define if not is_components(name, tree)}
     if left.value not in defined:
         return [set(), set()]
@@ -356,7 +354,7 @@ def _quantities(tree: Node) -> set[tuple[str, bool]]:
 
 
 def solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
-    """Return the only quantity in one side of an equation, k in ``2*k^2``, and a function that solves for it; or
+    """Return the only quantity of a side, k in ``2*k^2``, and a function from the other side to a formula for k; else
     None.
     """
     steps: list[Solve] = []
@@ -410,7 +408,7 @@ def _after(steps: Sequence[Solve], tree: Node) -> Node:
 
 
 def _without_common_factors(left: Node, right: Node) -> tuple[Node, Node]:
-    """Return both sides without the letters that are factors of both, as m in ``m*v**2/2 == m*g*h``."""
+    """Return both sides without the letters that are factors of both sides, as m in ``m*v**2/2 == m*g*h``."""
     factors = [list(side.args) if side.kind == "product" else [side] for side in (left, right)]
     for factor in [*factors[0]]:
         if factor in factors[1] and _is_name(factor) and _quantities(factor):
@@ -420,10 +418,7 @@ def _without_common_factors(left: Node, right: Node) -> tuple[Node, Node]:
 
 
 def _equation_of_motion(left: Node, right: Node) -> NamedFormula | None:
-    """Return the highest derivative in a linear differential equation, with its formula; or None.
-
-    ``m*x'' + k*x = 0`` gives x'' and ``-k*x/m``.
-    """
+    """Return x'' and its formula ``-k*x/m`` for a linear differential equation ``m*x'' + k*x = 0``; or None."""
     terms = [*_terms(left), *map(negated, _terms(right))]
     derivatives = {node for term in terms for _, node in walk(term) if is_derivative(node)}
     order = max((len(node.args) for node in derivatives), default=0)

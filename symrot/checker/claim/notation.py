@@ -90,7 +90,7 @@ class TypedNotation:
         return replace(node, args=tuple(args))
 
     def _in_full(self, node: Node) -> Node:
-        """Return a formula inside ``diff(..)`` with ``f(t)`` for a function f of time; f alone would be a constant."""
+        """Return a formula with ``f(t)`` for each function f of time, as it must be written inside ``diff(..)``."""
         name = self.spelling.get(str(node.value), node.value) if node.kind in ("name", "call") else node.value
         return replace(node, value=name, args=tuple(map(self._in_full, node.args)))
 
@@ -118,8 +118,8 @@ class TypedNotation:
 
 
 def with_formulas(source: str, formula: Callable[[Node], str], signs: Mapping[str, str]) -> str:
-    """Return a condition such as ``0 <= x <= pi and y > 0`` in another notation, with ``signs`` for signs such as
-    ``==``.
+    """Return a condition such as ``0 <= x**2`` in another notation: formulas as ``formula`` writes them, signs by
+    ``signs``.
     """
     pieces = SIGN.split(source)
     try:
@@ -141,7 +141,7 @@ def decimal(value: Fraction) -> str:
 
 
 def notation_of(reading: Reading) -> TypedNotation:
-    """Return the notation in which the text of a reading (one interpretation of a typed text) is written."""
+    """Return the notation, SymPy syntax or plain text, in which the text of a reading (interpretation) was typed."""
     return TypedNotation(reading.plain, dict(reading.spelling), reading.timed)
 
 
@@ -163,7 +163,7 @@ def _is_over_digit(node: Node) -> bool:
 
 
 def _is_rate_of_name(node: Node) -> bool:
-    """Return whether a derivative is the time derivative of a single name, as ``diff(q, t)`` is."""
+    """Return whether a derivative is the time derivative of a single name, ``diff(q, t)``."""
     # it is printed q'
     return node.args[0].kind == "name" and all((a.kind, a.value) == ("name", "t") for a in node.args[1:])
 

@@ -23,8 +23,8 @@ USUAL_QUANTITIES = frozenset("mMgGhlLrRvFkTVUKJHNpqsabdcw")
 
 
 def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
-    """Return the letters among I and E that name a moment of inertia or an energy here, not SymPy's numbers i and
-    e.
+    """Return those of the letters I and E that name a moment of inertia or an energy in ``trees``, not the numbers i
+    and e.
     """
     nodes = [node for tree in trees for _, node in walk(tree)]
     names = {

@@ -1,8 +1,8 @@
-"""The reader of claims: it parses text into trees, without Python's ``eval`` and without SymPy.
+"""The reader of claims: from text to trees, without Python's ``eval`` and without SymPy.
 
-It reads SymPy syntax, such as ``left == right`` with ``Matrix([[..], [..]])``, and formulas as people type them, such
-as ``2x``, ``sin^2 x`` and ``ω₁``. Typed formulas may have several readings (interpretations), the usual one first.
-InputError tells the position where a text is unreadable.
+It reads SymPy syntax, and formulas as people type them, such as ``2x``. A typed text may have several interpretations
+(readings), as ``1/2m`` has. Each ambiguous piece of a text has a key (kind, position); ``flips`` are the keys of the
+pieces with their less usual meaning.
 """
 
 import re
@@ -43,7 +43,7 @@ LONGEST_TEXT = 20_000
 MOST_PIECES = 5_000
 MOST_READINGS = 6
 MOST_DOUBTS = 40
-"""The most readings of one text, and the most ambiguous places of a text that are examined."""
+"""The most readings of one text, and the most ambiguous pieces of a text that are examined."""
 
 DOT_OF_PRODUCTS = ("(", None, None, ")", "·", "(", None, None, ")")
 """The tokens of ``(R a)·(R b)``, with None in place of each name."""
@@ -56,9 +56,7 @@ Relation = tuple[str, Node, Node]
 
 @dataclass(frozen=True)
 class Declared:
-    """The names of symbols and functions of time that a claim declares. None of them is split, as ``mgl`` is into
-    m g l.
-    """
+    """The names of symbols and functions of time that a claim declares: a declared ``mgl`` is not split into m g l."""
 
     symbols: Collection[str] = ()
     functions: Collection[str] = ()
@@ -75,7 +73,7 @@ class Chain:
     signs : tuple of str
     sides : tuple of Node
     both_signs : bool
-        Whether the typed line has a sign ±; it then stands for two lines, and this is one of them.
+        Whether this is one of the two lines that a typed line with ± stands for.
     """
 
     signs: tuple[str, ...]
@@ -105,7 +103,7 @@ class Reading:
     plain : bool
         Whether the text uses notation that is not SymPy syntax.
     doubts : tuple of Doubt
-        The ambiguous places of the text.
+        The ambiguous pieces of the text.
     notes : tuple of str
         Sentences about how the text is read.
     spelling : dict
@@ -113,9 +111,9 @@ class Reading:
     timed : frozenset of str
         Names that are functions of time.
     vectors : mapping of str to bool
-        Names that are vectors because of the way in which they are used; True for one with a hat.
+        Names that the text uses as vectors; True for a name with a hat.
     flipped : tuple of str
-        The excerpts of the text to which this reading gives their less usual meaning.
+        The ambiguous pieces of the text that have their less usual meaning in this reading.
     """
 
     lines: tuple[Chain, ...]
@@ -158,17 +156,16 @@ class _Text:
     def read(
         self, whole: bool, as_sympy: bool, flips: Collection[tuple[str, int]] = (), one_side: bool = False
     ) -> Reading:
-        """Return the reading (interpretation) of the text in which the ambiguous places ``flips`` have their less
-        usual meaning.
+        """Return the reading (interpretation) of the text in which the pieces ``flips`` have their less usual meaning.
 
         Parameters
         ----------
         whole : bool
             True to keep a word such as ``mgl`` as one name; False to split it into names where that is usual.
         as_sympy : bool
-            Whether ``dx/dt`` is a quotient of two names.
+            Whether ``dx/dt`` is a quotient of two names, not a derivative.
         flips : collection of (str, int)
-            The keys of ambiguous places (:class:`Doubt`) that get their less usual meaning.
+            The keys of ambiguous pieces (:class:`Doubt`) that get their less usual meaning.
         one_side : bool
             Whether the text is a formula without a relation.
         """
@@ -237,9 +234,10 @@ class _Text:
     def words(
         self, alone: Collection[str], flips: Collection[tuple[str, int]], vectors: Collection[str]
     ) -> tuple[dict[str, tuple[str, ...]], list[str], list[Doubt]]:
-        """Return the words that are products of names, as mgl is of m, g and l, notes on them, and the ambiguous
+        """Return the factors of each word that is a product, {"mgl": ("m", "g", "l")}, notes, and the ambiguous
         words.
         """
+        # ``alone``: names that no bracket follows, so that they are no functions
         words: dict[str, tuple[str, ...]] = {}
         notes, doubts = [], []
         short = {self.tokens[form.place].text for form in shorthands_of_letters(self.tokens)}
@@ -265,7 +263,6 @@ class _Text:
                 continue
             doubt = Doubt(("word" if usual else "name", start), word)
             doubts.append(doubt)
-            # flips holds the ambiguous words with their less usual meaning
             if usual != (doubt.key in flips):
                 alone |= {piece for piece in pieces if piece in ("x", "y", "z")}
                 words[word] = pieces
@@ -294,9 +291,8 @@ class _Text:
     def without_shorthand(
         self, tokens: list[Token], flips: Collection[tuple[str, int]], notes: list[str], doubts: list[Doubt]
     ) -> list[Token]:
-        """Return tokens in which cos(θ) and sin(θ) replace the short forms cθ and sθ.
-
-        New notes and ambiguous places are added to ``notes`` and ``doubts``.
+        """Return tokens with ``cos(θ)`` for the short form ``cθ`` and ``sin(θ)`` for ``sθ``; extend ``notes`` and
+        ``doubts``.
         """
         short = [form for form in shorthands(tokens) if tokens[form.place].text not in self.declared.symbols]
         if not short:
@@ -320,17 +316,18 @@ class _Text:
         return tokens
 
     def with_indices(self, tokens: list[Token], flips: Collection[tuple[str, int]], doubts: list[Doubt]) -> list[Token]:
-        """Return tokens with the name omega_p for ``ωp`` on the left of an equation, where it is not ω times p."""
+        """Return tokens in which ``ωp``, if it is a whole left side, is one name omega_p instead of ω times p."""
         padded = [None, *tokens]
         for place in range(len(tokens) - 3, -1, -1):
             before, first, second, after = padded[place], *tokens[place : place + 3]
             greek = first.kind == second.kind == "name" and first.text in GREEK_WORDS and first.end == first.start + 1
             whole = (before is None or first.breaks) and after.text in SIGNS
+            # ωi and ωf anywhere, if both occur
             if greek and second.tight and second.text in FIRST_AND_LAST and self.has_first_and_last(first.text):
                 whole = True
             if not greek or not whole or not second.tight or len(second.text) > 1 or first.text == "pi":
                 continue
-            # flips holds the ambiguous places with their less usual meaning, here the product
+            # the less usual meaning is the product
             doubt = Doubt(("index", first.start), self.source[first.start : second.end])
             doubts.append(doubt)
             if doubt.key not in flips:
@@ -370,8 +367,8 @@ class _Text:
 
     @staticmethod
     def is_comma_between(line: Sequence[Token], token: Token, tokens: Sequence[Token]) -> bool:
-        """Return whether ``token`` is a comma between two equations, as in ``a = b, c = d``; ``line`` holds the
-        tokens of a = b.
+        """Return whether ``token`` is a comma between two equations, as in ``a = b, c = d``; ``line`` holds ``a =
+        b``.
         """
         if token.text != "," or not any(piece.text in SIGNS for piece in line):
             return False
@@ -427,8 +424,8 @@ def _alone(tokens: Sequence[Token], vectors: Collection[str]) -> Iterator[str]:
 
 
 def _is_cross(before: Token | None, token: Token, after: Token, factor: Token, vectors: Collection[str]) -> bool:
-    """Return whether ``token`` is an x that means a cross product, as in ``r x v``; ``before`` and ``factor`` are
-    r and v.
+    """Return whether ``token`` is an x that means a cross product, as in ``r x v``; ``before`` is r, ``factor`` is
+    v.
     """
     if token.text != "x" or not token.spaced or not after.spaced or before is None:
         return False
@@ -437,7 +434,7 @@ def _is_cross(before: Token | None, token: Token, after: Token, factor: Token, v
 
 
 def _crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collection[tuple[str, int]]) -> Iterator[str]:
-    """Yield the names next to ``×`` or to an x that means a cross product: they are vectors."""
+    """Yield the names next to a cross product's sign, ``×`` or an x: they are vectors."""
     alone = set(_alone(tokens, vectors))
     padded = [*tokens, tokens[-1]]
     # a text with rates would make functions of time of the names in cross(a, b)
@@ -462,7 +459,7 @@ def _crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collectio
 
 
 def _without_totals(tokens: list[Token]) -> tuple[list[Token], list[str]]:
-    """Return tokens without the sum signs of totals such as ``ΣM_x``, and a note on each."""
+    """Return tokens with M_x for a total ``ΣM_x``, without the sum sign, and a note on each total."""
     others, notes = [], []
     for token, after in zip(tokens, [*tokens[1:], tokens[-1]], strict=True):
         # the total of all torques is one quantity, named M_x
@@ -475,7 +472,7 @@ def _without_totals(tokens: list[Token]) -> tuple[list[Token], list[str]]:
 
 
 def _marked(tokens: Sequence[Token]) -> Iterator[str]:
-    """Yield the names that their notation shows to be vectors, such as ``a`` with a hat, ``[n]×`` or ``a . b``."""
+    """Yield the names that signs show to be vectors, such as ``a`` with a hat, ``[n]×`` or ``a . b``."""
     triples = list(zip(tokens, tokens[1:], tokens[2:], strict=False))
     yield from _by_angle(tokens)
     lengths = {name.text for left, name, right in triples if left.text == right.text == "|" and name.kind == "name"}
@@ -509,7 +506,7 @@ SCALARS = ("m", "I", "J", "t")
 
 
 def _by_angle(tokens: Sequence[Token]) -> Iterator[str]:
-    """Yield the two letters of a scalar product that is equated to their lengths, as in ``F·d = F d cos θ``."""
+    """Yield F and d for ``F·d = F d cos θ``: a scalar product that equals the product of both lengths."""
     sides: list[list[str]] = [[]]
     for token in tokens:
         if token.text in ("=", "=="):
@@ -546,7 +543,7 @@ def _listed(words: Sequence[str]) -> str:
 
 
 def _finished(node: Node, timed: Collection[str], vectors: Collection[str], parent: str = "") -> Node:
-    """Return the final tree of a typed formula: functions of time become ``f(t)``, lists become matrices."""
+    """Return the final tree of a typed formula: ``f(t)`` for the names ``timed``, and matrices for lists."""
     # vectors stay without (t), and their squares become scalar products
     if node.kind in ("name", "call") and node.value in vectors:
         return Node("name", node.value, (), node.span)
@@ -569,7 +566,7 @@ def _finished(node: Node, timed: Collection[str], vectors: Collection[str], pare
 
 
 def with_time(node: Node, names: Collection[str]) -> Node:
-    """Return a tree in which the names that depend on time are written ``f(t)``."""
+    """Return a tree with ``f(t)`` for each name f in ``names``."""
     if node.kind == "name" and node.value in names:
         return Node("call", node.value, (TIME,))
     if node.kind == "call" and node.value in names:
@@ -620,9 +617,9 @@ def _readings(text: _Text, one_side: bool) -> Iterable[Reading]:
 
 
 def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
-    """Yield the readings (interpretations) of a text that is not SymPy syntax: the usual one first.
+    """Yield the readings of a text that is not SymPy syntax, the usual one first.
 
-    If ``required``, an unreadable text raises InputError.
+    Raise InputError for an unreadable text if ``required``.
     """
     try:
         yield from each_reading(lambda flips: text.read(False, False, flips, one_side))
@@ -632,10 +629,7 @@ def _typed(text: _Text, one_side: bool, required: bool) -> Iterator[Reading]:
 
 
 def each_reading(read: Callable[[Collection[tuple[str, int]]], Reading]) -> Iterator[Reading]:
-    """Yield the readings (interpretations) of a text that ``read(flips)`` returns: the usual one first.
-
-    ``flips`` are keys of ambiguous places with their less usual meaning.
-    """
+    """Yield the usual reading ``read(())`` of a text, then ``read(flips)`` for other sets of keys ``flips``."""
     usual = read(())
     yield usual
     keys = list(dict.fromkeys(doubt.key for doubt in usual.doubts))[:MOST_DOUBTS]
@@ -663,7 +657,7 @@ def distinct_readings(readings: Iterable[Reading]) -> list[Reading]:
 
 
 def _only(readings: Sequence[Reading], source: str, where: str, rates: bool = False) -> Reading:
-    """Return the usual reading (interpretation) of a text, or raise InputError if the text is ambiguous."""
+    """Return the usual reading of a text; raise InputError if the text is ambiguous, except for primes if ``rates``."""
     usual = readings[0]
     # with ``rates``, x' is always the rate of x, and no prime is ambiguous
     doubts = [doubt for doubt in usual.doubts if not (rates and doubt.key[0] == "prime")]
@@ -708,7 +702,9 @@ def read_expression(source: str, where: str = "", declared: Declared | None = No
 
 
 def read_relation(source: str, where: str = "", declared: Declared | None = None, rates: bool = False) -> Relation:
-    """Return (sign, left, right) of an equation or inequality; with ``rates``, ``x'`` is always the rate of x.
+    """Return (sign, left, right) of an equation or inequality.
+
+    If ``rates``, ``x'`` is the rate of x; otherwise a prime is ambiguous.
 
     Raises
     ------
@@ -734,8 +730,8 @@ def read_relation(source: str, where: str = "", declared: Declared | None = None
 
 
 def _strict(text: _Text, one_side: bool) -> tuple[Reading | None, InputError | None]:
-    """Return the reading (interpretation) of a text as SymPy syntax, or None, and the error of an unreadable text,
-    or None.
+    """Return (reading, None) for SymPy syntax, (None, error) for an unreadable text, (None, None) for a typed one,
+    ``2x``.
     """
     try:
         strict = text.read(whole=True, as_sympy=True, one_side=one_side)

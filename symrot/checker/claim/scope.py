@@ -21,7 +21,7 @@ MOST_BITS_FACTORED = 64
 
 @dataclass(frozen=True)
 class Divisor:
-    """A formula that a claim divides by, as a SymPy expression, and its place in the tree."""
+    """A divisor in the text of a claim: its SymPy formula, and its position in the tree."""
 
     value: Expr
     node: Node
@@ -45,7 +45,7 @@ class Scope(ABC):
     source, where : str
         The text being read and its place, for error messages.
     values : dict
-        Symbols and definitions by name.
+        Name of a symbol or a definition -> its value.
     functions : set of str
         Functions of time.
     implied : bool
@@ -82,28 +82,28 @@ class Scope(ABC):
     def evaluate(self, node: Node) -> Any:
         """Return the value of a tree: Expr, ImmutableMatrix or a tuple of such values."""
 
-    def scalar(self, node: Node, of: str) -> Expr:
+    def scalar(self, node: Node, role: str) -> Expr:
         value = self.evaluate(node)
         if is_matrix(value) or isinstance(value, tuple):
             actual = "a list" if isinstance(value, tuple) else described(value)
-            raise self.fail(node, f"a scalar {of} instead of {actual}")
+            raise self.fail(node, f"a scalar {role} instead of {actual}")
         return value
 
-    def argument(self, node: Node, of: str) -> Expr:
-        """Return the value of ``node``, the argument of a function; InputError if it is no scalar, or nested too
-        deeply.
+    def argument(self, node: Node, role: str) -> Expr:
+        """Return the scalar ``node``, an argument of a function; raise InputError for another value or too deep
+        nesting.
         """
-        # ``of`` is for the message, such as "as the argument of sin"
-        value = self.scalar(node, of)
+        # ``role`` is for the message, such as "as the argument of sin"
+        value = self.scalar(node, role)
         self.within_nesting(value, node)
         return value
 
     def within_nesting(self, value: Expr, node: Node) -> None:
-        """Raise InputError if one more function or root around the value would exceed the limit on nesting."""
+        """Raise InputError if another function or root around ``value`` would be nested too deeply."""
         if nesting(value) >= MOST_NESTED:
             raise self.fail(node, f"at most {MOST_NESTED} functions and roots inside each other")
 
-    def matrix(self, node: Node, of: str, shape: tuple[int | None, int | None] = (None, None)) -> ImmutableMatrix:
+    def matrix(self, node: Node, role: str, shape: tuple[int | None, int | None] = (None, None)) -> ImmutableMatrix:
         value = self.evaluate(node)
         rows, columns = shape
         if isinstance(value, tuple) and all(not isinstance(part, tuple) and not is_matrix(part) for part in value):
@@ -114,7 +114,7 @@ class Scope(ABC):
             actual = "a list" if isinstance(value, tuple) else described(value)
             defined = node.kind == "name" and self.implied and actual == "a scalar"
             hint = f" (write its entries on a line before, {node.value} = [[a, b], [c, d]])" if defined else ""
-            raise self.fail(node, f"a {expected} {of} instead of {actual}{hint}")
+            raise self.fail(node, f"a {expected} {role} instead of {actual}{hint}")
         return value
 
     def shape(self, value: Any, node: Node) -> tuple[int, int] | None:
@@ -143,7 +143,7 @@ class Scope(ABC):
                 self.divisors.append(Divisor(base, node))
 
     def factorable(self, value: Expr, node: Node) -> None:
-        """Raise InputError for a number under a root that is too long to be factored."""
+        """Raise InputError if the number ``value`` under a root is too long to be factored."""
         if value.is_Rational and max(int(value.p).bit_length(), int(value.q).bit_length()) > MOST_BITS_FACTORED:
             raise self.fail(node, f"a smaller number under a root (at most {MOST_BITS_FACTORED} bits, to be factored)")
 

@@ -33,7 +33,7 @@ FIXED: Mapping[str, Shape] = {
 
 
 def shape_of(node: Node, shapes: Mapping[str, Shape]) -> Shape:
-    """Return the shape (rows, columns) of a formula, None for a scalar; ``shapes`` are those of its names."""
+    """Return the shape (rows, columns) of a formula whose names have the ``shapes``; None for a scalar."""
     if node.kind == "name":
         return shapes.get(str(node.value))
     inner = [shape_of(child, shapes) for child in node.args]
@@ -69,7 +69,7 @@ def _shape_of_call(node: Node, inner: list[Shape], shapes: Mapping[str, Shape]) 
 
 
 def with_unit_matrices(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> tuple[str, Node, Node]:
-    """Return an equation with ``eye(3)`` for a scalar I or 1 where only a matrix makes sense, as in ``R - I``."""
+    """Return an equation with ``eye(3)`` for a scalar I or 1 that is added or equal to a matrix, as in ``R - I``."""
     sign, *sides = relation
     if any(_is_name_of(*pair) for pair in (sides, sides[::-1])):
         # I = [[a, b], [c, d]] defines a matrix named I
@@ -121,7 +121,9 @@ def _without_mass(tree: Node) -> Node:
 
 
 def multiplied_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
-    """Return the names that must be vectors since a matrix times the name is a vector, each with the shape (3, 1)."""
+    """Return the names that must be vectors, each with the shape (3, 1): v in ``R*v == w`` for a matrix R and a vector
+    w.
+    """
     columns: dict[str, Shape] = {}
     for side, other in (relation[1:], relation[:0:-1]):
         name = str(side.value).removesuffix("_dot") if side.kind == "name" else ""
@@ -147,7 +149,7 @@ def _with_unit_matrices(node: Node, shapes: Mapping[str, Shape]) -> Node:
 
 
 def _as_matrix(node: Node, shape: Shape) -> Node | None:
-    """Return a term such as ``cos(a)*I`` with the unit matrix ``eye(3)`` for I or 1; None without them."""
+    """Return ``eye(3)`` for a term I or 1, and ``cos(a)*eye(3)`` for ``cos(a)*I``; None for other terms."""
     assert shape is not None
     unit = Node("call", "eye", (number(shape[0]),), node.span)
     if node == number(1) or (node.kind == "name" and node.value in UNIT_MATRICES):

@@ -66,7 +66,7 @@ def number(value: int | Fraction) -> Node:
 
 
 def sum_of(terms: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
-    """Return the sum of terms, with the terms of inner sums merged; 0 for an empty list."""
+    """Return the sum of ``terms`` as one flat node: ``a + b + c`` for a + b and c; 0 for an empty list."""
     flat: list[Node] = []
     for term in terms:
         flat.extend(term.args if term.kind == "sum" else (term,))
@@ -76,8 +76,9 @@ def sum_of(terms: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
 
 
 def product(factors: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
-    """Return the product of factors, with the factors of inner products merged and its sign in front; 1 for an
-    empty list.
+    """Return the product of ``factors`` as one flat node, with a sign in front: ``-a*b*c`` for -a and b*c.
+
+    1 for an empty list.
     """
     flat: list[Node] = []
     negative = False
@@ -116,7 +117,9 @@ _BINDING = {"sum": SUM, "neg": SUM, "product": PRODUCT, "inv": PRODUCT, "power":
 
 
 def text(node: Node, binding: int = 0) -> str:
-    """Return the text of a tree, with no more brackets than its meaning needs: ``x*(y + z)``."""
+    """Return the text of a tree with the fewest brackets, ``x*(y + z)``; the whole in brackets if it ranks below
+    ``binding``.
+    """
     # ``binding`` is the rank of the operation around the tree: a sum in a product gets brackets
     own = _BINDING.get(node.kind, ATOM)
     if node.kind == "number" and node.value.denominator != 1:
@@ -167,7 +170,7 @@ _WRITE: dict[str, Callable[[Node], str]] = {
 
 
 def with_names(node: Node, names: Mapping[str, str]) -> Node:
-    """Return a tree with other names of symbols: ``names`` maps old to new ones. Functions of time keep theirs."""
+    """Return a tree with new names of symbols, by the map ``names`` from old to new; functions keep their names."""
     if node.kind == "name" and node.value in names:
         return replace(node, value=names[str(node.value)])
     return replace(node, args=tuple(with_names(child, names) for child in node.args))

@@ -58,9 +58,7 @@ class Vector:
 
     @property
     def components(self) -> Node:
-        """The tree of the vector's components: ``Matrix([a_x, a_y, a_z])``, or the numbers 0 and 1 for a
-        coordinate axis.
-        """
+        """The components as a tree: ``Matrix([a_x, a_y, a_z])``, or 0 and 1 for a coordinate axis."""
         if self.is_axis:
             place = "xyz".index(self.name) if self.place is None else self.place
             return _matrix([number(int(place == other)) for other in range(3)])
@@ -129,7 +127,7 @@ def without_marks(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[lis
 
 
 def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vector, ...]:
-    """Return the vectors of a claim for which component names must be made."""
+    """Return the vectors that a claim needs by components: r and p for ``L = r x p``, but not L."""
     trees = [node for side in sides for _, node in walk(side)]
     used = {str(node.value) for node in trees if node.kind == "name"}
     rates = [node for node in trees if is_derivative(node) and node.args[-1] == TIME]
@@ -152,7 +150,7 @@ def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vect
 
 
 def _axes(name: str, used: Collection[str]) -> str:
-    """Return the endings of the names of a vector's components: "xyz", or "123" if the claim has ``a_1``."""
+    """Return the endings of the names of a vector's components: "123" if ``used`` has ``a_1``, otherwise "xyz"."""
     numbers = [n for n in "01234" if f"{name}_{n}" in used or (n in "04" and f"{name}{n}" in used)]
     if {"0", "4"} & {*numbers} and {"1", "2", "3"} & {*numbers}:
         # of a quaternion
@@ -198,7 +196,7 @@ def _lone_names(sides: Sequence[Node]) -> set[str]:
 
 
 def with_scalar_products(node: Node, names: Collection[str]) -> Node:
-    """Return a tree with the scalar product ``dot(a, b)`` in place of ``a.T*b``, for vectors a and b in ``names``."""
+    """Return a tree with ``dot(a, b)`` in place of ``a.T*b``, for vectors a and b in ``names``."""
     made = replace(node, args=tuple(with_scalar_products(child, names) for child in node.args))
     return _with_scalar_products(made, [Node("name", name) for name in names]) if made.kind == "product" else made
 

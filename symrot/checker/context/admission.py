@@ -67,21 +67,21 @@ def place_of(name: str) -> str:
 
 
 def admits_name(context: Context, name: str, quantity: str) -> bool:
-    """Return whether a claim about ``quantity``, such as I_z, may mean the derived formula named ``name``."""
+    """Return whether a claim about ``quantity``, such as I_z, may mean the derived formula called ``name``."""
     # "moment of inertia of a rod about an end" contradicts the context "about the centre"
     return not any(misfits(context, name, quantity))
 
 
 def is_usual_for_body(context: Context, sequence: str) -> bool:
-    """Return whether books use an Euler sequence for the body of the context. Only a top restricts the sequence."""
+    """Return whether books use an Euler sequence for the context's body: ZXZ or ZYZ for a top, any for other bodies."""
     is_top = context.body is not None and context.body.kind.title in TOPS
     # the second angle of ZXZ and ZYZ tilts the axis of the top; a stated sequence is always accepted
     return bool(context.sequence) or not is_top or sequence.upper() in ("ZXZ", "ZYZ")
 
 
 def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
-    """Yield each contradiction between a known formula's ``name`` and a claim about ``quantity``, such as "for the
-    space frame".
+    """Yield words for each contradiction between a formula's ``name`` and a claim about ``quantity``: "for another
+    axis".
     """
     is_relation = name.startswith("relation for ") or not quantity
     meaning = None if is_relation else context.meaning_of(quantity)
@@ -129,7 +129,7 @@ DIRECTIONS = {"axial moment of inertia": "z", "transverse moment of inertia": "x
 
 
 def _has_axes(name: str, axes: str) -> bool:
-    """Return whether a moment of inertia is about one of the ``axes``, such as "xy", by the name of its formula."""
+    """Return whether the ``name`` of a moment of inertia of a round body has one of the ``axes``, such as "xy"."""
     _, bodies = LINES["about a transverse axis through the centre"]
     axis = re.search(r", ([xyz]) axis", name)
     # only the directions of rods and round bodies are checked
@@ -137,9 +137,7 @@ def _has_axes(name: str, axes: str) -> bool:
 
 
 def _is_along(name: str, line: str) -> bool:
-    """Return whether the formula named ``name`` is for an axis along a ``line`` of its body, such as "about a
-    diameter".
-    """
+    """Return whether the axis in a formula's ``name`` is along the body's ``line``, such as "about a diameter"."""
     _, bodies = LINES[line]
     axis = re.search(r", ([xyz]) axis", name)
     return any(
@@ -150,8 +148,8 @@ def _is_along(name: str, line: str) -> bool:
 
 
 def _where_else(place: str, line: str, name: str) -> str:
-    """Return words for the axis of a formula: its ``place``, or "about another axis" if ``line`` goes through this
-    place too.
+    """Return words for an axis not along ``line``: its ``place``, or "about another axis" if ``line`` has this place
+    too.
     """
     _, bodies = LINES[line]
     places = [own for body, (own, _) in bodies.items() if body in bodies_of_formula(name)]
@@ -160,7 +158,7 @@ def _where_else(place: str, line: str, name: str) -> str:
 
 
 def _is_radial(name: str, quantity: str) -> bool:
-    """Return whether a formula is for the axis along the radius to a point of the rim or surface."""
+    """Return whether the axis in a formula's ``name`` goes along the radius to a point of the rim or surface."""
     # hardly anybody means it by "about a point of the rim", unless an index names it, as in I_x
     return place_of(name) in (RIM, SURFACE) and quantity[-1:] not in INDICES and not _is_along(name, "about a tangent")
 
@@ -181,7 +179,9 @@ def place_exists(place: str) -> bool:
 
 
 def is_at_open_place(context: Context, name: str) -> bool:
-    """Return whether a formula is for one place of a body, such as an end, that the context leaves open."""
+    """Return whether a formula is for an axis through a place of a body, such as an end, and the context states no
+    place.
+    """
     # "about the pivot" leaves it open, since a pivot may be anywhere
     places = {context.place, *(meaning.place for meaning in context.meanings)}
     return bool(places & {*OPEN_PLACES} and place_of(name) and bodies_of_formula(name))
@@ -191,7 +191,9 @@ OPEN_PLACES = tuple(title for title, _, phrases in PLACES if not phrases)
 
 
 def admits_letters(context: Context, name: str, mapping: Mapping[str, str], letters: Iterable[str]) -> bool:
-    """Return whether a claim's letters can mean the symbols of a derived formula, by the words of the context."""
+    """Return whether the context allows ``mapping``, {"R": "r"}: letters of a claim for symbols of the formula
+    ``name``.
+    """
     sequence = sequence_of(name)
     # ``mapping`` has the letter for each renamed symbol; other letters mean the symbol of the same name
     pairs = [(plain(known), plain(new)) for known, new in mapping.items()]
@@ -231,8 +233,7 @@ PLACE_OF_RATE = {"dphi": "first", "dtheta": "second", "dpsi": "third"}
 
 
 def same_rotation(sequence: str) -> str:
-    """Return the sequence of the same rotation with its angles in reverse order, xyz for ZYX; empty for ZXZ and its
-    like.
+    """Return the same rotation with its angles in reverse order, xyz for ZYX; empty for ZXZ and its like.
 
     Examples
     --------
@@ -245,7 +246,7 @@ def same_rotation(sequence: str) -> str:
 
 
 def _is_symbol_of(meaning: Meaning, symbol: str) -> bool:
-    """Return whether a derived formula's symbol can have this meaning, as dphi can be a rate of precession."""
+    """Return whether a meaning fits ``symbol`` of a derived formula, as "rate of precession" fits dphi."""
     pattern = meaning.quantity.symbols
     if not pattern:
         return True
@@ -262,8 +263,8 @@ def plain(name: str) -> str:
 
 
 def guesses(context: Context, name: str, stated: str) -> list[str]:
-    """Return the words in a derived formula's name that neither the context nor the claim's quantity (``stated``)
-    implies.
+    """Return the words in a formula's ``name`` that neither the context nor ``stated``, the claim's own words,
+    imply.
     """
     # "moment of inertia z axis" is stated by I_zz
     words = [stated, context.frame, context.sequence, "moment of inertia" if "inertia" in stated else ""]

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache, cached_property
 
-from symrot.checker.context.quantities import place_of_words, plain_words, unused_words
+from symrot.checker.context.quantities import meaningful_words, place_of_words, plain_words
 from symrot.inertia.shapes import SHAPES, Dimension
 
 __all__ = ["BODIES", "Body", "Kind", "bodies_of_formula", "body_of_words"]
@@ -23,7 +23,7 @@ class Kind:
     synonyms : tuple of str
         Other names.
     formulas : tuple of str
-        The phrases that stand for it in the names of derived formulas.
+        Phrases for this body in the names of derived formulas, such as "hollow cylinder".
     shape : str
         The name of this shape in :mod:`symrot.inertia.shapes`, or an empty text.
     thin : tuple (str, str) or empty
@@ -78,7 +78,7 @@ class Body:
 
     @property
     def formulas(self) -> tuple[str, ...]:
-        """Phrases for the body in the names of derived formulas, such as "hollow cylinder"."""
+        """The phrases by which names of derived formulas mention this body, such as "hollow cylinder"."""
         if not self.kind.thin:
             return self.kind.formulas
         # two radii mean a thick wall, one a thin wall; without radii it may be either
@@ -89,7 +89,7 @@ class Body:
 
     @property
     def obscure(self) -> str:
-        """Words that may change the moments of inertia of the body and that symrot does not understand; often empty."""
+        """The words about the body that symrot does not understand and that may change its moments of inertia."""
         return self.rest if self.kind.shape else ""
 
     def has(self, name: str) -> bool:
@@ -289,11 +289,11 @@ def body_of_words(words: str) -> Body | None:
     if axes and re.fullmatch(r"(.* )?about", " ".join(rest.split())):
         rest = rest.strip().removesuffix("about")
     symmetry_axis = (along[1] if along else normal).replace("z", "")
-    return Body(kind, motion, letters, place, unused_words(_HARMLESS.sub(" ", rest)), factors, axes, symmetry_axis)
+    return Body(kind, motion, letters, place, meaningful_words(_HARMLESS.sub(" ", rest)), factors, axes, symmetry_axis)
 
 
 def _without_plane(kind: Kind, words: str) -> tuple[str, str]:
-    """Return words without "in the xy plane", and the axis normal to this plane, "z"; empty if no plane is stated."""
+    """Return ``words`` without "in the xy plane", and the normal "z"; unchanged words and "" if no plane is stated."""
     match = _PLANE.search(words) if kind.title in _FLAT else None
     normal = "xyz".replace(match[1], "").replace(match[2], "") if match else ""
     # the derived formulas have the sides of a plate along x and y: only this plane is known
@@ -303,7 +303,7 @@ def _without_plane(kind: Kind, words: str) -> tuple[str, str]:
 
 
 def _direction(kind: Kind, words: str) -> tuple[str, str]:
-    """Return the axes of a body that words state, "xy" for "parallel to its base", and the other words."""
+    """Return the axes that words state, "xy" for "parallel to its base", and the other words."""
     for kinds, pattern, axes in _DIRECTIONS:
         if kind.title in kinds or kind.shape in kinds:
             rest = re.sub(rf"{_LINE}{pattern}", " ", words, count=1)
@@ -320,7 +320,7 @@ def _scaled(term: str) -> tuple[str, Fraction]:
 
 
 def _dimensions(kind: Kind) -> list[Dimension]:
-    """Return the dimensions of a kind of body, such as radius and length, and those of its form with a thin wall."""
+    """Return the dimensions of a kind of body, such as radius and length, with and without a thin wall."""
     shapes = [name for name in (kind.shape, *kind.thin[1:]) if name]
     return [dimension for name in shapes for dimension in SHAPES[name].dimensions]
 

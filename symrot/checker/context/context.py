@@ -17,9 +17,9 @@ from symrot.checker.context.quantities import (
     LINES,
     QUANTITIES,
     Quantity,
+    meaningful_words,
     place_of_words,
     plain_words,
-    unused_words,
 )
 from symrot.checker.latex.reader import read_latex_formula
 from symrot.checker.units.units import conventional_unit, read_unit
@@ -95,7 +95,9 @@ class Meaning:
     rest: str = ""
 
     def is_of(self, name: str) -> bool:
-        """Return whether this is the meaning of ``name``, or of a vector or matrix with that entry, as L for L_x."""
+        """Return whether this is the meaning of ``name``, or of a vector or matrix with the entry ``name``, as L for
+        L_x.
+        """
         # a quaternion beta has the entry beta_0, a matrix A the entry A_12
         stem = re.sub(r"_?[0-4]$" if self.quantity.title == "quaternion" else r"_?[xyz1-3]$", "", name)
         return name in self.names or stem in self.names or f"{stem}_i" in self.names or matrix_of(name) in self.names
@@ -155,7 +157,7 @@ class Context:
         return " ".join(words for words in own if words)
 
     def fits(self, names: set[str]) -> bool:
-        """Return whether a text has every name that the context describes; ``names`` are the names in the text."""
+        """Return whether every name that the context describes is among ``names``, those of a text."""
         return all(any(meaning.is_of(name) for name in names) for meaning in self.meanings)
 
     def check_names(self, names: set[str]) -> None:
@@ -293,7 +295,7 @@ def _meaning(text: str, prefix: str) -> Meaning:
         place, rest = place or body.place, body.rest
     is_rate = quantity.unit in RATES
     names = tuple(dict.fromkeys(name for part in written for name in _readings_of_name(part, prefix, is_rate)))
-    return Meaning(names, quantity, place, body, frame, written, unused_words(rest))
+    return Meaning(names, quantity, place, body, frame, written, meaningful_words(rest))
 
 
 def _original(rest: str, words: str) -> str:
@@ -352,8 +354,8 @@ def _name(tree: Node) -> str | None:
 
 
 def _frame_in(words: str) -> tuple[str, str]:
-    """Return the frame that words state, if any, and the other words: "velocity in the body frame" gives "body"
-    and "velocity".
+    """Return the frame that words state, and the other words: "body" and "velocity" for "velocity in the body
+    frame".
     """
     for frame, pattern in _FRAME_WORDS:
         if match := re.search(rf"\b{pattern}(?![\w-])", words):
@@ -377,7 +379,8 @@ def _quantity(plain: str, words: str, prefix: str) -> tuple[Quantity, str]:
     ]
     if phrases:
         start, _, phrase, quantity = min(phrases, key=lambda entry: entry[:2])
-        if not unused_words(plain[:start]):  # the quantity comes first: "mass" is not what "distance of the mass" names
+        # the quantity comes first: "mass" is not what "distance of the mass" names
+        if not meaningful_words(plain[:start]):
             return quantity, phrase
     for word, instead in AMBIGUOUS.items():
         if word in plain.split():
@@ -454,8 +457,10 @@ def read_sequence(words: str, prefix: str = "") -> str:
 
 
 def _with_case(letters: str, kinds: Sequence[str]) -> str:
-    """Return three axes in upper case if ``kinds`` says that they move, in lower case if fixed; empty for
-    contradicting words.
+    """Return axes in upper case if ``kinds`` has words for moving axes ("body"), in lower case for fixed ones
+    ("space").
+
+    Unchanged without such words; empty if they contradict each other.
     """
     fixed = {kind in ("space", "extrinsic", "fixed") for kind in kinds}
     if len(fixed) > 1:
@@ -465,7 +470,9 @@ def _with_case(letters: str, kinds: Sequence[str]) -> str:
 
 
 def _check_consistency(context: Context, prefix: str) -> None:
-    """Raise InputError if statements of the context contradict each other, or the usual unit of a name."""
+    """Raise InputError if two statements of the context contradict each other, or a meaning the usual unit of its
+    name.
+    """
     seen: dict[str, Meaning] = {}
     for meaning in context.meanings:
         for name in meaning.names:

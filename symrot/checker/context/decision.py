@@ -139,7 +139,10 @@ def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim in its context, "true" or "false" only if all words of the context are used."""
+    """Return the verdict on a claim in its context, but no "true" if a word of the context is unused.
+
+    ``verdict`` is the verdict without the context.
+    """
     # words about the body or its axis that symrot does not understand leave open what the claim means
     if obscure := claim.context.obscure:
         reason = f"of the context, these words are not understood: {obscure}; write it without them, or in other words"
@@ -165,7 +168,7 @@ def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verd
 
 
 def _with_order(context: Context, verdict: Verdict, letters: Sequence[str]) -> Verdict:
-    """Return the verdict, with "recognised" in place of "true" if the claim uses phi and psi in an unusual order."""
+    """Return the verdict, with "recognised" for "true" if the claim uses phi and psi in an unusual order."""
     angles = [letter for letter in letters if letter in ("phi", "psi", "dphi", "dpsi")]
     # an order that words state is not unusual
     if not context.sequence or not angles or any(context.meaning_of(letter.removeprefix("d")) for letter in angles):
@@ -186,7 +189,7 @@ def _with_order(context: Context, verdict: Verdict, letters: Sequence[str]) -> V
 
 
 def _with_sides(verdict: Verdict) -> Verdict:
-    """Return the verdict, with "recognised" in place of "true" if the axes of the sides a, b and c were guessed."""
+    """Return the verdict, with "recognised" for "true" if it was guessed which side a, b or c is along which axis."""
     readings = [known for known in verdict.recognised_as if not any(re.fullmatch(SIDES, old) for old in known.mapping)]
     # known formulas call the sides, or semi-axes, along x, y and z a, b and c: without renaming, nothing is guessed
     if readings:
@@ -196,8 +199,8 @@ def _with_sides(verdict: Verdict) -> Verdict:
 
 
 def _with_tangent(context: Context, verdict: Verdict) -> Verdict:
-    """Return the verdict, with "recognised" in place of "true" if the claim holds for the less usual tangent of a
-    disk.
+    """Return the verdict, with "recognised" for "true" if the claim holds for a tangent that is normal to the disk's
+    plane.
     """
     places = {context.place, *(meaning.place for meaning in context.meanings)}
     normal = all(known.name.endswith("rim, z axis") for known in verdict.recognised_as)
@@ -209,7 +212,7 @@ def _with_tangent(context: Context, verdict: Verdict) -> Verdict:
 
 
 def _with_axes(context: Context, verdict: Verdict) -> Verdict:
-    """Return the verdict, with "recognised" in place of "true" if the axis of a letter such as I_1 was guessed."""
+    """Return the verdict, with "recognised" for "true" if the axis of a letter such as I_1 was guessed."""
     stated = set(context.body.letters.values()) if context.body else set()
     readings = [
         known
@@ -234,9 +237,8 @@ ENGLISH = ("from", "to", "that", "at", "between", "on", "of")
 
 
 def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim by comparison with the known formulas that its context means.
-
-    ``verdict`` is returned if these decide nothing.
+    """Return the verdict by comparison of a claim with the formulas that its context means; ``verdict`` if
+    undecided.
     """
     # the caller checks that all words of the context are used
     context, quantity = claim.context, _name(named)
@@ -255,7 +257,7 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
     verdict = verdict if decided is None or (verdict.repairs and not decided.counterexample) else decided
     if verdict.verdict in ("true", "recognised"):
         return verdict
-    if verdict.verdict == "definition" and (lacking := _without_letters(claim, named, quantity, stated)) is not None:
+    if verdict.verdict == "definition" and (lacking := _on_lacking_letters(claim, named, quantity, stated)) is not None:
         return lacking
     if other := _without_context(claim, named):
         known = min(other, key=lambda reading: len([*misfits(context, reading.name, quantity)]))
@@ -277,8 +279,8 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
-    """Return the known formulas that a claim fits if another place, another frame or no context is stated; perhaps
-    none.
+    """Return the known formulas that a claim equals with another place or frame in its context, or without the
+    context.
     """
     context = claim.context
     if context.body and (context.place or context.body.axes):
@@ -296,9 +298,7 @@ def _without_context(claim: Claim, named: NamedFormula) -> tuple[Identification,
 
 
 def _with_guesses(context: Context, verdict: Verdict, stated: str) -> Verdict:
-    """Return the verdict with its likeliest formula first, and a note on the guesses for it: "guessed, not stated:
-    solid".
-    """
+    """Return the verdict with its likeliest formula first, and with a note such as "guessed, not stated: solid"."""
     readings = sorted(verdict.recognised_as, key=lambda known: len(guesses(context, known.name, stated)))
     verdict, likeliest = replace(verdict, recognised_as=tuple(readings)), readings[0]
     # a guess is a word in the formula's name that neither the context nor the claim's quantity states
@@ -329,19 +329,17 @@ def _true(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _false(verdict: Verdict, decision: Decision) -> Verdict:
-    """Return the verdict "false" on a claim, with the point at which the claim differs from the formula that it
-    means.
-    """
+    """Return the verdict "false" on a claim, with a point at which its formula differs from the known one."""
     return replace(verdict, verdict="false", counterexample=decision.counterexample, reason="")
 
 
 def _decided(claim: Claim, left: Node, right: Node) -> Decision:
-    """Return the decision whether two trees, which use the names of a claim, are equal."""
+    """Return the decision on ``left == right``, two trees with the names of a claim."""
     return decide_equation(claim.with_relation(("==", left, right), alternatives=()).equation)
 
 
 def _against_repair(claim: Claim, named: NamedFormula, verdict: Verdict) -> Decision | None:
-    """Return the decision "false" if a claim's formula provably differs from the repair in ``verdict``; or None."""
+    """Return the decision "false" if a claim's formula provably differs from ``verdict.repairs[0]``; otherwise None."""
     try:
         _, _, repaired = read_relation(verdict.repairs[0].text)
         decision = _decided(claim, named.formula, repaired)
@@ -353,10 +351,7 @@ def _against_repair(claim: Claim, named: NamedFormula, verdict: Verdict) -> Deci
 def _by_meant_formulas(
     claim: Claim, named: NamedFormula, verdict: Verdict, quantity: str, stated: str
 ) -> Verdict | None:
-    """Return the verdict on a claim by comparison with all known formulas that its context can mean.
-
-    None if this decides nothing.
-    """
+    """Return the verdict by comparison with all known formulas that a claim's context can mean; None if undecided."""
     try:
         formula = named.formula if named.solve is None else named.solve(named.formula)
         value = claim.with_definitions(claim.interpreter().read(formula))
@@ -386,15 +381,15 @@ def _by_meant_formulas(
 
 
 def _transposed(decisions: Sequence[tuple[Meant, Decision]]) -> Iterator[tuple[Meant, Decision]]:
-    """Yield the transpose of each known rotation matrix, with the decision on the matrix itself."""
+    """Yield the transpose of each known rotation matrix in ``decisions``, with the decision on the matrix itself."""
     for candidate, decision in decisions:
         # known matrices map body components to space components; the author may mean the inverse map
         if candidate.known.name.startswith("rotation matrix"):
             yield replace(candidate, value=candidate.value.T, how="transposed"), decision
 
 
-def _without_letters(claim: Claim, named: NamedFormula, quantity: str, stated: str) -> Verdict | None:
-    """Return the verdict "doubtful" if a claim lacks a term or factor of the formula that its context states, or
+def _on_lacking_letters(claim: Claim, named: NamedFormula, quantity: str, stated: str) -> Verdict | None:
+    """Return "doubtful" for a formula ``m*g*l`` if the context states a formula with one more term or factor; else
     None.
     """
     context = claim.context
@@ -464,15 +459,15 @@ def _different(
 
 
 def _different_repairs(repairs: Sequence[tuple[Repair, ...]]) -> tuple[Repair, ...]:
-    """Return at most three different repairs towards several known formulas: the best one for each, then the
-    second-best ones.
-    """
+    """Return at most three repairs: the best one towards each known formula, then the second-best ones."""
     in_turn = [repair for rank in zip_longest(*repairs) for repair in rank if repair is not None]
     return tuple({repair.text: repair for repair in in_turn}.values())[:MOST_REPAIRS]
 
 
 def _near(claim: Claim, named: NamedFormula, decisions: Sequence[tuple[Meant, Decision]]) -> Verdict | None:
-    """Return the verdict "doubtful" if a claim is a known formula with one fault, or None."""
+    """Return the verdict "doubtful" if a claim's formula has one fault compared with a known formula; otherwise
+    None.
+    """
     # the claim leaves open which place its axis goes through, so that it cannot be called false
     for candidate, decision in decisions[:MOST_DIAGNOSED]:
         diagnosis, repairs = _diagnosed(claim, named, candidate, decision)
@@ -485,7 +480,7 @@ def _near(claim: Claim, named: NamedFormula, decisions: Sequence[tuple[Meant, De
 def _diagnosed(
     claim: Claim, named: NamedFormula, candidate: Meant, decision: Decision
 ) -> tuple[Diagnosis, tuple[Repair, ...]]:
-    """Return the fault by which a claim's formula differs from a known one, and its repairs, if any."""
+    """Return the fault by which a claim's formula differs from the known formula ``candidate``, and repairs, if any."""
     none = Diagnosis("none", "")
     try:
         target = read_expression(as_text(candidate.value))
@@ -503,9 +498,7 @@ def _diagnosed(
 
 
 def _neatness(repair: Repair) -> tuple[bool, int]:
-    """Return a sort key for repairs: repairs of one fault come before repairs of two faults, and short ones before
-    long ones.
-    """
+    """Return a sort key: repairs of one fault come before repairs of two faults, and short ones before long ones."""
     return repair.code == "two_faults", len(repair.text)
 
 
@@ -544,7 +537,7 @@ def _meant(context: Context, value: Any, quantity: str, stated: str) -> Iterator
 
 
 def _root(square: Expr) -> Expr:
-    """Return the square root of ``square``, simplified as for positive symbols such as masses: a for a^2."""
+    """Return the square root of ``square``, whose symbols count as positive, as masses are: a for a^2."""
     positive = {symbol: Dummy(positive=True) for symbol in square.free_symbols}
     return sqrt(square.xreplace(positive)).xreplace({new: old for old, new in positive.items()})
 
@@ -583,7 +576,9 @@ def _with_letters(context: Context, target: Any) -> Any:
 def _assignments(
     context: Context, target: Any, own: set[Expr], quantity: str, known: Known, is_specific: bool
 ) -> Iterator[dict[Expr, Expr]]:
-    """Yield ways to assign a claim's letters ``own`` to the symbols of a known formula, as books use letters."""
+    """Yield maps from symbols of the known formula ``target`` to a claim's letters ``own``, {R: r}, that books may
+    use.
+    """
     own_symbols = sorted(target.free_symbols - {time}, key=str)
     if context.sequence and context.sequence in known.name:  # a formula may lack an angle that the claim has
         own_symbols = sorted({*own_symbols, *ANGLES}, key=str)

@@ -50,6 +50,6 @@ def _names(formula: Node) -> set[str]:
 
 
 def _unit(claim: Claim, name: str) -> str:
-    """Return the unit of the quantity that a ``name`` means by the words of the context; empty without words."""
+    """Return the unit of the quantity that the context's words give to ``name``; empty without such words."""
     meaning = claim.context.meaning_of(name)
     return meaning.quantity.unit if meaning is not None else ""

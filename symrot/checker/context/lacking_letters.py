@@ -35,7 +35,9 @@ Assignments = Callable[[Known, Any, set[Expr]], Iterator[Mapping[Expr, Expr]]]
 def with_lacking_letters(
     named: NamedFormula, value: Any, meant: Iterator[tuple[Known, Any]], assignments: Assignments
 ) -> Verdict | None:
-    """Return the verdict "doubtful" if a claim's formula is a derived one without a term or factor, or None."""
+    """Return "doubtful" for a claim's formula ``m*g*l`` if one of ``meant`` has one more term or factor; otherwise
+    None.
+    """
     # ``meant`` are the derived formulas that the context states word by word
     own = {*atoms_of([value])} - {time}
     if is_matrix(value) or len(own) < LEAST_LETTERS:
@@ -55,7 +57,7 @@ def with_lacking_letters(
 
 
 def _fault(target: Expr, value: Expr, lacking: set[Expr]) -> str:
-    """Return "missing_term" or "factor" if the formula ``value`` lacks one that ``target`` has; else an empty
+    """Return "missing_term" or "factor" if ``target`` has a term or factor that ``value`` lacks; otherwise an empty
     text.
     """
     # m*g*l lacks a term of m*g*l + k*x: both are equal for k = 0, and k is not in the claim

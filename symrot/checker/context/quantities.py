@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 __all__ = [
-    "AMBIGUOUS", "CENTRE", "LINES", "PLACES", "QUANTITIES", "RIM", "SURFACE", "Quantity", "place_of_words",
-    "plain_words", "unused_words",
+    "AMBIGUOUS", "CENTRE", "LINES", "PLACES", "QUANTITIES", "RIM", "SURFACE", "Quantity", "meaningful_words",
+    "place_of_words", "plain_words",
 ]  # fmt: skip
 
 
@@ -26,7 +26,7 @@ class Quantity:
     synonyms : tuple of str
         Other phrases for it.
     formulas : tuple of str
-        Phrases, one of which is in the name of each derived formula for the quantity.
+        Phrases: the name of a derived formula for the quantity contains at least one of these.
     symbols : str
         A pattern of the symbols that derived formulas use for it; empty if they use none.
     unit : str
@@ -271,8 +271,7 @@ def plain_words(text: str) -> str:
 
 
 def place_of_words(words: str, formulas: Collection[str] = ()) -> tuple[str, str]:
-    """Return the place of an axis that words state, such as "about an end", and the other words; the place may be
-    empty.
+    """Return the place of an axis that words state, such as "about an end", or "" for none, and the other words.
 
     Examples
     --------
@@ -303,12 +302,12 @@ _BEFORE_PLACE = r"(through|about|hung at|hung from|at)(?: (?:any|some|one|either
 _END_OF_PLACE = r"(?![\w-])(?! (?:of|in|through|perpendicular|normal|parallel|along|at|inclined|tilted)\b)"
 
 
-def unused_words(words: str) -> str:
-    """Return the words in ``words`` that mean something, without articles, prepositions and the like.
+def meaningful_words(words: str) -> str:
+    """Return ``words`` without those that no check needs, such as articles and prepositions.
 
     Examples
     --------
-    >>> unused_words("of the body, with a torque")
+    >>> meaningful_words("of the body, with a torque")
     'body torque'
     """
     return " ".join(word for word in re.findall(r"[^\s,;]+", words) if word not in UNUSED)

@@ -76,7 +76,7 @@ def _shared_factors(ring: FormulaRing, numerators: Sequence[PolyElement]) -> lis
 
 
 def _left_out(requirement: Requirement, sides: Sequence[tuple[Expr, Expr]], hypotheses: Sequence[Expr]) -> bool:
-    """Return whether the author of a false claim may have assumed a condition such as ``A = B`` without stating
+    """Return whether the author of a false claim may have assumed ``requirement``, such as ``A = B``, without stating
     it.
     """
     (formula,) = requirement.zeros
@@ -123,7 +123,7 @@ def _classified(ring: FormulaRing, factor: PolyElement) -> Requirement | None:
 
 
 def _of_moments(factor: PolyElement, names: list[Expr], ring: FormulaRing, formula: Expr) -> Requirement | None:
-    """Return the condition ``I1 + I2 == I3`` for the factor I1 + I2 - I3, or None for a factor that cannot vanish."""
+    """Return the condition ``I1 + I2 == I3`` for the factor I1 + I2 - I3; None for I1 + I2, which cannot be zero."""
     coefficients = [int(factor[ring.ring.gens[ring.symbols[name]].leading_expv()]) for name in names]
     sides = [[str(n) for n, c in zip(names, coefficients, strict=True) if c * sign > 0] for sign in (1, -1)]
     if not all(sides):
@@ -148,7 +148,7 @@ def _is_unit_norm(factor: PolyElement, variables: int) -> bool:
 def _no_products(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]]
 ) -> list[Requirement]:
-    """Return [the condition that all products of inertia are zero] if it makes a claim true, else []."""
+    """Return [condition] if a claim is true where all products of inertia are zero; otherwise []."""
     products = [(leaf, n) for leaf, n in ring.symbols.items() if _matches(PRODUCT_OF_INERTIA, leaf)]
     if not products or not all(any(mono[n] for _, n in products) for poly in numerators for mono in poly):
         return []
@@ -167,8 +167,8 @@ def _matches(pattern: re.Pattern[str], leaf: Expr) -> bool:
 
 
 def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[Requirement] | None:
-    """Return the signs under which a claim with square roots is true, ``x >= 0`` for ``sqrt(x**2) == x``; None if
-    none suffice.
+    """Return signs that make a claim with square roots true, ``x >= 0`` for ``sqrt(x**2) == x``; None if none are
+    known.
     """
     for root, place in ring.roots.items():
         if root.index != 2 or root.expression.is_number:
@@ -194,9 +194,6 @@ def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) ->
 
 
 def _split(poly: PolyElement, place: int, generator: PolyElement) -> tuple[PolyElement, PolyElement]:
-    """Return polynomials (a, b) with poly = a + b*generator, for the unknown ``generator`` with the index ``place``.
-
-    a does not contain the generator.
-    """
+    """Return polynomials (a, b) with poly = a + b*generator, a without the ``generator``, whose index is ``place``."""
     without = poly.new({mono: c for mono, c in poly.items() if not mono[place]})
     return without, (poly - without).exquo(generator) if poly != without else poly.ring.zero

@@ -34,8 +34,8 @@ class Constraints:
     positive, nonnegative, negative, whole : frozenset of int
         Indices of the generators that are assumed to be > 0, >= 0, < 0, or integers.
     products : tuple of PolyElement
-        Further polynomials that are >= 0: formulas under even roots of the text, and ``r*b`` for each root
-        ``r = b*sqrt(a/b)`` of a quotient, since r has the sign of b.
+        Further polynomials that are >= 0: formulas under even roots of the text, and, for a root sqrt(a/b) in it, the
+        product of b and the generator ``b*sqrt(a/b)``.
     free : frozenset of int
         Indices of generators that may have every value which these polynomials and signs allow. The other generators
         depend on symbols in a way that polynomials cannot express, as tanh(x) depends on x.
@@ -44,7 +44,7 @@ class Constraints:
     complete : bool
         False if a hypothesis contains a generator that is not free: then ``zeros`` lacks this hypothesis.
     real : bool
-        False if the imaginary unit occurs.
+        False if the imaginary unit is a generator of the ring.
     """
 
     ring: PolyRing
@@ -132,9 +132,7 @@ def constraints_of(ring: FormulaRing) -> Constraints:
 
 
 def _free_angles(ring: FormulaRing) -> Iterator[int]:
-    """Yield the indices of a ring's generators sin(u) and cos(u), for each angle u that is independent of all
-    else.
-    """
+    """Yield the indices of the generators sin(u) and cos(u) for each angle u that no other generator restricts."""
     holders: list[Expr] = [*ring.bases, *(leaf for leaf in ring.symbols if not leaf.is_Derivative)]
     for atom in ring.bases:
         factors = atom.args if atom.is_Mul else (atom,)

@@ -120,7 +120,7 @@ def decide_equation(equation: Equation) -> Decision:
 
 
 def _with_positive_symbols(equation: Equation, decision: Decision) -> Decision:
-    """Return the decision "true" if an equation is proven for the signs that its conditions require; otherwise
+    """Return "true" if an equation is proven for symbols with the signs that its conditions require; otherwise
     ``decision``.
     """
     known = positive_symbols(decision.conditions)
@@ -144,16 +144,13 @@ def _with_positive_symbols(equation: Equation, decision: Decision) -> Decision:
 
 
 def _without_needless(decision: Decision, equation: Equation) -> Decision:
-    """Return a decision whose conditions do not divide by y, if the equation is true for ``y = 0`` too."""
+    """Return ``decision`` with conditions that do not divide by y, if the equation is true for ``y = 0`` too."""
     # the proof of sqrt(x**2*y**2) == x*y gives the condition x/abs(y) >= 0, which becomes x >= 0
     return replace(decision, conditions=tuple(_without_divisor(each, equation) for each in decision.conditions))
 
 
 def _without_divisor(condition: Any, equation: Equation) -> Any:
-    """Return a condition with x in place of ``x/abs(y)``, if the equation is true where the divisor y is zero.
-
-    Other conditions are returned unchanged.
-    """
+    """Return x for a ``condition`` on ``x/abs(y)`` if the equation is true for y = 0; otherwise ``condition``."""
     if not isinstance(condition, Requirement) or condition.strict or equation.hypotheses:
         return condition
     signs = []
@@ -165,9 +162,9 @@ def _without_divisor(condition: Any, equation: Equation) -> Any:
 
 
 def _is_true_at_zeros(formula: Expr, equation: Equation) -> bool:
-    """Return whether an equation is proven to be true at each zero of a polynomial in one symbol.
+    """Return whether an equation is proven to be true at every zero of ``formula``, a polynomial in one symbol.
 
-    False for other formulas.
+    False if ``formula`` is no such polynomial.
     """
     symbol = next(iter(formula.free_symbols))
     if formula.free_symbols != {symbol} or not formula.is_polynomial(symbol):
@@ -233,7 +230,7 @@ class _ClaimCase(Case):
     ----------
     equation : Equation
     nonzero_factors : set of int
-        Indices, in the ring's list of divisors, of those that are nonzero by a hypothesis.
+        Indices of the ring's divisors that a hypothesis states to be nonzero.
     numerators : list of PolyElement
         The numerators of left - right for the unproven entries, reduced by the hypotheses.
     branches : list of Requirement or None
@@ -253,7 +250,7 @@ class _ClaimCase(Case):
 
     @property
     def lacks_evidence(self) -> bool:
-        """Whether the search for a counterexample must go on."""
+        """Whether no counterexample is known, and the search for one must go on."""
         # known conditions on the signs of roots end the search; under hypotheses it goes on, since they ignore these
         return self.counterexample is None and (bool(self.ring.hypotheses) or self.branches is None)
 
@@ -310,7 +307,7 @@ class _ClaimCase(Case):
 
 
 def nonzero_by_hypothesis(case: _ClaimCase) -> None:
-    """Read the formulas that are nonzero by a hypothesis into the ring, so that proofs may divide by them."""
+    """Add the formulas that hypotheses state to be nonzero to the ring, so that proofs may divide by them."""
     for formula in case.equation.nonzero:
         case.ring.ratios.invert(case.ring.ratio(formula), formula)
     # this is the first stage: the ring has no other divisors yet
@@ -335,7 +332,7 @@ def nearby_witness(case: _ClaimCase) -> None:
 
 
 def branch(case: _ClaimCase) -> Decision | None:
-    """Return the decision "true" if a claim holds on the branch of a root or asin that its domain implies, or
+    """Return "true" if a claim's text implies the signs that it needs, as sqrt(x) does for ``sqrt(x**2) == x``; or
     None.
     """
     case.branches, rings = _branches(case.ring, case.numerators)
@@ -363,10 +360,7 @@ def entail(case: _ClaimCase) -> Decision | None:
 
 
 def distant_witness(case: _ClaimCase) -> None:
-    """Search for a counterexample among many random points that obey the hypotheses, and store it in ``case``.
-
-    It comes after :func:`nearby_witness`, which tries simple points.
-    """
+    """Search for a counterexample among many random points that obey the hypotheses, and store it in ``case``."""
     if case.lacks_evidence:
         searches = [case.within_domain(case.hypotheses.witness)]
         searches += [case.hypotheses.checked(closed_form_witness)] if case.ring.hypotheses else []
@@ -403,7 +397,7 @@ STAGES = (
 
 
 def for_positive_bases(decision: Decision, equation: Equation) -> Decision:
-    """Return the decision, with "conditional" in place of "true" if it assumes a > 0 for a power ``a**b``."""
+    """Return ``decision``, with "conditional" for "true" if it assumes a > 0 for a power ``a**b``."""
     # of powers with letters in their exponents
     bases = [base for base in equation.bases if leaves_of([base]) and not is_positive_where_defined(base)]
     if not bases or decision.verdict != "true":
@@ -420,8 +414,8 @@ def for_positive_bases(decision: Decision, equation: Equation) -> Decision:
 
 
 def _conditional_at_branch_cut(decision: Decision, case: _ClaimCase) -> Decision:
-    """Return the decision, with "conditional" in place of "true" if the sides differ at a point on an atan2's
-    branch cut.
+    """Return ``decision``, with "conditional" for "true" if the sides differ at a point on the branch cut of an
+    atan2.
     """
     # the proof may divide by a formula that is zero there: continuous sides that agree around a point agree at it,
     # but atan2 jumps where its first argument is zero and its second one negative
@@ -443,7 +437,9 @@ def _conditional_at_branch_cut(decision: Decision, case: _ClaimCase) -> Decision
 
 
 def _points_on_cuts(symbols: Sequence[Expr], cuts: Sequence[Expr]) -> Iterator[dict[Expr, Rational]]:
-    """Yield points with simple coordinates, each as it is and then moved to where an argument in ``cuts`` is zero."""
+    """Yield points with simple coordinates, and after each those moved along one symbol to a zero of a formula in
+    ``cuts``.
+    """
     for values in product((0, -1, 1, Rational(-3, 2)), repeat=len(symbols)):
         point = dict(zip(symbols, map(Rational, values), strict=True))
         yield point
@@ -469,8 +465,8 @@ def _sides(equation: Equation) -> tuple[list[Expr], list[Expr], Shape]:
 
 
 def _needs(case: _ClaimCase) -> list[Need]:
-    """Return the conditions under which the sides and hypotheses of a claim are real numbers, as its text has
-    them.
+    """Return the conditions under which a claim's sides and hypotheses, as typed, are real numbers: x != 0 for
+    ``x/x``.
     """
     equation = case.equation
     hypotheses = [as_zero(relation) for relation in equation.hypotheses]
@@ -535,7 +531,9 @@ def _with_shorter_powers(equation: Equation, lefts: Sequence[Expr], rights: Sequ
 
 
 def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
-    """Return the formulas that must not be zero, by their texts, without superfluous ones."""
+    """Return ``nonzero``, a map of texts to formulas that must not be zero, without those implied by others: x**2
+    beside x.
+    """
     remaining = {}
     for text, form in nonzero.items():
         value = normal_form(form) if form.is_Add and _pieces(form) < MOST_PIECES else form
@@ -566,7 +564,9 @@ def _pieces(formula: Expr) -> int:
 def _branches(
     ring: FormulaRing, numerators: Sequence[PolyElement]
 ) -> tuple[list[Requirement] | None, tuple[FormulaRing, ...]]:
-    """Return conditions on signs that make a claim true (None if none are known), and the rings of the proofs."""
+    """Return signs that make a claim true, such as ``x >= 0``, or None, and the larger rings in which that was
+    proven.
+    """
     try:
         branches = branch_requirements(ring, numerators) if ring.roots else None
     except TooLarge:

@@ -1,7 +1,7 @@
 """The hypotheses of a claim: points where they hold, and whether they imply the claim or can hold at all.
 
-A claim says nothing if its hypotheses hold nowhere, or if its sides are real nowhere: it is refused if that can be
-proven, and undecided if no point is known at which it says something.
+A claim is refused if its hypotheses provably hold nowhere, or if its sides are provably real nowhere. It is undecided
+if no point is known where the hypotheses hold and the sides are real.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -103,7 +103,7 @@ class Hypotheses:
             If even without ``further`` and ``zeros`` there is provably no such point.
         """
         needs = list(dict.fromkeys([*self.needs, *further]))
-        if not self.ring.hypotheses and not zeros and self._polynomial_core(needs):
+        if not self.ring.hypotheses and not zeros and self._points_are_dense(needs):
             return True
         needs = [need for need in needs if leaves_of([need.formula]) or not self._true_number(need)]
         if any(not leaves_of([need.formula]) for need in needs):
@@ -141,8 +141,8 @@ class Hypotheses:
                 contradiction = f"{as_text(hypothesis)} would have to be zero and cannot be"
                 raise InputError(f"the hypotheses hold at no real point: {contradiction}")
 
-    def _polynomial_core(self, needs: Sequence[Need]) -> bool:
-        """Return whether points that meet all ``needs`` provably exist in every neighbourhood."""
+    def _points_are_dense(self, needs: Sequence[Need]) -> bool:
+        """Return whether every neighbourhood of every point provably has a point that meets all ``needs``."""
         # the points where no divisor vanishes are dense; no other need than x != 0 may restrict them
         return is_dense(self.ring) and all(need.sign == "!= 0" for need in needs)
 
@@ -176,7 +176,7 @@ class Hypotheses:
         return False
 
     def _values(self, point: RealPoint) -> dict[Expr, Expr]:
-        """Return the values of symbols and angles at a point of the ring."""
+        """Return the values of symbols and angles at ``point``, which has values for symbols, sines and cosines."""
         values = {leaf: point.number(point.values[n]) for leaf, n in self.ring.symbols.items() if n in point.values}
         for atom, place in self.ring.sines.items():
             if place in point.values and is_leaf(atom):
@@ -186,10 +186,7 @@ class Hypotheses:
         return values
 
     def _values_for(self, formulas: Sequence[Expr], point: RealPoint) -> dict[Expr, Expr]:
-        """Return the values at a point of all symbols in ``formulas``.
-
-        Symbols that occur in no hypothesis get simple values.
-        """
+        """Return the values of all symbols in ``formulas`` at a point; symbols in no hypothesis get simple values."""
         values = self._values(point)
         for number, leaf in enumerate(leaves_of(formulas)):
             values.setdefault(leaf, OTHER_VALUES[number % len(OTHER_VALUES)])
@@ -215,15 +212,15 @@ class Hypotheses:
         raise InputError(f"the hypotheses hold at no real point{divisors}: {reason}")
 
     def entails(self, numerators: Iterable[PolyElement]) -> bool:
-        """Return whether the hypotheses provably make all ``numerators`` of left minus right zero; False without
+        """Return whether hypotheses provably make the ``numerators`` of left - right zero; False if there are no
         hypotheses.
         """
         target = self.constraints.ring
         return self.present and all(vanishes_on(self.constraints, poly.set_ring(target)) for poly in numerators)
 
     def consistent_with(self, zeros: Sequence[Expr]) -> bool:
-        """Return whether the formulas ``zeros`` may all be zero under the hypotheses: False if that is provably
-        impossible.
+        """Return False if the hypotheses provably rule out that all formulas ``zeros`` are zero at a point; otherwise
+        True.
         """
         if not self.present or not zeros:
             return True
@@ -318,7 +315,7 @@ class Hypotheses:
     def _by_enclosures(
         self, left: Expr, right: Expr, entry: tuple[int, int] | None, attempts: int
     ) -> Counterexample | None:
-        """Return a point at which the sides provably differ, since intervals around their values are disjoint, or
+        """Return a point where the intervals that enclose the two sides are disjoint, so that the sides differ; or
         None.
         """
         leaves = {place: leaf for leaf, place in self.ring.symbols.items()}

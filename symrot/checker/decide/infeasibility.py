@@ -29,7 +29,7 @@ MOST_PRODUCTS = 150_000
 
 
 class _Undecided(Exception):
-    """Exception raised for a case that could not be proven impossible."""
+    """Exception raised if a case is not proven impossible."""
 
 
 @dataclass(frozen=True)
@@ -185,7 +185,7 @@ class _Prover:
         return roots == int(at_zero)
 
     def squares(self, poly: PolyElement) -> list[tuple[Any, PolyElement]]:
-        """Return pairs (d, l) with d > 0 and l linear, whose sum of d*l^2 is a polynomial or its negative; none if
+        """Return [(1, x), (2, y)] for ``x^2 + 2*y^2`` or its negative: pairs (d, l) with d > 0 and l linear; [] if
         impossible.
         """
         if max(map(sum, poly)) != 2:
@@ -197,9 +197,7 @@ class _Prover:
         return []
 
     def _completed(self, rest: PolyElement) -> list[tuple[Any, PolyElement]]:
-        """Return pairs (d, l) with d > 0 and l linear, whose sum of d*l^2 is a quadratic polynomial; none if
-        impossible.
-        """
+        """Return [(1, x), (2, y)] for ``x^2 + 2*y^2``: pairs (d, l) with d > 0 and l linear; [] if impossible."""
         squares = []
         for place in sorted(occurring([rest])):
             x = self.ring.gens[place]
@@ -221,9 +219,7 @@ class _Prover:
     # -- ranges -------------------------------------------------------------------------------------------------------
 
     def out_of_range(self, poly: PolyElement, zeros: Sequence[PolyElement]) -> bool:
-        """Return whether a polynomial is nonzero for all values of its unknowns within their bounds: x - 2 if x^2
-        + y^2 = 1.
-        """
+        """Return whether bounds of the unknowns keep a polynomial from zero: x - 2 if x^2 + y^2 = 1."""
         bounds = self.bounds(zeros)
         low, high = Fraction(0), Fraction(0)
         for mono, coefficient in poly.items():

@@ -48,7 +48,7 @@ DIGITS_WRITTEN = (10, 20, 30, 40, 50)
 
 
 def degree_of(formulas: Sequence[Expr]) -> int:
-    """Return an upper bound on the degree of multiplied out ``formulas`` in symbols, sines and cosines."""
+    """Return an upper bound on the degree of ``formulas``, multiplied out, in symbols, sines and cosines."""
     # a large degree shows early that an expansion would take too long
     plain = sum(map(_size, formulas)) <= LARGEST_DEGREE
     bases = {} if plain else _base_multiples(formulas)
@@ -61,8 +61,8 @@ def _size(formula: Expr) -> int:
 
 
 def _base_multiples(formulas: Sequence[Expr]) -> Mapping[Expr, Fraction]:
-    """Return, by symbol, the largest number of which its coefficients in angles are multiples: 1/2 for sin(x/2)
-    and sin(3*x).
+    """Return {x: 1/2} for formulas with sin(x/2) and sin(3*x): the largest number of which all factors of x are
+    multiples.
     """
     arguments = {
         node.args[0]
@@ -86,7 +86,7 @@ def _degree(node: Expr, known: dict[Expr, int], bases: Mapping[Expr, Fraction]) 
         elif isinstance(node, Pow) and node.exp.is_Rational:
             known[node] = below[0] * max(1, abs(int(node.exp.p)))
         elif node.is_Function and len(node.args) == 1 and not node.args[0].is_Symbol:
-            known[node] = max(_multiple(node.args[0], bases), 1)
+            known[node] = max(_angle_degree(node.args[0], bases), 1)
         elif node.is_number:
             known[node] = 0
         else:
@@ -94,8 +94,8 @@ def _degree(node: Expr, known: dict[Expr, int], bases: Mapping[Expr, Fraction]) 
     return known[node]
 
 
-def _multiple(argument: Expr, bases: Mapping[Expr, Fraction]) -> int:
-    """Return an estimate of the degree of an angle's sine in sines and cosines of its symbols: 5 for 3*x + y/2."""
+def _angle_degree(argument: Expr, bases: Mapping[Expr, Fraction]) -> int:
+    """Return about the degree of the sine of ``argument`` in sines and cosines of symbols: 3 + 2 for 3*x + y/2."""
     total = 0
     for term in argument.as_ordered_terms() if argument.is_Add else [argument]:
         number, atom = term.as_coeff_Mul()
@@ -128,7 +128,7 @@ class ShorterPowers:
 
 
 def shorter_powers(formulas: Sequence[Expr]) -> ShorterPowers | None:
-    """Return formulas with letters in place of large powers, such as Z for ``(a - x)**6000``, or None."""
+    """Return ``formulas`` with letters for large powers, Z for ``(a - x)**6000``; None without large powers."""
     powers = {node for formula in formulas for node in formula.atoms(Pow) if node.exp.is_Integer}
     large = {node for node in powers if abs(node.exp) * max(1, _size(node.base)) > LARGEST_EXPANDED}
     bases: dict[Expr, dict[Expr, int]] = {}
@@ -163,7 +163,7 @@ def _equal_up_to_sign(first: Expr, second: Expr) -> bool:
 
 
 def point_of_difference(left: Expr, right: Expr, stated: Sequence[Need]) -> Counterexample | None:
-    """Return a point with small numbers at which the sides are real and differ, and ``stated`` conditions hold, or
+    """Return a point with small numbers where the sides are real and differ, and the conditions ``stated`` hold; or
     None.
     """
     leaves = leaves_of([left, right, *(need.formula for need in stated)])
@@ -180,9 +180,7 @@ def point_of_difference(left: Expr, right: Expr, stated: Sequence[Need]) -> Coun
 
 
 def _written(value: Any, digits: int) -> str:
-    """Return the middle of an interval as text: a short integer if it is exact, otherwise ``digits`` digits, as
-    ``3.1416..``.
-    """
+    """Return the middle of an interval as text: a short integer if exact, otherwise ``digits`` digits: ``3.1416..``."""
     middle = mpf(value.mid)
     if value.a == value.b and middle == int(middle) and len(str(int(middle))) <= LONGEST_WHOLE_NUMBER:
         return str(int(middle))

@@ -69,7 +69,7 @@ _EMPTY_RANGE = re.compile(r"^(.+) < (\w+) < \1$")
 
 
 def positive_symbols(conditions: Iterable[Any]) -> dict[Expr, Expr]:
-    """Return the symbols that conditions make positive or nonnegative, each with a SymPy symbol that has this
+    """Return a map from each symbol that conditions make positive or nonnegative to a SymPy symbol with this
     assumption.
     """
     signed = _with_positive_symbols(_Conditions.of(_signs(conditions)).ranges)
@@ -81,8 +81,8 @@ def positive_symbols(conditions: Iterable[Any]) -> dict[Expr, Expr]:
 
 
 def with_domain(requirement: Requirement, conditions: Iterable[Any]) -> Requirement:
-    """Return a requirement that includes the conditions on its quantities: ``x > 0`` for ``x >= 0`` under
-    ``x != 0``.
+    """Return ``requirement`` joined with ``conditions`` on the same quantities: ``x > 0`` for ``x >= 0`` and ``x !=
+    0``.
     """
     signs = _signs(conditions)
     if not requirement.signs or not signs:
@@ -113,7 +113,7 @@ class _Bound:
 
 
 def _bound(factor: Expr) -> _Bound:
-    """Return a factor as a quantity minus a number, up to scale: x minus pi/2 for ``2*x - pi``."""
+    """Return a factor as a quantity minus a number, without its scale: x minus pi/2 for ``2*x - pi``."""
     constant, rest = factor.as_independent(*_leaves(factor), as_Add=True)
     content, quantity = rest.as_coeff_Mul()
     if quantity.is_Add:
@@ -175,8 +175,8 @@ def _factors(formula: Expr) -> tuple[int, dict[Expr, int]] | None:
 
 
 def _stronger_term(factor: Expr) -> Expr:
-    """Return the term of a sum of two that gives it its sign everywhere, x for ``x + sqrt(x^2 - 1)``, or
-    ``factor``.
+    """Return x for ``x + sqrt(x^2 - 1)``: the term whose absolute value is always larger; ``factor`` if there is
+    none.
     """
     if not factor.is_Add or len(factor.args) != 2 or not factor.has(Abs, sympy.Pow):
         return factor
@@ -229,7 +229,9 @@ def _is_definite(factor: Expr) -> bool:
 
 @dataclass
 class _Range:
-    """The bounds of a quantity, each a number or None, and whether the quantity may be equal to each of them."""
+    """The lower and the upper bound of a quantity, each a number or None, and whether the quantity may equal the
+    bound.
+    """
 
     low: Expr | None = None
     high: Expr | None = None
@@ -237,7 +239,9 @@ class _Range:
     high_closed: bool = True
 
     def narrow(self, root: Expr, closed: bool, above: bool) -> None:
-        """Add a lower (``above``) or an upper bound of the quantity, which the quantity may equal if ``closed``."""
+        """Add the bound ``root``, a lower one if ``above``, otherwise an upper one; the quantity may equal it if
+        ``closed``.
+        """
         name = "low" if above else "high"
         known = getattr(self, name)
         # a weaker bound than the known one changes nothing
@@ -249,8 +253,10 @@ class _Range:
             setattr(self, f"{name}_closed", closed and getattr(self, f"{name}_closed"))
 
     def sign_of(self, root: Expr) -> tuple[int, bool]:
-        """Return the sign of q - root for q in this range, and whether it may vanish: (1, True) for q >= 2, root
-        2.
+        """Return the sign of q - ``root`` for q in this range, and whether it may be zero: (1, True) for q >= 2 and
+        root 2.
+
+        (0, True) if the sign is not known.
         """
         for bound, closed, sign in ((self.low, self.low_closed, 1), (self.high, self.high_closed, -1)):
             distance = None if bound is None else sign * (bound - root)
@@ -354,7 +360,7 @@ class _Conditions:
         }
 
     def _simpler(self, entry: tuple[Mapping[Expr, int], int, str]) -> tuple[Mapping[Expr, int], int, str] | None:
-        """Return a condition without its factors of known sign, or None if it need not be stored any more."""
+        """Return a condition on a product without factors of known sign; None if it always holds or becomes a range."""
         # ({x: 1, y: 1}, -1, ">= 0") is -x*y >= 0
         factors, direction, sign = entry
         bounds = {factor: _bound(factor) for factor in factors}
@@ -393,7 +399,9 @@ class _Conditions:
         return _Range(Integer(0)) if surely_nonnegative(quantity) else _Range()
 
     def _between(self, bounds: Mapping[Expr, _Bound], direction: int, sign: str) -> bool:
-        """Narrow the range of q if a condition is ``(q - a)*(b - q) >= 0``, or with ``> 0``; return whether it is."""
+        """Narrow the range of q to [a, b] and return True for a condition ``(q - a)*(b - q) >= 0``; otherwise return
+        False.
+        """
         # each factor is slope*(q - root), and ``direction`` is the factor 1 or -1 of the product
         first, second, *more = sorted(bounds.values(), key=lambda bound: bound.root.evalf())
         if more or direction * first.slope * second.slope > 0:
@@ -404,7 +412,9 @@ class _Conditions:
         return True
 
     def _excludes(self, formula: Expr) -> bool:
-        """Return whether the ranges imply ``formula != 0``, after a range that ends at its zero has lost this end."""
+        """Return whether the ranges keep ``formula`` from zero; for the formula x, a range x >= 0 first becomes x >
+        0.
+        """
         bound = _bound(formula)
         if bound.root == 0 and isinstance(bound.quantity, sin | cos) and self._angle_excludes(bound.quantity):
             return True
@@ -425,8 +435,8 @@ class _Conditions:
         return bool(own.sign_of(bound.root)[0])
 
     def _lies_between(self, bound: _Bound, factors: Mapping[Expr, int], direction: int) -> bool:
-        """Return whether a condition on a product excludes the zero of ``bound``, as ``(x - 1)*(x + 1) >= 0``
-        excludes x = 0.
+        """Return whether ``(x - 1)*(x + 1) >= 0``, given by ``factors`` and ``direction``, excludes the root of
+        ``bound``, x = 0.
         """
         pair = [_bound(factor) for factor in factors]
         if len(pair) != 2 or any(other.quantity != bound.quantity for other in pair):
@@ -436,8 +446,9 @@ class _Conditions:
         return outside and bool(((bound.root - pair[0].root) * (bound.root - pair[1].root)).is_negative)
 
     def grants(self, quantity: Expr, own: _Range) -> bool:
-        """Return whether a cosine lies in the range ``own`` anyway, so that this need not be printed; False for
-        other quantities.
+        """Return whether a cosine is in the range ``own`` by other conditions, so that this need not be printed.
+
+        False for other quantities.
         """
         if not isinstance(quantity, cos):
             return False
@@ -503,7 +514,7 @@ def _product_text(factors: Mapping[Expr, int], direction: int, sign: str) -> str
 
 
 def _with_positive_symbols(ranges: Mapping[Expr, _Range]) -> dict[Expr, Expr]:
-    """Return the symbols with positive or nonnegative ranges, each with a SymPy symbol that has this assumption."""
+    """Return a map from each symbol with a positive or nonnegative range to a SymPy symbol with this assumption."""
     values: dict[Expr, Expr] = {}
     for quantity, own in ranges.items():
         if quantity.is_Symbol and own.low is not None and own.low.is_nonnegative:
@@ -522,7 +533,7 @@ def _holds(formula: Expr, sign: str, positive: Mapping[Expr, Expr]) -> bool:
 
 
 def _follows(quantity: Expr, own: _Range, positive: Mapping[Expr, Expr]) -> bool:
-    """Return whether a range of a compound quantity follows from the signs of its symbols."""
+    """Return whether the range of a quantity such as x + y follows from the signs of its symbols."""
     if quantity.is_Symbol or own.high is not None or own.low is None:
         return False
     # x + y >= 0 follows from x >= 0 and y >= 0
@@ -551,7 +562,9 @@ def _range_text(quantity: Expr, own: _Range) -> str:
 
 
 def _one_sided(quantity: Expr, root: Expr, sign: str) -> str:
-    """Return the text ``quantity sign root``; a difference that is compared with zero becomes two sides: ``x >= y``."""
+    """Return the text ``quantity sign root``, such as ``x >= 2``; a difference compared with zero becomes ``x >=
+    y``.
+    """
     terms = quantity.args if quantity.is_Add else ()
     positive = [term for term in terms if not term.could_extract_minus_sign()]
     if root == 0 and len(terms) == 2 and len(positive) == 1:

@@ -155,7 +155,7 @@ class _Drawing:
         raise _DeadEnd
 
     def completed(self) -> RealPoint:
-        """Return the finished point: free unknowns get values, then the unknowns that were expressed by others."""
+        """Return the finished point: free unknowns get values, then the unknowns that equations were solved for."""
         later = {place for place, _, _ in self.solved}
         for place in sorted(self.constraints.free - later - self.values.keys()):
             self.values[place] = self.field.convert(self.drawn(place), QQ)
@@ -209,13 +209,13 @@ class _Drawing:
         return False
 
     def substitution(self) -> bool:
-        """Solve an equation for an unknown with a number as coefficient, as ``2*x + y^2 = 1`` for x; return
-        whether one exists.
+        """Solve an equation for an unknown with a number as coefficient, ``2*x + y^2 = 1`` for x; return whether there
+        was one.
         """
         return self._solve(lambda slope: slope.is_ground)
 
     def fraction(self) -> bool:
-        """Solve an equation that is linear in an unknown, as ``y*x + z = 1`` for x; return whether one exists."""
+        """Solve an equation that is linear in an unknown, ``y*x + z = 1`` for x; return whether there was one."""
         return self._solve(lambda slope: True)
 
     def _solve(self, fits: Callable[[PolyElement], bool]) -> bool:
@@ -271,7 +271,7 @@ class _Drawing:
         return False
 
     def guess(self) -> bool:
-        """Set one unknown to a simple random number; return True, since that is always possible."""
+        """Set one unknown to a simple random number, and return True."""
         poly = self.source.choice(self.zeros)
         # an unknown of a random equation
         place = self.source.choice(sorted(occurring([poly])))
@@ -311,7 +311,7 @@ class _Drawing:
     def adjoined(self, factor: PolyElement, place: int) -> Any:
         """Return an irrational root of ``factor``, a polynomial in one unknown, and add it to the number field.
 
-        _DeadEnd if that is impossible.
+        Raise _DeadEnd if that is impossible.
         """
         degree = factor.degrees()[place]
         numbers = [
@@ -349,8 +349,8 @@ def _as_rational(value: Any, field: Any) -> Any:
 
 
 def _eliminated(poly: PolyElement, place: int, above: PolyElement, below: PolyElement) -> PolyElement:
-    """Return a polynomial with ``above/below`` in place of an unknown, multiplied by a power of ``below`` so that
-    it has no divisor.
+    """Return a polynomial with ``above/below`` for an unknown, times the power of ``below`` that clears its
+    divisors.
     """
     degree = poly.degrees()[place]
     if not degree:

@@ -97,8 +97,8 @@ def _one(factor: Expr, strict: bool) -> bool:
 
 
 def _by_range(formula: Expr, strict: bool) -> bool:
-    """Return whether the ranges of a formula's terms prove it nonnegative, or positive if ``strict``: (1, 3) for
-    ``2 + sin(x)``.
+    """Return whether bounds of a formula's terms prove it nonnegative, or positive if ``strict``: 2 + sin(x) >= 2 -
+    1.
     """
     low, _ = _bounds(formula)
     if low is None:
@@ -144,9 +144,7 @@ def _size(formula: Expr) -> Expr | None:
 
 
 def _by_absolute_values(formula: Expr) -> bool:
-    """Return whether absolute values make a formula nonnegative, as |x| + |y| - |x + y| is by the triangle
-    inequality.
-    """
+    """Return whether the triangle inequality proves a formula nonnegative, as |x| + |y| - |x + y|."""
     terms = Add.make_args(formula)
     negative = [term for term in terms if term.could_extract_minus_sign()]
     if len(negative) == 1:
@@ -221,10 +219,7 @@ def _gram(poly: Poly) -> list[list[Rational]]:
 
 
 def _is_definite(gram: Sequence[Sequence[Rational]], strict: bool, sign: Callable[[int], int]) -> bool:
-    """Return whether a quadratic form is never negative (and never zero if ``strict``), by completing squares.
-
-    ``gram`` is its symmetric matrix.
-    """
+    """Return whether a quadratic form with the matrix ``gram`` is never negative, and never zero if ``strict``."""
     rows = [list(row) for row in gram]
     for place in range(1, len(rows)):
         # a linear term with a coefficient >= 0 in a nonnegative unknown only increases the value

@@ -48,7 +48,9 @@ class CalculusPart(NamesPart):
         return self.trigonometric(replace(font, text=command)) if command in FUNCTIONS else super().spelled(font)
 
     def loose_argument(self, function: tree.Node) -> tuple[Node, Node | None]:
-        r"""Parse a function's argument without brackets, ``2\theta``; return it, and the call's exponent or None."""
+        r"""Parse an argument without brackets, ``2\theta``; return it, and 2 for ``\sin\theta^2`` read as (sin
+        theta)^2, or None.
+        """
         expected = f"brackets around the argument of {function.text}"
         if self.at("-") and self.flips is None:
             raise self.fail(expected)
@@ -228,7 +230,7 @@ class CalculusPart(NamesPart):
         return Node("call", "integrate", (integrand, *ranges))
 
     def has_limits(self) -> bool:
-        """Return whether limits follow an integral sign; the name of a body below the sign is no limit."""
+        """Return whether limits follow an integral sign, and not the name of a body below the sign."""
         lower = self.peek()
         marks = {item.text for item in takewhile(lambda item: isinstance(item, tree.Script), self.items[self.index :])}
         is_body = isinstance(lower, tree.Script) and tree.alone(lower.inside).text in ("V", "B", "m", "M", "\\mathcal")

@@ -69,7 +69,7 @@ class Names:
         return any(kinds)
 
     def is_column(self, node: Node) -> bool:
-        """Return whether a matrix is a column vector, so that bars around it mean its length and not a determinant."""
+        """Return whether a matrix is a column vector: bars around it then mean its length, not a determinant."""
         if node.kind == "name":
             return node.value in self.columns
         if node.kind == "call" and node.value == "Matrix":
@@ -96,7 +96,7 @@ def is_d(item: tree.Node) -> bool:
 
 
 class Cursor(cursor.Cursor):
-    """A position in a formula, with what the text before it has shown: functions of time, vectors, ambiguous places."""
+    """A position in a formula, with the functions of time, vectors and ambiguous pieces in the text before it."""
 
     synonyms: ClassVar[Mapping[str, str]] = {
         "\\top": "\\T", "\\intercal": "\\T", "\\lbrace": "\\{", "\\rbrace": "\\}", "\\lbrack": "[", "\\rbrack": "]",
@@ -155,7 +155,7 @@ class Cursor(cursor.Cursor):
         super().__init__(source, where, read(source, where, pieces))
 
     def doubtful(self, kind: str, item: tree.Node, stop: int, expected: str, place: tree.Node | None = None) -> bool:
-        """Record an ambiguous part of the text, ``item`` to ``stop``; return whether its less usual meaning applies.
+        """Record an ambiguous piece of the text, ``item`` to ``stop``; return whether it gets its less usual meaning.
 
         Raises
         ------
@@ -181,7 +181,7 @@ class Cursor(cursor.Cursor):
 
 
 def _with_signs(pieces: Sequence[Token], upper: bool) -> Iterator[Token]:
-    r"""Yield tokens with a sign in place of ``\pm`` and ``\mp``: their upper sign if ``upper``, else the lower."""
+    r"""Yield tokens with + for ``\pm`` and - for ``\mp`` if ``upper``, otherwise with - and +."""
     signs = {"\\pm": "+-", "\\mp": "-+"}
     for piece in pieces:
         both = signs.get(piece.text)

@@ -97,7 +97,7 @@ def expanded(pieces: Sequence[Token], source: str, where: str = "") -> list[Toke
 
 
 def with_spelled_functions(pieces: Sequence[Token]) -> tuple[list[Token], list[str]]:
-    r"""Return tokens with commands for functions that are written as letters, and the names of these functions.
+    r"""Return tokens with the command ``\sin`` for the letters ``sin``, and the names of the functions so spelled.
 
     Examples
     --------
@@ -127,7 +127,7 @@ def _touches(letter: Token, after: Token) -> bool:
 
 
 def _is_argument(after: Sequence[Token], function: str) -> bool:
-    """Return whether the tokens ``after`` a function's name begin with its argument or a power; else it is a word."""
+    """Return whether the tokens ``after`` a function's name begin with an argument or a power of the function."""
     first, *rest = after
     # tr, Tr or trace: a matrix must follow, perhaps in brackets, with a capital letter or a mark such as \mathbf
     if SPELLED[function] != f"\\{function}":

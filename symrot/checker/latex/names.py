@@ -129,11 +129,11 @@ class NamesPart(SumsPart):
         return Node("name", f"{name}_{quantity.value}")
 
     def end_of_next(self) -> int:
-        """Return the position in the text at which the next item ends, where the excerpt in a message may end."""
+        """Return the position in the text at which the next item ends."""
         return max(self.peek(1).start, self.peek().start + 1)
 
     def refuse_call(self) -> None:
-        """Raise InputError for ``f(x)`` and ``f(0)``: each may be a product, or the value of a function."""
+        """Raise InputError for ``f(x)`` or ``f(0)``, which may be a product or the value of a function."""
         inner = self.peek(1)
         if self.at("(") and (inner.kind == "number" or is_letter(inner)) and self.peek(2).text == ")":
             raise self.fail("\\cdot before the bracket if this is a product, or a declared function if it is a call")
@@ -181,7 +181,7 @@ class NamesPart(SumsPart):
         return self.at("(") and self.peek(1).text == "t" and self.peek(2).text == ")"
 
     def derivative(self, node: Node, times: int, item: tree.Node) -> Node:
-        """Return the time derivative, of the order ``times``, of a formula."""
+        """Return the time derivative of a formula, of the order ``times``."""
         if node.kind == "name" and node.value not in (*self.names.functions, *self.names.matrices, *self.names.others):
             name = str(node.value)
             forms = ["d" * times + name, name + "dot", name + "d" * times]
@@ -235,7 +235,7 @@ class NamesPart(SumsPart):
         return self.factor()
 
     def vector(self, name: str) -> Node:
-        """Record that a name is a vector or tensor, which needs components, and return its node."""
+        """Record that ``name`` is a vector or tensor, so that its components get names; return its node."""
         name = name.removesuffix(MARK)
         self.vectors.setdefault(name, False)
         # an arrow at the end of the name distinguishes the vector r from its length r
@@ -246,7 +246,7 @@ class NamesPart(SumsPart):
         return Node("name", marked)
 
     def overlined(self, mark: tree.Accent | tree.Font) -> Node:
-        r"""Parse a name whose accent is part of the name, as in ``\bar I``, which is another symbol than ``I``."""
+        r"""Parse a name with an accent that belongs to the name, as in ``\bar I``, another symbol than ``I``."""
         if tree.alone(mark.inside).text in VECTOR_MARKS and mark.text != "\\mathcal":
             inner = self.under(mark, self.expression)
             # a tilde over a vector means its skew matrix

@@ -45,7 +45,7 @@ SEPARATORS = (",", ";", "\\\\")
 
 @dataclass(frozen=True)
 class Equation:
-    """An equation read from LaTeX, its text in SymPy syntax, and the vectors for which component names are needed."""
+    """An equation read from LaTeX, its text in SymPy syntax, and its vectors whose components get names."""
 
     relation: Relation
     text: str
@@ -105,7 +105,7 @@ def latex_readings(source: str, names: Names | None = None) -> list[Reading]:
 
 
 def _reading(source: str, names: Names, flips: Collection[tuple[str, int]]) -> Reading:
-    """Return the reading of a LaTeX text in which the ambiguous parts ``flips`` have their less usual meaning."""
+    """Return the reading of a LaTeX text in which the pieces with the keys ``flips`` have their less usual meaning."""
     # flips has the keys (kind of ambiguity, position) of the parts
     lines, reader = _read(source, "", names, _Interpreter.equations, flips)
     if reader.both_signs:
@@ -148,10 +148,7 @@ def _read(
 
 
 def _on_constants(sides: Sequence[Node], vectors: Collection[str]) -> tuple[str, ...]:
-    """Return a note, or none, on the symbols other than vectors that time derivatives treat as constants.
-
-    ``sides`` are those of all equations.
-    """
+    """Return (note,) on the symbols that time derivatives in ``sides`` treat as constants; () without such symbols."""
     nodes = [node for side in sides for _, node in walk(side)]
     rates = [node.args[0] for node in nodes if is_derivative(node) and node.args[-1] == TIME]
     parts = (part for rate in rates if rate.kind != "call" for _, part in walk(rate))
@@ -177,7 +174,7 @@ def read_latex_formula(source: str, where: str = "") -> tuple[str, tuple[Vector,
 
 
 def _timed(node: Node, names: Collection[str]) -> Node:
-    """Return a tree in which the names that depend on time are written ``f(t)``."""
+    """Return a tree with ``f(t)`` for each name f in ``names``."""
     if node.kind == "name" and node.value in names:
         return Node("call", node.value, (TIME,))
     if node.kind == "call" and node.value in names:
@@ -213,7 +210,7 @@ class _Interpreter(CalculusPart):
         return [([], [formula])]
 
     def equation(self) -> list[Line]:
-        """Parse a text that is a single equation; return it in a list, as :meth:`equations` returns several."""
+        """Parse a text that is a single equation; return it as a list of one line."""
         (line,) = self.chains()
         return [line]
 
@@ -326,7 +323,7 @@ def _rows(table: tree.Table) -> Iterator[tuple[tuple[tree.Node, ...], bool]]:
 
 
 def _texts(items: Sequence[tree.Node]) -> set[str]:
-    """Return the texts of some items and of all items inside them; a matrix adds the text ``table``."""
+    """Return the texts of some items and of all items inside them, and ``table`` for a matrix."""
     texts: set[str] = set()
     for item in items:
         texts |= {item.text}

@@ -63,7 +63,7 @@ def shorthands(pieces: Sequence[Token], declared: Collection[str] = ()) -> dict[
 
 
 def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int, Shorthand]:
-    """Return the short forms in a text by their positions; ``letters`` maps c to cos and s to sin, for example."""
+    """Return the short forms in a text by their positions; ``letters`` maps letters to functions, as c to cos."""
     named: dict[int, Shorthand] = {}
     numbered: dict[int, tuple[str, str]] = {}
     for before, piece in enumerate(pieces[:-1]):
@@ -89,7 +89,10 @@ def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int
 
 
 def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) -> dict[int, Shorthand]:
-    """Return the meaning of each short form with a number, by its position: cos(theta_1) for ``c_1``."""
+    """Return a Shorthand, cos(theta_1), for each member of ``numbered``, {0: ("cos", "1")} for ``c_1`` at position 0.
+
+    Empty if ``c_1`` may be a name.
+    """
     digits = {digit for _, number in numbered.values() for digit in number}
     # next to the rate of theta_1, c_2 and s_3 are functions of theta_2 and theta_3
     fewest = 1 if _has_rate(pieces, digits) and len(numbered) > 1 else FEWEST_NUMBERED
@@ -134,7 +137,7 @@ def without_definitions(hypotheses: Sequence[str], claim: str) -> list[str]:
 
 
 def _after_power(pieces: Sequence[Token], place: int) -> int:
-    r"""Return the place after a power of one token, as in ``c^2_\theta``; return ``place`` if there is no power."""
+    r"""Return the position after a power of one token, as in ``c^2_\theta``; return ``place`` if there is no power."""
     if pieces[place].text != "^" or place + 4 > len(pieces):
         return place
     is_group = pieces[place + 1].text == "{" and pieces[place + 3].text == "}"

@@ -115,7 +115,9 @@ class SumsPart(Cursor):
         return negated(left) if negative else left
 
     def has_bare_vectors(self, left: Node, right: Node, sign: str) -> bool:
-        r"""Return whether letters without a mark around ``\times`` or ``\cdot`` are vectors: ``\omega\times r``."""
+        r"""Return whether the text shows that unmarked letters at ``\times`` or ``\cdot`` are vectors, as in
+        ``\omega\times r``.
+        """
         names = [name_of(last_factor(side)) for side in (left, right)]
         if self.flips is None or sign not in ("\\times", "\\cdot") or not all(map(is_usual_vector, names)):
             return False
@@ -143,7 +145,7 @@ class SumsPart(Cursor):
         return self.at("\\times") and self.peek(1).text == "]"
 
     def note_vector(self, node: Node) -> None:
-        """Record that a name, or the name of a rate, is a vector, since it is a factor of a cross product."""
+        """Record that a name in a cross product, or the name of a rate in it, is a vector."""
         name = name_of(node)
         is_name = node.kind in ("name", "call") and name not in BUILT_IN and not str(name).endswith(MARK)
         if is_name and self.names.implied and str(name) not in self.names:
@@ -167,7 +169,7 @@ class SumsPart(Cursor):
         return node.kind == "name" and str(node.value).endswith(MARK) and not self.names.is_column(node)
 
     def is_row(self, node: Node) -> bool:
-        """Return whether a tree is a product of a transposed vector and a tensor, ``a.T*I``, which is a row."""
+        """Return whether a tree is ``a.T*I``, the product of a transposed vector and a tensor."""
         factors = node.args if node.kind == "product" else ()
         return len(factors) > 1 and self.is_tensor(factors[-1]) and any(f.kind == "transpose" for f in factors)
 
@@ -220,7 +222,7 @@ class SumsPart(Cursor):
         return not (self.integrals and self.differential())
 
     def differential(self) -> bool:
-        """Return whether a differential such as ``dx`` is at the cursor; it ends an integrand."""
+        """Return whether a differential such as ``dx``, the end of an integrand, is at the cursor."""
         return is_d(self.peek()) and is_letter(self.peek(1))
 
     def factor(self) -> Node:
@@ -241,7 +243,9 @@ class SumsPart(Cursor):
         return node
 
     def raised(self, node: Node, inside: tree.Node) -> Node:
-        """Return ``node`` with the sign that is raised after it: a power, transpose, conjugate or skew matrix."""
+        r"""Return ``node`` with what is raised after it, ``inside``: a power, a transpose ``^T``, a conjugate ``^*``,
+        or ``^\times``.
+        """
         mark = tree.alone(inside)
         if isinstance(mark, tree.Font) and mark.text in UPRIGHT:
             mark = tree.alone(mark.inside)
@@ -396,12 +400,12 @@ def _listed(members: list[Node]) -> Node:
 
 
 def last_factor(node: Node) -> Node:
-    r"""Return the last factor of a product, which is the vector in ``I\omega``; return any other tree unchanged."""
+    r"""Return the last factor of a product, omega for ``I\omega``; return any other tree unchanged."""
     return node.args[-1] if node.kind == "product" else node
 
 
 def name_of(node: Node) -> str:
-    """Return the name of a symbol or function, or of what is differentiated: "x" for x, x(t) and dx/dt; else ""."""
+    """Return the name of a symbol, a function or a derivative's quantity: "x" for x, x(t) and dx/dt; else ""."""
     if is_derivative(node):
         node = node.args[0]
     return str(node.value) if node.kind in ("name", "call") else ""

@@ -120,18 +120,19 @@ def _is_rate(node: Node) -> bool:
 
 
 def _by_time_alone(node: Node) -> bool:
-    """Return whether dots over a letter can stand for a derivative: it is by time alone, and of a low order."""
+    """Return whether a derivative is by time alone and of a low order, so that dots over a letter can stand for it."""
     return len(node.args) - 1 in DOTS and all((v.kind, v.value) == ("name", "t") for v in node.args[1:])
 
 
 def _is_square(node: Node) -> bool:
-    """Return whether a formula is ``dot(a, a)``, whose square root is written as the length of the vector a."""
+    """Return whether a formula is ``dot(a, a)``, the square of the length of a."""
     return node.kind == "call" and node.value == "dot" and node.args[0] == node.args[1]
 
 
 @cache
 def _with_marks(name: str) -> str:
-    """Return the LaTeX of a name with a bar or prime; empty for other names, and if its LaTeX has another name.
+    """Return the LaTeX of a name with a bar or prime; empty for other names, and if this LaTeX would be read as another
+    name.
 
     Examples
     --------
@@ -272,7 +273,7 @@ class Writer:
         return command + self.argument(node)
 
     def integral(self, node: Node) -> str:
-        """Return the LaTeX of an integral. The first range in the node is that of the innermost integral."""
+        """Return the LaTeX of an integral, whose first range is that of the innermost integral."""
         integrand, *ranges = node.args
         signs = [
             f"\\int_{{{self.formula(place.args[1])}}}^{{{self.formula(place.args[2])}}}" for place in reversed(ranges)

@@ -1,4 +1,8 @@
-"""How well a known formula fits a claim, judged by names, units, axes and letters, and by the context."""
+"""How well a known formula fits a claim, judged by names, units, axes and letters, and by the context.
+
+A claim gives a formula for a quantity (``named``). ``known`` is a formula that symrot derives, or its name; ``near`` is
+a derived formula that differs from the claim's by one fault. The context is what a user states besides the claim.
+"""
 
 import re
 from collections.abc import Sequence
@@ -388,7 +392,7 @@ def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
 
 
 def is_unusual(known: Identification) -> bool:
-    """Return whether a claim's formula is known for the space frame, but has omega_1 or p, names for the body frame."""
+    """Return whether a known formula is for the space frame, though the claim's omega_1 or p usually is a body rate."""
     # books use omega_1, and p, q, r, for components in the body frame
     components = [new for old, new in known.mapping.items() if old in COMPONENTS_OF_OMEGA]
     return "space frame" in known.name and any(
@@ -488,9 +492,9 @@ def quantity_name(named: NamedFormula) -> str:
 
 
 def _misplaced(name: str, known: str) -> int:
-    """Return how many of component and frame disagree between a quantity ``name`` and the name ``known`` of a formula.
+    """Return how often a formula's name ``known`` contradicts the quantity ``name``: in the component, or in the frame.
 
-    omega_3 and "first component in the space frame" disagree in both.
+    "first component in the space frame" contradicts omega_3 in both.
     """
     words = known.replace(",", "").split()
     places = [COMPONENTS[word] for word, after in pairwise([*words, ""]) if word in COMPONENTS and
@@ -503,7 +507,7 @@ def _misplaced(name: str, known: str) -> int:
 
 
 def strangeness_of(named: NamedFormula, known: Identification) -> tuple[int, int, int]:
-    """Return a sort key for known formulas, smallest for the one that a claim most probably means by its names."""
+    """Return a sort key for known formulas, smallest for the one that fits the names in a claim best."""
     axes = [[next((n for n, axis in enumerate(AXES) if name[-1] in axis), None) for name in pair]
             for pair in known.mapping.items()]  # fmt: skip
     moved = sum(None not in pair and pair[0] != pair[1] for pair in axes)

@@ -141,7 +141,7 @@ def _added(first: tuple[int, int], second: tuple[int, int]) -> tuple[int, int]:
 
 @dataclass(frozen=True)
 class Fingerprint:
-    """The atoms (symbols, functions, derivatives) of a formula, each with its signature (see the module)."""
+    """The atoms (symbols, functions, derivatives) of a formula, each with its signature (see the file's heading)."""
 
     atoms: tuple[Expr, ...]
     signatures: tuple[Values, ...]
@@ -155,12 +155,12 @@ class Fingerprint:
         return [tuple(values[n] * below % PRIME for n in order) for values in self.signatures]
 
     def key(self, shape: tuple[int, int] | None, order: Sequence[int]) -> str:
-        """Return a formula's hash, which other names of symbols or a constant factor do not change."""
+        """Return a hash of the formula that depends neither on the names of symbols nor on a constant factor."""
         return sha256(repr((shape, sorted(self.rows(order)))).encode()).hexdigest()[:16]
 
 
 def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
-    """Return the fingerprint of a formula with these ``entries`` (see the module).
+    """Return the fingerprint of a formula with these ``entries`` (see the heading of the file).
 
     Raises
     ------

@@ -1,8 +1,8 @@
 """Identification of a formula: a look-up by fingerprint among the formulas that symrot derives, then a proof.
 
 A formula is recognised whatever its symbols are called, transposed or not, with either sign, and with the scalar part
-of a quaternion first or last. Every match is proven by the exact engine. Symbols with equal signatures are paired; a
-signature is a hash of a symbol's part in a formula (see the module ``fingerprint``).
+of a quaternion first or last. The signature of a symbol is the value of a formula where this symbol has one number and
+all others have another; symbols with equal signatures are paired. Every match is proven by the exact engine.
 """
 
 import re
@@ -164,7 +164,7 @@ def named_parts(claim: Claim) -> tuple[str, ...]:
 
 
 def _parts(claim: Claim) -> Iterator[tuple[str, Any]]:
-    """Yield (words for it, value) for each side of a claim, such as "the left side", and each definition in use."""
+    """Yield (words, value) for each side of a claim and each definition in use: ("the left side", value)."""
     assert claim.relation is not None
     sides = claim.relation[1:]
     values = (claim.equation.left, claim.equation.right)
@@ -231,7 +231,7 @@ def identified(
 
 
 def _changes(match: Identification) -> tuple[int, int, int]:
-    """Return the sort key of a match: the numbers of rearrangements, renamed symbols, and other first letters."""
+    """Return a sort key: how many rearrangements, renamed symbols and changed first letters a match needs."""
     others = sum(mine.lstrip("d")[0].lower() != new[0].lower() for mine, new in match.mapping.items())
     return bool(match.how) + match.how.count(" and "), len(match.mapping), others
 

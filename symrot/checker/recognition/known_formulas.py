@@ -57,7 +57,7 @@ class Known:
 
     @property
     def is_placed(self) -> bool:
-        """Whether the formula is for one certain axis or matrix entry; other axes must not take its place."""
+        """Whether the formula is for one axis or matrix entry only, such as roll: its axes must not be exchanged."""
         return self.name.startswith(("yaw", "pitch", "roll", "entry"))
 
     @property

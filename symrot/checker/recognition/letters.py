@@ -88,7 +88,7 @@ def _symbols_of(definitions: Mapping[str, Node], numeric: NumericFilter) -> set[
 def _active(formula: Node, atoms: dict[Node, Values], places: list[PointOfLetters]) -> dict[Node, Values]:
     """Return the ``atoms`` that change a formula's value: only the diagonal entries for the trace of a matrix."""
     if len(atoms) < MANY:
-        return atoms
+        return atoms  # a formula of few letters depends on all of them
     here = values_of(formula, places[:1])
     active = {}
     for atom, values in atoms.items():
@@ -122,7 +122,7 @@ def is_atom(tree: Node) -> bool:
 
 
 def text_of(atom: Node) -> str:
-    """Return the text of a symbol or rate as SymPy prints it, such as "diff(phi(t), t)"."""
+    """Return the text of a symbol or rate, such as "phi(t)" or "diff(phi(t), t)"."""
     if atom.kind == "name":
         return str(atom.value)
     return f"diff({text_of(atom.args[0])}, {', '.join('t' for _ in atom.args[1:])})" if atom.value == "diff" else (

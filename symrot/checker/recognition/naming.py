@@ -1,7 +1,8 @@
 """Verdicts on claims such as ``I_zz == m/12*(a**2 + b**2)``, which only give a formula for a named quantity.
 
-Nothing in such a claim defines the left side; so the right side is compared with the formulas that symrot derives. The
-verdict is "recognised" if the two are equal, "doubtful" if a single edit makes them equal, and "definition" otherwise.
+Nothing in such a claim defines the left side; so the right side is compared with known formulas: those that symrot
+derives. The verdict is "recognised" if the right side equals one, "doubtful" if it does after a single edit, and
+"definition" otherwise. ``readings`` are the known formulas that a claim can mean.
 """
 
 import re
@@ -195,7 +196,7 @@ def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | Non
 
 
 def verdict_on_relation(claim: Claim) -> Verdict | None:
-    """Return the verdict "recognised" on a claim that is a known relation between quantities, otherwise None."""
+    """Return the verdict "recognised" on a claim that is a known equation between quantities; otherwise None."""
     assert claim.relation is not None
     _, left, right = claim.relation
     whole = NamedFormula(text(left), left, right, solve=None)
@@ -442,7 +443,7 @@ def _loses_letter(claim: Claim, tree: Node) -> bool:
 
 
 def _is_known_for_exchanged_masses(claim: Claim, named: NamedFormula) -> bool:
-    """Return whether exchanging m_1 and m_2 makes a formula a known one."""
+    """Return whether a formula becomes a known one if m_1 and m_2 are exchanged."""
     # no fault: the author takes the other mass for the heavier one
     tree = with_names(named.formula, {"m_1": "m_2", "m_2": "m_1", "m1": "m2", "m2": "m1"})
     return tree != named.formula and bool(_readings(claim, named, tree, 1))

@@ -1,7 +1,7 @@
 """Known formulas that differ from a claim by one fault: a numeric search, whose results are not yet proven.
 
-For each known formula for the claim's quantity, the search computes the values that the claim's formula should have. It
-then looks for a single part whose change gives these values.
+For each formula that symrot derives for the claim's quantity, the search computes the values that the claim's formula
+should have. It then looks for a single part whose change gives these values.
 """
 
 import math
@@ -186,7 +186,7 @@ def _tree(known: Known) -> Node:
 
 
 class Search(NamedTuple):
-    """A claim's formula with its values and all changes that usual faults suggest, sorted for a look-up by value."""
+    """A claim's formula, its values, and its changes that undo usual faults, sorted by the values that they give."""
 
     named: NamedFormula
     letters: Letters
@@ -231,7 +231,7 @@ def _search(claim: Claim, named: NamedFormula, letters: Letters, values: Values)
 
 
 def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near] | None:
-    """Return the single changes of the claim's formula that give it the values of ``known``.
+    """Return the single changes after which the claim's formula has the values of ``known``.
 
     None if the claim's formula has the values of ``known`` already.
     """
@@ -353,7 +353,7 @@ def _with_other_products(known: Known, own: Sequence[PointOfLetters]) -> Iterato
 
 
 def _views(known: Known, values: Values) -> Iterator[Values]:
-    """Yield the values of a known formula and of its variants: transposed, doubled, or a quaternion's scalar last."""
+    """Yield the values of a known formula and its variants: transposed, doubled, or with a quaternion's scalar last."""
     yield values
     if not is_matrix(values[0]):
         return

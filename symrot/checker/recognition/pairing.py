@@ -1,7 +1,7 @@
 """Renamings of a known formula's symbols to the symbols of a claim that may have a fault.
 
-A fault can remove one symbol from a formula or add one; so a renaming may leave out one symbol. Usual letters, units,
-axes and the use as an angle tell which symbols may be the same quantity.
+A known formula is one that symrot derives. A fault can remove one symbol from a formula or add one; so a renaming may
+leave out one symbol. Usual letters, units, axes and the use as an angle tell which symbols may be the same quantity.
 """
 
 import re
@@ -202,7 +202,7 @@ def is_fitting(known: str, own: str, is_angle: bool) -> bool:
 
 
 def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]:
-    """Return a name for a symbol that the claim lacks, and whether others imply it: (Omega_3, True) after Omega_1."""
+    """Return a name for the symbol ``known`` that a claim lacks, and whether a series gives it: w_3 after w_1, w_2."""
     for mine, other in renaming.items():
         if other is not None and (numbered := _numbered_angle(known, mine, plain_name(other))):
             return numbered, True

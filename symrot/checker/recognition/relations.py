@@ -106,7 +106,7 @@ def solved(relation: Relation) -> Iterator[tuple[str, str, Any]]:
             slope, _, rest = coefficients
             name = f"{words} {relation.title}, squared"
         else:
-            continue  # linear or purely quadratic in no other case
+            continue  # neither linear nor purely quadratic in the symbol
         yield name, relation.source, factor_terms(cancel(-rest / slope))
 
 
@@ -133,7 +133,7 @@ def primitive(difference: Expr) -> Expr:
 
 
 def without_common_powers(difference: Expr) -> Expr:
-    """Return a difference divided by all common powers of symbols: ``a + b`` for ``c*a/d + c*b/d``."""
+    """Return a difference divided by the powers that its terms share: ``a + b`` for ``c*a/d + c*b/d``."""
     # up to a constant factor the same as `primitive`, which is slower because it multiplies out
     common = _common_powers(difference)
     if common is None:

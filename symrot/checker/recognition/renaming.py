@@ -35,7 +35,7 @@ MIDDLE, OUTER = ("theta",), ("phi", "psi", "varphi")
 
 
 def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> bool:
-    """Return whether pairs (known name, new name) rename axes and angles alike: not omega_1 to omega_x and I_1 to I_y.
+    """Return whether pairs (known name, new name) agree on the axes: not so for (omega_1, omega_x) with (I_1, I_y).
 
     With ``fixed``, axis 1 stays 1 or x; without, axes may be exchanged in a cycle.
     """
@@ -66,6 +66,7 @@ def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
 
 def component(known: str, quantity: str) -> list[tuple[str, str]]:
     """Return [("component_2", "H_y")] for ``known`` = "second component of .." and ``quantity`` = "H_y"; else []."""
+    # a moment of inertia by the parallel-axis theorem has an axis, too
     parallel = re.search(r"\(parallel-axis theorem\), ([xyz]) axis", known)
     if parallel and axes_of(quantity):
         return [(f"component_{parallel[1]}", quantity)]

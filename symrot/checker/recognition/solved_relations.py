@@ -96,7 +96,7 @@ def _terms(tree: Node) -> list[Node]:
 
 
 def _solution(terms: Sequence[Node], letter: Node) -> Solution | None:
-    """Return the solution of ``sum of terms == 0`` for a letter, or None if it is no factor in one power, 1 or 2."""
+    """Return the solution of ``sum of terms == 0`` for a letter w. None unless w occurs only as a factor w, or w^2."""
     with_letter = [term for term in terms if letter in (node for _, node in walk(term))]
     rest = [negated(term) for term in terms if term not in with_letter]
     coefficients = [_without(term, letter) for term in with_letter]

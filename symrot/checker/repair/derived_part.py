@@ -51,9 +51,9 @@ def derived_part(claim: Claim, place: str) -> Node | None:
 
 
 def _scaled(claim: Claim, factors: Sequence[Node], matrix: Node) -> Node | None:
-    """Return ``factors``, scalars and a matrix, with the entries that make their product equal to the right side.
+    """Return the product of ``factors``, with new entries in ``matrix`` that make it equal to the right side.
 
-    None if there are none.
+    None if no entries do.
     """
     values, shape = flatten(claim.equation.right)
     if shape != flatten(claim.interpreter().read(matrix))[1]:
@@ -73,18 +73,15 @@ def _scaled(claim: Claim, factors: Sequence[Node], matrix: Node) -> Node | None:
 
 
 def _largest_factor(entries: Sequence[Expr]) -> Any:
-    """Return the largest rational number that leaves integer coefficients when all entries are divided by it.
-
-    It is 1 for irrational coefficients.
-    """
+    """Return the greatest common divisor of the coefficients of all entries: 2/3 for ``2*a/3`` and ``4*b``."""
     numbers = [entry.as_coeff_Mul()[0] for entry in entries if entry != 0]
     if not numbers or not all(value.is_Rational for value in numbers):
-        return Rational(1)
+        return Rational(1)  # for irrational coefficients
     return Rational(reduce(gcd, (abs(value.p) for value in numbers)), reduce(lcm, (value.q for value in numbers)))
 
 
 def _with_entries(claim: Claim, matrix: Node, entries: Sequence[Expr]) -> Node | None:
-    """Return the written-out matrix ``matrix`` with other entries; None if ``diag`` would need one off the diagonal."""
+    """Return the written-out ``matrix`` with other entries; None if ``diag`` would need one off the diagonal."""
     cells = matrix_entries(matrix)
     if any(entry != 0 and place not in cells for place, entry in enumerate(entries)):
         return None
@@ -120,7 +117,7 @@ def _with_cosecants(entry: Expr) -> Expr:
 def _solved(claim: Claim, name: str) -> Node | None:
     """Return the matrix ``name``, a definition of the claim, with the entries that make the claim true.
 
-    Return None if they are not determined.
+    Return None if the claim does not determine the entries.
     """
     assert claim.relation is not None
     tree = dict(claim.define)[name]

@@ -80,7 +80,7 @@ def diagnose(claim: Claim, decision: Decision) -> tuple[Diagnosis, tuple[Repair,
 
 
 class _Search:
-    """The search for repairs of one claim, with the candidates that it has found so far."""
+    """The search for repairs of one claim: its candidates, the proven ones among them, and what was tried before."""
 
     def __init__(self, claim: Claim, decision: Decision) -> None:
         self.numeric = NumericFilter(claim)
@@ -126,7 +126,7 @@ class _Search:
         return tuple(sorted(repairs, key=lambda repair: repair.cost))
 
     def others(self, repairs: Sequence[Repair]) -> list[Repair]:
-        """Return further proven repairs, with the same values as one in ``repairs`` but written in another way."""
+        """Return further proven repairs: formulas equal to one in ``repairs``, but written in another way."""
         forms = {self.canonical_form(candidate.changes) for candidate in self.accepted}
         others: list[Repair] = []
         for candidate in self.alike:
@@ -184,13 +184,14 @@ class _Search:
     def is_tautology(self, changes: Sequence[Change]) -> bool:
         """Return whether ``changes`` make both sides the same formula, so that the edited claim says nothing."""
         # if only one side may be edited, the other one is the author's aim, and an equal formula a proper repair
-        if len(self.numeric.sides_to_edit) < len(SIDES) or self.gives_inverse(changes):
+        if len(self.numeric.sides_to_edit) < len(SIDES) or self.leaves_inverse(changes):
             return False
         left, right, *_ = self.trees(changes)
         return not terms_of_equation(left, right, self.numeric.is_matrix)
 
-    def gives_inverse(self, changes: Sequence[Change]) -> bool:
-        """Return whether the unchanged side is an inverse, q^(-1): a formula for it is no tautology."""
+    def leaves_inverse(self, changes: Sequence[Change]) -> bool:
+        """Return whether ``changes`` leave exactly one side unchanged, and it is an inverse such as ``q^(-1)``."""
+        # the other side then is a formula for the inverse, which is no tautology
         unchanged = {*SIDES} - {change.place for change in changes}
         sides = [self.numeric.tree_at(place) for place in unchanged]
         return len(sides) == 1 and inverse_of(sides[0], self.numeric.claim.text) is not None
@@ -204,7 +205,7 @@ class _Search:
         return any(map(_symbols, dict(bare))) or (len(bare) == len(sides) and bool(equation.divisors))
 
     def proven(self, candidates: Iterable[Candidate], most: int) -> list[Repair]:
-        """Return up to ``most`` repairs: the first of the candidates that the exact engine proves to be true."""
+        """Return repairs from the first candidates, ``most`` at most, that the exact engine proves to be true."""
         repairs: list[Repair] = []
         attempts = 0
         bare = bool({"name", "number"} & {self.numeric.left.kind, self.numeric.right.kind})
@@ -249,7 +250,7 @@ class _Search:
 
 
 def _ranges(decision: Decision) -> str:
-    """Return the signs or angles for which a formula holds, such as ``"0 <= x <= pi"``, or "" if there are none."""
+    """Return the signs or angles for which a formula holds, such as ``"0 <= x <= pi"``; "" for other conditions."""
     needed = decision.requires[:1]
     # a condition such as A == B, even beside a sign, is no range
     is_range = decision.verdict == "conditional" and all(need.signs and not need.zeros for need in needed)

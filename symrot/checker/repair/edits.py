@@ -177,7 +177,7 @@ def single_edits(
 
 
 def _admits_squares(node: Node) -> bool:
-    """Return whether a square may be missing on an argument of a call: True for ``Matrix``, ``diag`` and ``sqrt``."""
+    """Return whether an edit may square the arguments of ``node``: True for ``Matrix``, ``diag`` and ``sqrt``."""
     return node.kind == "call" and node.value in ("Matrix", "sqrt", "diag")
 
 
@@ -340,7 +340,7 @@ def _of_product(node: Node, matrices: Callable[[Node], bool], order: str) -> Ite
 
 
 def _with_roots(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change]:
-    """Yield the edits of a product with a root over its numbers or its other factors: ``2*sqrt(g*h)`` for ``2*g*h``."""
+    """Yield edits of a product that take the root of some factors: ``2*sqrt(g*h)``, ``g*h*sqrt(2)`` for ``2*g*h``."""
     if any(map(matrices, node.args)):
         return
     kinds = [any(part.kind in ("name", "call") and part.value != "pi" for _, part in walk(f)) for f in node.args]
@@ -353,7 +353,7 @@ def _with_roots(node: Node, matrices: Callable[[Node], bool]) -> Iterator[Change
 
 
 def _is_square(node: Node) -> bool:
-    """Return whether a factor is a rational number with a rational square root, such as 4/9, or the inverse of one."""
+    """Return whether a factor is the square of a rational number, such as 4/9, or 1 divided by such a square."""
     value = (node.args[0] if node.kind == "inv" else node).value
     return isinstance(value, Fraction) and all(isqrt(n) ** 2 == n for n in (value.numerator, value.denominator))
 
@@ -371,7 +371,7 @@ def _with_exchanged_names(node: Node, matrices: Callable[[Node], bool]) -> Itera
 
 
 def _of_quotients(factors: list[Node]) -> Iterator[Change]:
-    """Yield the edits that invert a quotient of two letters in a product: ``b/a*c`` for the factors of ``a/b*c``."""
+    """Yield edits of a product of ``factors`` that invert a quotient of two letters: ``b/a*c`` for ``a/b*c``."""
     for below, divisor in enumerate(factors):
         if divisor.kind != "inv" or divisor.args[0].kind != "name":
             continue
@@ -404,7 +404,7 @@ def _spelled_like(rotation: str) -> tuple[str, ...]:
 
 
 def _scalars_in_front(node: Node, matrices: Callable[[Node], bool]) -> tuple[list[Node], Node]:
-    """Return the scalar factors of a vector, and the vector without them."""
+    """Return the scalar factors of a vector, and the vector without these factors: ([m], v) for ``m*v``."""
     scalars = [factor for factor in node.args if not matrices(factor)] if node.kind == "product" else []
     rest = [factor for factor in node.args if factor not in scalars]
     return (scalars, product(rest)) if scalars and rest else ([], node)
@@ -442,7 +442,7 @@ def _of_call(node: Node, path: Path, functions: Collection[str], matrices: Calla
 
 
 def _of_quaternion(node: Node) -> Iterator[Change]:
-    """Yield edits of four components of a quaternion: another order of storage, or the conjugate."""
+    """Yield edits of a quaternion with written-out components: another order of storage, or the conjugate."""
     first, *vector = node.args
     yield "quaternion_storage_order", replace(node, args=(*vector, first)), 0.0
     yield "quaternion_storage_order", replace(node, args=(node.args[3], *node.args[:3])), 0.0
@@ -454,7 +454,7 @@ def _of_quaternion(node: Node) -> Iterator[Change]:
 
 
 def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
-    """Yield edits that change something wherever it occurs in a tree, such as an angle to its half."""
+    """Yield edits that change all occurrences of a name or angle in a tree, such as every u to u/2."""
     nodes = [node for _, node in walk(tree)]
     angles = {node.args[0] for node in nodes if node.kind == "call" and node.value in OPPOSITE}
     arguments = [node.args[0] for node in nodes if node.kind == "call" and node.value in OPPOSITE]
@@ -484,7 +484,7 @@ def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
 
 
 def _substituted(tree: Node, old: Node, new: Node, inside: Collection[str] | None = None) -> Node:
-    """Return a tree with ``new`` in place of each ``old``; with ``inside``, only as an argument of these functions."""
+    """Return a tree with ``new`` for each ``old``; with ``inside``, only for arguments of the functions named there."""
     if tree == old and inside is None:
         return new
     direct = inside is not None and tree.kind == "call" and tree.value in inside and tree.args[0] == old

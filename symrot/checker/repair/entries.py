@@ -15,7 +15,7 @@ MOST_PAIRS_OF = 60
 
 
 def by_entries(numeric: NumericFilter) -> list[Candidate]:
-    """Return repairs of a written-out matrix that is a side of the claim: each wrong entry is edited by itself."""
+    """Return repairs of a written-out matrix that is a side of the claim; they edit each wrong entry separately."""
     candidates: list[Candidate] = []
     # the other side has the values that the entries should have
     references = {"right": numeric.left, "left": numeric.right}
@@ -52,7 +52,7 @@ def by_entries(numeric: NumericFilter) -> list[Candidate]:
 def _entry_edit(numeric: NumericFilter, cell: Node, targets: Sequence[float]) -> Edit | None:
     """Return the cheapest edit that gives ``cell`` the values ``targets`` at the test points, or None.
 
-    Its code is ``none`` for unchanged entries.
+    A ``cell`` that has these values already gives an edit with the code ``none``.
     """
 
     def fits(tree: Node) -> bool:
@@ -92,7 +92,7 @@ def merged(tree: Node, first: Edit, second: Edit) -> Node | None:
 
 
 def _same_shape(tree: Node, edited: Node, path: Path) -> bool:
-    """Return whether ``edited``, which is ``tree`` after an edit, still has the same part at ``path``."""
+    """Return whether the part at ``path`` of a tree is still the same, at the same path, in the ``edited`` tree."""
     for place in path:
         if place >= len(edited.args) or edited.kind != tree.kind or len(edited.args) != len(tree.args):
             return False

@@ -80,7 +80,7 @@ class NumericFilter:
 
     @property
     def sides_to_edit(self) -> tuple[str, ...]:
-        """Those of "left" and "right" that repairs may edit: the ones in the claim's ``editable``, usually both."""
+        """The sides that repairs may edit: usually both, "right" and "left"."""
         return tuple(place for place in SIDES if place in self.claim.editable)
 
     @property
@@ -111,7 +111,7 @@ class NumericFilter:
         return node.kind not in ("index", "list", "number") and any(map(self.is_matrix, node.args))
 
     def sensible(self, place: str, tree: Node) -> bool:
-        """Return whether ``tree`` makes sense as the side or definition ``place`` of the claim."""
+        """Return whether ``tree`` may become the side or definition ``place``: no mere number may replace a formula."""
         if place in SIDES:
             return is_nontrivial(tree) or not is_nontrivial(self.tree_at(place))
         order = list(self.definitions)
@@ -145,7 +145,7 @@ class NumericFilter:
         return wrong
 
     def open_paths(self, place: str, tree: Node) -> "OpenEntries":
-        """Return a function that tells whether a single edit may change the part at a path of ``tree``."""
+        """Return a function of a path that tells whether a single edit of ``tree`` may change the part at this path."""
         cells = matrix_entries(tree) if place in SIDES else {}
         # an entry of a written-out matrix may change only if no other one is wrong
         alone = [cells[number] for number in self.wrong if number in cells] if len(self.wrong) == 1 else []
@@ -179,7 +179,7 @@ class NumericFilter:
         return replace(point, definitions={**point.definitions, name: tree}, known=known, lifted={})
 
     def _dependent_on(self, name: str) -> set[int | str]:
-        """Return what depends on the definition of ``name``: names of definitions, and ids of trees in the claim."""
+        """Return the names of definitions, and the ids of trees, that depend on the definition of ``name``."""
         names = {name}
         for other, tree in self.definitions.items():
             if any(node.kind == "name" and node.value in names for _, node in walk(tree)):
@@ -200,7 +200,7 @@ class NumericFilter:
     def holds(self, changes: Sequence[Change]) -> bool:
         """Return whether the claim after ``changes`` is true at the test points.
 
-        It is False if the budget of evaluations is spent.
+        False also if the budget of evaluations is spent.
         """
         if not self.affordable():
             return False
@@ -277,7 +277,7 @@ def at(tree: Node, path: Sequence[int]) -> Node | None:
 
 
 def matrix_entries(tree: Node) -> dict[int, Path]:
-    """Return the paths of the entries of a written-out matrix by their number, row by row; empty for other trees."""
+    """Return {number: path} for the entries of a written-out matrix, numbered row by row; empty for other trees."""
     if tree.kind == "call" and tree.value == "diag":
         return {place * (len(tree.args) + 1): (place,) for place in range(len(tree.args))}
     if tree.kind != "call" or tree.value != "Matrix" or tree.args[0].kind != "list":

@@ -74,7 +74,7 @@ def missing_terms(numeric: NumericFilter) -> Iterator[Candidate]:
 def _short_form(formula: Expr, hypotheses: Sequence[Any]) -> Expr:
     """Return the normal form of the difference of two sides under the hypotheses; 0 if it vanishes.
 
-    Raise TooLarge for a long one.
+    Raise TooLarge if the normal form is long.
     """
     ring = FormulaRing([formula], [as_zero(hypothesis) for hypothesis in hypotheses])
     residual = ring.reduce(ring.ratio(formula).numerator)
@@ -84,7 +84,7 @@ def _short_form(formula: Expr, hypotheses: Sequence[Any]) -> Expr:
 
 
 def _whole(numeric: NumericFilter, place: str, lacking: Mapping[Path, Any]) -> Iterator[Candidate]:
-    """Yield the repair of the side ``place`` that adds to each wrong entry what it lacks, unless this is too long."""
+    """Yield the repair that adds the formulas ``lacking`` to the wrong entries of a side, unless they are too long."""
     # lacking: path of a wrong entry -> formula to be added there; adding a*b + c*d would repair anything
     made = numeric.tree_at(place)
     for path, residual in lacking.items():
@@ -140,7 +140,7 @@ def missing_matrices(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs of a side that replace the name of one definition in the claim by another one."""
+    """Yield repairs of a side that put the name of another definition in place of the name of one."""
     used = [name for name in numeric.definitions if name not in numeric.symbols]
     for place in numeric.sides_to_edit:
         tree = numeric.tree_at(place)
@@ -153,7 +153,7 @@ def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
 
 
 def _term(residual: Any, piece: Node | None) -> Node | None:
-    """Return the difference of two sides as the tree of one missing term such as ``m*r**2``, or None."""
+    """Return the difference of two sides as the tree of one short term such as ``m*r**2``; None if it is longer."""
     above, below = residual.as_numer_denom()
     if not below.is_number or not residual.free_symbols:
         return None

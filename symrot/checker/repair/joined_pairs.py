@@ -1,8 +1,7 @@
-"""Pairs of edits that make a claim true together, by joining their numeric effects instead of trying all pairs.
+"""Pairs of edits that make a claim true together, found by their numeric effects instead of trying all pairs.
 
-At a point, edits of different terms change the difference of the sides by independent amounts, and edits of different
-factors change the quotient of the sides by independent factors. A look-up of the missing amount gives the second
-edit.
+If left - right is 5 at a test point, and one edit of a term reduces it by 2, an edit that reduces it by 3 completes the
+pair. Edits of factors likewise change left/right by factors.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -56,7 +55,7 @@ Effects = tuple[Values, dict[int, Values]]
 
 
 def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
-    """Return left minus right at the first test point, and the amount by which each edit reduces it, by its index."""
+    """Return left - right at the first test point, and {number of an edit: how much this edit reduces left - right}."""
     point = numeric.points[0]
     whole = tuple(numeric.differences(point, ()))
     effects: dict[int, Values] = {}
@@ -73,9 +72,9 @@ def _differences(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 
 
 def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
-    """Return (left/right,) at the first test point, and the factor by which each edit divides it, by its index.
+    """Return left/right at the first test point, and {number of an edit: the factor by which it divides left/right}.
 
-    Empty if a side is zero.
+    Both are empty for matrices, and if a side is zero.
     """
     point = numeric.points[0]
     left, right = (entries_of(side) for side in numeric.sides(point, ()))
@@ -96,7 +95,7 @@ def _quotients(numeric: NumericFilter, changes: Sequence[Change]) -> Effects:
 
 
 def _completing(effects: Effects, rest: Callable[[float, float], float]) -> Iterator[tuple[int, int]]:
-    """Yield pairs of indices of edits that together make both sides equal.
+    """Yield the numbers of two edits that together make both sides equal.
 
     ``effects`` is the result of `_differences` or `_quotients`.
     """

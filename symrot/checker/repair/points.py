@@ -1,6 +1,6 @@
-"""Values of trees at test points in double precision, which take milliseconds and rule out most wrong repairs.
+"""Values of parsed formulas (trees) at test points in double precision, to rule out most wrong repairs in milliseconds.
 
-A function of time is represented by its value and its first derivatives, which are independent numbers.
+At a test point, a function of time and each of its derivatives have values that are independent of each other.
 """
 
 import math
@@ -123,7 +123,7 @@ class Point:
         return Point(self.symbols, self.functions, {**self.definitions, name: node}, spent=self.spent)
 
     def raised(self, variable: Node) -> "Point":
-        """Return a copy of the point at which trees have dual numbers as values, with slopes by ``variable``."""
+        """Return a copy of the point whose values are dual numbers; their slopes are derivatives by ``variable``."""
         # variable: a symbol, f(t), or diff(f(t), t)
         order = 0
         inner = variable
@@ -355,10 +355,11 @@ def points(
     symbols: Sequence[str], functions: Sequence[str], definitions: Mapping[str, Node],
     hypotheses: Sequence[tuple[Node, Node]], remembered: frozenset[int], count: int = 2, most: float = 1.7,
 ) -> list[Point]:  # fmt: skip
-    """Return random test points, the same in every run, that obey the hypotheses to double precision.
+    """Return random test points, the same in every run, at which the hypotheses hold to double precision.
 
-    There may be fewer than ``count``.
+    There may be fewer than ``count`` points. Symbols have values from 0.3 to ``most``.
     """
+    # remembered: ids of the trees whose values a point stores; a point is left out if Newton's method fails
     accepted = []
     for seed in range(3 * count):
         source = Random(seed)
@@ -377,7 +378,7 @@ def points(
 
 
 def _onto_hypotheses(point: Point, hypotheses: Sequence[tuple[Node, Node]]) -> Point | None:
-    """Return a point near ``point`` at which the hypotheses hold, by Newton's method; None if it fails."""
+    """Return a point near ``point`` at which the hypotheses hold, by Newton's method; None if the method fails."""
     if not hypotheses:
         return point
     import numpy as np

@@ -108,7 +108,7 @@ class Vocabulary:
         return made
 
     def values(self, node: Node) -> Values | None:
-        """Return the values of a scalar formula at the test points; None if one of them is zero, or for a matrix."""
+        """Return the values of a scalar formula at the test points; None for a matrix, or if a value is zero."""
         try:
             values = [point.value(node) for point in self.numeric.points]
         except UndefinedValue:
@@ -130,7 +130,7 @@ class Vocabulary:
         return values[0] / values[1]
 
     def find(self, values: Values) -> Iterator[tuple[Entry, Fraction]]:
-        """Yield (product, ratio) for each product that has ``values`` if multiplied by a rational ratio."""
+        """Yield (product, ratio) for each product whose values times a rational ratio are ``values``."""
         if not all(values):
             return
         key = self._key(values)
@@ -153,9 +153,9 @@ def _times(left: Values, right: Values) -> Values:
 
 
 def _rational(values: Sequence[float], largest: int = LARGEST_RATIO) -> Fraction | None:
-    """Return the simple rational number that all ``values`` are equal to, within rounding; None if there is none.
+    """Return the rational number that all ``values`` equal, within rounding, with a denominator of ``largest`` at most.
 
-    Its denominator is at most ``largest``.
+    None if there is none.
     """
     near = Fraction(values[0]).limit_denominator(largest)
     fits = all(abs(value - near) <= 1e-3 * CLOSE * abs(near) for value in values)
@@ -210,7 +210,7 @@ def _is_meaningful(numeric: NumericFilter, change: Change) -> bool:
 
 
 def _pieces(tree: Node, path: Path = (), term: bool = False) -> Iterator[tuple[Path, Node, bool]]:
-    """Yield (path, part, is_term) for each part of a tree that may be replaced; ``is_term``: it is a term of a sum."""
+    """Yield (path, part, whether the part is a term of a sum) for each part of a tree that may be replaced."""
     if tree.kind not in ("list", "inv"):
         yield path, tree, term
     for place, child in enumerate(tree.args):
@@ -230,7 +230,10 @@ def _candidate(numeric: NumericFilter, place: str, path: Path, made: Node, edit:
 
 
 def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: Values) -> Values | None:
-    """Return the values at the test points of the unknown in ``made`` that make the claim true, or None."""
+    """Return the values that the unknown ``HOLE`` in ``made`` must have if ``made`` replaces the part at ``path``.
+
+    There is one value for each test point; None if the search for a value fails.
+    """
     # the unknown is the node HOLE in made, which replaces the part at path of a side or definition
     tree = replaced(numeric.tree_at(place), path, lambda _: made)
     if place not in SIDES and not numeric.sensible(place, tree):
@@ -284,14 +287,20 @@ Reading = tuple[Node, tuple[str, float]]
 
 
 def _readings(
-    numeric: NumericFilter, vocabulary: Vocabulary, piece: Node, values: Values, needed: Values, term: bool, outer: bool
+    numeric: NumericFilter,
+    vocabulary: Vocabulary,
+    piece: Node,
+    values: Values,
+    needed: Values,
+    is_term: bool,
+    is_outer: bool,
 ) -> Iterator[Reading]:
-    """Yield the formulas that may replace the part ``piece``, each with (code, cost) of the corrected fault."""
-    # term: the part is a term of a sum; outer: it is a side of the claim, or directly below it in the tree
+    """Yield (formula, (code, cost) of the fault) for formulas with the values ``needed`` that may replace ``piece``."""
+    # values: of piece as it is; is_term: piece is a term of a sum; is_outer: it is a side, or directly below a side
     if all(abs(b) <= CLOSE * abs(a) for a, b in zip(values, needed, strict=True)):
         return  # the piece would have to vanish
     ratios = tuple(b / a for a, b in zip(values, needed, strict=True))
-    plain = _rational(ratios, LARGEST_OF_SIDE if outer else LARGEST_RATIO)
+    plain = _rational(ratios, LARGEST_OF_SIDE if is_outer else LARGEST_RATIO)
     if plain is not None:
         if plain == -1:
             yield negated(piece), ("sign_of_term", COST["solved_sign"])
@@ -310,24 +319,24 @@ def _readings(
         for factors, upward in ((ratios, True), (tuple(1 / ratio for ratio in ratios if ratio), False)):
             if len(factors) == len(ratios):
                 for entry, ratio in vocabulary.find(factors):
-                    yield _multiplied(piece, entry, ratio, upward), ("factor", _weight(least, entry, ratio))
+                    yield _multiplied(piece, entry, ratio, upward), ("factor", _cost(least, entry, ratio))
                     break
     lacking = tuple(b - a for a, b in zip(values, needed, strict=True))
-    if _is_there(vocabulary, piece, lacking):
+    if _is_multiple_of_term(vocabulary, piece, lacking):
         return
-    if not term and piece.kind != "neg" and not (plain and not is_nontrivial(piece)):
+    if not is_term and piece.kind != "neg" and not (plain and not is_nontrivial(piece)):
         for entry, ratio in vocabulary.find(lacking):
             if not entry.factors and ratio not in ONES:
                 continue
             made = sum_of([piece, scaled(entry.node, ratio)])
             least = COST["solved_term_of_sum" if piece.kind == "sum" else "solved_term"]
-            yield made, ("missing_term", _weight(least, entry, ratio))
+            yield made, ("missing_term", _cost(least, entry, ratio))
             break
 
 
-def _is_there(vocabulary: Vocabulary, piece: Node, lacking: Values) -> bool:
-    """Return whether ``piece`` only needs another coefficient of a term that it has: ``a + 3*b`` for ``a + 2*b``."""
-    # lacking: the needed value minus the value of piece, here that of b
+def _is_multiple_of_term(vocabulary: Vocabulary, piece: Node, lacking: Values) -> bool:
+    """Return whether ``lacking`` is a multiple of a term of ``piece``: of b, if ``a + 2*b`` should be ``a + 3*b``."""
+    # such a piece has the right terms; lacking: the needed values minus the values of piece
     for node in piece.args if piece.kind == "sum" else (piece,):
         values = vocabulary.values(node)
         if values and _rational([a / b for a, b in zip(lacking, values, strict=True)]) is not None:
@@ -342,10 +351,10 @@ def _exchanged(numeric: NumericFilter, piece: Node, other: Node) -> tuple[str, f
     return "wrong_symbol", COST["solved_neighbour" if near else "solved_symbol"]
 
 
-def _weight(least: float, entry: Entry, ratio: Fraction) -> float:
-    """Return the cost of a repair that inserts ``ratio`` times the product ``entry``: ``least`` plus its size."""
+def _cost(base_cost: float, entry: Entry, ratio: Fraction) -> float:
+    """Return the cost of inserting ``ratio`` times ``entry``: ``base_cost``, and more for long products and ratios."""
     size = sum(1 + sum(1 for _ in walk(factor)) // 3 for factor in entry.factors)
-    return least + COST["per_piece_added"] * size + (0.0 if abs(ratio) == 1 else COST["rational_in_front"])
+    return base_cost + COST["per_piece_added"] * size + (0.0 if abs(ratio) == 1 else COST["rational_in_front"])
 
 
 def _multiplied(piece: Node, entry: Entry, ratio: Fraction, upward: bool) -> Node:
@@ -371,7 +380,7 @@ def _of_matrix(
     needed = _needed(numeric, place, path, product([HOLE, piece]), unit)
     for entry, ratio in vocabulary.find(needed or ()) if needed else ():
         made = scaled(product([*entry.factors, piece]), ratio)
-        yield _candidate(numeric, place, path, made, ("factor", _weight(COST["solved_factor"], entry, ratio)))
+        yield _candidate(numeric, place, path, made, ("factor", _cost(COST["solved_factor"], entry, ratio)))
         break
     if piece.kind == "neg" or (path and piece.kind in ("name", "call")):
         return
@@ -379,7 +388,7 @@ def _of_matrix(
         needed = _needed(numeric, place, path, sum_of([piece, product([HOLE, other])]), (0.0,) * len(numeric.points))
         for entry, ratio in vocabulary.find(needed) if needed else ():
             added = scaled(product([*entry.factors, other]), ratio)
-            cost = _weight(COST["solved_term_of_sum"], entry, ratio) + COST["solved_matrix_term"]
+            cost = _cost(COST["solved_term_of_sum"], entry, ratio) + COST["solved_matrix_term"]
             yield _candidate(numeric, place, path, sum_of([piece, added]), ("missing_term", cost))
             break
 

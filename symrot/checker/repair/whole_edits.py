@@ -1,7 +1,7 @@
-"""Two faults, one of which changes a whole side or definition: it is undone first, then the other is searched.
+"""Repairs of claims with two faults, one of which changes a whole side or definition, such as a transposed rotation.
 
-A transposed rotation changes all values of a claim, so that no part tells where a second fault is. Afterwards, the
-second fault is a single one.
+Such a fault makes all values of a claim wrong and hides the other fault. So the search first undoes it, and then
+looks for the other fault as in a claim with one fault only.
 """
 
 from collections.abc import Iterator, Sequence
@@ -32,7 +32,7 @@ MOST_PIECES_AFTER = 60_000
 
 
 def after_whole_edits(numeric: NumericFilter, changes: Sequence[Change]) -> Iterator[Candidate]:
-    """Yield candidates with one of ``changes`` that concerns a whole side or definition, and another change after it.
+    """Yield repairs with two changes: one of ``changes`` that concerns a whole side or definition, and another change.
 
     All are true at the test points.
     """
@@ -52,7 +52,7 @@ def after_whole_edits(numeric: NumericFilter, changes: Sequence[Change]) -> Iter
 
 
 def _single(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield the single edits of a claim after which it is true at the test points."""
+    """Yield the single edits that make a claim true at the test points."""
     for place in numeric.places:
         tree = numeric.tree_at(place)
         opened = numeric.open_paths(place, tree)

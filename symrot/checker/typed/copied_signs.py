@@ -23,7 +23,7 @@ _SUBSCRIPT = re.compile(r"_\{(\w+)\}")
 
 
 def with_plain_signs(source: str) -> str:
-    r"""Return a copied text in the notation that the readers of claims understand, where its meaning is beyond doubt.
+    r"""Return a copied text with plain signs, ``1500`` for ``1,500``; doubtful signs stay unchanged.
 
     Examples
     --------

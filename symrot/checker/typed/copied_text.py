@@ -22,7 +22,7 @@ _AND = re.compile(r"(?<=\s)and(?=\s)")
 
 @dataclass(frozen=True)
 class Copied:
-    """A text in which blanks replace everything around its formulas; so the formulas keep their positions.
+    """A text in which blanks replace everything but its formulas, so that the formulas keep their positions.
 
     Attributes
     ----------
@@ -75,9 +75,8 @@ def _blank(match: re.Match[str]) -> str:
 
 
 def _clauses(text: str) -> tuple[str, list[str]]:
-    """Return (equations, clauses): ``text`` with blanks for clauses without an equation, and these clauses.
-
-    "m is the mass" is one.
+    """Return ``text`` with blanks for clauses without an equation, such as "m is the mass", and the list of these
+    clauses.
     """
     left_out: list[str] = []
 

@@ -1,4 +1,7 @@
-"""The cursor of the claim reader: a position in the tokens of a formula, its names, and its ambiguous places."""
+"""The cursor of the claim reader: a position in the tokens of a formula, its names, and its ambiguous pieces.
+
+Each ambiguous piece has a key (kind, position). ``flips`` are the keys of the pieces that get their less usual meaning.
+"""
 
 import re
 from abc import ABC, abstractmethod
@@ -34,14 +37,14 @@ USUAL_VECTORS = frozenset([*"abcdeuvwrpqnsFLHMNRT", "omega", "Omega", "alpha", "
 
 @dataclass(frozen=True)
 class Doubt:
-    """An ambiguous place of a text: it can be read in two ways.
+    """An ambiguous piece of a text, such as ``1/2m``: it can be read in two ways.
 
     Attributes
     ----------
     key : (str, int)
-        The kind of ambiguity, and its position.
+        The kind of ambiguity, and the position of the piece.
     excerpt : str
-        The text of the place.
+        The text of the piece.
     """
 
     key: tuple[str, int]
@@ -50,7 +53,7 @@ class Doubt:
 
 @dataclass(frozen=True)
 class Vocabulary:
-    """The names that have a meaning in a text, by the way in which the text uses them."""
+    """The names of a text that have a meaning: declared ones, names without a bracket after them, and vectors."""
 
     symbols: frozenset[str] = frozenset()  # declared
     functions: frozenset[str] = frozenset()  # declared
@@ -58,7 +61,7 @@ class Vocabulary:
     vectors: frozenset[str] = frozenset()  # names that, for example, cross products and hats show to be vectors
 
     def function(self, name: str) -> str | None:
-        """Return the name of the built-in or declared function that a name means; None if it means no function."""
+        """Return the name of the function that ``name`` means, asin for arcsin; None if it means no function."""
         if name in self.symbols or (name in ROTATIONS and name in self.alone):
             return None
         if name in BUILT_IN or name in self.functions or name in DEFINED:
@@ -74,7 +77,7 @@ class Cursor(ABC):
     plain : bool
         Whether the formula uses notation of plain text, such as ``2x`` or ``sin x``, which is not SymPy syntax.
     doubts : list of Doubt
-        The ambiguous places that were met so far.
+        The ambiguous pieces that were met so far.
     notes : list of str
         Sentences about the way in which the formula is read.
     timed : set of str
@@ -135,7 +138,9 @@ class Cursor(ABC):
             raise self.fail(f"at most {DEEPEST_NESTING} nested levels of brackets and arguments")
 
     def other_reading(self, kind: str, at: int, start: int, stop: int) -> bool:
-        """Record an ambiguous part of the text, at ``start``; return whether its less usual meaning applies."""
+        """Record an ambiguous piece of the text, ``start`` to ``stop``; return whether it gets its less usual
+        meaning.
+        """
         self.plain = True
         # flips has the keys (kind of ambiguity, position)
         doubt = Doubt((kind, at), self.source[start:stop].strip())

@@ -53,6 +53,6 @@ DISPUTED_NAMES = {f"{prefix}{name}": name for name in DISPUTED for prefix in ("a
 
 
 def instead(name: str) -> str:
-    """Return the words of an error message that refuses the inverse function of ``name``: cot, sec or csc."""
+    """Return words for an error message on acot, asec or acsc, the inverse of the function ``name``."""
     # for x < 0, books define arccot differently
     return f"{DISPUTED[name]} instead of the inverse function of {name} (books differ on it for x < 0)"

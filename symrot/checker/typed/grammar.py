@@ -22,18 +22,18 @@ BROKEN_EXPONENTS = frozenset([*(("1", n) for n in "23456789"), *((n, "2") for n 
 
 
 def _is_matrix_name(node: Node) -> bool:
-    """Return whether a tree is a name that starts with a capital letter, which may be that of a matrix."""
+    """Return whether a tree is a name with a capital letter in front, so that it may be a matrix."""
     return node.kind == "name" and str(node.value)[0].isupper()
 
 
 def _from_matrix(factors: Sequence[Node]) -> int:
-    """Return the index in ``factors`` at which the left operand of a cross product starts: that of R in ``R a × b``."""
+    """Return the index in ``factors`` where the left operand of a cross product starts: that of R in ``R a × b``."""
     # R is a matrix, and the product is (R a) × b; usually the operand is the last factor
     return len(factors) - (2 if len(factors) > 1 and _is_matrix_name(factors[-2]) else 1)
 
 
 class Parser(PiecesPart):
-    """The complete parser of claims, for everything from chains of equals signs down to powers."""
+    """The complete parser of claims, from chains of equals signs down to powers."""
 
     def whole(self) -> Node:
         node = self.expression()
@@ -124,7 +124,9 @@ class Parser(PiecesPart):
                 return product(factors, self.span(start)) if len(factors) > 1 else factors[0]
 
     def divisor(self, above: Node, start: int, slash: int) -> Node:
-        """Parse and return the divisor of ``above``: one factor, or a product as ``2m`` in ``p^2/2m``."""
+        """Parse and return the divisor after ``above`` and a slash: one factor, or a product such as ``2m`` in
+        ``p^2/2m``.
+        """
         first = self.token()
         below = [self.factor()]
         while above.kind in ("neg", "inv"):
@@ -206,7 +208,7 @@ class Parser(PiecesPart):
         return base
 
     def raised(self, base: Node, token: Token, start: int) -> Node:
-        """Return ``base`` with the raised exponent ``token``: the power ``x²``, a transpose or an inverse."""
+        """Return ``base`` with the raised ``token``: a power ``x²``, a transpose ``Rᵀ`` or an inverse ``R⁻¹``."""
         self.plain = True
         digits, transposed = token.text.removesuffix("T"), token.text.endswith("T")
         if transposed and digits in ("", "-"):
@@ -219,7 +221,7 @@ class Parser(PiecesPart):
         return Node("power", None, (base, number(int(digits))), self.span(start))
 
     def caret(self, base: Node, start: int) -> Node:
-        """Parse the exponent after ``^``; return a power of ``base``, its transpose (T) or its conjugate (``*``)."""
+        """Parse the exponent after ``^``; return ``x^2``, a transpose for ``R^T``, or a conjugate for ``q^*``."""
         if self.peek() == "*":
             self.next()
             return Node("call", CONJUGATE, (base,), self.span(start))

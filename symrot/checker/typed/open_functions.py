@@ -1,4 +1,7 @@
-"""Parsing functions without brackets, ``sin 2x`` and ``√x``, and derivatives as quotients, ``dx/dt``."""
+"""Parsing functions without brackets, ``sin 2x`` and ``√x``, and derivatives as quotients, ``dx/dt``.
+
+A ``place`` counts tokens from the cursor.
+"""
 
 import re
 
@@ -54,7 +57,9 @@ class OpenFunctionsPart(Cursor):
         return Node("neg", None, (value,), value.span) if negative else value
 
     def open_call(self, function: str, token: Token, exponent: Node | None) -> tuple[Node, Node | None]:
-        """Parse the argument in ``sin 2x``; return the call sin(2*x), and its exponent, 2 for ``sin^2 x``, or None."""
+        """Parse the argument in ``sin 2x``; return the call sin(2*x) and its exponent: ``exponent``, 2 in ``sin^2 x``,
+        or None.
+        """
         self.plain = True
         first = self.token()
         if first.kind not in ("number", "name", "fraction") and first.text not in ("√", "-", "[", "|"):
@@ -87,7 +92,7 @@ class OpenFunctionsPart(Cursor):
         return self.power()
 
     def power_of_call(self, token: Token, factors: list[Node]) -> Node | None:
-        """Return the exponent 2 of ``sin x^2`` if the parser chooses the less usual (sin x)^2, else None."""
+        """Return the exponent 2 of ``sin x^2`` if it is read as (sin x)^2, the less usual meaning; else None."""
         last = factors[-1]
         if last.kind != "power" or last.args[0].kind not in ("name", "call"):
             return None
@@ -132,7 +137,7 @@ class OpenFunctionsPart(Cursor):
         return self.other_reading("slash after argument", slash.start, function.start, below.end) != usual
 
     def root(self, token: Token) -> Node:
-        """Parse the formula after a root sign √, which has no bar to show its end; return the square root."""
+        """Parse the formula after a root sign √ without a bar, and return its square root."""
         self.plain = True
         self.deeper()
         first = self.token()
@@ -155,7 +160,7 @@ class OpenFunctionsPart(Cursor):
         """Parse and return ``dx/dt``, ``d²x/dt²``, ``d/dt x`` or ``d/dx (..)``; return None for any other text."""
         texts = [self.token(n).text for n in range(8)]
         word = token.text
-        if word.startswith("d") and texts[:2] == ["/", "dt"] and not self.continues(1):
+        if word.startswith("d") and texts[:2] == ["/", "dt"] and not self.is_power_base(1):
             if word == "d":
                 return self.derivative_of_next(token)
             return self.quotient_rate(token, word[1:], 1, 2)
@@ -167,8 +172,8 @@ class OpenFunctionsPart(Cursor):
             return self.quotient_rate(token, texts[1], int(texts[0]), 5)
         return self.derivative_by(token)
 
-    def continues(self, ahead: int) -> bool:
-        """Return whether the token ``ahead`` places after the cursor is the base of a power, as x in ``x^2`` is."""
+    def is_power_base(self, ahead: int) -> bool:
+        """Return whether a power, as ``^2`` in ``x^2``, follows the token that is ``ahead`` tokens after the cursor."""
         after = self.token(ahead + 1)
         return after.text in ("^", "**") or after.kind == "power"
 
@@ -219,7 +224,9 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "diff", (operand, *variables), self.span(token.start))
 
     def end_of_bracket(self) -> int | None:
-        """Return how many tokens the bracket at the cursor has if ``/dx`` follows it, as in ``(x^2)/dx``; or None."""
+        """Return the number of tokens of the bracket at the cursor if ``/dx`` follows it, as in ``(x^2)/dx``; otherwise
+        None.
+        """
         depth, place = 0, 0
         while self.token(place).kind != "end":
             depth += (self.token(place).text == "(") - (self.token(place).text == ")")
@@ -245,28 +252,19 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "diff", (operand, Node("name", variable)), self.span(token.start))
 
     def order_at(self, place: int) -> tuple[int, int]:
-        """Return (order, next place) of a derivative: order 2 if ``^2`` or ² is at ``place``, else 1.
-
-        Places count tokens from the cursor.
-        """
+        """Return (order, next place) of a derivative: order 2 if ``^2`` or ² is at ``place``, otherwise 1."""
         token, after = self.token(place), self.token(place + 1)
         if token.text in ("^", "**") and after.text.isdigit():
             return int(after.text), place + 2
         return (int(token.text), place + 1) if token.kind == "power" and token.text.isdigit() else (1, place)
 
     def tight_name(self, place: int) -> tuple[str, int]:
-        """Return (name, next place) for the name at ``place``; the name is empty if a blank is before it.
-
-        Places count tokens from the cursor.
-        """
+        """Return (name, next place) for the name at ``place``; the name is empty if a blank is before it."""
         token = self.token(place)
         return (token.text, place + 1) if token.kind == "name" and token.tight else ("", place)
 
     def differential(self, place: int) -> tuple[str, int]:
-        """Return (``x``, next place) if the differential ``dx`` is at ``place``; otherwise the text is empty.
-
-        Places count tokens from the cursor.
-        """
+        """Return (x, next place) if the differential ``dx`` is at ``place``; otherwise an empty text in place of x."""
         token = self.token(place)
         if token.kind != "name" or not token.text.startswith("d"):
             return "", place

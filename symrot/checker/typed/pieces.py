@@ -124,7 +124,7 @@ class PiecesPart(OpenFunctionsPart):
         return self.tokens[self.index - 1].text == "]" and (after.spaced or after.kind in ("end", "mark", "power"))
 
     def is_index(self) -> bool:
-        """Return whether square brackets contain an index, as in ``M[0, 1]``, not a factor as in ``m[a^2 + b^2]``."""
+        """Return whether square brackets hold an index, as in ``M[0, 1]``, and not a factor, as in ``m[a^2 + b^2]``."""
         depth, inside = 0, self.tokens[self.index + 1 :]
         names = False
         for token in inside:
@@ -158,7 +158,7 @@ class PiecesPart(OpenFunctionsPart):
         return Node("call", name, (node, *arguments), self.span(start))
 
     def rate(self, node: Node, mark: Token, start: int) -> Node:
-        """Return ``diff(x(t), t)`` for ``x'``, or the name ``x_prime`` in its less usual meaning.
+        """Return ``diff(x(t), t)`` for ``x'``, or the name ``x_prime`` if ``flips`` ask for this less usual meaning.
 
         ``node`` is the name, ``mark`` the primes or dots after it.
         """
@@ -370,9 +370,8 @@ class PiecesPart(OpenFunctionsPart):
         return Node("neg", None, (node,), node.span) if negative else node
 
     def element_ahead(self, has_limits: bool) -> str:
-        """Return the element that ends the integral at the cursor: dm or dV, or with limits a name such as dx.
-
-        The default is dm.
+        """Return the element that ends the integral at the cursor: dm, dV or, after limits, dx. It is dm if there is
+        none.
         """
         depth = inner = 0
         for before, token in pairwise(self.tokens[self.index - 1 :]):

@@ -30,7 +30,7 @@ class Token(NamedTuple):
     text : str
         The text in ASCII: ``omega_1`` for ω₁.
     start, end : int
-        Its place in the source.
+        Its first position in the source, and the position after it.
     spaced, breaks : bool
         Whether blanks, or the end of a line, are before it.
     """
@@ -137,7 +137,9 @@ def without_dots(name: str) -> str:
 
 
 def _written_out(source: str) -> tuple[str, list[int]]:
-    """Return the text in one spelling of each sign, ``*`` for ``∗``, and the place of each character in ``source``."""
+    """Return the text with one spelling of each sign, ``*`` for ``∗``, and the position in ``source`` of each
+    character.
+    """
     written: list[str] = []
     places: list[int] = []
     for place, character in enumerate(source):
@@ -148,7 +150,9 @@ def _written_out(source: str) -> tuple[str, list[int]]:
 
 
 def _accents_after_letters(text: str, places: list[int]) -> tuple[str, list[int]]:
-    """Return a text in which dots and hats follow their letters, and the ``places`` of its characters in the source."""
+    """Return a text with dots and hats after their letters, and the positions of its characters in the source,
+    ``places``.
+    """
     # text that was copied from a PDF has them before the letters
     text, places = _without_blanks_before_dots(text, places)
     characters, places = list(text), [*places]
@@ -161,7 +165,7 @@ def _accents_after_letters(text: str, places: list[int]) -> tuple[str, list[int]
 
 
 def _without_blanks_before_dots(text: str, places: list[int]) -> tuple[str, list[int]]:
-    """Return a text with ``ω˙ =`` for ``ω ˙ =``, and the ``places`` of its characters in the source."""
+    """Return a text with ``ω˙ =`` for ``ω ˙ =``, and the positions of its characters in the source, ``places``."""
     dots = "".join(_DOTS)
     # some PDFs have a blank between a letter and its dot; a dot before a letter may belong to that letter
     gaps = [match.start(1) for match in re.finditer(rf"(?<=[^\W\d_])( )[{dots}](?=\s|$)", text)]
@@ -183,7 +187,9 @@ def _alike(character: str) -> str:
 
 
 def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
-    """Yield (kind, text, end) of the tokens that start at a place: one token, or a name and the dots over it."""
+    """Yield (kind, text, end) of the tokens that start at the position ``at``: one token, or a name and the dots over
+    it.
+    """
     character = text[at]
     if number := _NUMBER.match(text, at):
         yield "number", number[0], number.end()
@@ -220,7 +226,7 @@ def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
 
 
 def _differential(text: str, at: int) -> Iterator[tuple[str, str, int]]:
-    """Yield (kind, text, end) of the name after ``∂``, with d in front: dT for ``∂T``, and d for ``∂`` alone."""
+    """Yield (kind, text, end) of the name after ``∂`` with d in front: dT for ``∂T``, and d for ``∂`` alone."""
     name = _NAME.match(text, at)
     if text[at : at + 1] in LETTERS:
         pieces = [*_pieces(text, at)]
@@ -275,7 +281,9 @@ def _written(digits: str) -> str:
 
 
 def _letter(text: str, at: int, word: str) -> Iterator[tuple[str, str, int]]:
-    """Yield (kind, text, end) of a letter such as ω, ``word`` in ASCII, with its subscript, and of its dots."""
+    """Yield (kind, text, end) of the tokens of a letter ω: the name omega, its ``word``, with a subscript, and its
+    dots.
+    """
     stop = at + 1
     dots = 0
     over = ""

@@ -165,7 +165,9 @@ OF_LETTERS = re.compile(f"[cs][{''.join(ANGLES)}]")
 
 
 def shorthands_of_letters(tokens: Sequence[Token]) -> list[Shorthand]:
-    """Return the short forms in a text of letters for angles: cos(alpha) for ``ca``, sin(beta) for ``sb``."""
+    """Return the short forms among ``tokens``, ``ca`` for cos(alpha) and ``sb`` for sin(beta), if two angles have
+    both.
+    """
     places = [place for place, token in enumerate(tokens) if token.kind == "name" and OF_LETTERS.fullmatch(token.text)]
     forms = {tokens[place].text for place in places}
     angles = {form[1] for form in forms if {f"c{form[1]}", f"s{form[1]}"} <= forms}

@@ -73,7 +73,7 @@ def check_dimensions(
 def dimensions_of_formulas(left: Any, right: Any, units: Mapping[str, str] | None = None) -> Dimensions:
     """Return whether the units of an equation between SymPy values fit together.
 
-    ``units`` are those of symbols outside :mod:`symrot.symbols`.
+    ``units`` are the units of symbols outside :mod:`symrot.symbols`.
     """
     symbols = {symbol for side in (left, right) for symbol in getattr(side, "free_symbols", ())}
     own = {symbol.name: UNIT[symbol] for symbol in symbols if UNIT.get(symbol)} | dict(units or {})

@@ -124,7 +124,7 @@ class UnitProduct:
 
     @property
     def note(self) -> str:
-        """A note on the factor to SI units, as ``1 rpm = pi/30 rad/s``; empty for SI units and for long factors."""
+        """A note on the factor to SI units, such as "1 rpm = pi/30 rad/s"; empty for SI units and for long factors."""
         if (self.fraction == 1 and not self.power_of_pi) or max(self.fraction.as_integer_ratio()) > LARGEST_IN_NOTE:
             return ""
         dimension = unit_text(self.dimension)
@@ -136,14 +136,14 @@ class UnitProduct:
 
     @property
     def factor(self) -> Node:
-        """The exact factor from this unit to SI units as a tree: ``1/1000`` for g."""
+        """The exact factor from this product of units to SI units as a tree: ``1/1000`` for g."""
         pi = Node("power", None, (Node("name", "pi"), number(self.power_of_pi)))
         return product([number(self.fraction), *([pi] if self.power_of_pi else [])])
 
 
 @dataclass(frozen=True)
 class Measured:
-    """A text whose numbers have units, with a name such as ``unit_1`` in place of each product of units."""
+    """A text with a name such as ``unit_1`` in place of each unit: ``2*unit_1`` for ``2 kg``."""
 
     source: str
     text: str
@@ -152,7 +152,7 @@ class Measured:
     others: tuple[tuple[str, "Measured"], ...] = ()  # other interpretations, each with words on the difference
 
     def restored(self, text: str) -> str:
-        """Return a text about the claim with its units: ``2 kg`` for ``2*unit_1``, as ``units`` says."""
+        """Return ``text`` with units in place of their names: ``2 kg`` for ``2*unit_1``."""
         return re.sub(
             r"(\w)?\*?(unit_\d+)", lambda match: f"{match[1] or ''} {self.units[match[2]].text}".lstrip(), text
         )
@@ -167,7 +167,7 @@ class _Interpretation:
 
 
 def measured_text(source: str) -> Measured | None:
-    """Return a text with a name such as unit_1 for each unit in it; None if no number in it has a unit.
+    """Return a text with a name such as unit_1 in place of each unit, or None if no number has a unit.
 
     Raises
     ------
@@ -254,7 +254,7 @@ def _read(plain: str, way: _Interpretation) -> Measured | None:
 
 
 def numeric_end(source: str) -> tuple[str, str]:
-    """Return (beginning, end) of a chain of equations that ends with several numbers with units, or two empty texts.
+    """Split a chain of equations into formulas and a chain of numbers with units; ("", "") if it does not end so.
 
     Examples
     --------
@@ -331,7 +331,7 @@ def _pieces(text: str) -> Iterator[tuple[str, int]]:
 def _unit_product(text: str, meanings: frozenset[str] = frozenset()) -> UnitProduct:
     """Return the product of units in ``text``, with its exact factor to SI units.
 
-    In ``meanings``, g is the standard gravity, not the gram.
+    Units in ``meanings`` have their less usual meaning: g is the standard gravity, not the gram.
     """
     dimension: Dimension = NOTHING
     fraction, power_of_pi = Fraction(1), 0

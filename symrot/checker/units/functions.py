@@ -14,7 +14,7 @@ __all__ = ["CALLS"]
 
 
 def _of_number(inference: UnitInference, node: Node) -> Value:
-    """Return the dimension of a call such as sin(x), a pure number; require that its argument is one, too."""
+    """Return the dimension of a call such as sin(x), a pure number; require that x is a pure number, too."""
     for argument in node.args:
         inference.plain(
             inference.value(argument), f"the argument of {node.value}, {piece_text(argument)}, is {{0}}, not a number"

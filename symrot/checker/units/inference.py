@@ -1,4 +1,7 @@
-"""The units of the parts of a formula (names, sums, products, powers, matrices), and contradictions between them."""
+"""The units of the parts of a formula (names, sums, products, powers, matrices), and contradictions between them.
+
+A unit is stored as a dimension: exponents of kg, m, s and other bases, without scales such as the one of mm.
+"""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -85,7 +88,7 @@ class UnitInference:
     # -- definitions and equations ----------------------------------------------------------------------------------
 
     def define(self, name: str, tree: Node) -> None:
-        """Record the dimension of ``name`` from its definition, so that later formulas can use it."""
+        """Record the dimension that the definition ``tree`` gives to ``name``."""
         self.place = f"in the definition of {name}"
         value = self.value(tree)
         if _bare(tree):
@@ -143,13 +146,13 @@ class UnitInference:
         return dimension
 
     def physical(self) -> bool:
-        """Return whether the claim is about physical quantities, so that its m and t mean mass and time."""
+        """Return whether a claim is about physical quantities; then its letters m and t mean mass and time."""
         # units are stated, or a name of several letters has a conventional unit other than rad
         units = (conventional_unit(name) for name in self.names if len(name) > 1)
         return bool(self.units) or any(unit not in (None, "rad") for unit in units)
 
     def values_of(self, rows: Rows, node: Node) -> Rows:
-        """Return the dimensions of the entries of a matrix of numbers, whose units the author may have left out."""
+        """Return the dimensions of a matrix of numbers: unknown, because the author may have left out the units."""
         if _is_unit(node):
             return rows  # zeros and ones are pure numbers, but 2 may be 2 kg
         return tuple(tuple(ZERO if entry is ZERO else self.unknown() for entry in row) for row in rows)
@@ -157,11 +160,11 @@ class UnitInference:
     # -- equations --------------------------------------------------------------------------------------------------
 
     def same(self, first: Value, second: Value, words: str) -> Value:
-        """Require that two values have the same dimension, and return it; else record the sentence ``words``."""
+        """Return the dimension of ``first``; if ``second`` has another one, add the sentence ``words`` to faults."""
         if isinstance(first, tuple) or isinstance(second, tuple):
             return self.same_matrices(first, second, words)
         if first is ZERO or second is ZERO:
-            return second if first is ZERO else first
+            return second if first is ZERO else first  # zero may have any unit
         if not self.system.equate(first, second):
             place = f"{self.place} " if self.place else ""
             # {0} and {1} in words stand for the two units
@@ -191,7 +194,7 @@ class UnitInference:
         )
 
     def plain(self, value: Value, words: str) -> Dimension:
-        """Require that a scalar is a pure number, and return its dimension; else record the sentence ``words``."""
+        """Return the dimension of a pure number; if ``value`` has a unit, add the sentence ``words`` to the faults."""
         if isinstance(value, tuple):
             raise Unreadable
         self.same(value, NOTHING, words)
@@ -218,7 +221,7 @@ class UnitInference:
         return value
 
     def total(self, values: Sequence[Value], what: str) -> Value:
-        """Require that the terms of a sum have the same dimension, and return it; ``what`` names the sum."""
+        """Return the dimension of a sum, whose terms must all have it; ``what`` names the sum in messages."""
         dimension = values[0]
         for number, value in enumerate(values[1:], start=2):
             dimension = self.same(dimension, value, f"term 1 of {what} is {{0}}, term {number} is {{1}}")
@@ -301,7 +304,7 @@ def _bare(tree: Node) -> bool:
 
 
 def _is_unit(tree: Node) -> bool:
-    """Return whether a tree has only the numbers 0 and 1, as a unit vector or a norm of 1 has, and no names."""
+    """Return whether a tree has only the numbers 0 and 1, and no names, as ``Matrix([0, 0, 1])`` has."""
     return all(node.value in (0, 1) for _, node in walk(tree) if node.kind == "number") and not any(
         node.kind == "name" for _, node in walk(tree)
     )

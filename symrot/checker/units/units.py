@@ -1,7 +1,7 @@
 """Units as products of powers: parsing, printing, and equations between units, solved over the rationals.
 
-A dimension maps bases (kg, m, s, ..) and symbols of unknown unit to rational exponents; an angle has none. Scales are
-ignored: mm and m have the same dimension.
+A dimension maps bases and symbols of unknown unit to exponents: {"[m]": 1, "[s]": -1} for m/s. An angle has none.
+Scales are ignored: mm and m have the same dimension.
 """
 
 import re

@@ -56,7 +56,7 @@ def normalized(high: Any, low: Any) -> Pair:
 
 
 def add(a: Pair, b: Pair) -> Pair:
-    """Return the sum of two double-double numbers, with an error of 2^-104 times the larger number (in size)."""
+    """Return the sum a + b of double-double numbers, with an error of 2^-104 times the larger of |a| and |b|."""
     total, error = two_sum(a[0], b[0])
     return normalized(total, error + (a[1] + b[1]))
 

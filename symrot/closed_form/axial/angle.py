@@ -80,8 +80,8 @@ class Turning:
             self._final, self._rest = pair(final * turn), pair(rest * turn)
         except OverflowError:
             raise InputError(
-                "expected no damping, or a damping under which the final angle is a finite double, got a decay rate of "
-                f"{float(decay)!r} 1/s under {float(push)!r} rad/s^2"
+                "expected no damping, stronger damping or a smaller torque: constants of the motion exceed the range "
+                f"of doubles for a decay rate of {float(decay)!r} 1/s and an acceleration of {float(push)!r} rad/s^2"
             ) from None
         self._bits = _BITS + max(int(abs(x)) for x in self._exact).bit_length()
         self._scaled: dict[int, tuple[int, int, int, int]] = {}

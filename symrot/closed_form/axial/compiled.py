@@ -133,10 +133,8 @@ class Constants:
         self._turns: dict[bool, tuple[int, int, list[float]]] = {}
 
     def head(self, transverse: bool) -> list[float]:
-        """Return the first 8 numbers of the C struct `axial`, from regime to slowing_across.
-
-        ``transverse`` tells whether there is a transverse angular velocity.
-        """
+        """Return the first 8 numbers of the C struct `axial`, with ``transverse`` as its member `across`."""
+        # transverse: whether there is a transverse angular velocity
         return [float(bool(self._decay)), 1.0, float(transverse), *self._head]
 
     def moving(self, rate: Fraction | float, transverse: bool) -> list[float]:
@@ -162,10 +160,11 @@ class Constants:
         ]  # fmt: skip
 
     def _turning(self, transverse: bool) -> tuple[int, int, list[float]]:
-        """Return (turn, bits, fixed): a body's rotation by 1 rad changes an angle by ``turn/2**bits`` revolutions.
+        """Return (turn, bits, fixed): a rotation by 1 rad changes an angle by ``turn/2**bits`` revolutions.
 
-        The angle is lag if ``transverse``, otherwise half the angle of rotation.
+        ``fixed`` are constants of the angle for C.
         """
+        # the angle is lag if transverse, otherwise half the angle of rotation
         turn, bits = _HALF
         if transverse:
             (a, over_a), (c, over_c) = self._moments
@@ -203,9 +202,9 @@ class Constants:
     def omega_rows(self, one: Any, other: Any) -> list[Any]:
         """Return the matrix, row by row, that maps (cos(lag), sin(lag), axial rate) to the angular velocity.
 
-        ``one`` and ``other`` are the initial rates, rad/s, about the next two axes after the driven axis.
+        ``one`` and ``other`` are the transverse components at the start, rad/s.
         """
-        # C multiplies cosine and sine by the damping factor
+        # about the two axes that follow the driven axis cyclically; C multiplies cosine and sine by the damping factor
         rows: list[list[Any]] = [[0.0] * 3 for _ in range(3)]
         rows[self.axis][2] = 1.0
         rows[self.axis - 2][:2] = one, -other

@@ -63,8 +63,9 @@ class AxialMotion:
         """
         if quaternion and not self.has_attitude:
             raise InputError(
-                "quaternion: expected False, got True, but the body also rotates across the driven axis, where this "
-                "closed form has no attitude; use symrot.closed_form.spin_up.motion, or numerical integration if damped"
+                "quaternion: expected False, got True, but the angular velocity is not parallel to the driven axis, so "
+                "this closed form has no attitude; use symrot.closed_form.spin_up.motion, or numerical integration if "
+                "there is damping"
             )
         times = times_of(t)
         if self._loops is None:
@@ -200,7 +201,7 @@ class Driven:
             raise InputError(
                 f"expected torque and damping of at most {LARGEST:g} times the moments of inertia, got moments "
                 f"{[float(x) for x in moments]} kg m^2, torque {float(push)!r} N m, damping {float(drag)!r} N m s "
-                f"about its axis and {float(slowing)!r} N m s across it"
+                f"about the driven axis and {float(slowing)!r} N m s about the other axes"
             )
         driving = [x.as_integer_ratio() for x in (push, drag, slowing)]
         self.constants = axial_compiled.Constants(axis, (across.as_integer_ratio(), own.as_integer_ratio()), *driving)
@@ -230,7 +231,7 @@ class Driven:
 
 
 def turned_about(axis: int, q: Sequence[Any]) -> list[Any]:
-    """Return the quaternion of the attitude that a body reaches from ``q`` by half a turn about its axis ``axis``."""
+    """Return the attitude ``q`` after half a turn about the body axis ``axis`` (0, 1 or 2), as a quaternion."""
     product: list[Any] = [None] * 4
     product[0], product[axis + 1] = -q[axis + 1], q[0]
     product[(axis + 1) % 3 + 1], product[(axis + 2) % 3 + 1] = q[(axis + 2) % 3 + 1], -q[(axis + 1) % 3 + 1]

@@ -62,20 +62,20 @@ def fixed_body(moments: Sequence[Fraction], axes: Sequence[Fraction]) -> NDArray
 
 
 def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floats, Doubtful]:
-    """Return n angular velocities along a body's principal axes, the defects of the motions, and the doubtful rows.
+    """Return the components of n angular velocities along a body's principal axes, shape (n, 6): hi, lo of each.
 
-    The shapes are (n, 6) and (n, 2): hi and lo of each number.
+    Also return the defects of the motions, shape (n, 2), and the indices of the motions that are doubtful.
     """
     n = len(omega)
     rates, exact, doubtful = np.empty((n, 6)), np.empty((n, 8)), np.empty(n, np.uint8)
     omega = np.ascontiguousarray(omega)
     _functions()[0](n, body.ctypes.data, address(omega), address(rates), address(exact), doubtful.ctypes.data)
-    # the last digit of a doubtful row is not certain, so that the caller must compute it exactly
+    # the last digit of a doubtful motion is not certain, so that the caller must compute it exactly
     return rates, exact[:, 6:], np.flatnonzero(doubtful)
 
 
 def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
-    """Return the defects |L|^2 - 2 T I_mid of free bodies, shape (n, 2), and the indices of the doubtful rows."""
+    """Return the defects |L|^2 - 2 T I_mid of n free bodies, shape (n, 2), and the indices of the doubtful bodies."""
     # moments, omega: principal moments, and angular velocities along the principal axes
     n = len(omega)
     exact, doubtful = np.empty((n, 8)), np.empty(n, np.uint8)
@@ -95,9 +95,9 @@ class PrincipalBodies(NamedTuple):
 
 
 def principal_bodies(entries: Sequence[Column], omega: Floats) -> PrincipalBodies | None:
-    """Return the constants of free bodies, with principal axes computed from inertia tensors, for a batch.
+    """Return the constants of free bodies, whose principal axes are computed from inertia tensors.
 
-    ``entries`` are the components xx, yy, zz, xy, xz and yz, kg m^2.
+    ``entries`` are the components xx, yy, zz, xy, xz and yz, kg m^2. None if a Fraction is outside the range of pairs.
     """
     n, tensors, arrays = len(omega), _Tensors(terms=_TERMS), []
     for k, entry in enumerate(entries):
@@ -118,7 +118,7 @@ def principal_bodies(entries: Sequence[Column], omega: Floats) -> PrincipalBodie
 
 
 def _sum_of_doubles(value: Fraction) -> tuple[Floats, bool]:
-    """Return a few doubles whose sum approximates a fraction, and whether their sum equals the fraction exactly."""
+    """Return a few doubles whose sum approximates a fraction, and whether the sum is exact: 1/2 gives 0.5 and True."""
     terms = np.zeros(_TERMS)
     for k in range(_TERMS):
         terms[k] = float(value)

@@ -63,7 +63,7 @@ def motion(
 
 
 def starts(principal: Principal) -> Callable[[Initial], ExactMotion]:
-    """Return a function from an initial state to the motion of one free body, in any body axes."""
+    """Return a function from an initial state to the motion of the free body with the principal axes ``principal``."""
     # from principal moments and axes to 110 digits, before anything is rounded to doubles
     body = FreeRigidBody(principal)
     return lambda start: body.motion(start.omega_b, start.quaternion)

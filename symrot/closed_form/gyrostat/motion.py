@@ -29,8 +29,8 @@ def motion(
     Parameters
     ----------
     inertia : 3 numbers
-        Principal moments of inertia of body and rotor together, kg m^2; those about the two axes across the rotor are
-        equal.
+        Principal moments of inertia of body and rotor together, kg m^2; those about the two axes normal to the
+        rotor's axis are equal.
     rotor : 3 numbers
         Constant angular momentum of the rotor relative to the body, kg m^2/s, along one principal axis, or zero.
     omega0, quaternion0 : 3 and 4 numbers
@@ -54,10 +54,7 @@ def starts(inertia: Sequence[Number], rotor: Sequence[Number]) -> Callable[[Init
 
 
 class Gyrostat:
-    """A symmetric body with a rotor along its axis, with the constants that all its motions share.
-
-    They do not depend on the initial state.
-    """
+    """A symmetric body with a rotor along its axis, with the constants that all its motions share."""
 
     def __init__(self, inertia: Sequence[Number], rotor: Sequence[Number]) -> None:
         self._inertia = moments = numbers("inertia", inertia, 3, SMALLEST)

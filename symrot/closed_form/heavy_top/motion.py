@@ -48,8 +48,8 @@ def motion(
     Parameters
     ----------
     inertia : 3 numbers
-        Principal moments of inertia with respect to the fixed point, kg m^2; those about the two axes across the axis
-        of the centre of mass are equal. Fractions, ints and floats are taken at their exact values.
+        Principal moments of inertia with respect to the fixed point, kg m^2; those about the two axes normal to
+        the axis of the centre of mass are equal. Fractions, ints and floats are taken at their exact values.
     weight : number
         Weight, N.
     center_of_mass : 3 numbers
@@ -130,7 +130,7 @@ class Top:
 
 
 class Frame:
-    """The axes of space and of the body in which the formulas of a heavy top hold, and the conversion to these axes.
+    """The axes of space and of the body in which the formulas of a heavy top hold.
 
     Parameters
     ----------
@@ -159,12 +159,12 @@ class Frame:
 
     @property
     def plain(self) -> bool:
-        """Whether the axes of the formulas are those of the scene, so that attitudes need no conversion."""
+        """Whether the axes of the formulas are the axes of the scene, so that attitudes need no conversion."""
         # the symmetry axis is the body's third axis, and up is the direction of z
         return self._before is self._after is None
 
     def start(self, quaternion: Sequence[Number]) -> list[float]:
-        """Return an attitude in the axes of the formulas: 8 doubles, hi and lo of each component of the quaternion."""
+        """Convert an attitude to the axes of the formulas; return hi and lo of each component of the quaternion."""
         # rounded as in symrot.closed_form.arithmetic.pairs.attitude
         if self.plain:
             return attitude(quaternion)

@@ -12,7 +12,7 @@ __all__ = ["PortableGyrostat"]
 
 
 class PortableGyrostat:
-    """The motion of a gyrostat, computed with mpmath and NumPy from the arguments of the C function."""
+    """The motion of a gyrostat, computed from the arguments of the C function symrot_gyrostat_prepare."""
 
     regime = "steady"
 

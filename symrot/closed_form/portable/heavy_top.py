@@ -33,7 +33,7 @@ NOTHING = mpf(10) ** -31  # size, relative to alpha or beta, that counts as zero
 
 
 class PortableHeavyTop:
-    """The motion of a symmetric heavy top, computed with mpmath and NumPy from the arguments of the C function."""
+    """The motion of a symmetric heavy top, computed from the arguments of the C function symrot_heavy_top_prepare."""
 
     @mp.workdps(DIGITS)  # type: ignore[untyped-decorator]
     def __init__(
@@ -158,8 +158,10 @@ class PortableHeavyTop:
         return numerators, kappas, leads, speed, v, below
 
     def _functions(self, i: int, place: Any) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
-        """Return the terms of the theta series of alpha (i = 0) or beta (i = 1) at ``place``, and their derivatives."""
-        # four lists, with one value for each n: of the real part, of the imaginary part, of the derivatives of both
+        """Return four lists: the terms, at ``place``, of the theta series of alpha (i = 0) or beta (i = 1).
+
+        They are the terms of the real part, of the imaginary part, and the derivatives of both.
+        """
         odd = (
             [2 * n + 1 for n in range(TERMS)] if self.regime == "circular" or i == 0 else [2 * n for n in range(TERMS)]
         )
@@ -186,7 +188,7 @@ class PortableHeavyTop:
         self, numerators: Any, kappas: Any, leads: Any, speed: Any, place: Any, below: Any, start: Any, across: Any,
         spin: Any,
     ) -> None:  # fmt: skip
-        """Set the constant factors of the theta series of alpha and beta, so that they agree with the initial state."""
+        """Set the constant factors of the theta series so that alpha and beta agree with the initial state."""
         # across: w1 + i w2, spin: w3 at the start; the other arguments are results of _circular or _hyperbolic
         alpha, beta = start
         initial_rates = [
@@ -244,7 +246,7 @@ class PortableHeavyTop:
             quaternion[:] = np.stack([a.real, a.imag, b.real, b.imag], axis=1) @ self.attitude.T
 
     def _values(self, t: Floats) -> tuple[Any, Any, Floats]:
-        """Return the Cayley-Klein parameters (alpha, beta), their rates, and the phase in half revolutions."""
+        """Return alpha and beta, then the time derivatives of both, then the phase in half revolutions, at times t."""
         # alpha and beta are not normalised and do not include their phase factors
         none = np.zeros_like(t)
         if self.regime == "steady":
@@ -281,7 +283,7 @@ class PortableHeavyTop:
 
 
 def _roots(pull: Any, twice: Any, d: Any, spin: Any) -> list[Any]:
-    """Return the roots S1 >= S2 >= S3 of the cubic 2 (E - M + M s) s (2 - s) - (D + l s)^2 in s."""
+    """Return the roots S1 >= S2 >= S3 of the cubic ``(twice + 2 pull s) s (2 - s) - (d + spin s)^2`` in s."""
     # it is (ds/dt)^2 of a heavy top with transverse moment 1, for s = 1 - cos theta. M = pull: weight times distance of
     # the centre of mass; 2 (E - M) = twice: E is the energy without that of the spin; l = spin: the angular momentum
     # along the axis; D = d: L_z - l

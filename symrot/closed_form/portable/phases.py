@@ -87,9 +87,9 @@ class Phase(NamedTuple):
         return sign * np.where(odd, cosine, sine), sign * np.where(odd, -sine, cosine)
 
     def argument(self, t: Floats, stretch: float) -> tuple[Floats, Floats, Floats]:
-        """Return the phase in half revolutions from -1/2 to 1/2, a sign, and ``stretch`` times that phase.
+        """Return (rest, sign, ``stretch*rest``): rest is the phase in half revolutions less a whole number n of them.
 
-        1.3 half revolutions give 0.3, -1 and ``0.3*stretch``.
+        sign is ``(-1)**n``: a phase of 1.3 half revolutions gives rest = 0.3 and sign = -1.
         """
         rest, halves = self.rest(t, 2)
         whole = 2.0 * rest
@@ -97,8 +97,7 @@ class Phase(NamedTuple):
         return whole, flip, np.clip(stretch * whole, -LARGEST, LARGEST)
 
     def argument_once(self, t: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return 0, 1 and the phase at the times ``t``: :meth:`argument` for functions that are not periodic."""
-        # nothing is removed, so the reduced phase is 0 and its sign 1
+        """Return (0, 1, phase) at the times ``t``: :meth:`argument` for functions that are not periodic."""
         return np.zeros_like(t), np.ones_like(t), np.clip(self.whole(t), -LARGEST, LARGEST)
 
 

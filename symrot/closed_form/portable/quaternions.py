@@ -15,7 +15,7 @@ UNIT = [mpf(1), mpf(0), mpf(0), mpf(0)]
 
 
 def conjugate(a: Sequence[Any]) -> list[Any]:
-    """Return the conjugate of a quaternion, scalar first: of a unit quaternion it is the inverse rotation."""
+    """Return the conjugate of a quaternion: ``[a, b, c, d]`` gives ``[a, -b, -c, -d]``."""
     return [a[0], -a[1], -a[2], -a[3]]
 
 
@@ -39,7 +39,7 @@ def matrix_quaternion(r: Sequence[Sequence[Any]]) -> list[Any]:
 
 
 class Axes:
-    """The rotation from the internal axes of a motion to the given axes of the body: v_given = matrix*v."""
+    """The rotation from the axes in which the formulas hold to the given axes of the body: v_given = matrix*v."""
 
     def __init__(self, axes: list[float] | None) -> None:
         # hi and lo of the 9 entries of the matrix and of the 4 components of its quaternion; None: the identity
@@ -48,8 +48,5 @@ class Axes:
 
 
 def mapping(images: Sequence[Sequence[Any]]) -> Floats:
-    """Return the matrix whose columns are ``images``, as an array of doubles.
-
-    It maps basis vector k to ``images[k]``.
-    """
+    """Return the matrix whose columns are ``images``, as an array of doubles: ``[[1, 2], [3, 4]]`` has the row 1, 3."""
     return np.array([[float(x) for x in image] for image in images]).T

@@ -32,7 +32,10 @@ _bound: list[_Functions] = []
 
 
 def limits() -> tuple[float, float, float]:
-    """Return NEAR, WIDE and MOST, the bounds of the ranges in which the asymptotic series is used, for C."""
+    """Return NEAR, WIDE and MOST for C: the smallest x and kappa for the series, and the largest phase, rad.
+
+    They are explained in :mod:`symrot.closed_form.spin_up.series`.
+    """
     return spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST
 
 

@@ -1,9 +1,9 @@
 """A symmetric body under a constant torque about its axis, at any time, in closed form.
 
-In axes that rotate with its transverse angular velocity (normal to the axis, of constant length W), the body rotates at
-``(W, 0, Omega)``. The axial rate Omega grows steadily at the sweep rate s; at resonance it is zero. The attitude
-consists of parabolic cylinder functions of ``x = Omega/sqrt(s)`` with the parameter ``kappa = W/sqrt(s)``: asymptotic
-series far from resonance, Taylor series near it.
+The transverse angular velocity, normal to the axis, has the constant length W. In axes that rotate with it, the body
+rotates at ``(W, 0, Omega)``. The axial rate Omega grows at the constant sweep rate s; at resonance it is zero. Attitude
+components are parabolic cylinder functions of the scaled time ``x = Omega/sqrt(s)`` with the parameter
+``kappa = W/sqrt(s)``: asymptotic series far from resonance, Taylor series near it.
 
 The formulas are in :file:`spin_up.h`. Source: Zener, Proc. R. Soc. A 137 (1932) 696, for the same equation of a
 two-level system. Proof: ``derivations/driven_rotation.md``.
@@ -58,7 +58,7 @@ class SpinUp:
 
     @cached_property
     def integers(self) -> "Integers":
-        """The same motion in integer arithmetic, for samples beyond 1e13 rad, or without a C compiler."""
+        """The same motion in integer arithmetic, for angles above 1e13 rad, or if there is no C compiler."""
         from symrot.closed_form.spin_up.integers import Integers
 
         body, rates, attitude = self._initial_state
@@ -84,7 +84,7 @@ class SpinUp:
         return rates, attitudes
 
     def _by_integers(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> None:
-        """Compute in integers all samples with too many revolutions for double-double numbers; fill their rows."""
+        """Write, computed in integers, the samples with too many revolutions for double-double numbers."""
         for time in (float(times.min()), float(times.max())):
             if not self.integers.finite(time):
                 raise InputError(f"expected times at which the angular velocity is a finite number, got {time!r} s")
@@ -105,7 +105,7 @@ def motion(
     Parameters
     ----------
     inertia : 3 numbers
-        Principal moments of inertia, kg m^2, positive; those about the two axes across the driven axis are equal.
+        Principal moments of inertia, kg m^2, positive; those about the two axes normal to the driven axis are equal.
     axis : 0, 1 or 2
         Index of the principal axis about which the torque acts.
     torque : number
@@ -132,10 +132,7 @@ def starts(inertia: Sequence[Number], axis: int, torque: Number) -> Callable[[In
 
 
 class SpunBody:
-    """A symmetric body and the torque about its axis, with the constants that all its motions share.
-
-    They do not depend on the initial state.
-    """
+    """A symmetric body and the torque about its axis, with the constants that all its motions share."""
 
     def __init__(self, inertia: Sequence[Number], axis: int, torque: Number) -> None:
         self._inertia, (self.torque,) = numbers("inertia", inertia, 3, SMALLEST), numbers("torque", [torque], 1)

@@ -1,8 +1,9 @@
 """Rotation of a driven symmetric body between two times far from resonance, in fractions, to 90 digits.
 
 In axes that rotate with the body's transverse angular velocity (length W), the body's angular velocity is
-``(W, 0, Omega)``, with ``Omega = Omega0 + s t``; resonance is at Omega = 0. The angle of rotation in a time t is the
-integral of ``S = sqrt(Omega^2 + W^2)``, with S0 = S at the start:
+``(W, 0, Omega)``, with ``Omega = Omega0 + s t``; resonance is at Omega = 0. The body rotates about a vector n (see
+:mod:`symrot.closed_form.spin_up.series`), by the integral of ``S = sqrt(Omega^2 + W^2)`` plus the change of a small
+angle delta. The integral over a time t is, with S0 = S at the start,
 
     t/(2 D) (E sqrt(1 + z^2) + W^2 asinh(z)/z),  E = S0 S + Omega0 Omega,  D^2 = (W^2 + E)/2,  z = s t/(2 D).
 
@@ -48,7 +49,7 @@ def product(a: Quaternion, *others: Quaternion) -> Quaternion:
 
 
 def conjugate(q: Quaternion) -> Quaternion:
-    """Return the inverse of a unit quaternion q: q0 stays, the vector part changes its sign."""
+    """Return the conjugate of a quaternion, the inverse rotation: (q0, q1, q2, q3) gives (q0, -q1, -q2, -q3)."""
     return (q[0], -q[1], -q[2], -q[3])
 
 
@@ -58,10 +59,8 @@ def about_third(angle: Fraction) -> Quaternion:
 
 
 def _asinh_ratio(z: Fraction) -> Fraction:
-    """Return asinh(z)/z with a relative error near 2^-320.
-
-    The value asinh(z) is halved repeatedly until the series of atanh(z/sqrt(1 + z^2)) is short.
-    """
+    """Return asinh(z)/z with a relative error near 2^-320."""
+    # asinh(z) is halved repeatedly until the series of atanh(z/sqrt(1 + z^2)) is short
     if not z:
         return Fraction(1)
     halvings, small = 0, abs(z)
@@ -102,15 +101,12 @@ class Sweep:
         return float(self.across / speed), float(omega / speed), float(rounded(self.unit / (speed * speed)))
 
     def delta(self, omega: Fraction) -> float:
-        """Return the correction delta, rad, at the rate ``omega``: the angle of rotation minus the integral of S."""
+        """Return the small angle delta, rad, at the axial rate Omega = ``omega``."""
         _, cosine, y = self._direction(omega)
         return cosine * _polynomial(self.series.e, y)
 
     def axes(self, omega: Fraction) -> Quaternion:
-        """Return the rotation that maps the third axis to the vector n, at the axial rate Omega = ``omega``.
-
-        n is explained in :mod:`symrot.closed_form.spin_up.series`.
-        """
+        """Return the rotation that maps the third axis to the vector n, at the axial rate Omega = ``omega``."""
         sine, cosine, y = self._direction(omega)
         g, c = _polynomial(self.series.g, y), _polynomial(self.series.c, y)
         m1, m2 = Fraction(sine * cosine * y * y * g), Fraction(sine * y * c)
@@ -122,8 +118,7 @@ class Sweep:
         return product(turn, fixed(number.unit((m3, -m2, m1, Fraction(0)))))
 
     def angle(self, start: Fraction, time: Fraction) -> Fraction:
-        """Return the angle, rad, by which the body rotates about the vector n of :meth:`axes` in ``time`` s."""
-        # start: the axial rate Omega at the beginning
+        """Return the angle, rad, by which the body rotates about n in ``time`` s, beginning at Omega = ``start``."""
         omega = start + self.s * time
         here, there, product = self.speed(omega), self.speed(start), rounded(omega * start)
         if product >= 0:
@@ -137,6 +132,6 @@ class Sweep:
         return rounded(steady) + Fraction(self.delta(omega)) - Fraction(self.delta(start))
 
     def rotation(self, start: Fraction, time: Fraction) -> Quaternion:
-        """Return the body's rotation in ``time`` s, from Omega = ``start``, as a quaternion of integers."""
+        """Return the body's rotation in ``time`` s, which begins at Omega = ``start``, as a quaternion of integers."""
         end = conjugate(self.axes(start + self.s * time))
         return product(self.axes(start), about_third(self.angle(start, time)), end)

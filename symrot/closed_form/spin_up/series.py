@@ -95,7 +95,7 @@ def _angle(share: float, v: float, h: Floats) -> Floats:
 
 
 def series(kappa2: float, inverse: float) -> Series:
-    """Return the polynomials in y for kappa^2 = ``kappa2``; ``inverse`` is 1/kappa^2."""
+    """Return the three polynomials in y for kappa^2 = ``kappa2``; ``inverse`` is 1/kappa^2."""
     # kappa2 or inverse may be too small for a double, and is then 0
     wide = kappa2 >= WIDE * WIDE
     radius2 = kappa2 if wide else NEAR * NEAR + kappa2

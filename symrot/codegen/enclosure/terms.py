@@ -74,8 +74,9 @@ def enclosure(system: Recurrences) -> Enclosure | None:
 def _degree(series: Series, degrees: list[int]) -> int:
     """Return the degree of a series as a polynomial in the states, t, sin(a t + b) and cos(a t + b).
 
-    If it is BEYOND or more, a pulse may hide in the series.
+    It is BEYOND or more if a pulse may hide in the series, as in exp(-t^2).
     """
+    # degrees[i]: the degree of series i
     if series.rule in ("state", "time"):
         return 1
     if series.rule == "clock":

@@ -22,14 +22,15 @@ class Share:
         self.nodes: list[tuple[Any, ...]] = []  # operands are indices into this list; equal nodes have one index
 
     def intern(self, node: Tree) -> int:
-        """Return the number of a node, whose operands are given by their numbers; add the node to ``nodes`` if new."""
+        """Return the index of ``node`` in ``nodes``, and add the node if it is new."""
+        # its operands are indices too
         if node not in self.identity:
             self.identity[node] = len(self.nodes)
             self.nodes.append(node)
         return self.identity[node]
 
     def add(self, tree: Tree) -> int:
-        """Add a formula tree and all its parts to the collection, and return the number of the tree's own node."""
+        """Add a formula tree and all its parts to ``nodes``, and return the index of the whole tree."""
         kind = tree[0]
         if kind in ("sym", "num"):
             return self.intern(tree)
@@ -82,7 +83,7 @@ class Share:
         return pair[0] == "add" or not any(self.nodes[i][0] == "num" for part in pair[1:] for i in part)
 
     def _replace(self, kind: str, pair: tuple[Any, ...], swap: Callable[..., tuple[Any, ...]]) -> None:
-        """Make ``pair``, a product or sum of two nodes, a node of its own, and use it wherever the pair occurs."""
+        """Add ``pair``, a product or sum of two nodes, as a node, and use that node wherever the pair occurs."""
         if pair not in self.nodes:
             self.nodes.append(pair)
         new = self.nodes.index(pair)
@@ -133,5 +134,5 @@ def _without(part: tuple[int, ...], item: int) -> tuple[int, ...]:
 
 
 def _negated(pair: Any) -> Any:
-    """Return a sort key with all numbers of a pair negated, so that ``max`` selects the lowest numbers."""
+    """Return ``pair`` with all indices negated, as a sort key with which ``max`` selects the lowest indices."""
     return tuple(_negated(item) if isinstance(item, tuple) else -item for item in pair if not isinstance(item, str))

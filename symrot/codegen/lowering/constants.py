@@ -32,7 +32,7 @@ class Gather:
     variables : iterable of Symbol
         Symbols that change with time or state; all other symbols are constants.
     flat : bool
-        Whether a sum inside another sum is merged into the outer sum, so that their constants are combined.
+        Whether a sum inside another sum is merged into the outer sum, so that the constants of both are combined.
     """
 
     def __init__(self, variables: Iterable[Symbol], flat: bool = False) -> None:
@@ -45,7 +45,7 @@ class Gather:
         return bool(expr.free_symbols & self.variables)
 
     def constant(self, value: Expr) -> tuple[int, Tree | None]:
-        """Return (sign, tree) of a constant: ``value`` is the sign, 1 or -1, times the value of the tree.
+        """Return a constant as (sign, tree), with ``value = sign*tree``: -3 gives -1 and the tree of 3.
 
         The tree is None for 1 and -1.
         """
@@ -59,7 +59,7 @@ class Gather:
         return sign, ("sym", name)
 
     def scaled(self, coefficient: Expr, core: Tree) -> tuple[int, Tree]:
-        """Return (sign, tree) of the product of the constant ``coefficient`` and ``core``, a part with variables."""
+        """Return the product of a constant, ``coefficient``, and ``core``, a tree with variables, as (sign, tree)."""
         sign, atom = self.constant(coefficient)
         if atom is None:
             return sign, core
@@ -191,7 +191,7 @@ def _repeated(tree: Tree, count: int) -> Tree:
 
 
 def _oriented(value: Expr) -> tuple[int, Expr]:
-    """Return (sign, magnitude) of a constant: (A - C)/A and (C - A)/A have equal magnitudes and opposite signs."""
+    """Return a constant as (sign, magnitude), so that (A - C)/A and (C - A)/A differ only in the sign."""
     # one parameter serves both; the magnitude need not be positive, as the sign of A - C is unknown
     sign, factors = 1, []
     for factor in Mul.make_args(value):
@@ -203,7 +203,7 @@ def _oriented(value: Expr) -> tuple[int, Expr]:
 
 
 def _signed_sum(terms: Sequence[tuple[int, Tree]]) -> tuple[int, Tree]:
-    """Return a sum of terms (sign, tree) as one (sign, tree) with few minus signs: -1, ``a + b`` for ``-a - b``."""
+    """Return the sum of ``terms`` as (sign, tree) with few minus signs: ``-a - b`` gives -1 and ``a + b``."""
     if len(terms) == 1:
         return terms[0]
     sign = 1 if any(s > 0 for s, _ in terms) else -1

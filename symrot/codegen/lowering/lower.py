@@ -149,14 +149,14 @@ def _lowered(
     signature: Signature, outputs: Sequence[tuple[str, Expr]], definitions: Sequence[tuple[Symbol, Expr]],
     parameter_argument: str, flat: bool,
 ) -> tuple[Lowered, list[str]]:  # fmt: skip
-    """Return the program with its parameters' formulas, and the names of its temporaries that need descriptive names.
+    """Return (lowered, anonymous): what :func:`lower` returns, and the temporaries that still need descriptive names.
 
-    The arguments are those of :func:`lower`, and ``flat``.
+    ``flat`` turns ``a + (b + c)`` into ``a + b + c`` first.
     """
     inputs = [name for a in signature.arguments if a.role == "in" for name, *_ in a.components]
     held = {symbol for _, expr in [*outputs, *definitions] for symbol in expr.free_symbols}
     defined = [symbol for symbol, _ in definitions]
-    # flat: a + (b + c) becomes a + b + c before repeated sums and products are extracted
+    # flat: before repeated sums and products are extracted
     gather = Gather([symbol for symbol in held if str(symbol) in inputs or symbol in defined], flat)
     share, named = Share(), {}
     alias: dict[str, Tree] = {}
@@ -189,7 +189,7 @@ def _numbered(
     formulas: Sequence[Node],
     parameter_argument: str,
 ) -> Lowered:
-    """Return a program in which each constant is a parameter ``p0, p1, ..``, and the parameters' formulas."""
+    """Return a program in which each constant is a parameter ``p0, p1, ..``, with the formulas of the parameters."""
     # preliminary name of a constant (a value of hoisted) -> parameter, numbered by first use
     order: dict[str, str] = {}
     for node in [node for _, node in temporaries] + list(formulas):

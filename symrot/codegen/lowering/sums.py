@@ -11,7 +11,7 @@ __all__ = ["negative", "summed"]
 
 
 def negative(node: Node) -> Node:
-    """Return ``-node``, with the sign moved into a number, a difference or a factor, where it costs no operation."""
+    """Return ``-node``, if possible without an operation for the sign: ``(a - b)*c`` gives ``(b - a)*c``."""
     if node[0] == "number":
         return ("number", -node[1])
     if node[0] == "neg":
@@ -31,16 +31,19 @@ def negative(node: Node) -> Node:
 
 
 def _turned(sign: int, node: Node) -> tuple[int, Node]:
-    """Return a term (sign, node) of a sum with a plus sign if possible: -1, ``(a - b)*c`` gives 1, ``(b - a)*c``."""
-    # a term without a difference among its factors keeps its sign, as a change would cost an operation
+    """Return a term (sign, node) with sign 1 where this costs no operation, otherwise unchanged.
+
+    ``(-1, (a - b)*c)`` gives ``(1, (b - a)*c)``.
+    """
+    # without a difference among the factors, a change of sign would cost an operation
     turned = _with_difference_turned(node) if sign < 0 else None
     return (sign, node) if turned is None else (1, turned)
 
 
 def _with_difference_turned(node: Node) -> Node | None:
-    """Return ``-node`` by reversing a difference among its factors: ``(b - a)*c`` for ``(a - b)*c``.
+    """Return ``-node`` with one difference reversed: ``(a - b)*c`` gives ``(b - a)*c``.
 
-    None if it has none.
+    None if ``node`` is no difference and has no difference as a factor.
     """
     if node[0] == "-":
         return negative(node)

@@ -85,7 +85,7 @@ def tape_of(program: Program, outputs: Sequence[str], more: Sequence[Node] = ())
 
 
 def _trimmed(tape: Tape) -> Tape:
-    """Return a tape for the same outputs without the operations that none of them needs."""
+    """Return a tape without the operations that none of its outputs needs."""
     used = sorted({index for output in range(len(tape.outputs)) for index in tape.of(output)})
     place = {old: new for new, old in enumerate(used)}
     operations = (tape.operations[old] for old in used)

@@ -42,9 +42,9 @@ class _Product:
         return _Product(coefficient, tuple((symbol, power) for symbol, power in powers.items() if power))
 
     def name(self) -> str | None:
-        """Return a name for a temporary with this value, such as ``two_q1_q2`` or ``inv_sin_theta``.
+        """Return the name of this product: ``two_q1_q2`` for ``2*q1*q2``, ``inv_sin_theta`` for ``1/sin_theta``.
 
-        None if it has no name.
+        None for a number, and for coefficients without a word, such as 7.
         """
         size = abs(self.coefficient)
         divisor = [str(size.denominator)] if size.numerator == 1 and size not in WORDS else []
@@ -128,7 +128,7 @@ def _first_outputs(program: Program) -> dict[str, str]:
 
 
 def _product_of(node: Node, products: Mapping[str, _Product]) -> _Product | None:
-    """Return a formula as a product of powers of symbols, or None if it is not one, as for a sum or a call."""
+    """Return a formula such as ``2*a/b`` as a product of powers of symbols; None for others, such as ``a + b``."""
     kind = node[0]
     if kind == "number":
         return _Product(node[1], ())
@@ -174,7 +174,7 @@ def _name_of_term(node: Node, products: Mapping[str, _Product]) -> str | None:
 
 
 def _name_of_sum(node: Node, products: Mapping[str, _Product]) -> str | None:
-    """Return a name such as ``A_minus_B`` for a sum; None if it has many terms or one of them has no short name."""
+    """Return the name of a sum, such as ``A_minus_B``; None if it has many terms or a term without a short name."""
     terms: list[tuple[str, Node]] = []
     while node[0] in ("+", "-"):
         terms.insert(0, ("plus" if node[0] == "+" else "minus", node[2]))

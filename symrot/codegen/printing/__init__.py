@@ -1,1 +1,1 @@
-"""Printing of programs as C and NumPy text."""
+"""Printing of programs as C, NumPy, JAX and JavaScript text."""

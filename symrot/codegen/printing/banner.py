@@ -26,7 +26,7 @@ CONTRACT = (  # lines in the head of a C file: place of the certificate, its ass
 
 @dataclass(frozen=True)
 class Description:
-    """Texts in the head comment of an emitted file that do not follow from its program."""
+    """Texts in the head comment of an emitted file that do not follow from the program."""
 
     title: str  # what the kernel computes
     domain: str  # for which inputs it is valid
@@ -37,7 +37,7 @@ class Description:
 
 
 def _harmless(text: str) -> str:
-    """Return a text that is safe inside a comment or docstring: printable ASCII without trigraphs and end marks."""
+    """Return ``text`` in printable ASCII, without trigraphs and end marks, so that it is safe inside a comment."""
     text = text.replace("\\", "/").replace('"""', "'''")
     text = re.sub(r"(?<=\*)(?=/)|(?<=/)(?=[*/])|(?<=\?)(?=\?)", " ", text)  # breaks ends of comments and trigraphs
     # the checker of certified C accepts only ASCII; compilers warn about characters that reverse a line
@@ -64,7 +64,7 @@ def _rows(argument: Argument) -> list[tuple[str, str, str, str]]:
 
 
 def _listed(names: Sequence[str]) -> str:
-    """Return names separated by commas, such as ``q0, q1, q2``; if they exceed a line, ``first .. last``."""
+    """Return names separated by commas, such as ``q0, q1, q2``; if this exceeds a line, ``first .. last``."""
     every = ", ".join(names)
     return every if len(every) <= WIDTH else f"{names[0]} .. {names[-1]}"
 

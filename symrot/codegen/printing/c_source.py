@@ -98,7 +98,7 @@ def _as_float(value: float) -> float:
 def c_expression(node: Node, real: Real = DOUBLE, near: bool = False) -> str:
     """Return a formula as a C expression of type ``real``, with brackets that preserve the order of evaluation.
 
-    With ``near``, it calls ``symrot_math.h``.
+    With ``near``, functions of ``symrot_math.h``, such as ``symrot_sin``, are called.
     """
     # compilers vectorise the near functions, which are valid for moderate angles only
     return text(rename(node, functions=real.near_functions if near else real.functions), 0, real.literal)
@@ -110,7 +110,7 @@ def c_arguments(program: Program, real: Real = DOUBLE) -> str:
 
 
 def _head(name: str, arguments: str, qualifier: str = "", returns: str = "void") -> str:
-    """Return the head of a C function; if it is too long for one line, its arguments fill several lines."""
+    """Return the head of a C function, such as ``void f(double x)``, with line breaks if it is long."""
     head = f"{qualifier}{returns} {name}({arguments})"
     if len(head) <= WIDTH:
         return head
@@ -132,7 +132,7 @@ def _used(program: Program) -> set[str]:
 def _statement(head: str, formula: str, indent: str, mark: str = "=") -> list[str]:
     """Return the lines of the C statement ``head = formula;``, broken after operators if one line is too long.
 
-    ``mark`` may be ``+=``.
+    ``mark`` is written in place of ``=``, such as ``+=``.
     """
     line = f"{indent}{head} {mark} {formula};"
     if len(line) <= WIDTH + 10:
@@ -153,7 +153,7 @@ def _index_in_batch(index: int) -> str:
 def _body(
     program: Program, index_of: Callable[[int], str], indent: str, real: Real, near: bool = False, late: bool = False
 ) -> list[str]:  # fmt: skip
-    """Return the statements of a function; each value is computed just before the first output that needs it."""
+    """Return the C statements of a program; a value is computed just before the first output that needs it."""
     # this order keeps few values in use at a time, so that they fit into registers
     results = dict(program.outputs)
     lines: list[str] = []
@@ -189,7 +189,8 @@ def _body(
 
 
 def _computed_in_turn(program: Program) -> list[Argument]:
-    """Return the output arguments in order of computation, for a loop that stores its results last."""
+    """Return the output arguments of a program in the order in which the loop over samples computes them."""
+    # for a loop in which each pass computes all results before it stores the first one
     outputs = [a for a in program.signature.arguments if a.role == "out"]
     # all inputs and results fit into registers
     if _streams(program) <= REGISTERS:
@@ -211,7 +212,7 @@ def _reserved(program: Program, real: Real) -> set[str]:
 
 
 def _due(needed: set[str], waiting: dict[str, tuple[set[str], list[str]]]) -> list[str]:
-    """Remove from ``waiting`` the statements that compute the values ``needed``, and return their lines in order."""
+    """Take the statements that compute the values ``needed`` out of ``waiting``, and return the lines of C code."""
     # waiting: value -> (names that its statement needs, lines); statements that they need are due too
     for name, (of, _) in reversed(waiting.items()):
         if name in needed:
@@ -288,7 +289,7 @@ def _batch_arguments(program: Program, real: Real) -> str:
 
 
 def _batch(program: Program, real: Real, near: bool) -> list[str]:
-    """Return the C text of the batch function, which computes n samples."""
+    """Return the C text of a program's batch function, which computes n samples."""
     head = [
         _head(f"{c_name(program.signature.name, real)}_batch", _batch_arguments(program, real)),
         "{",
@@ -334,7 +335,10 @@ def _blocks(size: str) -> list[str]:
 
 
 def _split(program: Program) -> list[Program]:
-    """Return the programs for which a batch gets separate loops: one for each output argument, or the whole program."""
+    """Return the parts of a program that a batch computes in separate loops: one part for each output argument.
+
+    The result is the whole program if separate loops are slower.
+    """
     whole = _streams(program)
     scalars = any(a.is_scalar for a in program.signature.arguments if a.role == "in")
     # processors prefetch all arrays, or sines take longer than memory access
@@ -395,7 +399,7 @@ def _loop(
 
 
 def _with_names(program: Program, names: dict[str, str]) -> Program:
-    """Return the program with other names for some inputs: ``names`` maps the old to the new."""
+    """Return the program with some inputs renamed: ``{"t": "time"}`` renames t to time."""
     signature = program.signature
     arguments = tuple(
         replace(a, components=tuple((names.get(c[0], c[0]), *c[1:]) for c in a.components)) for a in signature.arguments

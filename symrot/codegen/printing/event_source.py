@@ -108,7 +108,7 @@ def _switch(
 
 
 def _span(tape: Tape, states: Sequence[str], edges: Sequence[int]) -> tuple[int, int]:
-    """Return (first, last + 1), the range of indices of the ``states`` on which the formula of a tape depends."""
+    """Return (first, stop): the states on which a tape's formula depends have indices from first to stop - 1."""
     used = {op.value for op in tape.operations if op.kind == "symbol"}
     places = [i for i, name in enumerate(states) if name in used]
     if not places:
@@ -126,7 +126,7 @@ def _largest(terms: Sequence[str]) -> str:
 
 
 def _statements(index: int, op: Operation, places: dict[str, str], known: dict[str, str]) -> tuple[str, str]:
-    """Return two C definitions for operation ``index`` of a tape: ``v3``, its value, and ``e3``, the error bound."""
+    """Return two C definitions for operation number ``index`` of a tape: for 3, its value v3 and error bound e3."""
     v, e = f"v{index}", f"e{index}"  # errors to first order
     values, errors = [f"v{i}" for i in op.operands], [f"e{i}" for i in op.operands]
     own = f"SYMROT_ROUNDING*fabs({v})"
@@ -156,7 +156,7 @@ def _statements(index: int, op: Operation, places: dict[str, str], known: dict[s
 
 
 def _enclosed(kind: str, around: str, op: Operation, places: dict[str, str], known: dict[str, str]) -> str:
-    """Return the C expression for the enclosure of one operation: a call of a function of event_enclosures.h."""
+    """Return the C expression that encloses the result of an operation: a call of a function in event_enclosures.h."""
     # around: the C function that makes an enclosure from a centre and a radius; places: input -> C; known: state -> C
     # text of the error of its value
     if op.kind == "number":

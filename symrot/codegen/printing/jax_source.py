@@ -72,10 +72,8 @@ def _unpacked(argument: Argument, used: set[str]) -> list[str]:
 
 
 def jax_source(program: Program, description: Description) -> str:
-    """Return the text of a Python module with one function; the same program gives the same bytes.
-
-    It returns arrays of shape (size,).
-    """
+    """Return the text of a Python module with one JAX function, which returns an array for each output argument."""
+    # the same program gives the same bytes
     program = with_safe_names(program, RESERVED)
     inputs = [a for a in program.signature.arguments if a.role == "in" and a.size]
     outputs = [a for a in program.signature.arguments if a.role == "out" and a.size]

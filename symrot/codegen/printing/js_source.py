@@ -57,10 +57,8 @@ def _own_function(name: str) -> list[str]:
 
 
 def _unpacked(argument: Argument, used: set[str]) -> list[str]:
-    """Return JavaScript statements such as ``const q0 = q[0];`` for the ``used`` components of an array argument.
-
-    A scalar argument needs no statement.
-    """
+    """Return JavaScript statements such as ``const q0 = q[0];`` for the components of an argument that are ``used``."""
+    # a scalar argument needs no statement
     if argument.is_scalar:
         return []
     return [
@@ -69,7 +67,7 @@ def _unpacked(argument: Argument, used: set[str]) -> list[str]:
 
 
 def js_function(program: Program, qualifier: str = "") -> list[str]:
-    """Return the lines of a function with the arguments of the C function; its outputs are arrays that it fills.
+    """Return the lines of a JavaScript function that writes the outputs into arrays, as the C function does.
 
     Parameters
     ----------
@@ -95,7 +93,7 @@ def js_function(program: Program, qualifier: str = "") -> list[str]:
 
 
 def js_functions(*programs: Program) -> list[str]:
-    """Return the lines that define, each once, the functions that programs call and JavaScript lacks, such as sinc."""
+    """Return the definitions, each once, of the functions that ``programs`` call and JavaScript lacks, such as sinc."""
     needed = dict.fromkeys(name for program in programs for name in _called(program))
     return [line for name in needed for line in (*_own_function(name), "")]
 
@@ -106,9 +104,7 @@ def _called(program: Program) -> list[str]:
 
 
 def js_source(program: Program, description: Description) -> str:
-    """Return the text of a JavaScript module that exports one function; the same program gives the same bytes.
-
-    The function fills its output arrays.
-    """
+    """Return the text of a JavaScript module that exports one function, which writes the outputs into arrays."""
+    # the same program gives the same bytes
     head = banner(program, description, "/*", " *", " */")
     return "\n".join([*head, "", *js_functions(program), *js_function(program, "export ")]) + "\n"

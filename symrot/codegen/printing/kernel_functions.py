@@ -57,7 +57,7 @@ def called(program: Program) -> list[str]:
 
 
 def series(coefficients: Iterable[Fraction], variable: str) -> Node:
-    """Return the polynomial with ``coefficients``, lowest power first, by Horner's rule: ``a + x*(b + x*c)``."""
+    """Return the polynomial with ``coefficients``, lowest power first: a, b, c give ``a + x*(b + x*c)``."""
     first, *rest = reversed(tuple(coefficients))
     node: Node = ("number", first)
     for coefficient in rest:
@@ -68,7 +68,7 @@ def series(coefficients: Iterable[Fraction], variable: str) -> Node:
 def own_function(name: str, precision: str) -> tuple[tuple[str, ...], list[Statement], Choice]:
     """Return the definition of a function that <math.h> lacks, such as sinc, as (parameters, temporaries, choice).
 
-    ``choice`` is (relation, left, right, then, else).
+    The choice ``("<", left, right, a, b)`` stands for the value ``a if left < right else b``.
     """
     if name in _CHOICES:
         parameters, choice = _CHOICES[name]

@@ -29,20 +29,23 @@ _RAISED = {"binary64": (900, 200), "binary32": (90, 40)}  # a quotient below 2^-
 
 @cache
 def tail_coefficients(first: int, count: int) -> tuple[Fraction, ...]:
-    """Return the coefficients, lowest power first, of the polynomial in t = x^2 for the tail of sine or cosine."""
-    # the series of sine (first = 3) or cosine (first = 4) from the term x^first/first! on, divided by x^first
+    """Return ``count`` coefficients of p: sin(x) = x + x^3 p(x^2) if first = 3, cos(x) = 1 - x^2/2 + x^4 p(x^2) if 4.
+
+    The lowest power comes first.
+    """
+    # p approximates the series of sine or cosine from the term x^first/first! on, divided by x^first
     sign = -1 if first == 3 else 1
     return _nearest([Fraction(sign * (-1) ** k, factorial(first + 2 * k)) for k in range(_TERMS)], _SQUARE, count)
 
 
 @cache
 def _arc_coefficients(count: int) -> tuple[Fraction, ...]:
-    """Return the coefficients, lowest power first, of the polynomial in t = z^2 that approximates (atan(z)/z - 1)/t."""
+    """Return ``count`` coefficients of p in atan(z) = z + z^3 p(z^2), lowest power first."""
     return _nearest([Fraction((-1) ** (k + 1), 2 * k + 3) for k in range(_ARC_TERMS)], _ARC_SQUARE, count)
 
 
 def _nearest(series: list[Fraction], largest: Fraction, count: int) -> tuple[Fraction, ...]:
-    """Return ``count`` coefficients of a polynomial that approximates the power series ``series`` up to ``largest``."""
+    """Return ``count`` coefficients of a polynomial near the power series ``series`` from 0 to ``largest``."""
     # interpolation at Chebyshev points makes the largest |t*(series - polynomial)| about as small as possible
     # zeros of a Chebyshev polynomial whose last zero is moved to t = 0, because the error is weighted with t
     zeros = [Fraction(round(cos(pi * (2 * k + 1) / (2 * count + 2)) * 2**20), 2**20) for k in range(count + 1)]
@@ -60,10 +63,8 @@ def _nearest(series: list[Fraction], largest: Fraction, count: int) -> tuple[Fra
 
 
 def quarter_turn_parts(precision: str) -> list[Fraction]:
-    """Return numbers whose sum is pi/2, which are subtracted from an angle one after the other.
-
-    ``precision`` is ``"binary64"`` or ``"binary32"``.
-    """
+    """Return a few numbers whose sum is pi/2, the largest first; ``precision`` is ``"binary64"`` or ``"binary32"``."""
+    # they are subtracted from an angle one after the other
     rest, parts = PI / 2, []
     for bits in _PARTS[precision]:
         # so few bits that the product with the number of quarter turns is exact
@@ -73,7 +74,7 @@ def quarter_turn_parts(precision: str) -> list[Fraction]:
 
 
 def _leading(value: Fraction, bits: int) -> Fraction:
-    """Return a positive number truncated to its first ``bits`` significant bits."""
+    """Return a positive number truncated to ``bits`` significant bits: 7 with 2 bits gives 6."""
     shift = bits
     while value * Fraction(2) ** shift >= 2**bits:
         shift -= 1

@@ -46,7 +46,7 @@ def _unpacked(argument: Argument, used: set[str]) -> list[str]:
 
 
 def numpy_source(program: Program, description: Description) -> str:
-    """Return the text of a Python module with one function that computes a kernel for one sample or n samples."""
+    """Return the text of a Python module with one NumPy function, which computes a kernel for one or n samples."""
     inputs = [a for a in program.signature.arguments if a.role == "in" and a.size]
     outputs = [a for a in program.signature.arguments if a.role == "out"]
     used = set().union(*(names(node) for _, node in program.temporaries + program.outputs))

@@ -1,4 +1,4 @@
-"""C header with the values of a step's parameters: those of the scene, in the order of the argument p."""
+"""C header with the values of a time step's parameters in one scene, in the order of the step's argument p."""
 
 from collections.abc import Sequence
 

@@ -10,7 +10,7 @@ __all__ = ["with_safe_names"]
 
 
 def with_safe_names(program: Program, reserved: Collection[str]) -> Program:
-    """Return the program with new names for those variables whose names are ``reserved``, such as ``in`` in Python."""
+    """Return the program in which variables with ``reserved`` names, such as ``in`` in Python, have other names."""
     inputs = [name for a in program.signature.arguments if a.role == "in" for name, *_ in a.components]
     variables = [*inputs, *(name for name, _ in program.temporaries)]
     safe: dict[str, str] = {}

@@ -21,7 +21,7 @@ ONE: Node = ("number", Fraction(1))
 
 
 class _Open(Exception):
-    """Raised if no auxiliary states can be used for a system, which :func:`with_companions` then returns unchanged."""
+    """Raised if a system cannot have auxiliary states; :func:`with_companions` then returns the system unchanged."""
 
 
 class _Term(NamedTuple):
@@ -36,7 +36,7 @@ class _Term(NamedTuple):
 def with_companions(system: Recurrences) -> Recurrences:
     """Return a Taylor system in which functions of the attitude alone, such as R(q)^T e, are additional states.
 
-    A system without them is unchanged.
+    A system without such functions is returned unchanged.
     """
     if not set(QUATERNION) <= set(system.states):
         return system
@@ -82,10 +82,7 @@ class _Closure:
         return generator(self.variable(kind, what))
 
     def constant(self, node: Node) -> Polynomial:
-        """Return a constant formula as a polynomial.
-
-        Each part of it that is not a polynomial, such as a root, becomes a variable.
-        """
+        """Return a constant formula as a polynomial: ``2*sqrt(a)`` gives 2 u with the new variable u = sqrt(a)."""
         if node[0] == "number":
             return constant(node[1])
         if node[0] not in ("neg", "*", "+", "-"):
@@ -98,7 +95,7 @@ class _Closure:
         return parts[0] + (parts[1] if node[0] == "+" else _times(parts[1], constant(-1)))
 
     def polynomial(self, i: int) -> Polynomial | None:
-        """Return series ``i`` as a polynomial in states, functions of ``a t + b`` and constants, or None."""
+        """Return series ``i`` as a polynomial in states, constants and functions of time, or None if it is none."""
         if i not in self.polynomials:
             s = self.series[i]
             result: Polynomial | None = None  # other rules, such as a quotient, give no polynomial
@@ -115,12 +112,11 @@ class _Closure:
         return self.polynomials[i]
 
     def sum(self, s: Series, only: Iterable[int] | None = None) -> Polynomial | None:
-        """Return a sum of series as a polynomial in states, constants and functions of time.
+        """Return the sum ``s`` as a polynomial in states, constants and functions of time; None if it is none.
 
-        None if one of its terms is no polynomial.
+        With ``only``, indices of series, all other terms and the constant of ``s`` are left out.
         """
         *weights, constant = s.weights
-        # only: indices of the series in the sum whose terms are added, without the constant
         total = self.constant(constant) if constant is not None and only is None else Polynomial({})
         for operand, weight in zip(s.operands, weights, strict=True):
             if only is None or operand in only:
@@ -131,7 +127,7 @@ class _Closure:
         return total
 
     def rate(self, variable: int) -> Polynomial:
-        """Return the time derivative, along the motion, of the variable with the index ``variable``: a polynomial."""
+        """Return the time derivative of variable number ``variable`` along the motion, as a polynomial."""
         kind, what = self.variables[variable]
         if kind == "constant":
             return Polynomial({})
@@ -165,13 +161,13 @@ class _Closure:
         return all(map(self.is_inner, free)) and max(map(self.degree, form.terms), default=0) > 1
 
     def degree(self, monomial: Monomial) -> int:
-        """Return the degree of a monomial in the components of the quaternion; other variables do not count."""
+        """Return the degree of a monomial in q0..q3 alone: ``omega_1 q0 q1`` has degree 2."""
         return sum(power for variable, power in monomial if variable in self.attitude)
 
     def split(self, form: Polynomial) -> list[tuple[Node, int | None, Polynomial]]:
-        """Return a polynomial as a sum of products (constant, state, inner polynomial), by grouping its terms.
+        """Return a polynomial as a sum of products (constant, index of a state, polynomial of the attitude and time).
 
-        For ``I omega_1 q0 q1 + I omega_1 q2 q3`` they are I, the index of omega_1, and ``q0 q1 + q2 q3``.
+        ``I omega_1 q0 q1 + I omega_1 q2 q3`` gives one product: I, the index of omega_1, and ``q0 q1 + q2 q3``.
         """
         # inner: attitude and functions of time alone; the caller makes each inner polynomial an auxiliary state
         groups: dict[Monomial, dict[Monomial, Fraction]] = {}
@@ -196,9 +192,9 @@ class _Closure:
     # -------------------------------------------------------------------------------------------- closing
 
     def adjoin(self, inner: Polynomial) -> tuple[int | None, Fraction, Fraction]:
-        """Write ``inner`` as ``factor*state + number`` with an auxiliary state; return (index, factor, number).
+        """Write a polynomial as ``factor*state + number`` with an auxiliary state, and return (index, factor, number).
 
-        The index is None if ``inner`` is a number.
+        The index is None if the polynomial is a number.
         """
         # polynomials that differ only by the identity q0^2 + q1^2 + q2^2 + q3^2 = 1 must give the same state
         degrees = {self.degree(monomial) for monomial in inner.terms}
@@ -240,7 +236,7 @@ class _Closure:
         return result
 
     def seek(self, i: int) -> None:
-        """Replace polynomials of the attitude in series ``i`` and its operands by auxiliary states."""
+        """Replace the polynomials of the attitude in series ``i``, and in its operands, by auxiliary states."""
         s = self.series[i]
         if i in self.replaced or s.rule not in ("sum", "product"):
             return
@@ -282,7 +278,8 @@ class _Closure:
         return _rebuilt(self, rates)
 
     def seed(self, form: Polynomial) -> Node:
-        """Return the formula in states and t that computes an auxiliary state, ``form``, at the start of each step."""
+        """Return the formula in states and t of the auxiliary state ``form``, a polynomial."""
+        # it is evaluated at the start of each step
         # terms with the same functions of time are put in one bracket
         groups: dict[Monomial, dict[Fraction, list[Node]]] = {}
         for monomial, x in sorted(form.terms.items()):
@@ -335,7 +332,7 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     }  # fmt: skip
 
     def left(s: Series) -> list[int]:
-        """Return those operands of a sum that no auxiliary state replaces."""
+        """Return the operands of the sum ``s`` that no auxiliary state replaces."""
         return [i for i in s.operands if i not in closure.parts.get(s, (set(),))[0]]
 
     needed: set[int] = set()
@@ -358,11 +355,13 @@ def _rebuilt(closure: _Closure, rates: list[list[_Term]]) -> Recurrences:
     def summed(
         terms: list[_Term], pairs: Iterable[tuple[int, Node | None]] = (), constant: Node | None = None
     ) -> Series:
-        """Return the series of a sum of auxiliary states (``terms``), other series (``pairs``) and a constant."""
+        """Return the series of a sum of auxiliary states (``terms``), other series (``pairs``) and a constant.
+
+        Each of ``pairs`` is (index of a series, weight).
+        """
         for term in terms:
             if term.companion is None:
                 constant = weight(term) if constant is None else ("+", constant, weight(term))
-        # pairs: (index of a series, weight)
         both = [*pairs, *((count + term.companion, weight(term)) for term in terms if term.companion is not None)]
         return Series("sum", tuple(i for i, _ in both), (*(w for _, w in both), constant))
 

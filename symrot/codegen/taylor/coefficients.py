@@ -30,7 +30,7 @@ def coefficients(
     functions: Mapping[str, Callable[..., Any]] | None = None,
     number: Callable[[Fraction], Any] = lambda value: value,
 ) -> list[list[Any]]:
-    """Return the Taylor coefficients 0 to ``order`` of every state, in a list per state, with any kind of number.
+    """Return one list for each state: its Taylor coefficients 0 to ``order``, computed with any kind of number.
 
     Parameters
     ----------

@@ -60,7 +60,8 @@ def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[fl
     Raises
     ------
     InputError
-        If an operation has no Taylor series, or if the order or the blocks cannot be used.
+        If an operation has no Taylor series, if ``order`` is odd or below 4, or if ``edges`` and ``scales`` do not
+        fit the states.
     """
     system = checked_system(program, edges, scales, order)
     inverses = ", ".join(["0.0", *(f"1.0/{n}" for n in range(1, order + 1))])
@@ -81,10 +82,8 @@ def lane_definitions(program: Program, edges: Sequence[int], scales: Sequence[fl
 
 
 def multiplications(program: Program, order: int) -> int:
-    """Return the number of multiplications in one Taylor step of one trajectory, as a measure of its cost.
-
-    Only those in convolutions count.
-    """
+    """Return the number of multiplications in the convolutions of one Taylor step of one trajectory."""
+    # a measure of the time of a step
     jet = _Jet(recurrences(program))
     shares = [(0.5 if slot.square else 1.0) * len(slot.terms) for slot in jet.slots]
     return int(sum(shares) * order * (order + 1) / 2)
@@ -93,7 +92,8 @@ def multiplications(program: Program, order: int) -> int:
 class _Jet:
     """Writes the C function that computes the jet (all Taylor coefficients) of one system.
 
-    The C code differs by ``stage``: ``first`` for n = 0, ``second`` for n = 1, then ``later``.
+    For coefficient n, ``stage`` is ``first`` (n = 0), ``second`` (n = 1) or ``later``. From n = 2 on, C variables
+    ``a0, a1, ..`` (``b0, ..`` for odd n) hold the inner terms of the slots; ``sums`` is the letter a or b.
     """
 
     def __init__(self, system: Recurrences) -> None:
@@ -255,7 +255,7 @@ class _Jet:
         return [f"{name} = V_DIV({upper}, V_MUL(d{i}, V_ALL((double)({n}))));"]
 
     def _clock(self, s: Series, name: str, n: str) -> list[str]:
-        """Return the C statement that sets ``name`` to coefficient ``n`` (C text) of s, a function of ``a t + b``."""
+        """Return the C statement that sets ``name`` to coefficient ``n`` (C text) of ``s``, such as cos(a t + b)."""
         rate, _ = s.weights
         assert rate is not None
         sign, size = split_sign(rate)
@@ -266,7 +266,7 @@ class _Jet:
         return [f"{name} = V_MUL(p{s.operands[0]}, {step});"]
 
     def _clock_start(self, i: int, s: Series) -> list[str]:
-        """Return the C statements for coefficient 0 of series i, a function of ``a t + b`` such as sine."""
+        """Return the C statements that compute coefficient 0 of series i, such as cos(a t + b)."""
         both = sorted({i, s.operands[0]})
         # sine and cosine are computed together, by the statements of the series with the lower index
         if i != both[0]:
@@ -319,7 +319,7 @@ class _Jet:
         return sorted({s.operands[0] for s in self.series if s.rule == "clock"})
 
     def loops(self) -> list[str]:
-        """Return the C loops that sum products u[k] v[n-k] of known coefficients, for the orders n (even) and n + 1."""
+        """Return the C loops that compute the inner terms of the convolutions, for n (even) and n + 1 together."""
         # variables a{i} for order n, b{i} for order n + 1; each number is read once for both orders
         return [line for group in self._groups() for line in self._loop(group)]
 
@@ -368,8 +368,11 @@ class _Jet:
     def _products(
         self, terms: Sequence[tuple[int, int, Convolution]], left: Sequence[int], right: Sequence[int]
     ) -> list[str]:
-        """Return the C loop over k that adds products u[k] v[n-k] to the sums of slots, two values of k at a time."""
-        # slot i has the sums a{i} of order n and b{i} of order n + 1; left, right: indices of the series u, v
+        """Return the C loop over k, two values at a time, that adds products u[k] v[n-k] to the sums of slots.
+
+        ``left`` and ``right`` are the indices of the series u and v in ``terms``.
+        """
+        # slot i has the sums a{i} for n and b{i} for n + 1
         lines = ["{", *(f"    symrot_v f{i} = {self.at(i, '1')};" for i in left)]
         lines.append("    for (int64_t k = 1; k < n - 1; k += 2) {")
         for new, old, ahead, behind in (("g", "f", "k + 1", "n - k"), ("f", "g", "k + 2", "n - k - 1")):
@@ -387,7 +390,7 @@ class _Jet:
         return [*lines, "}"]
 
     def completed_sums(self) -> list[str]:
-        """Return the C statements that complete the sums ``b{i}`` of order n + 1, once coefficients n are known."""
+        """Return the C statements that add to the sums ``b{i}``, for n + 1, the terms that contain coefficients n."""
         lines: list[str] = []
         for i, slot in enumerate(self.slots):
             # the terms u[1] v[n] and u[n] v[1]; the loop before has added the others
@@ -439,7 +442,7 @@ class _Jet:
 
 
 def _plus(value: str, sign: int, factors: str) -> str:
-    """Return the C expression of ``value`` plus or minus the product of ``factors``, given as ``"u, v"``.
+    """Return the C expression of ``value + sign*u*v``, where ``factors`` is the text ``"u, v"``.
 
     An empty ``value`` stands for zero.
     """
@@ -449,16 +452,15 @@ def _plus(value: str, sign: int, factors: str) -> str:
 
 
 def _add(name: str, sign: int, factors: str) -> str:
-    """Return the C statement that adds a product (``factors``, as ``"u, v"``) to the variable ``name``.
-
-    It subtracts the product if ``sign`` is negative.
-    """
+    """Return the C statement that adds ``sign*u*v`` to the variable ``name``; ``factors`` is the text ``"u, v"``."""
     return f"{name} = V_{'FMA' if sign > 0 else 'FNMA'}({factors}, {name});"
 
 
 def _called(s: Series, first: int) -> str:
-    """Return the C call that computes coefficient 0 of a function such as exp from coefficient 0 of its arguments."""
-    # the operands of the series from number first on
+    """Return the C call, such as ``V_CALL(exp, v3)``, that computes coefficient 0 of the function ``s``.
+
+    The arguments of the function are the operands of ``s`` from number ``first`` on.
+    """
     arguments = [f"v{operand}" for operand in s.operands[first:]]
     return f"V_CALL{'' if len(arguments) == 1 else len(arguments)}({s.function}, {', '.join(arguments)})"
 

@@ -68,7 +68,7 @@ static inline void symrot_circle(symrot_v high, symrot_v low, symrot_v *sine, sy
 
 
 def _horner(name: str, coefficients: tuple[Fraction, ...]) -> str:
-    """Return the C statements that compute a polynomial in ``square`` by Horner's rule."""
+    """Return the C statements that set ``name`` to a polynomial in the variable ``square``, by Horner's rule."""
     # at the start, the C variable name contains the last coefficient; at the end, the result
     return "\n".join(
         f"    {name} = V_FMA(square, {name}, V_ALL({DOUBLE.literal(each)}));" for each in coefficients[-2::-1]

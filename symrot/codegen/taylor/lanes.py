@@ -80,7 +80,7 @@ class Layout(NamedTuple):
 def lay_out(system: Recurrences, edges: Sequence[int]) -> Layout:
     """Return the arrangement of the Taylor series of a system in SIMD vectors of four.
 
-    Blocks of states, given by ``edges``, never share a vector.
+    Block j of states, from ``edges[j]`` to ``edges[j + 1] - 1``, shares no vector with another block.
     """
     bundled = _with_bundles(system)
     # a product that occurs in two sums is computed once, or once in each sum, whichever costs less
@@ -88,7 +88,7 @@ def lay_out(system: Recurrences, edges: Sequence[int]) -> Layout:
 
 
 def cost(layout: Layout) -> int:
-    """Return an estimate of the time for one order of the series: the number of columns (convolutions) and rows."""
+    """Return an estimate of the time for one order of the series: the number of columns plus the number of rows."""
     return len(layout.columns) + len(layout.rows)
 
 
@@ -132,7 +132,7 @@ def _with_bundles(system: Recurrences) -> Recurrences:
 
 
 class _Placer:
-    """Assigns the series of a system to rows (vectors of up to four series), and their products to columns."""
+    """Assigns the series of a system to rows (vectors of up to four series), and products of series to columns."""
 
     def __init__(self, system: Recurrences, edges: Sequence[int], most_uses: int) -> None:
         self.system, self.series = system, system.series
@@ -160,22 +160,18 @@ class _Placer:
         self.rows.append(row._replace(lanes=lanes))
 
     def _inlined(self, most_uses: int) -> set[int]:
-        """Return the indices of the products (series u v) that are not stored as series of their own."""
+        """Return the indices of the products u v that are computed within sums, and not as series of their own."""
         count: dict[int, int] = {}
         for s in (*self.series, *self.system.rates):
             for operand in s.operands:
                 if self.series[operand].rule == "product":
                     count[operand] = count.get(operand, 0) + (1 if s.rule == "sum" else most_uses + 1)
-        # each of the few sums computes such a product as a convolution; to compute it in a row, store it and add it
-        # costs more
+        # for a product in few sums, this costs less than to compute it in a row, store it and add it
         return {operand for operand, uses in count.items() if uses <= most_uses}
 
     def level(self, i: int) -> int:
-        """Return the number of computations in the longest chain that leads to coefficient n of series ``i``.
-
-        It is 0 for a state and 1 for a product of two states.
-        """
-        # the series of one row have equal levels, because none of them may need another one
+        """Return how many series must be computed one after the other to obtain series ``i``; 0 for a state."""
+        # for one coefficient n; the series of one row have equal levels, because none of them may need another one
         if i not in self.levels:
             s = self.series[i]
             older = {"driven": (1,), "primitive": (1,), "clock": (0,)}.get(s.rule, ())  # operands used up to n - 1 only
@@ -209,7 +205,7 @@ class _Placer:
         return Layout(self.series, tuple(self.rows), tuple(rates), tuple(self.columns), own, self.system.states, seeds)
 
     def _shape(self, i: int) -> tuple[int, ...]:
-        """Return a sort key for series of one rule, of which up to four neighbours form a row."""
+        """Return a sort key, by which similar series with the same rule become neighbours and share a row."""
         s = self.series[i]
         products = sum(operand in self.inlined for operand in s.operands)
         # exponentials come after pairs such as sine and cosine; sums in a row have about equally many products
@@ -230,14 +226,16 @@ class _Placer:
         return tuple(Address(1, first.row, lane) if a is None else a for lane, a in enumerate(addresses))
 
     def address(self, sign: int, series: int, lane: int) -> Address:
-        """Return the address of ``series`` with the factor ``sign``, in ``lane`` if its row has a copy there."""
+        """Return the :class:`Address` of ``series``, if possible in lane ``lane``, with the factor ``sign``."""
         first = self.place[series]
-        # a copy in the same lane needs no permutation
+        # an unused lane of a row repeats a series; the one in the same lane needs no permutation
         return Address(sign, first.row, lane if self.rows[first.row].lanes[lane] == series else first.lane)
 
     def column(self, pairs: Sequence[_Pair | None], ends: str, needed: Sequence[bool] = ()) -> int:
-        """Add a column, a vector of up to four convolutions, and return its index."""
-        # pairs: the two series of each lane, each as (sign, index)
+        """Add a column, the convolution of two packs, and return the index of the new column.
+
+        ``pairs[i]`` are the two series in lane i, as (sign, index); ``ends`` as in :class:`Column`.
+        """
         a = self.pack([None if pair is None else pair[0] for pair in pairs])
         b = self.pack([None if pair is None else pair[1] for pair in pairs])
         # a needed lane without a pair is zero; other lanes may have any value
@@ -314,8 +312,10 @@ class _Placer:
         return Row("sum", lanes, tuple(made), tuple(terms), None if set(constants) == {ZERO} else constants)
 
     def _columns(self, lanes: list[list[tuple[int, int]]]) -> Iterable[int]:
-        """Yield the indices of new columns that together contain each product of ``lanes`` once."""
-        # lanes: for each lane of a row, the products u v of its sum, as (sign, index of the product)
+        """Add columns that compute all products in ``lanes``, and yield the indices of the new columns.
+
+        ``lanes[i]`` are the products in lane i, as (sign, index of the product).
+        """
         rest = [[(sign, self.series[p].operands[0], self.series[p].operands[1]) for sign, p in lane] for lane in lanes]
         needed = [bool(lane) for lane in lanes]
         while any(rest):
@@ -336,14 +336,17 @@ class _Placer:
             yield self.column(picked, "both", needed)
 
     def _shared(self, lanes: list[list[tuple[int, int, int]]]) -> int | None:
-        """Return a series that is a factor of some product in every lane (and can be broadcast), or None."""
+        """Return a series that is a factor of a product (sign, u, v) in each lane; None if there is none."""
         if len(lanes) < 2:
             return None
         common = set.intersection(*({u for _, *pair in lane for u in pair} for lane in lanes))
         return min(common, default=None)
 
     def _mixed(self, terms: list[tuple[int, int, int] | None], needed: Sequence[bool]) -> int:
-        """Add a column that multiplies one pair of series per lane, and return its index."""
+        """Add a column with one product (sign, u, v) of series in each lane, and return the index of the new column.
+
+        A lane without a product is zero if ``needed``.
+        """
         known = {pack for column in self.columns for pack in (column.a, column.b)}
         whole = {tuple(Address(1, row, lane) for lane in range(LANES)) for row in range(len(self.rows))}
         best: tuple[int, list[_Pair | None]] | None = None
@@ -368,7 +371,10 @@ class _Placer:
 
 
 def _first_positive(item: tuple[Node, list[tuple[int, int]]]) -> tuple[Node, list[tuple[int, int]]]:
-    """Return a group (weight, products), which stands for ``weight*sum(sign*product)``, with a positive first sign."""
+    """Return (weight, [(sign, product), ..]), that is ``weight*sum(sign*product)``, so that the first sign is positive.
+
+    ``(a, [(-1, u), (1, v)])`` gives ``(-a, [(1, u), (-1, v)])``.
+    """
     # so -a*(u v - w x) and a*(w x - u v) are recognised as equal if their products are listed in the same order
     weight, terms = item
     return item if terms[0][0] > 0 else (("neg", weight), [(-sign, operand) for sign, operand in terms])

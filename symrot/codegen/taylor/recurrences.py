@@ -77,7 +77,7 @@ class _Linear(NamedTuple):
 
 
 def recurrences(program: Program) -> Recurrences:
-    """Return the recurrences of a right-hand side ``dy = f(t, y, p)``.
+    """Return the recurrences for the Taylor coefficients of y, for the rates ``dy = f(t, y, p)``.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ class _Builder:
         return _READERS[kind](self, node, parts)
 
     def series_of(self, form: _Linear) -> int:
-        """Return the index of the series that equals a linear form (a constant plus weighted series)."""
+        """Return the index of the series that equals ``form``; a sum is added as a new series."""
         if form.constant is None and list(form.terms.values()) == [ONE]:
             return next(iter(form.terms))
         return self.add(self.sum_of(form))
@@ -144,7 +144,7 @@ class _Builder:
         return Series("sum", tuple(i for i, _ in terms), (*(weight for _, weight in terms), form.constant))
 
     def factored(self, form: _Linear) -> tuple[Node, int]:
-        """Return (constant, series) whose product equals a linear form (a constant plus weighted series)."""
+        """Return (constant, index of a series), whose product equals ``form``: ``2*u + 4*v`` gives 2 and u + 2*v."""
         if form.constant is None and len(form.terms) == 1:
             ((series, weight),) = form.terms.items()
             return weight, series
@@ -168,17 +168,14 @@ class _Builder:
         return _folded(("*", ("number", lead), rest)), whole
 
     def sum(self, left: _Linear, right: _Linear, sign: int) -> _Linear:
-        """Return ``left + sign*right`` for two linear forms (a constant plus weighted series); ``sign`` is 1 or -1."""
+        """Return ``left + sign*right``, where ``sign`` is 1 or -1."""
         # a sum in brackets that may become zero during the motion is not expanded
         if left.terms and right.terms:
             left, right = self.bracket(left), self.bracket(right)
         return _sum(left, right, sign)
 
     def bracket(self, form: _Linear) -> _Linear:
-        """Return a form such as ``m + m*tanh(u)`` as ``m*s``, with one series ``s = 1 + tanh(u)``.
-
-        Other forms are returned unchanged.
-        """
+        """Return ``m + m*tanh(u)`` as ``m*s`` with the series ``s = 1 + tanh(u)``; other sums are unchanged."""
         parts = [*form.terms.values(), *([] if form.constant is None else [form.constant])]
         factors = [_number_and_rest(part) for part in parts]
         if (
@@ -213,18 +210,22 @@ class _Builder:
         return _Linear(None, {self.add(Series("quotient", (v,))): _folded(("/", _value(left), b))})
 
     def reciprocal(self, number: int) -> _Linear | None:
-        """Return 1/v as a linear form if v, the series ``number``, is a product of hyperbolic cosines, else None."""
+        """Return 1/v, where v is the series ``number``: ``cosh(a)*cosh(b)`` gives ``sech(a)*sech(b)``.
+
+        None if v is no product of hyperbolic cosines.
+        """
         series = self.series[number]
         if series.rule == "product":
             left, right = map(self.reciprocal, series.operands)
             return None if left is None or right is None else self.product(left, right)
         if number not in self.cosh_arguments:
             return None
-        # a product of sech, because hyperbolic cosines could overflow
+        # hyperbolic cosines could overflow
         return self.secant(self.cosh_arguments[number])
 
     def secant(self, argument: _Linear) -> _Linear:
-        """Return w = sech(u), the hyperbolic secant, as a series computed from the equation t w' = -tanh(u) w t u'."""
+        """Return sech(u), the hyperbolic secant of u = ``argument``."""
+        # its series w is computed from the equation t w' = -tanh(u) w t u'
         u = self.series_of(argument)
         if ("sech", u) not in self.known:
             ((tangent, _),) = self.tangent("tanh", argument).terms.items()
@@ -259,13 +260,16 @@ class _Builder:
         return self.add(Series("theta", (series,)))
 
     def clock(self, form: _Linear) -> tuple[Node, Node | None] | None:
-        """Return the constants (a, b) if a linear form equals a t + b, where b is None for 0; otherwise return None."""
+        """Return (a, b) if ``form`` is a t + b with constants a and b, otherwise None; b = 0 is returned as None."""
         ((series, weight),) = form.terms.items() if len(form.terms) == 1 else ((-1, ONE),)
         return (weight, form.constant) if series >= 0 and self.series[series].rule == "time" else None
 
     def driven(self, functions: Sequence[tuple[str, int]], partners: Sequence[int], argument: _Linear) -> int:
-        """Return the index of the first series of functions that are each other's derivatives, as sine and cosine."""
-        # functions: (name, sign of its derivative); partners: positions of the functions in their derivatives
+        """Add a series for each of ``functions``, unless it exists, and return the index of the first series.
+
+        ``functions`` are pairs (name, sign): the derivative of function i is sign times function ``partners[i]``.
+        """
+        # for sin and cos, partners are (1, 0)
         clock = self.clock(argument)
         seed = () if clock else (self.series_of(argument),)
         drive = () if clock else (self.theta(*seed),)
@@ -279,7 +283,7 @@ class _Builder:
         return self.known[key]
 
     def sine_or_cosine(self, name: str, argument: _Linear) -> _Linear:
-        """Return sin, cos, sinh or cosh (``name``) of ``argument`` as a linear form: its series, with weight 1."""
+        """Return sin, cos, sinh or cosh (``name``) of ``argument``."""
         sine, cosine, *signs = SINE_COSINE_PAIRS[name]
         # the derivative of each function of a pair contains the other, so both series are added
         first = self.driven(((sine, signs[0]), (cosine, signs[1])), (1, 0), argument)
@@ -311,7 +315,7 @@ class _Builder:
         return _alone(own)
 
     def one_and_square(self, series: int, sign: int) -> _Linear:
-        """Return ``1 + sign*u^2`` as a linear form, where u is the series with index ``series``."""
+        """Return ``1 + sign*u^2``, where u is the series with index ``series``."""
         return _sum(_Linear(ONE, {}), _scaled(self.product(_alone(series), _alone(series)), sign), 1)
 
     def root(self, name: str, argument: _Linear) -> _Linear:
@@ -334,7 +338,8 @@ class _Builder:
         return self.primitive(name, self.theta(u), self.series_of(self.one_and_square(u, 1)), (u,))
 
     def angle(self, name: str, y: _Linear, x: _Linear) -> _Linear:
-        """Return w = atan2(y, x) as a series computed from the equation (x^2 + y^2) t w' = x t y' - y t x'."""
+        """Return atan2(y, x)."""
+        # its series w is computed from the equation (x^2 + y^2) t w' = x t y' - y t x'
         turning = _sum(self.product(x, self.theta_form(y)), self.product(y, self.theta_form(x)), -1)
         square = _sum(self.product(x, x), self.product(y, y), 1)
         return self.primitive(
@@ -346,10 +351,7 @@ class _Builder:
 
 
 def _without_unused(system: Recurrences) -> Recurrences:
-    """Return the system without the series that no rate needs, directly or through operands.
-
-    The series of states remain in any case.
-    """
+    """Return the system without the series that no rate needs; the series of states always remain."""
     needed = {i for i, series in enumerate(system.series) if series.rule == "state"}
     waiting = [operand for rate in system.rates for operand in rate.operands]
     while waiting:
@@ -378,10 +380,7 @@ def _value(form: _Linear) -> Node:
 
 
 def _folded(node: Node) -> Node:
-    """Return a shorter constant formula of equal value.
-
-    Numbers are combined, factors of 1 removed, and a sign is moved to the front.
-    """
+    """Return a shorter constant formula of equal value: ``2*3`` gives 6, ``1*a`` gives a, ``a*(-b)`` gives -(a*b)."""
     kind, parts = node[0], children(node)
     if kind == "neg":
         sign, inner = split_sign(parts[0])

@@ -38,7 +38,8 @@ def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[
     Raises
     ------
     InputError
-        If an operation has no Taylor series, or if the order or the blocks cannot be used.
+        If an operation has no Taylor series, if ``order`` is odd or below 4, or if ``edges`` and ``scales`` do not
+        fit the states.
     """
     system = checked_system(program, edges, scales, order)
     layout = min((lay_out(one, edges) for one in (system, with_companions(system))), key=cost)
@@ -62,9 +63,9 @@ def taylor_definitions(program: Program, edges: Sequence[int], scales: Sequence[
 
 
 def checked_system(program: Program, edges: Sequence[int], scales: Sequence[float], order: int) -> Recurrences:
-    """Return the Taylor recurrences of the right-hand side ``program``.
+    """Return the Taylor recurrences of ``program`` after a check of the arguments of :func:`taylor_definitions`.
 
-    Raise InputError if the order or the blocks cannot be used.
+    Raise InputError if ``order`` is odd or below 4, or if ``edges`` and ``scales`` do not fit the states.
     """
     if order < 4 or order % 2:
         raise InputError(f"order of the Taylor method: expected an even number, at least 4, got {order}")
@@ -90,7 +91,8 @@ def jet_source(layout: Layout, parameters: Sequence[str]) -> str:
 class _Jet:
     """Writes the C function that computes the jet, all Taylor coefficients, of series in SIMD vectors (``layout``).
 
-    The C code differs by ``stage``: ``first`` for n = 0, ``second`` for n = 1, then ``later``.
+    For coefficient n, ``stage`` is ``first`` (n = 0), ``second`` (n = 1) or ``later``. From n = 2 on, C variables
+    ``a0, a1, ..`` (``b0, ..`` for odd n) hold the inner terms of the convolutions; ``sums`` is the letter a or b.
     """
 
     def __init__(self, layout: Layout, parameters: Sequence[str]) -> None:
@@ -144,7 +146,7 @@ class _Jet:
     def column(self, index: int, stage: str, sums: str) -> str:
         """Return the C expression for coefficient n of the convolutions in column ``index``; empty for zero."""
         a, b, ends = self.layout.columns[index]
-        # a C variable such as a3 holds the terms k = 1..n-1; the terms k = 0 and k = n are added
+        # the inner terms, k = 1..n-1, are known; the terms k = 0 and k = n are added
         known = f"{sums}{index}" if stage == "later" else ""
         if ends == "none":
             return known
@@ -164,7 +166,7 @@ class _Jet:
     # -------------------------------------------------------------------------------------------- rows
 
     def sum(self, row: Row, stage: str, sums: str, factor: str = "", fused: str = "V_FMA") -> str:
-        """Return the C expression for a row of the rule ``sum``, four weighted sums of series, times ``factor``."""
+        """Return the C expression for a row of four weighted sums of series, times ``factor`` (C text; empty for 1)."""
         # fused: the C function of a b + c; terms that are computed last are added last, so that others need not wait
         value = ""
         parts = [(self.picked(term.pack), term.weights) for term in row.terms]
@@ -181,11 +183,8 @@ class _Jet:
         return value or "V_ALL(0.0)"
 
     def _rest_of_time(self, row: Row) -> str:
-        """Return the C text of the four constants that multiply ``t_low`` in a row of sums.
-
-        It is empty if no sum contains the time.
-        """
-        # the time is the sum of two doubles, t and the much smaller t_low
+        """Return the C text of the coefficients of time in the four sums of a row; empty if no sum contains time."""
+        # the time is t + t_low, two doubles; the text is used for the smaller one, t_low
         weights: list[Node] = []
         for number in row.lanes:
             series = None if number is None else self.layout.series[number]
@@ -195,7 +194,7 @@ class _Jet:
         return self.constant(tuple(weights)) if any(weight != ("number", 0) for weight in weights) else ""
 
     def _weighted(self, weights: tuple[Node, ...], factor: str) -> str:
-        """Return the C expression of a vector of constants times ``factor``; an empty text stands for 1."""
+        """Return the C expression of four constants times ``factor``; an argument or result ``""`` stands for 1."""
         ones = all(weight == ("number", 1) for weight in weights)
         if ones:
             return factor
@@ -243,8 +242,11 @@ class _Jet:
         return [f"{name} = V_DIV({upper}, {lower});"]
 
     def _quotient(self, row: Row, name: str, stage: str, terms: list[str], total: str) -> list[str]:
-        """Return the C statements that set the variable ``name`` to coefficient n of u/v: ``(u[n] - total)/v[0]``."""
-        # terms: C text of v[n] and, unless u is constant, of u[n]; total: of sum(v[k] (u/v)[n-k], k = 1..n)
+        """Return the C statements that set the variable ``name`` to coefficient n of w = u/v: ``(u[n] - total)/v[0]``.
+
+        ``terms`` are the C texts of v[n] and u[n], ``total`` is that of ``sum(v[k] w[n-k], k = 1..n)``.
+        """
+        # u[n] is missing if u is constant
         divisor, upper = f"d{name[1:]}", "V_ALL(0.0)"
         if len(terms) > 1:
             weights = self._weighted(row.terms[1].weights, "")
@@ -257,10 +259,7 @@ class _Jet:
         return [f"{divisor} = {terms[0]};", f"{name} = V_DIV({upper}, {divisor});"]
 
     def _seed(self, row: Row) -> str:
-        """Return the C expression for coefficient 0 of the four functions in a row, such as exp.
-
-        It calls the C library for each lane.
-        """
+        """Return the C expression for coefficient 0 of the four functions in a row: ``V_SET(exp(..), exp(..), ..)``."""
         first = {"driven": 2, "primitive": 3, "root": 0}[row.rule]
         lanes = []
         for series in row.lanes:
@@ -273,7 +272,7 @@ class _Jet:
         return f"V_SET({', '.join(lanes)})"
 
     def _clock_seed(self, row: Row, name: str) -> list[str]:
-        """Return the C statements for coefficient 0 of functions of ``a t + b``."""
+        """Return the C statements that set ``name`` to coefficient 0 of the four functions of ``a t + b`` in a row."""
         series = [self.layout.series[i] for i in row.lanes if i is not None]
         rates = self.constant(tuple(s.weights[0] for s in series))  # type: ignore[misc]
         offsets = self.constant(row.constant) if row.constant and set(row.constant) != {("number", 0)} else ""
@@ -354,8 +353,8 @@ class _Jet:
         return lines
 
     def loops(self) -> list[str]:
-        """Return the C loops that sum products a[k] b[n-k] of known coefficients, for the orders n (even) and n + 1."""
-        # variables a{i} for order n, b{i} for order n + 1; each number is read once for both orders
+        """Return the C loops that compute the inner terms of the convolutions, for n (even) and n + 1 together."""
+        # variables a{i} for n, b{i} for n + 1; each number is read once for both
         lines: list[str] = []
         columns = self.layout.columns
         loops = -(-len(columns) // COLUMNS_PER_LOOP)
@@ -381,7 +380,7 @@ class _Jet:
         return lines
 
     def completed_sums(self) -> list[str]:
-        """Return the C statements that complete the sums ``b{i}`` of order n + 1, once coefficients n are known."""
+        """Return the C statements that add to the sums ``b{i}``, for n + 1, the terms that contain coefficients n."""
         lines: list[str] = []
         for i, (a, b, _) in enumerate(self.layout.columns):
             # the terms a[1] b[n] and a[n] b[1]; the loop before has added the others
@@ -438,21 +437,21 @@ class _Jet:
 
 
 def _of(function: str, turn: str) -> str:
-    """Return the C name of the value of a function, such as sin, at the angle ``a t + b`` with the C name ``turn``."""
+    """Return the C name of a function's value at an angle ``turn``: ``sin`` and ``turn_r3_0`` give sin_turn_r3_0."""
     return f"{function}_{turn}"
 
 
 def _calls(node: Node) -> list[Node]:
-    """Return the function calls in a formula; a call inside the arguments of another call is not listed separately."""
+    """Return the outermost function calls in a formula: ``a*sin(exp(b)) + tan(c)`` gives sin(exp(b)) and tan(c)."""
     if node[0] == "call":
         return [node]
     return [call for child in children(node) for call in _calls(child)]
 
 
 def _with_calls(node: Node, calls: Mapping[Node, str]) -> Node:
-    """Return a formula in which function calls are replaced by symbols.
+    """Return a formula in which each function call in ``calls`` becomes the symbol named ``calls[call]``.
 
-    ``calls`` maps each call to the name of its symbol.
+    With ``{sin(q): "e0"}``, ``2*sin(q)`` gives ``2*e0``.
     """
     if node in calls:
         return ("symbol", calls[node])

@@ -25,7 +25,7 @@ HIGHEST = 12  # largest degree of a polynomial of t that is shifted as a whole
 
 
 def from_epoch(kernel: SceneKernel) -> SceneKernel:
-    """Return the kernel of a scene with time counted from the epoch, a new constant ``epoch`` of the scene, in s."""
+    """Return the kernel of a scene in which the time t is counted from the new constant ``epoch``, s."""
     rates, parameters = moved(kernel.rates, kernel.rate_parameters)
     # formulas of conserved quantities still contain the original time
     timeless = [
@@ -37,7 +37,7 @@ def from_epoch(kernel: SceneKernel) -> SceneKernel:
 
 
 def moved(program: Program, parameters: Parameters) -> tuple[Program, Parameters]:
-    """Return a right-hand side in which time is counted from the epoch, and the formulas of all its parameters.
+    """Return a right-hand side in which time is counted from ``epoch``, and the formulas of its parameters.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def moved(program: Program, parameters: Parameters) -> tuple[Program, Parameters
 
 
 def moved_formulas(formulas: Sequence[Node], constants: Collection[str]) -> tuple[tuple[Node, ...], Parameters]:
-    """Return formulas in which t is the time since ``epoch``, and the (name, formula) of each parameter in them.
+    """Return formulas in which t is counted from ``epoch``, and the parameters in the formulas as (name, formula).
 
     Parameters
     ----------
@@ -71,10 +71,10 @@ def moved_formulas(formulas: Sequence[Node], constants: Collection[str]) -> tupl
 
 
 class _Form(NamedTuple):
-    """A formula in the shifted time (``node``) and, if it is a polynomial of t, its coefficients (``terms``)."""
+    """A formula in the shifted time (``node``) and, for a polynomial of the original time, its coefficients."""
 
     node: Node | None  # None for a polynomial of degree one, whose formula is made from the terms when it is used
-    # constant formulas, lowest power first
+    # the coefficients: constant formulas, lowest power first
     terms: tuple[Node, ...] | None = None
     centred: bool = False  # whether it is a product with a factor a t + b, which is small near its zero -b/a
 
@@ -130,7 +130,10 @@ class _Mover:
         return _Form((kind, *written, *node[2:]) if kind == "**" else (kind, *written), terms, centred)
 
     def gathered(self, node: Node) -> _Form | None:
-        """Return a sum in which all terms of the form a t + b are one term, or None if that changes nothing."""
+        """Return a sum with its terms of the form a t + b added up: ``(t - 2) + x + 3`` becomes ``(t + 1) + x``.
+
+        None if that changes nothing.
+        """
         lines: list[tuple[Node, ...]] = []
         others: list[tuple[bool, _Form]] = []
         for negative, form in self.summands(node, False):
@@ -149,9 +152,9 @@ class _Mover:
         return _Form(gathered)
 
     def summands(self, node: Node, negative: bool) -> Iterator[tuple[bool, _Form]]:
-        """Yield the terms of nested sums as pairs (subtracted, term).
+        """Yield the terms of a sum as (subtracted, term): ``a - (b + c)`` gives (False, a), (True, b), (True, c).
 
-        ``negative`` says whether the whole sum is subtracted.
+        ``negative`` tells whether the whole sum is subtracted.
         """
         if node[0] in ("+", "-"):
             yield from self.summands(node[1], negative)
@@ -162,8 +165,10 @@ class _Mover:
             yield negative, self.read(node)
 
     def written(self, form: _Form, turns: bool = False) -> Node:
-        """Return the formula tree of ``form`` in the shifted time; a polynomial of t is written by Horner's rule."""
-        # turns: the value is an angle in a sine, cosine or tangent, from which multiples of 2 pi may be subtracted
+        """Return the formula of a :class:`_Form` in the shifted time; a polynomial is written by Horner's rule.
+
+        ``turns`` allows multiples of 2 pi to be subtracted, for the angle in a sine, cosine or tangent.
+        """
         whole = turns and form.terms is not None and len(form.terms) > 1 and not form.centred
         if form.node is not None and not whole:
             return form.node
@@ -188,7 +193,7 @@ class _Mover:
         return value
 
     def parameter(self, formula: Node) -> Node:
-        """Return the symbol of a parameter with the given formula; the parameter is added if it is new."""
+        """Return the symbol of the parameter with the formula ``formula``; a new parameter is added."""
         for name, known in (*self.formulas.items(), *self.added):
             if known == formula:
                 return ("symbol", name)
@@ -196,7 +201,7 @@ class _Mover:
         return ("symbol", self.added[-1][0])
 
     def resolved(self, node: Node) -> Node:
-        """Return a constant formula in terms of physical constants: each parameter is replaced by its formula."""
+        """Return a constant formula in which each parameter is replaced by its formula: p0 becomes ``(B - C)/A``."""
         if node[0] == "symbol":
             return self.formulas[node[1]]
         if node[0] == "number":
@@ -207,13 +212,15 @@ class _Mover:
 
 
 def _is_shifted(form: _Form) -> bool:
-    """Return whether a formula equals a t + b with b other than zero, as the factor t - c of a narrow pulse does."""
+    """Return whether a formula is a t + b with b other than zero, such as ``t - c``."""
     return form.terms is not None and len(form.terms) == 2 and form.terms[0] != ZERO
 
 
 def _terms(node: Node, parts: list[tuple[Node, ...] | None]) -> tuple[Node, ...] | None:
-    """Return the result of an operation as the coefficients of a polynomial in t, lowest power first, or None."""
-    # parts: the coefficients of each operand; None for an operand that is no polynomial
+    """Return the coefficients in t, lowest power first, of an operation on polynomials with the coefficients ``parts``.
+
+    None if an operand (None in ``parts``) or the result is no polynomial.
+    """
     if any(part is None for part in parts):
         return None
     kind, polynomials = node[0], [part for part in parts if part is not None]

@@ -53,7 +53,7 @@ def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
 def base_coefficients(forms: Iterable[LinearForm]) -> dict[Expr, Fraction]:
     """Return, for each atom, the greatest common divisor of its coefficients in all ``forms``.
 
-    If ``theta`` and ``theta/2`` occur, it is 1/2 for theta.
+    The angles theta and theta/2 give ``{theta: 1/2}``.
     """
     bases: dict[Expr, Fraction] = {}
     for form in forms:

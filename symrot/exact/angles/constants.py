@@ -97,12 +97,14 @@ def _places(poly: PolyElement) -> frozenset[int]:
 
 
 def _integral(terms: Iterable[tuple[Monomial, Any]], known: Mapping[int, Number]) -> tuple[int, int]:
-    """Return (multiplier, bits): the factor that makes a sum an algebraic integer, and the size of its conjugates."""
+    """Return (multiplier, bits) for the sum of ``terms``: the sum times ``multiplier`` is an algebraic integer.
+
+    Its conjugates are less than 2^bits.
+    """
     terms = list(terms)
     most = [max(column) for column in zip(*(mono for mono, _ in terms), strict=True)]
     whole = lcm(*(int(c.denominator) for _, c in terms))
     multiplier = whole * prod(known[n].multiplier ** power for n, power in enumerate(most) if power)
-    # all conjugates of multiplier * sum are below 2^bits
     total = 0
     for mono, c in terms:
         rest = abs(int(c.numerator)) * whole // int(c.denominator)

@@ -12,13 +12,13 @@ __all__ = ["halved", "is_bound", "parts_of", "unbound"]
 
 
 def is_bound(atom: Expr, coefficient: Fraction) -> bool:
-    """Return whether cosine and sine of ``coefficient * atom`` follow from roots alone, as for ``2*asin(u)``."""
+    """Return whether ``coefficient * atom`` has a sine and a cosine made of roots alone, as ``2*asin(u)`` has."""
     # halving an angle whose cosine and sine are known gives square roots
     return type(atom) in INVERSE and coefficient.denominator in (1, 2, 4, 8)
 
 
 def unbound(form: LinearForm) -> LinearForm:
-    """Return an angle without the terms for which :func:`is_bound` holds: ``x + 2*asin(u)`` gives x."""
+    """Return an angle without its multiples of inverse functions (see :func:`is_bound`): ``x + 2*asin(u)`` gives x."""
     return LinearForm(tuple(term for term in form.terms if not is_bound(*term)), form.half_turns)
 
 

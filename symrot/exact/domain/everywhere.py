@@ -25,7 +25,7 @@ MOST_BITS = 2000
 
 
 def fails_everywhere(need: Need) -> bool:
-    """Return whether a condition is proven to hold at no real point, as ``cos(x) - 2 >= 0`` (see :class:`Need`)."""
+    """Return whether a condition (:class:`Need`), such as ``cos(x) - 2 >= 0``, is proven to hold at no real point."""
     low, high = range_everywhere(need.formula)
     return bool({">= 0": high < 0, "> 0": high <= 0, "!= 0": low == high == 0}.get(need.sign, False))
 

@@ -1,7 +1,7 @@
 """Search for points at which formulas are proven to be real numbers, so that no verdict "true" is vacuous.
 
-The search runs in double precision. Interval arithmetic then proves its result, with fractions for the unknowns or with
-a box that contains a solution of the hypotheses.
+The search runs in double precision. Interval arithmetic then proves its result: fractions for the unknowns, or an
+interval for each unknown, within which the hypotheses have a solution.
 """
 
 from collections.abc import Iterator, Sequence

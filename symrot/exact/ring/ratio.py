@@ -168,7 +168,7 @@ class Ratios:
         return constant, tuple(sorted(powers.items()))
 
     def _value(self, poly: PolyElement) -> int:
-        """Return the value of a polynomial at ``self.point``; its coefficients and the coordinates are integers."""
+        """Return the value of a polynomial with integer coefficients at ``self.point``, a point of integers."""
         return sum(
             int(coefficient) * prod(base**power for base, power in zip(self.point, mono, strict=True) if power)
             for mono, coefficient in poly.items()

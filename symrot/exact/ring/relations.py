@@ -31,7 +31,7 @@ class Rule:
 
     @property
     def polynomial(self) -> PolyElement:
-        """The polynomial ``generator^power - replacement`` of the ring, which the rule says is zero."""
+        """The polynomial ``generator^power - replacement`` of the ring, which is zero by the rule."""
         return self.replacement.ring.gens[self.generator] ** self.power - self.replacement
 
 
@@ -128,7 +128,7 @@ def _replace(poly: PolyElement, rule: Rule) -> PolyElement:
 
 
 def _divide(poly: PolyElement, rule: Rule) -> PolyElement:
-    """Return the remainder of ``poly`` after division by a minimal polynomial, which ``rule`` represents."""
+    """Return the remainder of ``poly`` after division by the polynomial ``g^n - P`` of a rule ``g^n = P``."""
     place, power = rule.generator, rule.power
     # variables other than that of the algebraic number count as coefficients
     groups: dict[tuple[int, ...], dict[int, Any]] = {}

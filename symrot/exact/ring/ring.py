@@ -239,7 +239,7 @@ class FormulaRing:
         return radicand
 
     def _dependences(self) -> dict[Root, Dependence]:
-        """Return a map from each square root that is a product of other roots, as sqrt(a*b) may be, to this product."""
+        """Return the square roots that are products of other roots, with these products: sqrt(a*b): sqrt(a)*sqrt(b)."""
         places = {root: n for root, n in self.roots.items() if root.index == 2 and not root.power_expression.is_number}
         plain = [root for root in places if not isinstance(root.expression, Abs)]
         if not plain or len(places) < 2:
@@ -261,7 +261,7 @@ class FormulaRing:
         return accepted
 
     def _take_fine_constants(self) -> int:
-        """Remove pi from the bases if cosines of its angles need 2 cos(pi/N); return the even N, otherwise 0."""
+        """Return the even N of the variable 2 cos(pi/N), which angles such as pi/7 need; 0 if no angle needs one."""
         # no such number for multiples of pi/24, which have square roots as sines and cosines, or if N is too large
         if pi not in self.bases or not cyclotomic.needs_cyclotomic_field(self.bases[pi].denominator):
             return 0

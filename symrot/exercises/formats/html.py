@@ -20,7 +20,7 @@ HINTS = ("Hint 1: the law", "Hint 2: the equation", "Hint 3: with numbers")
 
 
 def html_sheet(exercises: Sequence[Exercise]) -> str:
-    """Return exercises as the text of one self-contained HTML page, which grades numerical answers."""
+    """Return the text of one self-contained HTML page with exercises; the page grades numerical answers."""
     folder = files(__package__)
     parts = [
         "<h1>Exercises</h1>",

@@ -61,7 +61,7 @@ def _questions(exercise: Exercise) -> Iterator[Element]:
 
 
 def _image(exercise: Exercise) -> str:
-    """Return the HTML of an exercise's figure, which Moodle stores as a file; empty if the exercise has no figure."""
+    """Return the HTML of an exercise's figure, empty if there is none; Moodle stores the figure as a file."""
     if not exercise.figure:
         return ""
     title = escape(title_of(exercise.figure))

@@ -122,9 +122,9 @@ def _value(text: str) -> float | None:
 
 
 def _digits(text: str) -> int | None:
-    """Return the number of significant digits of a decimal, 3 for ``0.0120``.
+    """Return the number of significant digits of a decimal: 3 for ``0.0120``.
 
-    Return None for a fraction or root, which is exact.
+    None for a fraction or a root, because such a number is exact.
     """
     plain = _PLAIN.fullmatch(text)
     if plain is None:

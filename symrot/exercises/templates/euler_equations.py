@@ -165,7 +165,7 @@ def unbalanced_shaft(random: Random) -> Problem:
 
 
 def power_of_torque(random: Random) -> Problem:
-    """Return a problem that asks for the power of a torque, which is the rate of the kinetic energy."""
+    """Return a problem that asks for the power of a torque, that is, for the rate of the kinetic energy."""
     rates = euler_equations()
     energy = (OMEGA.T * diag(A, B, C) * OMEGA)[0] / 2
     power = sum((energy.diff(omega) * rate for omega, rate in zip(OMEGA, rates, strict=True)), Rational(0))

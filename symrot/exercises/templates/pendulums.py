@@ -16,7 +16,7 @@ HANGS = "A thin uniform rod of mass $m$ and length $L$ swings about its upper en
 
 
 def _stiffness(distance: Expr) -> Expr:
-    """Return the second derivative of a pendulum's potential energy by its angle, at the lowest position.
+    """Return the second derivative, with respect to the angle, of a pendulum's potential energy at the lowest position.
 
     ``distance`` is the distance of the centre of mass from the axis.
     """

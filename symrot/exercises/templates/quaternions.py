@@ -146,7 +146,7 @@ def angle_between(random: Random) -> Problem:
 
 
 def twice_the_angle(random: Random) -> Problem:
-    """Return a problem that asks for the scalar part of a squared quaternion, which rotates by twice the angle."""
+    """Return a problem that asks for the scalar part of a squared quaternion; the square rotates by twice the angle."""
     half = quaternion_of_axis_angle((0, 0, 1), alpha)
     square = quaternion_product(half, half)[0]
     return Problem(

@@ -41,7 +41,7 @@ def key(latex: str) -> str:
 
 
 def parts(latex: str) -> list[list[str]]:
-    r"""Return the equations in a LaTeX text as lists of their sides: ``a = b, \quad c`` gives a and b; c."""
+    r"""Return the equations in a LaTeX text as lists of sides: ``a = b, \quad c`` gives ``[a, b]`` and ``[c]``."""
     equations: list[list[str]] = [[""]]
     depth = 0
     for token, following in pairwise(tokens(latex)):
@@ -150,7 +150,7 @@ class _Interpreter(Cursor):
         return value.inv() ** -exponent if matrix and exponent < 0 else value**exponent
 
     def norm(self) -> Any:
-        """Return the length of a vector ``|v|``, optionally with an exponent; its first bar has been read."""
+        """Read the rest of a length ``|v|`` after its first bar, with an exponent if there is one; return the value."""
         inner = self.barred(self.sum, "|")
         square = inner.dot(inner) if isinstance(inner, MatrixBase) and 1 in inner.shape else None
         if square is None:

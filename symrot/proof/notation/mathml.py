@@ -122,7 +122,7 @@ class _Translation:
         return _joined(self.argument(node))
 
     def item(self, node: Node, after_operand: bool = False) -> Item:
-        """Return the item of one node of parsed LaTeX: its MathML and width."""
+        """Return the item of one node of parsed LaTeX; with ``after_operand``, a minus sign is binary, not a prefix."""
         if not isinstance(node, Token):
             return self.scripted(node, after_operand) if isinstance(node, Scripts) else ITEMS[type(node)](self, node)
         text = node.text

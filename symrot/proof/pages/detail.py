@@ -77,7 +77,7 @@ def _on_board(step: Step) -> list[Passage]:
 
 
 def _on_one_screen(passages: list[Passage]) -> list[Passage]:
-    """Return the first paragraphs, all that fit on one screen."""
+    """Return as many of the first paragraphs as fit on one screen."""
     screen: list[Passage] = []
     lines = letters = 0
     for passage in passages:

@@ -1,6 +1,6 @@
 """Printer of derivations as HTML: one file with native MathML, without script or network.
 
-A derivation always gives the same bytes.
+The same derivation always gives the same bytes.
 """
 
 import re
@@ -59,9 +59,10 @@ a { color: inherit; }
 
 
 def html_document(page: Page, top: str = "", bottom: str = "", style: str = "", font: str = "") -> str:
-    """Return a page as the text of an HTML document, with HTML ``top`` above and ``bottom`` below it."""
-    # ``style`` is CSS after the usual rules; ``font`` is the address of the font's file, which is embedded if it is
-    # empty
+    """Return an HTML document with a page, the HTML text ``top`` above the page, and ``bottom`` below it.
+
+    ``style`` is CSS after the usual rules; ``font`` is the address of the font's file, empty to embed the font.
+    """
     parts = [*filter(None, [top]), f"<h1>{prose(page.title)}</h1>"]
     for opening in page.opening:
         parts += [_figure(opening)] if isinstance(opening, Figure) else _passage(opening)

@@ -127,7 +127,7 @@ def _body(page: Page) -> Iterator[str]:
 
 
 def _figure(figure: Figure) -> str:
-    """Return a figure in LaTeX: its caption, and above it the picture."""
+    """Return a figure in LaTeX: the picture, and below it the caption."""
     path = figure.file.removesuffix(".svg")
     size = r"width=0.7\linewidth,height=0.35\textheight,keepaspectratio"
     # a PDF file in ``figures``, left out if it does not exist when LaTeX runs

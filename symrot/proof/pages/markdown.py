@@ -64,7 +64,7 @@ MARKED = re.compile(r"\\[^A-Za-z]|[\])}]_|\*")
 
 
 def host_safe(part: str) -> str:
-    """Return a paragraph of Markdown whose inline formulas survive on a code-hosting site."""
+    """Return Markdown in which formulas that contain marks of Markdown are quoted: ``$a*b$`` gives ``$`a*b`$``."""
     # displayed formulas are unchanged
     if part.startswith("$$"):
         return part

@@ -35,8 +35,10 @@ def repetitions(page: Page) -> frozenset[int]:
 
 
 def remarks(step: Step, is_repetition: bool = False) -> Iterator[str]:
-    """Yield the remarks on a step, each a sentence: its reason, hypotheses, conditions and source."""
-    # a repetition leaves out the reason
+    """Yield the remarks on a step, each a sentence: its reason, hypotheses, conditions and source.
+
+    A repetition leaves out the reason.
+    """
     if not is_repetition:
         yield f"*Why:* {step.reason}."
     if step.hypotheses:
@@ -75,12 +77,15 @@ def units(page: Page) -> str:
 
 
 def table_rows(table: Table, number: int) -> Iterator[tuple[str, ...]]:
-    """Yield the titles of a table's columns and then its rows, each a tuple of cells in Markdown."""
+    """Yield the titles of a table's columns and then its rows, each a tuple of cells in Markdown.
+
+    ``number`` is the number of the last step before the table.
+    """
     yield ("Steps", *table.head) if table.is_proven else table.head
     for cells, steps in table.rows:
         first, last = number + 1, number + len(steps)
         number = last
-        # proven rows begin with the numbers of their steps, counted from ``number``, the last step before the table
+        # proven rows begin with the numbers of their steps
         numbers = f"{first}" if first == last else f"{first}–{last}"
         yield (numbers, *cells) if table.is_proven else cells
 

@@ -29,7 +29,7 @@ SHRINK = 0.3  # smallest factor by which a step is multiplied at once
 class Disc(NamedTuple):
     """Disc of complex numbers within ``radius`` of a real ``centre``; it encloses the values of a formula.
 
-    ``log_size`` optionally bounds the logarithm of their absolute values.
+    ``log_size``, if present, bounds the logarithm of every absolute value in the disc.
     """
 
     centre: float
@@ -77,7 +77,7 @@ def _inverse(a: Disc) -> Disc:
 def _sqrt(a: Disc, whole: float) -> Disc:
     """Return a disc that contains the square roots of all numbers in a disc.
 
-    Near zero, where roots have no series, ``whole`` enlarges it.
+    The radius is multiplied by ``whole`` unless all these numbers have a positive real part.
     """
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:
@@ -165,10 +165,10 @@ FUNCTIONS: dict[str, Callable[..., Disc]] = {
 
 
 def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
-    """Return a compiled Python function that bounds how far rates can change, faster than with operations on discs."""
+    """Return a compiled Python function that computes the bounds of ``Deviations`` faster than ``slowly`` does."""
     # Arguments: those of Deviations.__call__, then the constant coefficients w and their absolute values a. The
     # logarithms of sizes, which help a Disc where numbers overflow, are left out.
-    lines, place = ["def bounds(t, reach, whole, y, radii, w, a):"], 0
+    lines, place = ["def bounds(t, radius, whole, y, radii, w, a):"], 0
     for number in enclosure.series:
         series: Series = enclosure.system.series[number]
         c, r = f"c{number}", f"r{number}"
@@ -177,10 +177,10 @@ def _one_function(enclosure: Enclosure) -> Callable[..., list[float]]:
         if series.rule == "state":
             lines.append(f" {c}, {r} = y[{series.number}], radii[{series.number}]")
         elif series.rule == "time":
-            lines.append(f" {c}, {r} = t, reach")
+            lines.append(f" {c}, {r} = t, radius")
         elif series.rule == "clock":
             lines.append(
-                f" {c}, {r}, _ = {series.function}(Disc(w[{place}]*t + w[{place + 1}], a[{place}]*reach){further})"
+                f" {c}, {r}, _ = {series.function}(Disc(w[{place}]*t + w[{place + 1}], a[{place}]*radius){further})"
             )
             place += 2
         elif series.rule == "sum":
@@ -243,37 +243,39 @@ class Deviations:
         self._listed += [weight for own in self._terms for weight, _ in own]
         self._sizes = [abs(weight) for weight in self._listed]
 
-    def __call__(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return, for each rate, a bound of its change for complex times within ``reach`` of t and states near y.
+    def __call__(
+        self, t: float, radius: float, whole: float, y: Sequence[float], radii: Sequence[float]
+    ) -> list[float]:
+        """Return a bound of the change of each rate while time and states vary around ``t`` and ``y``.
 
-        Each state is within its entry of ``radii``.
+        Time varies within ``radius``, s, and state k within ``radii[k]``; all are complex.
         """
         # A bound is infinite if a pole may lie in the discs. The caller counts the missed share of a deviation as
         # overlooked; of a square root near zero a step may overlook all: it is multiplied by whole, 1/missed share.
         self.spent += 1
         try:
-            bounds = self._bounds(t, reach, whole, y, radii, self._listed, self._sizes)
+            bounds = self._bounds(t, radius, whole, y, radii, self._listed, self._sizes)
             if math.isfinite(sum(bounds)):
                 return bounds
         except (OverflowError, ValueError, ZeroDivisionError):
             pass
-        return self.slowly(t, reach, whole, y, radii)
+        return self.slowly(t, radius, whole, y, radii)
 
-    def slowly(self, t: float, reach: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return the bounds of :meth:`__call__`, computed with discs, which can stay finite where numbers overflow."""
+    def slowly(self, t: float, radius: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
+        """Return the bounds of :meth:`__call__`, computed with a :class:`Disc` per term, for larger numbers."""
         self.spent += SLOWER
-        # a Disc can also hold the logarithm of the size of its numbers
+        # because a Disc can also hold the logarithm of the size of its numbers
         discs: dict[int, Disc] = {}
         try:
             for number in self.enclosure.series:
-                discs[number] = self._disc(number, discs, t, reach, whole, y, radii)
+                discs[number] = self._disc(number, discs, t, radius, whole, y, radii)
             bounds = [sum(weight * discs[operand].radius for weight, operand in own) for own in self._terms]
         except (OverflowError, ValueError, ZeroDivisionError):
             return [math.inf if own else 0.0 for own in self._terms]
         return [_or_infinite(bound) for bound in bounds]
 
     def _disc(
-        self, number: int, discs: Mapping[int, Disc], t: float, reach: float, whole: float, y: Sequence[float],
+        self, number: int, discs: Mapping[int, Disc], t: float, radius: float, whole: float, y: Sequence[float],
         radii: Sequence[float],
     ) -> Disc:  # fmt: skip
         series: Series = self.enclosure.system.series[number]
@@ -282,10 +284,10 @@ class Deviations:
         if series.rule == "state":
             return Disc(y[series.number], radii[series.number])
         if series.rule == "time":
-            return Disc(t, reach)
+            return Disc(t, radius)
         if series.rule == "clock":
             rate, offset = self._weights[number]
-            return FUNCTIONS[series.function](Disc(rate * t + offset, abs(rate) * reach), *further)
+            return FUNCTIONS[series.function](Disc(rate * t + offset, abs(rate) * radius), *further)
         if series.rule == "sum":
             *weights, constant = self._weights[number]
             centre = constant + sum(w * disc.centre for w, disc in zip(weights, own, strict=True))
@@ -299,7 +301,7 @@ class Deviations:
 
 
 def deviations_of(enclosure: Enclosure) -> Callable[[Mapping[str, float]], Deviations]:
-    """Return a function from the parameters of the rates, by name, to bounds on their changes: :class:`Deviations`."""
+    """Return a function that takes the parameters of the rates, by name, and returns their :class:`Deviations`."""
     # compiled once for all parameters
     bounds = _one_function(enclosure)
     return lambda parameters: Deviations(enclosure, parameters, bounds)

@@ -56,7 +56,7 @@ class EventResult(NamedTuple):
         For each event and each of its times: ``"rising"``, ``"falling"`` or ``"touching"``, in the direction in which
         the motion is followed, away from its start.
     ended : bool
-        Whether a terminal event ended the motion after or before the start.
+        Whether a terminal event ended the motion, at a time after or before its start.
     events : tuple of Event
         The events, in the order in which they were requested.
     warnings : tuple of str

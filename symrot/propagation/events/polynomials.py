@@ -56,9 +56,11 @@ def rows_of(stepper: Any, record: Floats) -> Floats:
 
 @cache
 def _nested(terms: int) -> Floats:
-    """Return the matrix that converts the coefficients of DOP853's dense output to coefficients of powers of s."""
-    # dense output is a sum of the functions 1, s, s r, s^2 r, s^2 r^2, .., with r = 1 - s; s is the fraction of the
-    # step
+    """Return the matrix that turns coefficients of DOP853's dense output into ``terms`` coefficients of powers of s.
+
+    s is the fraction of the step: 0 at the start, 1 at the end.
+    """
+    # dense output is a sum of the functions 1, s, s r, s^2 r, s^2 r^2, .., with r = 1 - s
     matrix = np.zeros((terms, terms))
     power = np.zeros(terms)
     power[0] = 1.0

@@ -162,7 +162,7 @@ Numbers = Mapping[str, Fraction]
 def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numbers]) -> dict[str, Fraction]:
     """Return the nonzero derivatives, by one variable, of the exact numbers that ``numbers`` returns for a scene.
 
-    ``{"I_xx": Fraction(2, 5)}`` for the mass of a unit sphere.
+    For the mass of a unit sphere and its moments of inertia: ``{"I_xx": Fraction(2, 5), ..}``.
 
     Parameters
     ----------

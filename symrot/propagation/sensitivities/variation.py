@@ -104,7 +104,7 @@ def variation(scene: Scene, keys: Sequence[str], times: Floats) -> Sensitivities
 
 
 def event_slopes(scene: Scene, keys: Sequence[str], result: EventResult) -> tuple[Floats, ...]:
-    """Return the derivatives of the times of events by the variables ``keys``: for each event, shape (k, m)."""
+    """Return one array for each event: derivatives of its k times by the m variables ``keys``, shape (k, m)."""
     equations = _equations(scene, tuple(keys) if isinstance(keys, list) else keys)
     slopes = []
     for event, kinds, times in zip(result.events, result.kinds, result.t_events, strict=True):
@@ -159,7 +159,7 @@ class Column:
 
     @property
     def restartable(self) -> bool:
-        """Whether only :meth:`start_from` has to be computed again for another initial state."""
+        """Whether a new initial state of the scene changes only the result of :meth:`start_from`, not the constants."""
         # not for a variable that sets the initial state in another form, such as initial.attitude.angle
         variable = self.variable
         return variable.moved is None or variable.key.startswith("omega") or not any(self.start)
@@ -190,7 +190,10 @@ def columns_of(scene: Scene, variables: Sequence[Variable]) -> list[Column]:
 
 
 def structure_of(scene: Scene, columns: Sequence[Column], varying: Collection[str] = ()) -> Structure:
-    """Return the form of the equations in which each constant that a variable of ``columns`` changes is a parameter."""
+    """Return the form of the equations in which the constants ``varying`` are parameters, not numbers.
+
+    So is each constant that a variable of ``columns`` changes.
+    """
     # They become parameters even if they are now zero or one, since derivatives by them are needed; so do constants
     # that differ between the motions of an ensemble (varying). Other zeros and ones simplify the equations.
     moving = {name for column in columns for name in column.constants} | set(varying)

@@ -41,7 +41,7 @@ Piece = tuple[float, float, Any]  # first time, last time, SciPy's solution betw
 
 
 class WholeMotion(NamedTuple):
-    """Ends, s, of the motion of which SciPy computes a part, and the evaluations before the part."""
+    """Start and end, s, of a motion that SciPy computes in parts; ``spent`` counts evaluations in earlier parts."""
 
     start: float
     end: float
@@ -169,7 +169,7 @@ def record(
     tolerance: float,
     options: Options = Options(),
 ) -> "FallbackRecording":
-    """Return the motion over ``span``, s, and back to ``t0``, as a function from times to states."""
+    """Return the motion over ``span``, s, widened to contain ``t0``, as a function from times to states."""
     motion = _Integration(rhs, p, y0, t0, tolerance, options)
     low, high = min(*span, motion.t0), max(*span, motion.t0)
     finished: list[Piece] = []
@@ -194,7 +194,7 @@ class FallbackRecording(Recording):
         super().__init__(motion.t0, motion.y0, (low, high), motion.stats())
 
     def edges(self, start: float, end: float) -> list[Floats]:
-        """Return the ends of SciPy's steps from ``start`` to ``end``, s, one array between any two switching times."""
+        """Return the ends of SciPy's steps from ``start`` to ``end``, s: one array per smooth part of the motion."""
         side = 1.0 if end >= start else -1.0
         chosen = [
             np.sort(np.asarray(solution.ts, dtype=np.float64) * side) * side
@@ -216,10 +216,9 @@ def _evaluate(pieces: list[Piece], times: Floats, states: Floats) -> None:
 
 
 class _ShiftedSolution:
-    """SciPy's interpolant of one step, for times that are ``epoch`` s later than its own."""
+    """SciPy's interpolant of one step, called with times on the motion's clock instead of times since ``epoch``, s."""
 
     def __init__(self, solution: Any, epoch: float) -> None:
-        # the interpolant counts time from the epoch, s, on the motion's clock
         self._solution, self._epoch = solution, epoch
 
     def __call__(self, t: Floats) -> Floats:
@@ -268,7 +267,7 @@ class _Integration:
         return Stats(self.steps, 0, self.evaluations, perf_counter() - self.began)
 
     def follow(self, times: Floats) -> Floats:
-        """Return the states at the times, shape (n, N), which lie on one side of t0, sorted by distance from it."""
+        """Return the states, shape (n, N), at times on one side of t0, sorted by distance from t0."""
         states = np.empty((len(times), len(self.y0)))
         _evaluate(self.solutions(float(times[-1])), times, states)
         states[times == self.t0] = self.y0
@@ -422,11 +421,11 @@ class _Integration:
                     solver.max_step = longest
 
     def _move_clock(self, clock: Clock, now: float) -> float:
-        """Move the epoch by ``now`` s to the present time, and return the time from the new epoch to the present, s."""
+        """Move the epoch by ``now``, s, to the present time; return the rounding error of the new epoch, s."""
         self.epoch, rest = two_sum(self.epoch, now)
         self.rhs, p = clock(self.epoch)
         self.p = np.array(p, dtype=np.float64)
-        # not exactly zero, as the epoch is rounded to a double
+        # this is the present time minus the epoch, which is rounded to a double
         return float(rest)
 
     def _judge_pace(self, t: float, stop: float) -> None:

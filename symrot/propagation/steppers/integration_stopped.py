@@ -70,7 +70,7 @@ def add_samples(
 
 
 def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
-    """Return why a stepper is stuck at the time t: doubles are too coarse there, or else ``reason``."""
+    """Return why a stepper is stuck at the time t: adjacent doubles lie too far apart there, or else ``reason``."""
     apart = math.ulp(t)
     # too coarse: less than a million doubles between the ends of the motion
     if abs(stop - t0) > MANY_TICKS * apart:
@@ -80,10 +80,15 @@ def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
 
 
 def why_hopeless(steps: int, way: float, left: float, limit: int) -> str:
-    """Return why a motion would need over three times ``limit`` steps, or an empty text if it would not."""
-    # the last steps covered way seconds; left seconds remain
+    """Return why a motion would exceed ``limit`` steps by far if it went on at its pace; empty if it would not.
+
+    The last ``steps`` steps covered ``way`` s; ``left`` s remain.
+    """
+    # by far: more than three times
     if steps * left <= HOPELESS * limit * way:
         return ""
-    more = f"{steps * left / way:.0e} steps, far" if way > 0.0 else "endlessly many steps,"
-    each = f"each step or evaluation covers {way / steps:.1e} s"
-    return f"{each}: the motion would need {more} more than the largest allowed number of {limit}"
+    count = f"{steps * left / way:.0e}" if way > 0.0 else "endlessly many"
+    return (
+        f"each step or evaluation covers {way / steps:.1e} s: the motion would need {count} steps, far more than the "
+        f"largest allowed number of {limit}"
+    )

@@ -145,7 +145,7 @@ def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
 class Segment(NamedTuple):
     """Interval between switching times, from ``start`` to ``stop``, s.
 
-    ``first`` and ``last``, just inside, are the ends at which torques are evaluated.
+    Torques are evaluated at ``first`` and ``last``, just inside, instead of at the ends.
     """
 
     # first and last lie just inside a switching time, where a torque may jump
@@ -178,15 +178,15 @@ def segments(t0: float, end: float, breaks: Sequence[float]) -> list[Segment]:
 
 
 def _inside(edge: float, other: float) -> float:
-    """Return a time just inside a segment, at which a torque that jumps at ``edge`` has its value inside."""
+    """Return a time in a segment, so near to its end ``edge`` that a torque with a jump there has just jumped."""
     # too near the edge to affect the choice of the first step
     time = edge + SLIVER * (other - edge)
     return time if time != edge else math.nextafter(edge, other)
 
 
 def split_at(times: Floats, t0: float) -> Iterator[NDArray[np.intp]]:
-    """Yield the indices of the times from t0 on, then of those before, sorted by distance from t0."""
-    # for the times 3, 0, 2 and t0 = 1: [2, 0], then [1]; an empty group is left out
+    """Yield two arrays of indices: of the times from t0 on, and of those before, each sorted by distance from t0."""
+    # for the times 3, 0, 2 and t0 = 1: [2, 0], then [1]; an empty array is left out
     order = np.argsort(times, kind="stable")
     first_after = int(np.searchsorted(times[order], t0))
     for part in (order[first_after:], order[:first_after][::-1]):
@@ -317,7 +317,7 @@ class Stepper(ABC):
         self.new_parameters: Any = ctypes.c_double * self.parameters
 
     def _function(self, ending: str, result: Any, *arguments: Any) -> Callable[..., Any]:
-        """Return the library's C function ``symrot_NAME`` plus an ending such as ``_dense``, with ctypes declared."""
+        """Return a C function of the library by the ending of its name, such as ``_dense``, with types for ctypes."""
         try:
             function = getattr(self._library, f"symrot_{self.name}{ending}")
         except AttributeError as error:
@@ -333,7 +333,10 @@ class Stepper(ABC):
     @staticmethod
     @abstractmethod
     def allowance(tolerance: float) -> tuple[float, float]:
-        """Return the error allowed in one step, and the least length of such a step as a fraction of the span."""
+        """Return the error allowed in one step, and the fraction of the span below which a step counts as short.
+
+        A short step is allowed less error.
+        """
 
     @abstractmethod
     def enter(self, run: Run, segment: Segment, allowed: float) -> None:
@@ -536,7 +539,10 @@ class Integration:
         return self.accepted + accepted, self.rejected + rejected, self.evaluations + evaluations
 
     def record_steps(self, end: float) -> list[Floats]:
-        """Return all recorded steps from t0 to ``end``, as a list of arrays with one row per step, at most 2 GiB."""
+        """Return all steps from t0 to ``end``, s, as a list of arrays with one row per step.
+
+        More than 2 GiB raise IntegrationStopped.
+        """
         room = self.stepper.rows_per_call
         pieces = [np.empty((0, self.stepper.row))]
         for run in self.runs(end):
@@ -572,14 +578,16 @@ class Integration:
         return self.stepper.run, self.p, self.stepper.steps_per_call
 
     def advance(self, run: Run, times: int | None, count: int, states: int | None, rows: int | None, room: int) -> int:
-        """Call the stepper in C once and return its status; raise IntegrationStopped if it cannot continue."""
+        """Call the stepper in C once and return its status: DONE at the end of the segment; otherwise call again.
+
+        Raise IntegrationStopped if it cannot continue.
+        """
         # times, states, rows are addresses: of count sample times, of an array for their states, and of an array for
         # the polynomials of up to room steps; None and 0 if not needed
         stepper, (function, p, most) = self.stepper, self.step_function(run)
         attempts = min(most, self.max_steps - stepper.tried(run))
         status: int = function(ctypes.addressof(run), ctypes.addressof(p), times, count, states, rows, room, attempts)
-        # the end of the segment; with any other status the caller calls again: an array is full, or the limit of steps
-        # per call is reached
+        # any other status: an array is full, or the limit of steps per call is reached
         if status == DONE:
             return status
         if status in (NOT_FINITE, UNDERFLOW):

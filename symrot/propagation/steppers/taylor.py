@@ -61,19 +61,21 @@ ORDERS = {  # for few and for many products: least tolerance, and the fastest or
 
 
 def step_tail(tolerance: float) -> tuple[float, float]:
-    """Return a limit for the last terms of a step's Taylor series, and the step length for which it holds."""
+    """Return a limit for the last terms of a step's Taylor series, and the step length for which the limit holds.
+
+    The length is a fraction of the span.
+    """
     # The stepper multiplies the limit by r^(7/4) in a step that is r times as long. For n equal steps, r is
     # proportional to 1/n, and their errors add up to about n^(7/4) times one of them: the final error hardly depends
     # on n.
     check_tolerance(tolerance)
     # Calibrated against references of 50 digits for free asymmetric bodies and heavy tops
     # (tests/propagation/test_taylor.py): errors stay below 5 tolerances.
-    # the length is a fraction of the span
     return tolerance, 1.0 / STEPS_OF_ALL
 
 
 def order_for(tolerance: float, program: Program | None = None) -> int:
-    """Return the order of the series that is fastest for a tolerance and for the products in ``program``."""
+    """Return the order at which Taylor series take the least time for a tolerance; ``program`` computes the rates."""
     formulas = (*program.temporaries, *program.outputs) if program else ()
     products = sum(operations(formula)["mul"] for _, formula in formulas)
     # measured with `python -m symrot.bench.taylor --orders`; every order is accurate enough, and below 1e-6 the times
@@ -190,8 +192,8 @@ class _Stepper(Stepper):
         self._jet = self._function("_jet", None, real, pointer, pointer, real, integer, pointer)
         if self._function("_carry", real, real, real)(1.0, 2.0**-60) != 2.0**-60:
             raise CompilerError(
-                f"the compiled kernel {path} ignores rounding errors, which it should carry from step to step: the "
-                "compiler removed this code; compile without -ffast-math"
+                f"the compiled kernel {path} ignores rounding errors: the compiler removed the code that adds them in "
+                "the next step; compile without -ffast-math"
             )
 
     def row_length(self) -> int:

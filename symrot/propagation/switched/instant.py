@@ -44,8 +44,10 @@ class Instant(NamedTuple):
         return (times - self.high) - self.low
 
     def reached(self, times: Floats, side: float) -> int:
-        """Return how many of the times, in the order of the motion, have been reached at this instant."""
-        # side: 1 if the times increase, -1 if they decrease
+        """Return how many of the sorted ``times`` a motion has reached at this instant, an equal time included.
+
+        ``side`` is 1 if the times increase, -1 if they decrease.
+        """
         count = int(np.searchsorted(side * times, side * self.high, "right"))
         while side * self.low < 0.0 and count and times[count - 1] == self.high:
             count -= 1

@@ -85,13 +85,16 @@ class SwitchedMotion(MotionInParts):
         return states, stats_of(cost, perf_counter() - began, _switchings(changes))
 
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
-        """Return the motion from its start to ``end``, s, as polynomials and as a function from times to states."""
+        """Return the motion from its start to ``end``, s, as polynomials, and also as a function from times to states.
+
+        If the motion stops early, the error is appended to ``broken``.
+        """
         chunks: list[Chunk] = []
         run = SwitchedRun(self, self.system, end)
         try:
             run.follow(chunks.append)
         except IntegrationStopped as error:
-            # the motion before the error is returned
+            # the motion before the stop is returned
             broken.append(error)
         stats = stats_of(run.cost, 0.0, _switchings(run.changes))
         states = SwitchedRecording(self.start, self.plan.initial_state, (self.start, end), stats, chunks)

@@ -1,7 +1,8 @@
 """Regimes: the smooth motions between switches of a torque, and the guards whose zeros end them.
 
 A *guard* is the argument of a function such as sign or abs; a *mode* is the number that replaces the function in
-formulas, such as the sign of the guard. If a guard is *held* at zero, the motion *slides*.
+formulas, such as the sign of the guard. If a guard is *held* at zero, the motion *slides*. ``zero`` is the instant at
+which the clock of the motion shows 0.
 """
 
 import math
@@ -46,9 +47,8 @@ class Guard(NamedTuple):
 
 
 class RegimeParameters(NamedTuple):
-    """Parameters of the equations of a smooth motion between switches, as functions of the zero of time."""
+    """Parameters of the equations between two switches, as functions of the scene time at which the clock shows 0."""
 
-    # the epoch is the scene time at which the clock of the motion shows 0
     rates: ShiftedParameters
     # of the formulas whose zeros end the motion
     guards: ShiftedParameters
@@ -118,7 +118,7 @@ class Regime:
             yield Guard(mode, f"1 - ({guard})", 1, where)
 
     def _parameters_under(self, modes: Modes) -> RegimeParameters:
-        """Return the equations' parameters, as functions of the epoch, for given values of the switching functions."""
+        """Return the parameters of the equations for given ``modes``, which still depend on when the clock shows 0."""
         key = tuple(modes.values())
         if key not in self._parameters:
             values = {name: Fraction(value) for name, value in modes.items()}
@@ -136,18 +136,14 @@ class Regime:
         return self._parameters[key]
 
     def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
-        """Return the values, by name, of all numbers in :attr:`formulas`, the arguments of the switching functions."""
-        # parameters may depend on zero, the instant from which time is counted
+        """Return the values, by name, of the modes and of the parameters in the guards, :attr:`formulas`."""
         numbers = self._parameters_under(modes).guards.parameters(zero.exact)
         return {name: number for (name, _), number in zip(self.parameters, numbers, strict=True)} | {
             name: float(mode) for name, mode in modes.items()
         }
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
-        """Return two lists of parameters: for the stepper, and for the library that searches for switches.
-
-        They hold for the values ``modes`` of sign, abs, .. and the zero of time.
-        """
+        """Return two lists of parameters for given ``modes``: for the stepper, and for the search for switches."""
         rates, guards, quantities, invariants = self._parameters_under(modes)
         fixed = rates.fixed and guards.fixed and quantities.fixed
         place = tuple(modes.values()), None if fixed else zero
@@ -159,28 +155,28 @@ class Regime:
         return self._bound[place]
 
     def zeros(self, modes: Modes, zero: Instant, y: Floats) -> set[str]:
-        """Return the names of the states, and of the parameters of output quantities, that are zero."""
+        """Return which of the states ``y`` and of the output quantities' parameters are zero, as a set of names."""
         # with these names one decides whether x in sign(x) stays zero by itself, as in a body at rest
         return {name for name, value in self._inputs(modes, zero, y).items() if value == 0.0}
 
     def attraction(self, modes: Modes, zero: Instant, t: float, y: Floats) -> list[float]:
-        """Return one number per function sign(x) with x held at zero, all positive if nearby motions return there."""
-        # sliding: the arguments of the held functions (sign, ..) stay at zero; t is counted from the instant zero
+        """Return one number for each held guard; all are positive if nearby motions return to the sliding motion."""
+        # t is counted from the instant zero
         names = [f"attraction {k} of t" for k in range(len(self.held))]
         values = {**self._inputs(modes, zero, y), "t": t}
         quantities = self.quantities.evaluate(values, FLOAT_FUNCTIONS, float, names)
         return [float(quantities[name]) for name in names]
 
     def _inputs(self, modes: Modes, zero: Instant, y: Floats) -> dict[str, float]:
-        """Return the values, by name, of the states ``y`` and of the parameters of the output quantities."""
+        """Return the inputs of the output quantities, by name: the states ``y`` and the parameters of the formulas."""
         numbers = self._parameters_under(modes).quantities.parameters(zero.exact)
         values = zip((name for name, _ in self.quantity_parameters), numbers, strict=True)
         return dict((*values, *zip(self.plan.states, y.tolist(), strict=True)))
 
     def rates_since(self, modes: Modes, zero: Instant) -> Callable[[float], list[float]] | None:
-        """Return a function from an epoch, s after ``zero``, to the parameters of the rates for times since the epoch.
+        """Return a function from a new zero of the clock, s after ``zero``, to the parameters of the rates.
 
-        None if rates do not depend on time.
+        None: the rates do not depend on time.
         """
         rates = self._parameters_under(modes).rates
         return None if rates.fixed else lambda since: rates.parameters(zero.exact + Fraction(since))

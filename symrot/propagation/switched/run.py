@@ -365,9 +365,9 @@ class SwitchedRun(RunState):
         return self._past(regime, guard, instant.after(correction))
 
     def _past(self, regime: Regime, guard: Guard, instant: Instant) -> Instant:
-        """Return a time at or just after ``instant`` at which a guard (argument of sign, abs, ..) is not positive."""
-        # By rounding, the guard may still be positive at the computed time, and the function would switch back at
-        # once. Later times are tried, at growing distances of a few units in the last place.
+        """Return ``instant``, moved on by some rounding errors if ``guard`` as computed there is still positive."""
+        # The function (sign, abs, ..) would switch back at once. Later times are tried, at growing distances of a few
+        # units in the last place.
         formula, later = parse(guard.formula), instant
         step = self.side * math.ulp(math.ulp(instant.high))
         while abs(step) <= MOST_ULPS * math.ulp(instant.high):
@@ -378,10 +378,10 @@ class SwitchedRun(RunState):
         return instant
 
     def _is_rounding(self, regime: Regime, guard: Guard) -> bool:
-        """Return whether a guard (where sign, abs, .. switches) is negative again only because time is rounded."""
+        """Return whether a guard is negative, just after its function has switched, only by rounding of the time."""
         if guard.mode in self.held or guard.mode not in regime.of_time or not self.flipped.get(guard.mode):
             return False
-        # the function then must not switch again; decided only for guards that depend on time alone
+        # the function then must not switch again; a guard that depends on time alone can be computed a little later
         later = self.t + self.side * MOST_ULPS * math.ulp(self.zero.high)
         values = {**regime.values(self.modes, self.zero), "t": later}
         return float(evaluate(parse(guard.formula), values, FLOAT_FUNCTIONS, float)) > 0.0
@@ -389,7 +389,7 @@ class SwitchedRun(RunState):
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
     ) -> tuple[list[Guard], list[Guard]]:
-        """Return the guards, where functions switch, that are negative after the start of ``piece``, and at its end."""
+        """Return the guards that are negative just after the start of ``piece``, and the guards negative at its end."""
         formulas = [guard.formula for guard in regime.guards]
         # such a function should have switched before the piece or within it; active: guards that can end the regime
         first, last = (
@@ -509,8 +509,8 @@ class SwitchedRun(RunState):
             self._wake(other)
 
     def _returns(self, mode: str) -> bool:
-        """Return whether x in sign(x) must be held at zero, because another change of sign(x) would repeat a state."""
-        # a state is the values of all switching functions: the same changes would repeat without end
+        """Return whether ``mode`` must be held at its jump, because its switch would only restore earlier modes."""
+        # all modes would be as they were before at this time: the same switches would repeat without end
         first = self.visited.get(self._state(flip=mode))
         if first is None:
             return False
@@ -519,7 +519,7 @@ class SwitchedRun(RunState):
         return not (jumps and is_continuous(self.by_name[mode]))
 
     def _state(self, flip: str = "", hold: str = "") -> SwitchState:
-        """Return the values of all switching functions and the names of those held at zero, for comparison."""
+        """Return all modes, and which are held, after the mode ``flip`` changes its sign or ``hold`` becomes held."""
         # after flip has changed its sign
         modes = {**self.modes, flip: -self.modes[flip]} if flip else self.modes
         # after hold becomes held: its argument stays at zero
@@ -527,7 +527,7 @@ class SwitchedRun(RunState):
         return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether a function inside the argument of ``mode``, as sign in abs(x + sign(y)), switched after it."""
+        """Return whether a function inside another one, ``mode``, has switched after it: sign, in abs(x + sign(y))."""
         # in abs(x + sign(y)), if sign switched after abs, the argument of abs has jumped: abs may switch again
         last = len(self.order) - self.order[::-1].index(mode)
         return bool(self._inside(mode) & set(self.order[last:]))
@@ -542,7 +542,7 @@ class SwitchedRun(RunState):
         return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
-        """Set the mode of a function such as sign(x), the number that replaces it, to its present value."""
+        """Set the ``mode`` of a function such as sign(x) to the present value of the function."""
         # the motion begins to use the branch of where(..) with this function, whose changes were not followed before
         try:
             guard = self._guard_value(mode)
@@ -614,8 +614,8 @@ class SwitchedRun(RunState):
         except InputError:  # the equations have no such motion or several
             raise IntegrationStopped(
                 self.t,
-                f"the motion would slide along the jump of {self._names_of_held()}, but not in exactly one way; change "
-                "the torque, or end the motion here",
+                f"the motion would slide along the jump of {self._names_of_held()}, but not in exactly one way: the "
+                "equations have no solution or several; change the torque, or end the motion at this time",
                 self.end,
             ) from None
 

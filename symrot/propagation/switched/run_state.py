@@ -55,9 +55,9 @@ class RunState:
         return Instant(self.motion.start) - self.zero
 
     def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
-        """Return a function from an epoch, s after the last switch, to (rates, parameters) for times since the epoch.
+        """Return a function from a new zero of the clock, s after the last switch, to the rates and their parameters.
 
-        None if rates do not depend on time.
+        None: the rates do not depend on time.
         """
         # the epoch: time, s after the last switch, at which the stepper sets its clock to 0
         parameters = regime.rates_since(self.modes, self.zero)

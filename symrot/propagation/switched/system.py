@@ -187,7 +187,7 @@ class SwitchedSystem:
 
 
 def _switches(torque: FormulaTorque) -> list[Switch]:
-    """Return the switching functions (sign, abs, ..) of a torque, as conditions on time and states."""
+    """Return the switching functions (sign, abs, ..) of a torque, with the names that the plan gives to their modes."""
     # the name of a mode in the plan: with the prefix of its torque, such as torque2_
     own = {name: f"{torque.prefix}{name}" for name in torque.parameters}
     return [

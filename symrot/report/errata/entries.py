@@ -47,8 +47,9 @@ class Entry:
     Attributes
     ----------
     title, where, why : str
-        Its subject, its places in the document, and the reason why the formula is wrong.
+        The subject of the error, its places in the document, and the reason why the formula is wrong.
     corrections : tuple of Correction
+        The faulty formulas that show the error, each with its correction.
     proof : str
         One sentence: the reference with which the formula was compared, and a point at which the two differ.
     extracted : tuple of str
@@ -100,7 +101,7 @@ def _entry(erratum: Erratum, items: Sequence[Finding]) -> Entry:
 
 
 def _correction(item: Finding, formula: PrintedFormula) -> Correction:
-    """Return a faulty formula as printed and as corrected, in LaTeX, with boxes around what differs."""
+    """Return a faulty formula as printed and as corrected, in LaTeX, with boxes around the differences."""
     # The template is the printed LaTeX with names in place of the parts that the checker read; the finding has these
     # parts and their corrections.
     where = item.claim["where"]

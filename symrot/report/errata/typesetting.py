@@ -65,8 +65,8 @@ def _mark(node: Node) -> Node:
 
 
 def _marked_members(old: Node, new: Node) -> tuple[Node, Node]:
-    """Return the printed and the corrected sum or product, with boxes around terms or factors that only one of them
-    has.
+    """Return the printed and the corrected sum or product, with a box around each term or factor that the other
+    lacks.
     """
     only_old, only_new = _places_of_others(old, new), _places_of_others(new, old)
     befores, afters = list(old.args), list(new.args)
@@ -106,7 +106,7 @@ def latex(node: Node, letters: Mapping[str, str] = {}, functions: Collection[str
 def filled(template: str, parts: Mapping[str, Node], letters: Mapping[str, str], functions: Collection[str]) -> str:
     """Replace each hole ``@name@`` in a LaTeX template by the LaTeX of the formula ``parts[name]``.
 
-    ``letters`` and ``functions`` are as for :func:`latex`.
+    ``letters`` and ``functions`` are explained at :func:`latex`.
     """
     return HOLE.sub(lambda hole: latex(parts[hole[1]], letters, functions), template)
 

@@ -30,7 +30,7 @@ Motions = Callable[[Sequence[Fraction], Sequence[Fraction]], Any]
 # The parameters p are those of the closed form: moments of inertia, pull (weight times the distance of the centre of
 # mass, in N m), momentum of a rotor.
 class _Form(NamedTuple):
-    """The parts of the C text of a step that depend on which closed form the motion has."""
+    """The parts of a step's C text that differ between closed forms, such as the free body and the heavy top."""
 
     library: str
     title: str

@@ -24,7 +24,7 @@ class StepFiles(KernelText):
     @property
     @abstractmethod
     def _parameters(self) -> Sequence[tuple[str, float]]:
-        """Name and value of each parameter p of the scene; may be empty."""
+        """Pairs (name, value), one for each of the scene's parameters p; empty if the scene has none."""
 
     @property
     @abstractmethod

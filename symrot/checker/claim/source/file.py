@@ -45,12 +45,12 @@ class Refusal:
 
 
 def read_claims(path: str | Path) -> list[Claim]:
-    """Return the claims of a TOML file; raise InputError if one of them cannot be read.
+    """Return the claims of a TOML file.
 
     Raises
     ------
     InputError
-        Naming the file, the claim, the key, and the expected value.
+        If a claim cannot be read; the message names the file, the claim, the key and the expected value.
     """
     entries = read_entries(path)
     for entry in entries:
@@ -221,7 +221,7 @@ def _names(entry: dict[str, Any], key: str, place: str) -> tuple[str, ...]:
 
 
 def _editable(entry: dict[str, Any], define: Sequence[tuple[str, Node]], place: str) -> tuple[str, ...]:
-    """Return the parts of a claim that repairs may change: those listed by its key ``editable``, by default both
+    """Return the parts of a claim that repairs may change: those that its key ``editable`` lists, by default both
     sides.
     """
     parts = tuple(entry.get("editable", SIDES))

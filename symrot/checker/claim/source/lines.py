@@ -70,8 +70,8 @@ def claims_of_reading(
 
 
 def _with_signs_of_products(assume: Sequence[str], stated: Context) -> tuple[list[str], Context]:
-    """Return the hypotheses without those such as ``I_xy = ∫ x y dm``, and the context with the sign that these
-    state.
+    """Return the hypotheses without ``I_xy = ∫ x y dm`` and the like, and the context with the sign that these
+    define.
     """
     others = []
     for source in assume:

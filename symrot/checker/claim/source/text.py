@@ -155,7 +155,9 @@ def claim_of_relation(
 
 
 def _with_own_name(relation: Relation) -> tuple[Relation, str]:
-    """Return ``I = n.T*I*n`` with the left side renamed to I_n, and a note on it; other equations unchanged."""
+    """Return ``I_n = n.T*I*n`` for ``I = n.T*I*n``, and a note for the user; other equations unchanged, with an empty
+    note.
+    """
     sign, left, right = relation
     first, *rest = right.args if right.kind == "product" else (right,)
     is_form = first.kind == "transpose" and len(rest) > 1 and rest[-1] == first.args[0] and rest[-1].kind == "name"
@@ -175,7 +177,7 @@ def _of_one_time(hypotheses: Sequence[Relation]) -> tuple[Relation, ...]:
 
 
 def _matrix_given(source: str, words: Collection[str]) -> tuple[str, Node] | None:
-    """Return R and its formula if a hypothesis defines a matrix, as ``R == R_z(psi)*R_y(theta)`` does, or None."""
+    """Return R and its formula for a hypothesis such as ``R == R_z(psi)*R_y(theta)``; None if no matrix is defined."""
     # ``words`` are the names of the claim, which are not split into letters
     sign, left, right = read_hypothesis(source, "given", words=words)
     is_definition = sign == "==" and left.kind == "name" and shape_of(right, {}) not in (None, (1, 1))
@@ -183,7 +185,7 @@ def _matrix_given(source: str, words: Collection[str]) -> tuple[str, Node] | Non
 
 
 def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> Iterator[tuple[str, Node]]:
-    """Yield the definitions of matrices, and of the entries that an equation names: ``R[2, 0]`` for R_31."""
+    """Yield the definitions ``matrices``, and those of entries in a relation: (R_31, ``R[2, 0]``)."""
     names = dict.fromkeys(str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind == "name")
     for matrix, tree in matrices:
         yield matrix, tree
@@ -197,8 +199,8 @@ def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> I
 def _with_vectors(
     relation: Relation, vectors: list[Vector], define: Sequence[tuple[str, Node]]
 ) -> tuple[Relation, list[Vector], bool]:
-    """Return a relation with unit matrices as ``eye(n)``, its vectors and tensors, and whether it has unit
-    matrices.
+    """Return a relation with ``eye(n)`` for I or 1, ``vectors`` and the relation's other vectors, and whether it has
+    eye(n).
     """
     # defined names are no new vectors
     named = {name for name, _ in define} | {vector.name for vector in vectors}
@@ -228,9 +230,7 @@ def _shapes(vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> di
 
 
 def _with_arrays(relation: Relation, vectors: Sequence[Vector], define: Sequence[tuple[str, Node]]) -> Quaternions:
-    """Return the quaternions, matrices and columns in a relation, and the relation with ``dot(a, b)`` for columns
-    a and b.
-    """
+    """Return the quaternions, matrices and columns of a relation, and the relation with ``dot(a, b)`` for ``a^T b``."""
     known = {name for name, _ in define}
     names = {vector.name for vector in vectors}
     generic = {*matrices_of_entries(define)}
@@ -303,9 +303,7 @@ def _with_rotated_axes(relation: Relation) -> Relation:
 
 
 def read_hypothesis(source: str, where: str, declared: Declared | None = None, words: Collection[str] = ()) -> Relation:
-    """Return a hypothesis such as ``x > 0`` as (sign, left, right), without splitting the names in ``words`` into
-    letters.
-    """
+    """Return a hypothesis such as ``x > 0`` as (sign, left, right); names in ``words`` are not split into letters."""
     # ``declared`` are the names of a claim that declares its names
     if declared is None and isinstance(source, str) and is_latex(source):
         relation = read_latex(source, where).relation

@@ -30,9 +30,7 @@ USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 
 
 def substitutions_of_rates(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the interpretations of a claim as one about Euler angles, their rates and components of the angular
-    velocity, if any.
-    """
+    """Yield each Substitution for a claim with Euler rates: omega_3 becomes ``phi' cos(theta) + psi'``."""
     names = {atom: _plain(atom) for atom in sorted(atoms_of(sides) - {TIME}, key=str)}
     components = {atom: match for atom, name in names.items() if (match := COMPONENT.fullmatch(name))}
     others = {atom: name for atom, name in names.items() if atom not in components}
@@ -75,7 +73,7 @@ def _plain(atom: Expr) -> str:
 
 
 def _frames(context: Context, names: dict[Expr, str], components: dict[Expr, re.Match[str]]) -> tuple[str, ...]:
-    """Return the frames to which the components in a claim may belong: those stated, or both if none is stated."""
+    """Return the frames of the angular velocity whose components a claim may have: the stated frames, or both."""
     stated = {meaning.frame for atom in components if (meaning := context.meaning_of(names[atom])) and meaning.frame}
     stated |= {context.frame} if context.frame else set()
     if not stated and any(match[2] for match in components.values()):
@@ -97,8 +95,8 @@ ENTRY = re.compile(r"[RACQT]_?([1-3])_?([1-3])")
 
 
 def substitutions_of_entries(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the interpretations of a claim as one about an entry of the stated sequence's rotation matrix:
-    ``R_31 = ..``.
+    """Yield each Substitution for a claim such as ``R_31 = ..``: R_31 becomes its formula by the stated Euler
+    sequence.
     """
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides) - {TIME}, key=str)}
     entries = {atom: match for atom, name in names.items() if (match := ENTRY.fullmatch(name))}

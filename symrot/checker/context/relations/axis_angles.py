@@ -1,7 +1,7 @@
 """Claims about the angles from the axis of a free symmetric body to its angular momentum and its angular velocity.
 
-The ratio of their tangents is that of the moments of inertia. Claims may be solved for either angle, and books use
-the same letters for both.
+The tangents of the two angles have the ratio of the moments of inertia. Claims may be solved for either angle, and
+books use the same letters for both.
 """
 
 import re
@@ -35,7 +35,7 @@ def is_stated(context: Context) -> bool:
 
 
 def substitutions_of_axis_angles(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the interpretations of a claim as ``tan(theta) = A/C tan(gamma)`` for a free symmetric top, if any."""
+    """Yield the Substitution for a claim that means ``tan(theta) = A/C tan(gamma)`` for a free symmetric top."""
     if context.body is not None and "free symmetric" not in context.body.kind.title:
         return
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}

@@ -37,8 +37,8 @@ SIGNS = {"minus": 1, "plus": -1}
 
 
 def substitutions_of_integrals(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the interpretations of a claim as one about entries of the inertia tensor and integrals over the body,
-    if any.
+    """Yield each Substitution for a claim such as ``I_xy = integral of x y dm``: I_xy becomes an integral or its
+    negative.
     """
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}
     entries = {atom: match for atom, name in names.items() if (match := ENTRY.fullmatch(name))}
@@ -70,8 +70,8 @@ def is_tensor_of_integrals(sides: Sequence[Any]) -> bool:
 
 
 def _entry(row: int, column: int) -> Expr:
-    """Return an entry of the inertia tensor as a sum of integrals: ``integral_yy + integral_zz`` for row 0 and
-    column 0.
+    """Return an entry of the inertia tensor as a sum of integrals: ``integral_yy + integral_zz`` for row 0, column
+    0.
     """
     terms = Poly(inertia_of_point(1, position)[row][column], *position).terms()
     return Add(*(factor * Symbol(f"integral_{_product(powers)}", real=True) for powers, factor in terms))
@@ -88,7 +88,7 @@ MOMENT_OF_AXIS, MASS, GYRATION = (
 
 
 def substitutions_of_gyration(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the substitution of ``m k^2`` for I if a claim is ``I = m k^2`` in any letters: the definition of k."""
+    """Yield the Substitution of ``m k^2`` for I, for a claim ``I = m k^2`` in any letters: the definition of k."""
     names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides), key=str)}
     patterns = (MOMENT_OF_AXIS, MASS, GYRATION)
     if len(names) != len(patterns):

@@ -1,6 +1,6 @@
 """Deciding claims by substitution: each quantity is replaced by its formula in independent coordinates of a motion.
 
-A claim follows from these formulas if and only if it becomes an identity, whatever it is solved for.
+A claim follows from these formulas if and only if it becomes an identity.
 """
 
 from collections.abc import Iterable, Sequence
@@ -30,7 +30,7 @@ GUESSED = "guessed, not stated"
 
 @dataclass(frozen=True)
 class Substitution:
-    """One way to read the letters of a claim, with the formulas to substitute for them.
+    """One interpretation of a claim's letters: the formulas to substitute for them.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Substitution:
     values : dict
         Symbol or rate of the claim -> its formula in the coordinates of the motion.
     guess : str
-        The parts of this reading that nothing states; empty if everything is stated.
+        What this interpretation assumes without a statement; empty if everything is stated.
     sides : tuple (Expr, Expr) or None
         An equation to decide in place of the claim's equation, if not None.
     mapping : dict
@@ -55,13 +55,13 @@ class Substitution:
 
     @property
     def identification(self) -> Identification:
-        """The relation as an entry of ``recognised_as`` in a verdict."""
+        """The relation called ``name``, as an entry of ``recognised_as`` in a verdict."""
         return Identification(self.name, "", self.mapping, self.source)
 
 
 def decided(equation: Equation, substitution: Substitution) -> Decision | None:
-    """Return the decision on an equation whose letters ``substitution`` replaces by formulas; None if there is
-    none.
+    """Return the decision on an equation after ``substitution``; None if its formulas are too large or have no
+    value.
     """
     try:
         return decide_equation(Equation(*_sides(equation, substitution)))
@@ -70,9 +70,7 @@ def decided(equation: Equation, substitution: Substitution) -> Decision | None:
 
 
 def may_be_true(equation: Equation, substitution: Substitution) -> bool:
-    """Return whether an equation seems to hold at sample points, once ``substitution`` replaces its letters by
-    formulas.
-    """
+    """Return whether an equation holds at sample points after ``substitution``."""
     # a quick test by numbers, before an exact decision
     left, right = _sides(equation, substitution)
     return seems_zero(left - right)
@@ -87,9 +85,9 @@ def _sides(equation: Equation, substitution: Substitution) -> tuple[Any, Any]:
 def by_substitution(
     claim: Claim, verdict: Verdict, substitutions: Iterable[Substitution], is_complete: bool
 ) -> Verdict:
-    """Return the verdict on a claim by possible interpretations of its letters; ``verdict`` if these decide nothing.
+    """Return the verdict on a claim after each of ``substitutions``; ``verdict`` if they decide nothing.
 
-    If ``is_complete``, no other interpretation is possible.
+    If ``is_complete``, they are all interpretations of the claim; then the verdict may be "false".
     """
     if not is_complete and verdict.verdict not in OPEN:
         return verdict
@@ -115,8 +113,8 @@ def by_substitution(
 
 
 def _recognised(context: Context, verdict: Verdict, true: Sequence[Substitution], is_complete: bool) -> Verdict:
-    """Return the verdict on a claim that holds in the interpretations ``true``: "recognised", or "true" if all is
-    stated.
+    """Return the verdict "true" if an interpretation in ``true`` assumes nothing and ``is_complete``; else
+    "recognised".
     """
     stated = [way for way in true if not way.guess]
     readings = tuple(way.identification for way in (stated or true)[:MOST_READINGS])

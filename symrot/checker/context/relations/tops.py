@@ -53,7 +53,9 @@ CONJUGATE = re.compile("p_?(phi|varphi|theta|vartheta|psi)")
 
 
 def substitutions_of_tops(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
-    """Yield the interpretations of a claim as one about a symmetric top, if any."""
+    """Yield each Substitution for a claim about a symmetric top: spin and momenta become formulas in angles and
+    rates.
+    """
     if context.body is not None and context.body.kind.formulas != TOPS:
         return
     atoms = sorted(atoms_of(sides) - {Symbol("t", real=True)}, key=str)
@@ -80,7 +82,9 @@ def _substitution(names: Mapping[Expr, str], values: dict[Expr, Expr], own: Sequ
 
 
 def _is_fitting(names: Mapping[Expr, str], values: Mapping[Expr, Expr], own: Sequence[str], has_body: bool) -> bool:
-    """Return whether an interpretation of a claim's letters makes sense for a top."""
+    """Return whether ``values``, formulas for a claim's letters, can mean a top: a moment of inertia, no quantity
+    twice.
+    """
     letters: dict[Expr, str] = {}
     # no two letters mean the same quantity
     same = all(letters.setdefault(value, names[atom]) == names[atom] for atom, value in values.items())
@@ -144,9 +148,7 @@ def _formulas(load: Expr) -> dict[str, Expr]:
 def _of_steady_precession(
     names: Mapping[Expr, str], values: Mapping[Expr, Expr], sides: Sequence[Expr], load: Expr
 ) -> Iterator[Substitution]:
-    """Yield the condition of steady precession with a claim's formula for the rate of precession, such as m g l/(C
-    omega_3).
-    """
+    """Yield the Substitution for a claim ``phi' = f``: the condition of steady precession with f for phi', and zero."""
     for side, formula in (sides, sides[::-1]):
         if values.get(side) != DPHI or side in atoms_of([formula]):
             continue

@@ -126,7 +126,7 @@ def _rotation_matrices() -> Iterator[tuple[str, Matrix]]:
 
 
 def _with_unit_axis(rotation: Matrix) -> Matrix:
-    """Return a rotation matrix about an axis n with n n^T - 1 in place of the square of skew(n)."""
+    """Return a rotation matrix with n n^T - 1 in place of skew(n)^2; both are equal for a unit axis n."""
     excess = (1 - cos(ANGLE)) * (AXIS.dot(AXIS) - 1)
     return (rotation + excess * eye(3)).applyfunc(expand)
 
