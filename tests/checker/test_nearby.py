@@ -63,7 +63,7 @@ def test_the_part_at_fault_is_named_and_repaired(claim, code, repaired):
     "I = 13/20 m r^2", "a = p_psi/I_1", "I_z = 9/16 m R^2", "P = 2 M omega", "Omega = a g b/(c d)", "T = I/k",
     "E = a x^2 + b y^2", "tau = F d cos(theta)", "omega_2^2 = (M^2 - 2EI_1)/I_3", "V = -m g l cos(theta)",
     "I = 1/12 m L^2 + m d^2", "I = m (a^2 + 4 b^2)/12", "I = m (R^2 + 5 a^2/4)",
-    "tau = -m g l sin(theta)", "E = 1/2 m v^2 + 1/2 k x^2", "F = mu m g cos(theta)",
+    "tau = -m g l sin(theta)", "theta = -asin(a)", "E = 1/2 m v^2 + 1/2 k x^2", "F = mu m g cos(theta)",
 ])  # fmt: skip
 def test_a_formula_that_may_mean_something_else_is_not_accused(claim):
     """Few letters, another unit of the same form, or a letter of its own: nothing says that it has a fault."""

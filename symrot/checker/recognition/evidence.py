@@ -14,6 +14,7 @@ from symrot.checker.claim.tree import TIME, Node, walk
 from symrot.checker.context.admission import ANGLES, COMPONENTS, admits_letters, admits_name
 from symrot.checker.context.angle_orders import are_roll_pitch_yaw
 from symrot.checker.context.context import Context
+from symrot.checker.recognition.formulas.kinematics import OF_ONE_ENTRY
 from symrot.checker.recognition.identification import plain_name, unit_of
 from symrot.checker.recognition.known_formulas import CROSS_PRODUCT
 from symrot.checker.recognition.letters import is_atom
@@ -410,9 +411,7 @@ def keeps_places(named: NamedFormula, known: Identification) -> bool:
     entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(ENTRY, named.name)
     if entry and own and own[1] not in (entry[1], entry[1][::-1]):
         return False
-    if known.name.startswith(("pitch angle of a rotation matrix", "second angle of")) and not all(
-        re.fullmatch(ENTRY, new) for new in known.mapping.values()
-    ):
+    if known.name in OF_ONE_ENTRY and not all(re.fullmatch(ENTRY, new) for new in known.mapping.values()):
         return False  # asin of a letter is any angle
     angle_of = re.match(r"(first|third) angle of (ZXZ|ZYZ) of a rotation matrix", known.name)
     if angle_of and re.fullmatch(LAST_ANGLE if angle_of[1] == "first" else FIRST_ANGLE, named.name):
