@@ -327,7 +327,8 @@ def propagate_ensemble(
     omega : array, shape (n, 3), optional
         Initial angular velocities, body components, rad/s; default: the angular velocity in the scene for all motions.
     quaternion : array, shape (n, 4), optional
-        Initial attitudes, scalar first, which are normalised; default: the attitude in the scene for all motions.
+        Initial attitudes, scalar first, which are normalised; default: the attitude in the scene for all motions. An
+        angular velocity that the scene gives by ``omega_space`` keeps its components in space.
     attitude : optional
         Initial attitudes as n rotations of SciPy, or as an array of n matrices ``dcm_sb``, instead of ``quaternion``.
     parameters : dict of arrays, optional
