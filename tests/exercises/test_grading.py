@@ -44,7 +44,7 @@ def test_a_wrong_number_is_told_what_is_wrong(answer, code):
 
 def test_next_to_an_angle_a_hertz_is_one_rotation_per_second():
     exercise = symrot.exercise("body_rates")[0]
-    question = next(each for each in exercise.questions if each.unit == "rad/s")
+    question = next(each for each in exercise.questions if each.kind == "number")
     for text, outcome in (
         (f"{float(question.decimal) / 6.283185307} Hz", "right"),
         (f"{question.decimal} Hz", "wrong"),
