@@ -111,7 +111,7 @@ SPACE = symrot.Scene.build(
     (TOP, {"omega_2": 5, "omega": [1, 2, 3]}, lambda s: s.initial.omega_b, (1, 5, 3)),
     (TOP, {"initial.omega[1]": 5, "omega": [1, 2, 3]}, lambda s: s.initial.omega_b, (1, 5, 3)),
     (TOP, {"span.t[1]": 5, "t": [1, 9]}, lambda s: s.span[:2], (1, 5)),
-    (TOP, {"I_xx": "3/1000", "center_of_mass": [0, 0, 1]}, lambda s: (s.body.inertia[0][0], s.body.center_of_mass[2]), (Fraction(3, 1000), 1)),
+    (TOP, {"I_xx": "11/5000", "center_of_mass": [0, 0, 1]}, lambda s: (s.body.inertia[0][0], s.body.center_of_mass[2]), (Fraction(11, 5000), 1)),
     (SPACE, {"omega_2": 5, "attitude": [0, 1, 0, 0]}, lambda s: s.initial.omega_b, (Fraction(3, 10), 5, -1)),
 ], ids=["omega", "path", "span", "inertia", "attitude"])  # fmt: skip
 def test_no_change_replaces_the_value_of_another(scene, changes, read, expected):
