@@ -12,7 +12,17 @@ from symrot.scene.attitude import Attitude, Quaternion, Vector, read_attitude, r
 from symrot.scene.body import read_body
 from symrot.scene.reader import Entry, choice, fail, flag, number, read_table, text, vector
 
-__all__ = ["QUANTITIES", "SCHEMA", "TOLERANCES", "TOP", "Initial", "Output", "Span", "read_tolerance"]
+__all__ = [
+    "QUANTITIES",
+    "SCHEMA",
+    "TOLERANCES",
+    "TOP",
+    "Initial",
+    "Output",
+    "Span",
+    "read_tolerance",
+    "with_other_attitude",
+]
 
 SCHEMA = 1
 MOST_SAMPLES = 10_000_000
@@ -59,10 +69,11 @@ class Initial(NamedTuple):
     quaternion: Quaternion
     omega_s: Vector | None = None
 
-    def turned(self, attitude: Attitude) -> "Initial":
-        """Return the initial state with another attitude, and with those components of omega that the scene gives."""
-        omega_b = self.omega_b if self.omega_s is None else to_body(attitude.dcm, self.omega_s)
-        return self._replace(omega_b=omega_b, quaternion=attitude.quaternion)
+
+def with_other_attitude(initial: Initial, attitude: Attitude) -> Initial:
+    """Return an initial state with another attitude and the same components of omega, body or space, as the scene's."""
+    omega_b = initial.omega_b if initial.omega_s is None else to_body(attitude.dcm, initial.omega_s)
+    return initial._replace(omega_b=omega_b, quaternion=attitude.quaternion)
 
 
 class Span(NamedTuple):
