@@ -173,7 +173,7 @@ def gimbal_rings(picture: Picture, view: View, sequence: str, angles: Sequence[f
         picture.curve(view, ring, f"{COLOURS[n]} thick", ring @ view.toward > 0, hidden="thin")
     for n, reach in enumerate((1.25, 1.0, 0.72)):
         outer = (1.65, 1.3, 1.5)[n]
-        # if the outer and the inner axis have the same direction, the inner one ends inside the ring: both letters are read
+        # where outer and inner axis have the same direction, the inner arrow ends inside the ring
         if n == 2 and axes[0] @ axes[2] > 0.999:
             outer = 1.0
         picture.arrow(view, reach * axes[n], outer * axes[n], letters[n], COLOURS[n])
