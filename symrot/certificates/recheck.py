@@ -289,7 +289,10 @@ EXACT_FUNCTIONS |= {"copysign": Decimal.copy_sign}
 
 
 class Decimals(Arithmetic):
-    """An arithmetic of 190-digit numbers with sin, cos, sqrt, abs, atan2, copysign; other functions are random."""
+    """An arithmetic of 190-digit numbers with sin, cos, sqrt, abs, atan2 and copysign.
+
+    Other functions have random values.
+    """
 
     def __init__(self):
         super().__init__()
@@ -1095,7 +1098,7 @@ class Specification:
 
 
 def draw_hypothesis(members, names):
-    """Define random values for the symbols ``members``, which a law assumes to be a rotation matrix or unit vector."""
+    """Define random values for the symbols ``members``, so that they form a rotation matrix or a unit vector."""
     # 2*v*v^T + 2*q0*[v]x + (2*q0^2 - 1)*1 for the unit quaternion (q0, v)
     # nine symbols are a matrix, row by row
     vector = [names.numbers.draw() for _ in range(4 if len(members) == 9 else len(members))]

@@ -253,8 +253,9 @@ def _folded(node: Node) -> Node:
 
 
 def bounds_of_step(
-    operations: Operations, rates: Program, method: Method, box: Mapping[str, tuple[Fraction, Fraction]]
-) -> Data:
+    operations: Operations, rates: Program, method: Method, box: Mapping[str, tuple[Fraction, Fraction]],
+    fresh: bool = False,
+) -> Data:  # fmt: skip
     """Return the section ``bounds`` of the certificate of a step: rounding and truncation on a box.
 
     Parameters
@@ -267,8 +268,10 @@ def bounds_of_step(
         The method of the step.
     box : mapping
         Ranges of the inputs by their places, such as ``"x[0]"`` and ``"dt"``.
+    fresh : bool
+        Whether to compute bounds of rounding errors even if the user's cache has them.
     """
-    rounding = rounding_section(operations, None, box, budget=EVALUATIONS)
+    rounding = rounding_section(operations, None, box, budget=EVALUATIONS, fresh=fresh)
     symbols = _symbols_by_place(step_signature(rates, operations.name))
     ranges = {}
     for place, ends in rounding["box"].items():

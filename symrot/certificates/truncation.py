@@ -541,7 +541,7 @@ class _Problem:
         ]
 
     def _enclosure(self, values: Mapping[str, Any], span: Any) -> dict[str, Any] | None:
-        """Return ranges that no motion leaves that starts in ``values`` and lasts ``span``; None if none are found."""
+        """Return ranges that contain all motions from ``values`` at the times ``span``; None if none are found."""
         around = dict(values) | {"t": values["t"] + span}
         for _ in range(ATTEMPTS):
             slopes = self.rates.evaluate(around, _Functions(_SCALAR), _number).values()

@@ -188,7 +188,7 @@ def in_degrees(claim: Claim, verdict: Verdict, decide: Callable[[Claim], Verdict
 
 
 def _is_large_angle(node: Node) -> bool:
-    """Return whether a tree is the sine (or the like) of a number of more than a full turn, probably in degrees."""
+    """Return whether a tree is a circular function of a number above a full turn, such as ``sin(30)``."""
     return (
         node.kind == "call" and node.value in CIRCULAR and node.args[0].kind == "number" and node.args[0].value >= TURN
     )

@@ -59,6 +59,9 @@ CALLS_FOR_ARRAYS = ("qmul(", "eye(", "⊗", "\\otimes")
 """Calls that answers have only if the claim has one of them, and signs for the product of quaternions."""
 
 
+ROTATION = re.compile(r"[RCQ](_\w+)?")
+"""The names of matrices that are rotations in most books."""
+
 AS_TYPED = ("degrees",)
 """The codes of repairs that are written in the notation of the input already."""
 
@@ -337,6 +340,7 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Ve
     verdict = with_rounding(claim, check_claim(claim, repair and not claim.has_parts))
     verdict = in_degrees(claim, verdict, lambda other: with_rounding(other, check_claim(other, repair=False)))
     verdict = _on_rotations(claim, verdict) if verdict.verdict == "false" else verdict
+    verdict = _on_rotation_by_letter(claim, verdict) if verdict.verdict == "definition" and plain else verdict
     verdict = for_special_directions(claim, for_complex_numbers(claim, verdict)) if plain else verdict
     verdict = _with_two_meanings(claim, verdict) if verdict.verdict == "false" and plain else verdict
     # a false equation outside SymPy syntax may be meant as a condition, such as x^2 = 4
@@ -480,6 +484,20 @@ def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
                 counterexample=verdict.counterexample,
             )  # fmt: skip
     return verdict
+
+
+def _on_rotation_by_letter(claim: Claim, verdict: Verdict) -> Verdict:
+    """Return "conditional" for a condition such as ``R R^T = I`` that all rotations R satisfy; otherwise ``verdict``.
+
+    Only for one matrix, whose letter books use for rotations; a note says if some rotations do not satisfy it.
+    """
+    names = matrices_of_entries(claim.define)
+    if len(names) != 1 or not ROTATION.fullmatch(names[0]):
+        return verdict
+    on_rotation = _on_rotations(claim, verdict)
+    if on_rotation.verdict == "conditional":
+        return replace(on_rotation, reason="", repairs=(), diagnosis=Diagnosis("none", ""))
+    return replace(verdict, notes=(*verdict.notes, f"it does not hold for all rotations {names[0]}"))
 
 
 def _has_indices(claim: Claim) -> bool:

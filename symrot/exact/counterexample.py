@@ -334,11 +334,9 @@ def _simple_sphere(size: int) -> tuple[tuple[Fraction, ...], ...]:
 
 
 def _random_sphere(size: int) -> Callable[[Random], tuple[Fraction, ...]]:
-    """Return a function that draws random rational unit vectors with ``size`` components.
+    """Return a function that draws random rational unit vectors with ``size`` components."""
 
-    It maps random points of a plane to the sphere (stereographic projection).
-    """
-
+    # stereographic projection of random points of a plane
     def draw(source: Random) -> tuple[Fraction, ...]:
         flat = [Fraction(source.randint(-9, 9), source.randint(1, 5)) for _ in range(size - 1)]
         square = sum((value * value for value in flat), Fraction(0))
@@ -348,12 +346,10 @@ def _random_sphere(size: int) -> Callable[[Random], tuple[Fraction, ...]]:
 
 
 def _random_number(leaf: Expr) -> Callable[[Random], tuple[Fraction, ...]]:
-    """Return a function that draws random rational numbers as values of the symbol ``leaf``.
-
-    They agree with its assumptions, such as positive or integer.
-    """
+    """Return a function that draws random rational values of the symbol ``leaf``."""
 
     def draw(source: Random) -> tuple[Fraction, ...]:
+        # if no value fits the symbol's assumptions, such as positive, the point is refused later
         for _ in range(20):
             value = Fraction(source.randint(-20, 20), 1 if leaf.is_integer else source.randint(1, 4))
             if fits_assumptions(leaf, value):

@@ -158,7 +158,7 @@ class _FormulaCase(Case):
 
 
 def normalise(case: _FormulaCase) -> None:
-    """Convert the unproven entries of left - right to normal form; those whose form is 0 are no longer unproven."""
+    """Convert the unproven entries of left - right to normal form; entries with the form 0 are then proven."""
     case.normal_forms = {place: case.ring.expression(case.residuals[place]) for place in case.unproven}
     case.unproven = [place for place, form in case.normal_forms.items() if form != 0]
 

@@ -128,9 +128,9 @@ class Setup:
 
     @cached_property
     def quantity_binding(self) -> Binding:
-        """Function from a plan to the parameters of the output quantities, two doubles for each parameter.
+        """Function from a plan to the parameters of the output quantities, each as a pair of doubles.
 
-        Their sum approximates the parameter to 31 digits.
+        The sum of a pair is right to 31 digits.
         """
         return Binding(self.kernel.quantity_parameters, self.plan, two_doubles)
 

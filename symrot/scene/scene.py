@@ -271,13 +271,6 @@ class _Origin(NamedTuple):
     parts: tuple[Any, ...]
     scene_values: Mapping[str, Any]
 
-    def has_parts_of(self, scene: Scene) -> bool:
-        """Return whether ``scene`` still has the body and torques that were read from this content.
-
-        It does not if ``dataclasses.replace`` made a scene with another body or other torques.
-        """
-        return all(one is other for one, other in zip(self.parts, _parts(scene), strict=True))
-
 
 def _parts(scene: Scene) -> tuple[Any, ...]:
     """Return the parts of a scene that :meth:`Scene.to_dict` reads from the scene's file only: body, torques

@@ -82,7 +82,10 @@ def _check_unit(
 
 
 def _operations(kernel: KernelText, precision: str) -> Operations:
-    """Return the operations of a kernel's C function for doubles or, not for a scene, for floats (``precision``)."""
+    """Return the operations of a kernel's C function in ``precision``, ``"double"`` or ``"float"``.
+
+    InputError is raised for a scene's kernel in ``"float"``.
+    """
     if precision != "double" and isinstance(kernel, SceneText):
         raise InputError(f"--precision: expected double for a scene, whose kernel is in double only, got {precision}")
     # the prefix symrot_ is left out of the operations' name

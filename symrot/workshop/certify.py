@@ -47,7 +47,10 @@ MANY = 12  # smallest number of certificates that several processes audit at onc
 
 
 def _proven_statement(data: Data) -> Data | None:
-    """Return the statements that symrot proves about the kernel named in the certificate ``data``; None without one."""
+    """Return the statements that symrot proves about the kernel named in the certificate ``data``.
+
+    The result is None for an unknown kernel.
+    """
     name = data["kernel"]
     scene = str(data["regenerate"]).removeprefix("symrot emit ").removesuffix(" --target c")
     if not is_kernel(name):

@@ -14,6 +14,7 @@ from symrot.catalogue import READING_ORDER, derivation, names
 from symrot.errors import InputError
 from symrot.figures.table import figures_of
 from symrot.files.reading import refuse_special
+from symrot.lessons.other_names import OTHER_NAMES
 from symrot.lessons.page import APPENDIX, appendix, taught
 from symrot.lessons.table import LESSONS
 from symrot.proof.derivation import PrintedPage
@@ -159,7 +160,7 @@ def _appendices(derivations: Sequence[str]) -> list[str]:
 
 
 def _chapters(chosen: Sequence[str]) -> dict[str, list[str]]:
-    """Return a map from the title of each chapter to its pages in ``chosen``, by name."""
+    """Return a map from the title of each chapter to the names of its pages that are in ``chosen``."""
     whole = READING_ORDER | {APPENDICES: _appendices(names())}
     chapters = {title: [name for name in members if name in chosen] for title, members in whole.items()}
     return {title: members for title, members in chapters.items() if members}
@@ -283,7 +284,7 @@ def _only_links_to(present: set[str], link: re.Pattern[str], text: str) -> str:
 
 
 def _html(title: str, about: str, chapters: Chapters) -> dict[str, bytes]:
-    return _encoded(book(title, about, chapters)) | {math_font.FILE: math_font.content()}
+    return _encoded(book(title, about, chapters, OTHER_NAMES)) | {math_font.FILE: math_font.content()}
 
 
 def _latex(title: str, about: str, chapters: Chapters) -> dict[str, bytes]:

@@ -44,6 +44,22 @@ WITHOUT_CONTEXT = {
     "9.81 sin 30° = 4.92": "false",
     "1500·2π/60 = 157": "true",
     "1500·2π/60 = 158": "false",
+    # letters for the matrix of a vector
+    "R = I + sin θ K + (1 - cos θ) K^2": "recognised",
+    "R = E + sin θ [k]_× + (1 - cos θ) [k]_×²": "recognised",
+    "R = I + sin θ K + (1 + cos θ) K^2": "definition",
+    r"R = \mathbf{I} + (\sin\theta)\mathbf{K} + (1-\cos\theta)\mathbf{K}^2": "recognised",
+    r"e^{\hat\omega\theta} = I + \hat\omega\sin\theta + \hat\omega^2(1-\cos\theta)": "true",
+    r"e^{\hat\omega\theta} = I + \hat\omega\sin\theta + \hat\omega(1-\cos\theta)": "false",
+    r"R = e^{\hat\omega\theta}": "recognised",
+    "q̇ = ½Ω(ω)q": "recognised",
+    r"\dot{\mathbf q} = \frac12 \boldsymbol\Omega(\boldsymbol\omega)\mathbf q": "recognised",
+    "q̇ = 2Ω(ω)q": "definition",
+    # R is a rotation in most books, A is not
+    "R R^T = I": "conditional",
+    r"\det R = 1": "conditional",
+    "det R = -1": "definition",
+    "A A^T = I": "definition",
     # rates of an aircraft are components in the body frame
     "φ' = p + (q sin φ + r cos φ) tan θ": "recognised",
     "φ' = p + (q cos φ + r sin φ) tan θ": "definition",

@@ -96,7 +96,7 @@ def _bitwise(operation: Callable[..., int]) -> Numeric:
 
 
 def _compare(suffix: str, outcomes: Outcomes | None) -> Numeric:
-    """Return the function that compares numbers: all bits of a result are 1 for the ``outcomes``, else 0."""
+    """Return the function that compares numbers; the bits of a result are all 1 for ``outcomes``, otherwise all 0."""
     by_number = list(PREDICATES.values())
 
     def numeric(state: MachineState, sources: list[Words], constant: int) -> Words:

@@ -128,9 +128,9 @@ def _by_components(relation: tuple[str, Node, Node], known: Collection[str]) -> 
 
 
 def _components(node: Node) -> tuple[list[Node], ...] | None:
-    """Return four lists of terms: those without i, j and k, and the factors of i, of j and of k.
+    """Return [a], [s*x], [s*y], [] for ``a + s*(x*i + y*j)``: the terms without units, and the factors of i, j and k.
 
-    ``a + s*(x*i + y*j)`` gives [a], [s*x], [s*y], []. None if the formula is not linear in i, j and k.
+    None if the formula is not linear in i, j and k.
     """
     if not {str(part.value) for _, part in walk(node) if part.kind == "name"} & {*UNITS}:
         return [node], [], [], []

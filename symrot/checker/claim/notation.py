@@ -141,7 +141,7 @@ def decimal(value: Fraction) -> str:
 
 
 def notation_of(reading: Reading) -> TypedNotation:
-    """Return the notation in which the text of a reading (one interpretation of a typed text) is written."""
+    """Return the notation, SymPy syntax or plain text, in which the text of a reading (interpretation) was typed."""
     return TypedNotation(reading.plain, dict(reading.spelling), reading.timed)
 
 
@@ -163,7 +163,7 @@ def _is_over_digit(node: Node) -> bool:
 
 
 def _is_rate_of_name(node: Node) -> bool:
-    """Return whether a derivative is the time derivative of a single name, as ``diff(q, t)`` is that of q."""
+    """Return whether a derivative is the time derivative of a single name, ``diff(q, t)``."""
     # it is printed q'
     return node.args[0].kind == "name" and all((a.kind, a.value) == ("name", "t") for a in node.args[1:])
 

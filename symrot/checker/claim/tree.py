@@ -117,9 +117,8 @@ _BINDING = {"sum": SUM, "neg": SUM, "product": PRODUCT, "inv": PRODUCT, "power":
 
 
 def text(node: Node, binding: int = 0) -> str:
-    """Return the text of a tree, ``x*(y + z)``, with the fewest brackets.
-
-    If the whole tree binds more loosely than ``binding``, such as a sum in a product, it gets brackets too.
+    """Return the text of a tree with the fewest brackets, ``x*(y + z)``; the whole in brackets if it ranks below
+    ``binding``.
     """
     # ``binding`` is the rank of the operation around the tree: a sum in a product gets brackets
     own = _BINDING.get(node.kind, ATOM)

@@ -77,7 +77,7 @@ def _inverse(a: Disc) -> Disc:
 def _sqrt(a: Disc, whole: float) -> Disc:
     """Return a disc that contains the square roots of all numbers in a disc.
 
-    If the disc contains 0, the radius is multiplied by ``whole``.
+    The radius is multiplied by ``whole`` unless all these numbers have a positive real part.
     """
     root = math.sqrt(max(a.centre, 0.0))
     if a.centre > a.radius:
@@ -262,7 +262,7 @@ class Deviations:
         return self.slowly(t, radius, whole, y, radii)
 
     def slowly(self, t: float, radius: float, whole: float, y: Sequence[float], radii: Sequence[float]) -> list[float]:
-        """Return the bounds of :meth:`__call__`, computed with a :class:`Disc` per term: nothing overflows."""
+        """Return the bounds of :meth:`__call__`, computed with a :class:`Disc` per term, for larger numbers."""
         self.spent += SLOWER
         # because a Disc can also hold the logarithm of the size of its numbers
         discs: dict[int, Disc] = {}

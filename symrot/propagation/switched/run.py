@@ -542,7 +542,7 @@ class SwitchedRun(RunState):
         return {s.mode for s in self.system.switches if s.where and not hold(s.where, self.modes, self.held)}
 
     def _wake(self, mode: str) -> None:
-        """Set the mode of a function such as sign(x), the number that replaces it, to its present value."""
+        """Set the ``mode`` of a function such as sign(x) to the present value of the function."""
         # the motion begins to use the branch of where(..) with this function, whose changes were not followed before
         try:
             guard = self._guard_value(mode)

@@ -17,6 +17,7 @@ from symrot.checker.arrays.matrices import (
     with_lengths,
     without_time,
 )
+from symrot.checker.arrays.matrices_of_vectors import with_matrices_of_vectors
 from symrot.checker.arrays.pauli import with_pauli_matrices
 from symrot.checker.arrays.quaternions import Quaternions, used_quaternions
 from symrot.checker.claim.claims import Claim, assumed_names
@@ -88,6 +89,9 @@ def claim_of_relation(
     assume = [source for source in assume if matrices[source] is None]
     define = [*_with_entries([matrix for matrix in matrices.values() if matrix], relation), *define]
     hypotheses = _of_one_time([read_hypothesis(source, "given", words=words) for source in assume])
+    with_matrices = with_matrices_of_vectors(relation, vectors, {name for name, _ in define})
+    vectors = [*(vector for vector in vectors if vector.name not in with_matrices.letters), *with_matrices.vectors]
+    relation, notes = with_matrices.relation, [*notes, *with_matrices.notes]
     relation, pauli = with_pauli_matrices(relation, {name for name, _ in define})
     define = [*pauli, *define]
     notes = [*notes, *([ON_PAULI] if pauli else [])]
@@ -119,7 +123,9 @@ def claim_of_relation(
     relation = relation[0], with_time(relation[1], moving), with_time(relation[2], moving)
     hypotheses += tuple(vector.length_is_one for vector in vectors if vector.unit and not vector.is_axis)
     define = [*((vector.name, vector.components) for vector in vectors), *define]
-    notes = [*notes, *_on_vectors(vectors), *(["I is read as the unit matrix"] if with_units else [])]
+    hidden = {vector.name for vector in with_matrices.vectors}  # unit vectors without a hat
+    named = [replace(vector, unit=vector.unit and vector.name not in hidden) for vector in vectors]
+    notes = [*notes, *_on_vectors(named), *(["I is read as the unit matrix"] if with_units else [])]
     everything = [*relation[1:], *context, *(side for hypothesis in hypotheses for side in hypothesis[1:])]
     if has_natural_base(everything) and not any(name == "e" for name, _ in define):
         notes.append("e is read as the base of the exponential function")
@@ -148,14 +154,16 @@ def claim_of_relation(
         alternatives=() if of_axes == relation else (of_axes,),
         implied=True,
         sources=sources,
-        units=check_units(dict(units or {}), used, "claim"),
+        units={**_units_of_directions(vectors), **check_units(dict(units or {}), used, "claim")},
         has_parts=unit is not None or bool(on_indices),
         notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
     )
 
 
 def _with_own_name(relation: Relation) -> tuple[Relation, str]:
-    """Return ``I = n.T*I*n`` with the left side renamed to I_n, and a note on it; other equations unchanged."""
+    """Return ``I_n = n.T*I*n`` for ``I = n.T*I*n``, and a note for the user; other equations unchanged, with an empty
+    note.
+    """
     sign, left, right = relation
     first, *rest = right.args if right.kind == "product" else (right,)
     is_form = first.kind == "transpose" and len(rest) > 1 and rest[-1] == first.args[0] and rest[-1].kind == "name"
@@ -280,6 +288,11 @@ def _on_vectors(vectors: Sequence[Vector]) -> Iterator[str]:
             yield f"{vector.name} with a hat is the {vector.name} axis"
         elif vector.unit:
             yield f"{vector.name} has the length 1, as its hat says"
+
+
+def _units_of_directions(vectors: Sequence[Vector]) -> dict[str, str]:
+    """Return the unit "1" for each component of a vector of length 1, whose letter may be that of a rate."""
+    return {f"{v.name}_{axis}": "1" for v in vectors if v.unit and not v.is_axis for axis in v.axes}
 
 
 def _with_natural_base(relation: Relation) -> Relation:

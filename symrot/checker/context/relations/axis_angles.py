@@ -1,7 +1,7 @@
 """Claims about the angles from the axis of a free symmetric body to its angular momentum and its angular velocity.
 
-The ratio of their tangents is that of the moments of inertia. Claims may be solved for either angle, and books use
-the same letters for both.
+The tangents of the two angles have the ratio of the moments of inertia. Claims may be solved for either angle, and
+books use the same letters for both.
 """
 
 import re
