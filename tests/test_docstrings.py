@@ -125,11 +125,9 @@ def test_public_functions_take_and_return_exported_classes():
 
 
 def test_public_methods_return_few_classes_that_are_not_exported():
-    """The exceptions are parts of kernels, plans, solids and inertials that only symrot makes and reads, and the base of
-    trajectories and ensembles."""
+    """The exceptions are parts of kernels, plans, solids and inertials that only symrot makes and reads."""
     inner = {
-        "Conserved", "FormulaTorque", "Integral", "MassProperties", "Motion", "MotionSamples", "Principal", "Program",
-        "Shape",
+        "Conserved", "FormulaTorque", "Integral", "MassProperties", "Motion", "Principal", "Program", "Shape",
     }  # fmt: skip
     functions = [function for name in PUBLIC for function in callables_of(getattr(symrot, name))]
     assert {name for function in functions for name in unexported(function)} == inner

@@ -26,7 +26,7 @@ from symrot.propagation.trajectory import Trajectory
 from symrot.scene.attitude import Attitude, dcm_of, read_attitude, refuse_two
 from symrot.scene.content import plain
 from symrot.scene.scene import Scene
-from symrot.scene.tables import Initial, with_attitude
+from symrot.scene.tables import Initial, with_other_attitude
 
 if TYPE_CHECKING:
     from symrot.results.sensitivity import Sensitivities
@@ -346,7 +346,7 @@ def read_start(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | No
     # quaternion and attitude are two forms of one argument
     refuse_two(attitude, quaternion)
     if attitude is not None:
-        initial = with_attitude(initial, read_attitude(plain(attitude, "attitude"), "attitude"))
+        initial = with_other_attitude(initial, read_attitude(plain(attitude, "attitude"), "attitude"))
     if quaternion is not None:
         q = _vector(quaternion, 4, "quaternion", "1")
         for value in q:
@@ -356,7 +356,7 @@ def read_start(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | No
             raise InputError(f"quaternion: expected a quaternion that is not zero, got {number.show(q)}")
         q0, q1, q2, q3 = _unit(q)
         w, x, y, z = map(Fraction, q)
-        initial = with_attitude(initial, Attitude((q0, q1, q2, q3), dcm_of((w, x, y, z))))
+        initial = with_other_attitude(initial, Attitude((q0, q1, q2, q3), dcm_of((w, x, y, z))))
     if omega is not None:
         x, y, z = (_exact(value, "omega") for value in _vector(omega, 3, "omega", "rad/s"))
         initial = initial._replace(omega_b=(x, y, z))

@@ -12,7 +12,17 @@ from symrot.scene.attitude import Attitude, Quaternion, Vector, read_attitude, r
 from symrot.scene.body import read_body
 from symrot.scene.reader import Entry, choice, fail, flag, number, read_table, text, vector
 
-__all__ = ["QUANTITIES", "SCHEMA", "TOLERANCES", "TOP", "Initial", "Output", "Span", "read_tolerance", "with_attitude"]
+__all__ = [
+    "QUANTITIES",
+    "SCHEMA",
+    "TOLERANCES",
+    "TOP",
+    "Initial",
+    "Output",
+    "Span",
+    "read_tolerance",
+    "with_other_attitude",
+]
 
 SCHEMA = 1
 MOST_SAMPLES = 10_000_000
@@ -60,7 +70,7 @@ class Initial(NamedTuple):
     omega_s: Vector | None = None
 
 
-def with_attitude(initial: Initial, attitude: Attitude) -> Initial:
+def with_other_attitude(initial: Initial, attitude: Attitude) -> Initial:
     """Return an initial state with another attitude and the same components of omega, body or space, as the scene's."""
     omega_b = initial.omega_b if initial.omega_s is None else to_body(attitude.dcm, initial.omega_s)
     return initial._replace(omega_b=omega_b, quaternion=attitude.quaternion)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from symrot.ensemble.ensemble import EnsembleMember
 from symrot.errors import InputError
 from symrot.files.writing import check_target, write
 from symrot.propagation.propagate import propagator
@@ -25,7 +26,7 @@ PAGES = (".html", ".htm")
 
 
 def show(
-    motion: SceneSource | MotionSamples,
+    motion: SceneSource | Trajectory | EnsembleMember,
     path: str | Path | None = None,
     progress: Callable[[int, int], object] = lambda done, all: None,
 ) -> Path:

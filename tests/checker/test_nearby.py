@@ -232,7 +232,7 @@ def test_a_difference_of_moments_is_open_without_the_plane_of_the_body():
 @pytest.mark.parametrize("claim", [
     "R_11 = cos phi cos theta cos psi - sin phi sin psi", "e_1 = (A_23 - A_32)/(2 sin Phi)", "phi = atan2(r_23, r_13)",
     "L_1' = (1/I_3 - 1/I_2) L_2 L_3", "omega = sqrt(kappa/I)",
-    "L = (I_1 w_1, I_1 w_2, I_3 w_3)", "L = (J_1 w_1, J_2 w_2, J_2 w_3)", "a = (m_1 - m_2) g/(m_1 + m_2 + M/2)",
+    "L = (I_1 w_1, I_1 w_2, I_3 w_3)", "a = (m_1 - m_2) g/(m_1 + m_2 + M/2)",
     "θ = -asin(R_31)", r"R = \begin{pmatrix} \cos\theta & -\sin\theta \\ \sin\theta & \cos\theta \end{pmatrix}",
     "ω² = ω_0² - 2αθ", "θ = ω_0 t - ½αt²", "θ = asin(2(q_0 q_2 + q_1 q_3))",
     "E = L^2/(2 I_1) + 1/2 (1/I_3 - 1/I_1) L_3^2", "I = m/6 (a^2 b^2 + b^2 c^2 + c^2 a^2)/(a^2 + b^2 + c^2)",
@@ -240,6 +240,12 @@ def test_a_difference_of_moments_is_open_without_the_plane_of_the_body():
 def test_formulas_of_further_books_are_known(claim):
     """Entries of Euler matrices, an axis and an angle from a matrix, symmetric bodies, a torsional pendulum, a box."""
     assert symrot.check(claim).verdict == "recognised"
+
+
+def test_a_body_that_is_symmetric_about_axis_1_is_not_accused():
+    """The second I_2 may also be a misprint of I_3."""
+    verdict = symrot.check("L = (J_1 w_1, J_2 w_2, J_2 w_3)")
+    assert verdict.verdict == "definition" and "symmetric about axis 1" in verdict.reason
 
 
 def test_a_pendulum_with_the_other_sign_stands_upright():

@@ -55,6 +55,10 @@ WITHOUT_CONTEXT = {
     "q̇ = ½Ω(ω)q": "recognised",
     r"\dot{\mathbf q} = \frac12 \boldsymbol\Omega(\boldsymbol\omega)\mathbf q": "recognised",
     "q̇ = 2Ω(ω)q": "definition",
+    "q^2 = -1 where q = i": "true",
+    "q = i; q^2 = 1": "false",
+    "(σ_x+σ_y)² = σ_x² + 2σ_xσ_y + σ_y²": "conditional",
+    "(σ_x+σ_y)² = σ_x² + σ_xσ_y + σ_y²": "false",
     # R is a rotation in most books, A is not
     "R R^T = I": "conditional",
     r"\det R = 1": "conditional",

@@ -136,6 +136,9 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
         return mapped
     readings = _readings(claim, named, named.formula, LEAST_SYMBOLS)
     readings = readings or _with_other_products(claim, named, named.formula) or _slowing_down(claim, named)
+    if readings and not claim.context and (axes := _axes_of_symmetry(readings)):
+        return Verdict("definition", reason=f"it is right for a body that is symmetric about axis {axes}; for three "
+                                            "different moments of inertia, one of them has a wrong index")  # fmt: skip
     if readings:
         usual = _near_usual(claim, named, readings) if repair else None
         recognised = Verdict("recognised", recognised_as=readings, notes=_on_signs_of_products(claim, named, readings))
@@ -157,6 +160,13 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
             "it may be a definition"
         )
     return Verdict("definition", reason=reason)
+
+
+def _axes_of_symmetry(readings: Sequence[Identification]) -> str:
+    """Return "1" or "2" if all ``readings`` are for a body that is symmetric about this axis; otherwise ""."""
+    # I_2 twice in (I_1 w_1, I_2 w_2, I_2 w_3) may be a misprint; books choose axis 3 for the axis of symmetry
+    axes = {axis[1] if (axis := re.search("symmetric about axis ([12])$", known.name)) else "" for known in readings}
+    return axes.pop() if len(axes) == 1 else ""
 
 
 def _near_usual(claim: Claim, named: NamedFormula, readings: Sequence[Identification]) -> Verdict | None:

@@ -44,7 +44,9 @@ from symrot.checker.latex.reader import Names, read_latex
 from symrot.checker.units.units import read_unit
 from symrot.errors import InputError
 
-__all__ = ["check_units", "claim_of_relation", "claim_of_text", "functions_of_time", "is_latex", "read_hypothesis"]
+__all__ = [
+    "ON_PAULI", "check_units", "claim_of_relation", "claim_of_text", "functions_of_time", "is_latex", "read_hypothesis",
+]  # fmt: skip
 
 ON_PAULI = "sigma_x, sigma_y and sigma_z are Pauli's matrices, and i is the imaginary unit"
 
@@ -65,11 +67,12 @@ def claim_of_text(source: str, assume: Sequence[str] = (), units: Mapping[str, s
 def claim_of_relation(
     relation: Relation, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None,
     define: Sequence[tuple[str, Node]] = (), notes: Sequence[str] = (), context: Sequence[Node] = (),
-    vectors: Sequence[Vector] = (),
+    vectors: Sequence[Vector] = (), pauli_as_numbers: bool = False,
 ) -> Claim:  # fmt: skip
     """Return the claim of an equation in a text.
 
-    ``define`` and ``context`` are the definitions and the other formulas of the same text.
+    ``define`` and ``context`` are the definitions and the other formulas of the same text. With ``pauli_as_numbers``,
+    sigma_x is a number, such as a stress, and not one of Pauli's matrices.
 
     Raises
     ------
@@ -92,7 +95,8 @@ def claim_of_relation(
     with_matrices = with_matrices_of_vectors(relation, vectors, {name for name, _ in define})
     vectors = [*(vector for vector in vectors if vector.name not in with_matrices.letters), *with_matrices.vectors]
     relation, notes = with_matrices.relation, [*notes, *with_matrices.notes]
-    relation, pauli = with_pauli_matrices(relation, {name for name, _ in define})
+    known = {name for name, _ in define}
+    relation, pauli = (relation, ()) if pauli_as_numbers else with_pauli_matrices(relation, known)
     define = [*pauli, *define]
     notes = [*notes, *([ON_PAULI] if pauli else [])]
     unit = None if pauli else imaginary_unit([*relation[1:], *context])
