@@ -35,9 +35,10 @@ class PackedPolynomial:
         self.degree = degree
 
     @staticmethod
-    def constant(names: Sequence[str], value: Fraction | int) -> "PackedPolynomial":
+    def constant(names: Sequence[str], value: Fraction | float) -> "PackedPolynomial":
         """Return the number ``value`` as a polynomial in the variables ``names``."""
-        return PackedPolynomial(names, {0: value.numerator}, value.denominator)
+        above, below = value.as_integer_ratio()
+        return PackedPolynomial(names, {0: above}, below)
 
     def _of(self, value: Any) -> "PackedPolynomial":
         if isinstance(value, PackedPolynomial):

@@ -23,7 +23,10 @@ def terms_of(polynomial):
 def test_terms_are_those_of_sympy():
     domain, *generators = ring(NAMES, QQ)
     pairs = [*zip(generators, variables(NAMES), strict=True)]
-    pairs += [(sum(generators) / 3 + 1, sum(variables(NAMES)) / 3 + 1), (domain(0), PackedPolynomial.constant(NAMES, 0))]
+    pairs += [
+        (sum(generators) / 3 + 1, sum(variables(NAMES)) / 3 + 1),
+        (domain(0), PackedPolynomial.constant(NAMES, 0)),
+    ]
     random = Random(1)
     for _ in range(300):
         (a, packed_a), (b, packed_b) = random.choices(pairs, k=2)
