@@ -133,7 +133,7 @@ def propagator(
         if switched(scene):
             from symrot.propagation.switched.motion import SwitchedPropagator
 
-            return SwitchedPropagator(scene, method, aim)
+            return SwitchedPropagator(scene, method, aim, sensitivities)
         return Propagator(scene, method, aim, sensitivities)
     if method not in ("auto", "dop853"):
         raise InputError(f"method: expected 'auto' or 'dop853' for a torque without a formula, got {method!r}")
@@ -148,14 +148,14 @@ def propagator(
 
 
 def _refuse_sensitivities(scene: Scene, torque: Any, state: str) -> None:
-    """Raise InputError for motions without derivatives: Euler angles as state, or a torque without smooth formulas."""
+    """Raise InputError for motions without derivatives: Euler angles as state, or a torque without formulas."""
     if state != "quaternion":
         raise InputError(f"sensitivities: expected state='quaternion', got {state!r}; Euler angles have none")
     if torque is not None:
         raise InputError("sensitivities: expected torques with formulas, got a torque that is a function or a table")
-    from symrot.propagation.sensitivities.variables import require_smooth
+    from symrot.propagation.sensitivities.variables import require_formulas
 
-    require_smooth(scene)
+    require_formulas(scene)
 
 
 def _with_values(
