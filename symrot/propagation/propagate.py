@@ -131,7 +131,7 @@ def propagator(
                 f"max_step: leave it out unless a torque without a formula acts, got {number.show(max_step)}"
             )
         if switched(scene):
-            from symrot.propagation.switched.motion import SwitchedPropagator
+            from symrot.propagation.switched.propagator import SwitchedPropagator
 
             return SwitchedPropagator(scene, method, aim, sensitivities)
         return Propagator(scene, method, aim, sensitivities)

@@ -57,6 +57,13 @@ class SwitchSlopes(NamedTuple):
         The function, and how it switches, as in ``stats.switchings`` of a trajectory.
     slopes : array, shape (m,)
         The derivatives of the time by the m variables, s per unit of each variable; NaN where they do not exist.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> motion = symrot.propagate("friction_wheel", t=[7], sensitivities=["omega_3"])
+    >>> motion.sensitivities.switchings[0].slopes.round(9).tolist()
+    [0.2]
     """
 
     t: float

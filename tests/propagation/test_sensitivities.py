@@ -40,7 +40,7 @@ SWITCHED = {
     **TOP,
     "torque": [
         *TOP["torque"],
-        {"kind": "expression", "parameters": {"k": "1/4"}, "torque": ["0", "-k*sign(omega_2)", "0"]},
+        {"kind": "expression", "parameters": {"k": "1/4"}, "torque": ["-k*sign(omega_1)", "0", "0"]},
     ],
 }
 
@@ -91,9 +91,9 @@ def root(series, time):
 def motion(omega, q, moments, weight, center, damping, duration, dry=0):
     """Return omega and q after a time, from Taylor series of 57 digits of Euler's equations, written out here.
 
-    The torque ``-dry*sign(omega_2)`` may act too; a step ends where omega_2 changes its sign.
+    The torque ``-dry*sign(omega_1)`` may act too; a step ends where omega_1 changes its sign.
     """
-    state, sign, rest = [*omega, *q], 1 if omega[1] > 0 else -1, duration * UNIT
+    state, sign, rest = [*omega, *q], 1 if omega[0] > 0 else -1, duration * UNIT
     while rest:
         x = [[value] for value in state]
         for n in range(48):
@@ -109,7 +109,7 @@ def motion(omega, q, moments, weight, center, damping, duration, dry=0):
                 j, k = (i + 1) % 3, (i + 2) % 3
                 arm = times(center[j], down[k]) - times(center[k], down[j])
                 torque = times(moments[j] - moments[k], across[i]) - times(damping[i], x[i][n]) + times(weight, arm)
-                torque -= sign * dry * (i == 1 and n == 0)
+                torque -= sign * dry * (i == 0 and n == 0)
                 rates.append(torque * UNIT // moments[i])
             rates += [
                 -(convolved(p1, w1) + convolved(p2, w2) + convolved(p3, w3)) // 2,
@@ -120,8 +120,8 @@ def motion(omega, q, moments, weight, center, damping, duration, dry=0):
             for series, rate in zip(x, rates, strict=True):
                 series.append(rate // (n + 1))
         step = min(UNIT // 8, rest)
-        if dry and value(x[1], step) * sign < 0:
-            step, sign = root(x[1], step), -sign
+        if dry and value(x[0], step) * sign < 0:
+            step, sign = root(x[0], step), -sign
         state, rest = [value(series, step) for series in x], rest - step
     return state
 
@@ -291,7 +291,10 @@ def test_what_has_no_sensitivities_is_refused_in_a_sentence(options, message):
         symrot.propagate(symrot.Scene.from_dict(TOP), **options)
 
 
-def test_a_transition_needs_finite_times():
+def test_a_transition_needs_formulas_and_finite_times():
+    table = {"kind": "table", "t": [0, 1, 2, 3], "moment": [[0, 0, 1]] * 4}
+    with pytest.raises(InputError, match="torques with formulas"):
+        symrot.propagate({**TOP, "torque": [table]}).transition(0, 1)
     with pytest.raises(InputError, match="finite times"):
         symrot.propagate("t_handle").transition(0, inf)
 

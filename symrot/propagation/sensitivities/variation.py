@@ -10,7 +10,7 @@ from dataclasses import replace
 from fractions import Fraction
 from math import frexp, ldexp
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,16 +30,13 @@ from symrot.propagation.binding import value_of
 from symrot.propagation.compiled_models import has_formulas, kernel_key
 from symrot.propagation.events.event_result import EventResult
 from symrot.propagation.sensitivities.event_times import event_time_slopes
-from symrot.propagation.sensitivities.variables import Variable, difference, groups_of, read_variables
+from symrot.propagation.sensitivities.variables import Variable, difference, read_variables
 from symrot.propagation.steppers import taylor
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.time_shift import starts_far
-from symrot.results.sensitivity import Sensitivities, SwitchSlopes
+from symrot.results.sensitivity import SwitchSlopes
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial
-
-if TYPE_CHECKING:
-    from symrot.propagation.sensitivities.switched import SwitchedEquations
 
 __all__ = [
     "AT_ONCE",
@@ -50,17 +47,15 @@ __all__ = [
     "TOLERANCE",
     "TRIES",
     "Column",
+    "SmoothEquations",
     "columns_of",
-    "event_slopes",
     "follow_columns",
     "motion_library",
     "rates_of",
     "rotation_slopes",
     "small_rotation",
     "structure_of",
-    "transition_matrix",
     "unit_of",
-    "variation",
     "variation_source",
 ]
 
@@ -71,63 +66,6 @@ AT_ONCE = 6  # columns in one library: many more would take a compiler too long
 TOLERANCE = 1e-16
 SMALL = 2.0**-6  # largest size of a column below which it is integrated again in smaller units
 TRIES = 4
-MOST_RECENT = 8
-TRANSITION = ("omega", "attitude")
-
-
-def variation(scene: Scene, keys: Sequence[str], times: Floats) -> Sensitivities:
-    """Return the derivatives of omega, quaternion and attitude (small rotation about the body axes) at sample times.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene with the initial state of the motion.
-    keys : sequence of str
-        The variables, see :func:`symrot.propagation.sensitivities.variables.read_variables`.
-    times : array, shape (n,)
-        Sample times, s.
-
-    Raises
-    ------
-    InputError
-        If the scene has a table of samples, or if a key names no variable.
-    PropagationError
-        If the motion cannot be followed to the last time.
-    """
-    equations = _equations(scene, tuple(keys) if isinstance(keys, list) else keys)
-    values, slopes = equations.follow(scene, times)
-    omega, quaternion = slopes[:, :RATES], slopes[:, RATES:]
-    variables = equations.variables
-    return Sensitivities(
-        tuple(variable.name for variable in variables),
-        tuple(variable.unit for variable in variables),
-        groups_of(variables),
-        omega,
-        quaternion,
-        small_rotation(values[:, RATES:], quaternion),
-        switchings=equations.switchings(scene, times),
-    )
-
-
-def event_slopes(scene: Scene, keys: Sequence[str], result: EventResult) -> tuple[Floats, ...]:
-    """Return one array for each event: derivatives of its k times by the m variables ``keys``, shape (k, m)."""
-    return _equations(scene, tuple(keys) if isinstance(keys, list) else keys).event_slopes(scene, result)
-
-
-def transition_matrix(scene: Scene, start: float, stop: float) -> Floats:
-    """Return the state transition matrix of a scene's motion from ``start`` to ``stop``, s, shape (6, 6).
-
-    The state is omega, then a small rotation about the body axes.
-    """
-    # both times in s, in any order; _equations raises InputError if the torques have no derivatives
-    if start != float(scene.span.start):
-        values, _ = _equations(scene, TRANSITION).follow(scene, np.array([start]))
-        omega, q = values[0, :RATES], values[0, RATES:] / np.linalg.norm(values[0, RATES:])
-        exact = [Fraction(x) for x in (*omega.tolist(), *q.tolist())]
-        initial = Initial((exact[0], exact[1], exact[2]), (exact[3], exact[4], exact[5], exact[6]))
-        scene = replace(scene, initial=initial)
-    values, slopes = _equations(scene, TRANSITION).follow(scene, np.array([stop]), start)
-    return np.concatenate([slopes[0, :RATES], small_rotation(values[:, RATES:], slopes[:, RATES:])[0]])
 
 
 # ------------------------------------------------------------------------------------------------ columns
@@ -310,7 +248,7 @@ def motion_library(plan: Plan, rates: Program, depends: Sequence[Sequence[str]])
 # ------------------------------------------------------------------------------------------------ motions
 
 
-class _Equations:
+class SmoothEquations:
     """The compiled equations of a scene's motion, from any initial state, and of its derivatives by variables."""
 
     def __init__(self, scene: Scene, keys: Sequence[str]) -> None:
@@ -370,24 +308,6 @@ class _Equations:
         return self._moved[1]
 
 
-_recent: list["_Equations | SwitchedEquations"] = []
-"""The equations that were used last; a propagator with another initial state needs the same ones again."""
-
-
-def _equations(scene: Scene, keys: Sequence[str]) -> "_Equations | SwitchedEquations":
-    """Return the equations of a scene's motion and its derivatives by ``keys``; recent ones are used again."""
-    equations = next((each for each in _recent if each.fit(scene, keys)), None)
-    if equations is None:
-        if switched(scene):
-            from symrot.propagation.sensitivities.switched import SwitchedEquations
-
-            equations = SwitchedEquations(scene, keys)
-        else:
-            equations = _Equations(scene, keys)
-        _recent[:] = [equations, *_recent[: MOST_RECENT - 1]]
-    return equations
-
-
 def _parts(scene: Scene, columns: Sequence[Column], epoch: float = 0.0) -> "list[_Part]":
     """Return the equations of all columns of derivatives, with time counted from ``epoch``, s."""
     return [_Part(scene, columns[first : first + AT_ONCE], epoch) for first in range(0, len(columns), AT_ONCE)]
@@ -421,7 +341,7 @@ class _Part:
         return list(self._rates.evaluate({**values, "t": float(time)}, FLOAT_FUNCTIONS, float).values())
 
     def follow(self, scene: Scene, times: Floats, begin: float, epoch: float) -> tuple[Floats, Floats]:
-        """Return the states at times and their derivatives, as :meth:`_Equations.follow` does."""
+        """Return the states at times and their derivatives, as :meth:`SmoothEquations.follow` does."""
         start = [float(value) for value in (*scene.initial.omega_b, *scene.initial.quaternion)]
         starts = [column.start_from(scene.initial) for column in self.columns]
         units = [unit_of(scene, column) for column in self.columns]
