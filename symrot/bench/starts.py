@@ -104,7 +104,9 @@ def _median(run: Callable[[], object], rounds: int) -> float:
 
 def _start(scene: Scene) -> tuple[Floats, Floats]:
     """Return an angular velocity and a quaternion that differ a little from the initial state of a scene."""
-    omega, quaternion = (np.array([float(x) for x in vector]) for vector in scene.initial)
+    omega, quaternion = (
+        np.array([float(x) for x in vector]) for vector in (scene.initial.omega_b, scene.initial.quaternion)
+    )
     return omega * (1 + SPREAD) + SPREAD * abs(omega).max(), quaternion + SPREAD
 
 

@@ -17,7 +17,7 @@ from symrot.checker.claim.notation import Notation, TypedNotation, notation_of
 from symrot.checker.claim.reader import Declared, Reading, Relation, read_relation, readings_of
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.source.lines import claims_of_reading
-from symrot.checker.claim.source.text import functions_of_time
+from symrot.checker.claim.source.text import ON_PAULI, claim_of_relation, functions_of_time
 from symrot.checker.claim.tree import TIME, Node, number, walk, with_names
 from symrot.checker.claim_verdict import MOST_SECONDS, check_claim, is_unfinished
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
@@ -58,6 +58,9 @@ NAMING = ("definition", "recognised")
 CALLS_FOR_ARRAYS = ("qmul(", "eye(", "⊗", "\\otimes")
 """Calls that answers have only if the claim has one of them, and signs for the product of quaternions."""
 
+
+ROTATION = re.compile(r"[RCQ](_\w+)?")
+"""The names of matrices that are rotations in most books."""
 
 AS_TYPED = ("degrees",)
 """The codes of repairs that are written in the notation of the input already."""
@@ -291,6 +294,8 @@ def verdict_on_reading(
     lines = claims_of_reading(reading, source, assume, units, stated)
     parts = [(claim, _on_claim(claim, notation, repair, reading.plain)) for line in lines for claim in line]
     several = len(parts) > 1
+    if not several and (numbers := _for_numbers(reading, parts[0], source)) is not None:
+        parts = [(parts[0][0], numbers)]
     verdict = _on_parts(lines, [part for _, part in parts], notation) if several else parts[0][1]
     if several and verdict.verdict == "conditional":
         conditions = [part.requires for _, part in parts if part.requires]
@@ -306,6 +311,30 @@ def verdict_on_reading(
     ):
         notes = (*notes, UNUSED_CONTEXT)
     return replace(verdict, text=source.strip(), reading=echo, context=stated.echo, notes=notes)
+
+
+def _for_numbers(reading: Reading, part: tuple[Claim, Verdict], source: str) -> Verdict | None:
+    """Return "conditional" for an equation that is false for Pauli's matrices and true for numbers sigma_x, sigma_y.
+
+    Return None for other equations, and for those without the product or power of a sum: ``σ_x σ_y = σ_y σ_x`` would
+    say nothing about numbers.
+    """
+    claim, verdict = part
+    link = reading.lines[0].links[0]
+    nodes = [node for side in link[1:] for _, node in walk(side)]
+    has_sum = any(node.kind in ("product", "power") and any(a.kind == "sum" for a in node.args) for node in nodes)
+    if verdict.verdict != "false" or ON_PAULI not in claim.notes or not has_sum:
+        return None
+    other = check_claim(claim_of_relation(link, source, pauli_as_numbers=True), repair=False)
+    if other.verdict != "true":
+        return None
+    names = sorted({str(node.value) for node in nodes if str(node.value).startswith("sigma_")})
+    condition = f"{' and '.join(names)} are numbers, such as stresses, and not Pauli's matrices"
+    notes = tuple(note for note in verdict.notes if note != ON_PAULI)
+    return replace(
+        verdict, verdict="conditional", requires=(condition,), conditions=(condition,), notes=notes, repairs=(),
+        diagnosis=Diagnosis("none", ""),
+    )  # fmt: skip
 
 
 def _on_inequality(
@@ -337,6 +366,7 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Ve
     verdict = with_rounding(claim, check_claim(claim, repair and not claim.has_parts))
     verdict = in_degrees(claim, verdict, lambda other: with_rounding(other, check_claim(other, repair=False)))
     verdict = _on_rotations(claim, verdict) if verdict.verdict == "false" else verdict
+    verdict = _on_rotation_by_letter(claim, verdict) if verdict.verdict == "definition" and plain else verdict
     verdict = for_special_directions(claim, for_complex_numbers(claim, verdict)) if plain else verdict
     verdict = _with_two_meanings(claim, verdict) if verdict.verdict == "false" and plain else verdict
     # a false equation outside SymPy syntax may be meant as a condition, such as x^2 = 4
@@ -482,6 +512,20 @@ def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
     return verdict
 
 
+def _on_rotation_by_letter(claim: Claim, verdict: Verdict) -> Verdict:
+    """Return "conditional" for a condition such as ``R R^T = I`` that all rotations R satisfy; otherwise ``verdict``.
+
+    Only for one matrix, whose letter books use for rotations; a note says if some rotations do not satisfy it.
+    """
+    names = matrices_of_entries(claim.define)
+    if len(names) != 1 or not ROTATION.fullmatch(names[0]):
+        return verdict
+    on_rotation = _on_rotations(claim, verdict)
+    if on_rotation.verdict == "conditional":
+        return replace(on_rotation, reason="", repairs=(), diagnosis=Diagnosis("none", ""))
+    return replace(verdict, notes=(*verdict.notes, f"it does not hold for all rotations {names[0]}"))
+
+
 def _has_indices(claim: Claim) -> bool:
     """Return whether a claim is in index notation, as ``I_ik = m*a_i*a_k`` with the indices i and k."""
     assert claim.relation is not None
@@ -503,7 +547,9 @@ def _on_parts(
         others = [*lines[:place], *lines[place + 1 :]]
         elsewhere = {name for other in others for claim in other for name, _ in claim.define}
         named = named_formula(line[0])
-        defines = named is not None and named.name in elsewhere
+        relation = line[0].relation
+        name = named.name if named is not None else str(relation[1].value) if relation is not None else ""
+        defines = name in elsewhere
         for claim, verdict in zip(line, own, strict=True):
             assert claim.relation is not None
             words = (

@@ -80,7 +80,9 @@ def _made(high: Floats, low: Floats, error: Floats, size: Floats) -> Enclosed:
 def exact(value: Fraction | Floats, count: int = 1) -> Enclosed:
     """Return an array of doubles as exact numbers, or ``count`` copies of a fraction with the error of rounding."""
     if isinstance(value, Fraction):
+        if value and not LEAST < abs(value) < MOST:  # as doubles it would be 0, infinite, or lose digits
+            return Enclosed(*(np.full(count, each) for each in (0.0, 0.0, np.inf)))
         high, low = pair(value)
         error = 0.0 if Fraction(high) + Fraction(low) == value else ERROR * abs(high)
-        return _made(*(np.full(count, each) for each in (high, low, error, abs(high))))
+        return Enclosed(*(np.full(count, each) for each in (high, low, error)))
     return _made(value, np.zeros(len(value)), np.zeros(len(value)), np.abs(value))

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from operator import index
+from pathlib import Path
 from time import perf_counter
 from typing import Any, NamedTuple
 from warnings import catch_warnings, simplefilter
@@ -112,6 +113,10 @@ class EnsembleMember(MotionSamples):
     def scene(self) -> Scene:
         """The scene of this motion: the ensemble's scene, with this motion's own initial state and constants."""
         return self._ensemble._source.variation.scene_of(self._number)
+
+    def show(self, path: str | Path | None = None) -> Path:
+        """Write the motion as one offline page of HTML that plays it, by default NAME.html; see :func:`symrot.show`."""
+        return symrot.show(self, path)
 
     def _evaluate(self, *names: str) -> Floats:
         values: Floats = self._ensemble._evaluated(names, [self._number])[0]
@@ -322,7 +327,8 @@ def propagate_ensemble(
     omega : array, shape (n, 3), optional
         Initial angular velocities, body components, rad/s; default: the angular velocity in the scene for all motions.
     quaternion : array, shape (n, 4), optional
-        Initial attitudes, scalar first, which are normalised; default: the attitude in the scene for all motions.
+        Initial attitudes, scalar first, which are normalised; default: the attitude in the scene for all motions. An
+        angular velocity that the scene gives by ``omega_space`` keeps its components in space.
     attitude : optional
         Initial attitudes as n rotations of SciPy, or as an array of n matrices ``dcm_sb``, instead of ``quaternion``.
     parameters : dict of arrays, optional

@@ -20,7 +20,7 @@ from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
 from symrot.inertia.principal import principal_axes, require_admissible, why_not_propagable
-from symrot.kinematics.conversions import dcm_to_quaternion
+from symrot.kinematics.conversions import dcm_to_quaternion, quaternion_to_dcm
 from symrot.planning.general_structure import general_structure, switched
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.real_array import real_array
@@ -29,7 +29,9 @@ from symrot.scene.attitude import refuse_two
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial
 
-__all__ = ["FIXED", "PLACES", "Place", "Variation", "constant_places", "read_times", "read_variation"]
+__all__ = [
+    "FIXED", "PLACES", "Place", "Variation", "constant_places", "own_rates", "read_times", "read_variation", "to_body",
+]  # fmt: skip
 
 PLACES = {"I_xx": (0, 0), "I_yy": (1, 1), "I_zz": (2, 2), "I_xy": (0, 1), "I_xz": (0, 2), "I_yz": (1, 2)}
 PRINCIPAL = ("I_xx", "I_yy", "I_zz")
@@ -321,15 +323,35 @@ def read_variation(
     n = next(iter(counts.values()), 1)
     if n == 0:
         raise InputError("ensemble: expected at least one trajectory, got arrays of length 0")
-    own = np.tile(np.array([float(x) for x in scene.initial.omega_b]), (n, 1))
     attitudes = arrays.get("quaternion")
     if attitudes is not None and not attitudes.any(axis=1).all():
         at = int(np.argmin(attitudes.any(axis=1)))
         raise InputError(f"quaternion: expected quaternions that are not zero, got zero in trajectory {at}")
-    variation = Variation(scene, arrays.get("omega", own), attitudes, columns, places)
+    rates = arrays["omega"] if "omega" in arrays else own_rates(scene.initial, attitudes, n)
+    variation = Variation(scene, rates, attitudes, columns, places)
     if not PLACES.keys().isdisjoint(columns):
         _check_bodies(variation)
     return variation
+
+
+def own_rates(initial: Initial, quaternion: Floats | None, count: int) -> Floats:
+    """Return the angular velocity that a scene gives, body components, rad/s, for ``count`` motions, shape (count, 3).
+
+    With other attitudes, quaternions of any norm but zero, the components that the scene gives stay: body or space.
+    """
+    if quaternion is None or initial.omega_s is None:
+        return np.tile([float(x) for x in initial.omega_b], (count, 1))
+    return to_body(quaternion, np.array([float(x) for x in initial.omega_s]))
+
+
+def to_body(quaternion: Floats, omega_s: Floats) -> Floats:
+    """Return body components from space components, shape (3,) or (n, 3), for n quaternions of any norm but zero."""
+    unit = quaternion / abs(quaternion).max(axis=1, keepdims=True)
+    unit = unit / np.sqrt((unit**2).sum(axis=1, keepdims=True))
+    columns = np.moveaxis(quaternion_to_dcm(unit), -1, 0)  # the body axes in space components
+    rates: Floats = np.stack([axis[:, 0] * omega_s[..., 0] + axis[:, 1] * omega_s[..., 1] + axis[:, 2] * omega_s[..., 2]
+                              for axis in columns], axis=1)  # fmt: skip
+    return rates
 
 
 def _quaternions(attitude: Any) -> ArrayLike:

@@ -114,6 +114,8 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
         used = [number for number in names if any(mono[number] for mono in factor)]
         if len(used) == 2 and (multiple := _principal_multiple(ring, factor, names)) is not None:
             return multiple
+        if len(used) > 2 and (of_sum := _principal_sum(ring, factor, names)) is not None:
+            return of_sum
         if len(used) != 1 or factor.degrees()[used[0]] != 1:
             continue
         (place,) = used
@@ -159,6 +161,29 @@ def _principal_multiple(ring: FormulaRing, factor: PolyElement, names: dict[int,
                 ends = _ends_of_argument(inner, *bounds)
                 inside, edge = (ends, ()) if isinstance(leaf, atan) else ((), ends)
                 return PrincipalValueProof(edge, inside, (other, *further))
+    return None
+
+
+def _principal_sum(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> PrincipalValueProof | None:
+    """Return a proof that ``factor`` is zero under conditions.
+
+    ``asin(x) + asin(y) - asin(u)`` is, for the usual u, if the sum is in the range of asin. None: there is no proof.
+    """
+    terms = _combination(ring, factor, {**dict(enumerate(ring.generators)), **names}) or ()
+    leaves = [(leaf, multiple) for leaf, multiple in terms if leaf is not pi]
+    if any(type(leaf) not in _PRINCIPAL for leaf, _ in leaves):
+        return None
+    # the leaf with the longest argument is the inverse function of the sum of the others
+    for leaf, own in sorted(leaves, key=lambda pair: -pair[0].count_ops())[:1]:
+        angle = sum((-Rational(multiple / own) * other for other, multiple in terms if other is not leaf), Integer(0))
+        function, least, most = _PRINCIPAL[type(leaf)]
+        with suppress(InputError):  # an angle that cannot be read proves nothing
+            other_ring = FormulaRing([function(angle), leaf.args[0]], ring.hypotheses, ring.domain)
+            further = proof(other_ring, other_ring.difference(function(angle), leaf.args[0]).numerator)
+            if further is not None:
+                ends = (angle - least, most - angle)
+                inside, edge = (ends, ()) if isinstance(leaf, atan) else ((), ends)
+                return PrincipalValueProof(edge, inside, (other_ring, *further))
     return None
 
 

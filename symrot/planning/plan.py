@@ -86,7 +86,8 @@ class Plan:
     def start_constants(self) -> dict[str, Fraction]:
         """The exact values of the constants that belong to the initial state, such as ``{"omega_3": Fraction(3)}``."""
         initial = self.scene.initial
-        return {name: initial[part][place] for name, part, place in self._start_places}
+        parts = initial.omega_b, initial.quaternion
+        return {name: parts[part][place] for name, part, place in self._start_places}
 
     @cached_property
     def _start_places(self) -> tuple[tuple[str, int, int], ...]:

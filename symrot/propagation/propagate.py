@@ -52,7 +52,8 @@ def propagator(
     omega : array, shape (3,), optional
         Initial angular velocity, body components, rad/s; default: the value in the scene.
     quaternion : array, shape (4,), optional
-        Initial attitude, scalar first; it is normalised. Default: the value in the scene.
+        Initial attitude, scalar first; it is normalised. Default: the value in the scene. An angular velocity that the
+        scene gives by ``omega_space`` keeps its components in space.
     attitude : optional
         Initial attitude in any form of :meth:`symrot.Scene.with_`, instead of ``quaternion``: a rotation of SciPy, a
         matrix ``dcm_sb``, a pair such as ``("ZXZ", [0.1, 0.2, 0.3])``.

@@ -23,10 +23,10 @@ from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.integration_stopped import Samples
 from symrot.propagation.steppers.stepping import Stats, is_sorted
 from symrot.propagation.trajectory import Trajectory
-from symrot.scene.attitude import read_attitude, refuse_two
+from symrot.scene.attitude import Attitude, dcm_of, read_attitude, refuse_two
 from symrot.scene.content import plain
 from symrot.scene.scene import Scene
-from symrot.scene.tables import Initial
+from symrot.scene.tables import Initial, with_other_attitude
 
 if TYPE_CHECKING:
     from symrot.results.sensitivity import Sensitivities
@@ -163,7 +163,8 @@ class Propagator:
         omega : array, shape (3,), optional
             Initial angular velocity, body components, rad/s; default: the value in the scene.
         quaternion : array, shape (4,), optional
-            Initial attitude, scalar first; it is normalised. Default: the value in the scene.
+            Initial attitude, scalar first; it is normalised. Default: the value in the scene. An angular velocity that
+            the scene gives by ``omega_space`` keeps its components in space.
         attitude : optional
             Initial attitude in any form of :meth:`symrot.Scene.with_`, instead of ``quaternion``: a rotation of SciPy,
             a matrix ``dcm_sb``, a pair such as ``("ZXZ", [0.1, 0.2, 0.3])``.
@@ -345,10 +346,7 @@ def read_start(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | No
     # quaternion and attitude are two forms of one argument
     refuse_two(attitude, quaternion)
     if attitude is not None:
-        initial = initial._replace(quaternion=read_attitude(plain(attitude, "attitude"), "attitude").quaternion)
-    if omega is not None:
-        x, y, z = (_exact(value, "omega") for value in _vector(omega, 3, "omega", "rad/s"))
-        initial = initial._replace(omega_b=(x, y, z))
+        initial = with_other_attitude(initial, read_attitude(plain(attitude, "attitude"), "attitude"))
     if quaternion is not None:
         q = _vector(quaternion, 4, "quaternion", "1")
         for value in q:
@@ -357,5 +355,9 @@ def read_start(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | No
         if not any(q):
             raise InputError(f"quaternion: expected a quaternion that is not zero, got {number.show(q)}")
         q0, q1, q2, q3 = _unit(q)
-        initial = initial._replace(quaternion=(q0, q1, q2, q3))
+        w, x, y, z = map(Fraction, q)
+        initial = with_other_attitude(initial, Attitude((q0, q1, q2, q3), dcm_of((w, x, y, z))))
+    if omega is not None:
+        x, y, z = (_exact(value, "omega") for value in _vector(omega, 3, "omega", "rad/s"))
+        initial = initial._replace(omega_b=(x, y, z))
     return initial

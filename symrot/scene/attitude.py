@@ -14,7 +14,9 @@ from symrot.formula.exact_numbers import Angle, equal, read_angle, show, sqrt
 from symrot.kinematics.hamilton import hamilton
 from symrot.scene.reader import Entry, Reader, fail, flag, number, read_table, table, vector
 
-__all__ = ["ORTHOGONAL", "Attitude", "read_attitude", "read_sequence", "refuse_two", "to_body", "to_space"]
+__all__ = [
+    "ORTHOGONAL", "Attitude", "dcm_of", "read_attitude", "read_sequence", "refuse_two", "to_body", "to_space",
+]  # fmt: skip
 
 ORTHOGONAL = Fraction(1, 10**9)
 """Largest allowed deviation of R R^T from the unit matrix, for a matrix R in a scene; an exact rotation replaces R."""
@@ -60,7 +62,7 @@ def _unit(q: Quaternion) -> Quaternion:
     return w, x, y, z
 
 
-def _dcm(q: Quaternion) -> Matrix:
+def dcm_of(q: Quaternion) -> Matrix:
     """Return the matrix ``dcm_sb`` of a quaternion of any norm except zero; the result is exact."""
     w, x, y, z = q
     s = 2 / sum(map(Fraction.__mul__, q, q), Fraction(0))
@@ -118,7 +120,7 @@ def _of_dcm(rows: Matrix, value: object, where: str) -> Attitude:
         1 - a - e + i: (d - b, c + g, f + h, 1 - a - e + i),
     }
     q = candidates[max(candidates)]
-    return Attitude(_unit(q), _dcm(q))
+    return Attitude(_unit(q), dcm_of(q))
 
 
 def _angle(degrees: bool) -> Reader:
@@ -147,7 +149,7 @@ def _read_quaternion(value: Any, where: str) -> Attitude:
     Raise InputError for any other value; the message names the place ``where``.
     """
     q = _four(value, where)
-    return Attitude(_unit(q), _dcm(q))
+    return Attitude(_unit(q), dcm_of(q))
 
 
 def _rows(value: Any, where: str) -> Matrix:

@@ -8,11 +8,21 @@ from typing import Any, NamedTuple
 
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import read
-from symrot.scene.attitude import Vector, read_attitude, read_sequence, to_body
+from symrot.scene.attitude import Attitude, Quaternion, Vector, read_attitude, read_sequence, to_body
 from symrot.scene.body import read_body
 from symrot.scene.reader import Entry, choice, fail, flag, number, read_table, text, vector
 
-__all__ = ["QUANTITIES", "SCHEMA", "TOLERANCES", "TOP", "Initial", "Output", "Span", "read_tolerance"]
+__all__ = [
+    "QUANTITIES",
+    "SCHEMA",
+    "TOLERANCES",
+    "TOP",
+    "Initial",
+    "Output",
+    "Span",
+    "read_tolerance",
+    "with_other_attitude",
+]
 
 SCHEMA = 1
 MOST_SAMPLES = 10_000_000
@@ -44,6 +54,8 @@ class Initial(NamedTuple):
         Angular velocity, body components, rad/s.
     quaternion : tuple of 4 Fraction
         Attitude, scalar first, body to space; its norm differs from 1 by at most 2^-200.
+    omega_s : tuple of 3 Fraction or None
+        Angular velocity, space components, rad/s, if the scene gives these; None if it gives body components.
 
     Examples
     --------
@@ -54,7 +66,14 @@ class Initial(NamedTuple):
     """
 
     omega_b: Vector
-    quaternion: tuple[Fraction, Fraction, Fraction, Fraction]
+    quaternion: Quaternion
+    omega_s: Vector | None = None
+
+
+def with_other_attitude(initial: Initial, attitude: Attitude) -> Initial:
+    """Return an initial state with another attitude and the same components of omega, body or space, as the scene's."""
+    omega_b = initial.omega_b if initial.omega_s is None else to_body(attitude.dcm, initial.omega_s)
+    return initial._replace(omega_b=omega_b, quaternion=attitude.quaternion)
 
 
 class Span(NamedTuple):
@@ -124,7 +143,7 @@ def _read_initial(value: Any, where: str) -> Initial:
         fail(f"{where}.omega", expectation if both else f"{expectation}, got neither", both or ...)
     attitude = values["attitude"] or read_attitude({"quaternion": [1, 0, 0, 0]}, where)
     omega_b = values["omega"] if present == ["omega"] else to_body(attitude.dcm, values["omega_space"])
-    return Initial(omega_b, attitude.quaternion)
+    return Initial(omega_b, attitude.quaternion, values["omega_space"])
 
 
 def _samples(value: Any, where: str) -> int:

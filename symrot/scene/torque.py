@@ -78,7 +78,7 @@ class Torque(NamedTuple):
     def with_constant(self, name: str, component: int | None, value: Fraction) -> "Torque":
         """Return a copy of the torque in which one number has the value ``value``.
 
-        ``name`` and ``component`` name it as in :meth:`constant`.
+        ``name`` and ``component`` say which number, see :meth:`constant`.
         """
         if component is None:
             return self._replace(values={**self.values, name: value})

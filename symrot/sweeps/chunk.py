@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symrot.ensemble.ensemble import propagate_ensemble
-from symrot.ensemble.variation import read_variation
+from symrot.ensemble.variation import own_rates, read_variation, to_body
 from symrot.errors import InputError, PropagationError
 from symrot.results.tables import BY
 from symrot.scene.scene import Scene
@@ -92,7 +92,7 @@ def compute(job: Job, start: int, stop: int) -> Chunk:
 def _inputs(job: Job, draws: Draws, messages: dict[int, str]) -> tuple[_Inputs, Rows]:
     """Return the arguments of the ensemble, and the indices of the rows of ``draws`` that give a valid scene."""
     n, scene = len(draws.values), job.scene
-    inputs = _Inputs(np.tile([float(x) for x in scene.initial.omega_b], (n, 1)), draws.attitudes, {})
+    inputs = _Inputs(own_rates(scene.initial, draws.attitudes, n), draws.attitudes, {})
     rows = np.arange(n)
     paths = {axis.target.path: k for k, axis in enumerate(job.design.axes) if axis.target.path}
     if paths:
@@ -130,12 +130,14 @@ def _read_scenes(job: Job, draws: Draws, paths: dict[Path, int], inputs: _Inputs
             inputs.parameters[name][row] = value
         if moved:
             inputs.omega[row] = outcome[1]
+        if moved and draws.attitudes is not None and outcome[3] is not None:
+            inputs.omega[row] = to_body(draws.attitudes[row : row + 1], np.array(outcome[3]))[0]
         if moved and draws.attitudes is None and inputs.attitudes is not None:
             inputs.attitudes[row] = outcome[2]
     return np.array(rows, dtype=np.intp)
 
 
-Reading = tuple[list[float], list[float], list[float]]  # constants, omega, quaternion
+Reading = tuple[list[float], list[float], list[float], list[float] | None]  # constants, omega, quaternion, omega_s
 
 
 @lru_cache(maxsize=2)
@@ -154,8 +156,9 @@ def _reader(job: Job, paths: tuple[Path, ...], constants: tuple[str, ...]) -> An
             # the reason why the file with these values is not valid
             return str(error)
         start = scene.initial
-        # the values of the named constants, the initial omega and quaternion
-        return numbers, [float(x) for x in start.omega_b], [float(x) for x in start.quaternion]
+        omega_s = None if start.omega_s is None else [float(x) for x in start.omega_s]
+        # the values of the named constants, the initial omega and quaternion, and omega in space if the scene gives it
+        return numbers, [float(x) for x in start.omega_b], [float(x) for x in start.quaternion], omega_s
 
     return read
 

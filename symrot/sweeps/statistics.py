@@ -155,10 +155,13 @@ def _total(sums: Sequence[Floats], size: int) -> Floats:
 def _deviation(blocks: Blocks, survey: _Survey) -> Floats:
     """Return the standard deviation of each column, with divisor n as numpy.std; NaN counts as missing."""
     sums = []
+    # divided by a power of 2, which loses no digit, tiny and huge differences have squares in the range of doubles
+    _, exponent = np.frexp(np.maximum(survey.high - survey.mean, survey.mean - survey.low))
     for block in blocks():
-        squares = (block - survey.mean) ** 2
+        squares = np.ldexp(block - survey.mean, -exponent) ** 2
         sums.append(np.where(np.isnan(squares), 0.0, squares).sum(axis=0))
-    deviation: Floats = np.sqrt(_total(sums, len(survey.mean)) / np.where(survey.number == 0, np.nan, survey.number))
+    scaled = np.sqrt(_total(sums, len(survey.mean)) / np.where(survey.number == 0, np.nan, survey.number))
+    deviation: Floats = np.ldexp(scaled, exponent)
     return deviation
 
 

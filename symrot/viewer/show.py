@@ -6,10 +6,14 @@ from fractions import Fraction
 from html import escape
 from pathlib import Path
 
+import numpy as np
+
+from symrot.ensemble.ensemble import EnsembleMember
 from symrot.errors import InputError
 from symrot.files.writing import check_target, write
 from symrot.propagation.propagate import propagator
 from symrot.propagation.trajectory import Trajectory
+from symrot.results.samples import MotionSamples
 from symrot.scene.scene import Scene, SceneSource, load_scene
 from symrot.scene.tables import Initial
 from symrot.viewer import film
@@ -22,7 +26,7 @@ PAGES = (".html", ".htm")
 
 
 def show(
-    motion: SceneSource | Trajectory,
+    motion: SceneSource | Trajectory | EnsembleMember,
     path: str | Path | None = None,
     progress: Callable[[int, int], object] = lambda done, all: None,
 ) -> Path:
@@ -32,9 +36,9 @@ def show(
 
     Parameters
     ----------
-    motion : Scene, Trajectory, str or Path
-        A scene, the name of a shipped scene, the path of a scene file, or a trajectory. A page made from a trajectory
-        starts with its initial state and covers its span.
+    motion : Scene, Trajectory, EnsembleMember, str or Path
+        A scene, the name of a shipped scene, the path of a scene file, a trajectory, or a motion of an ensemble. A page
+        made from a trajectory or a motion starts with its initial state and covers its span.
     path : str or Path, optional
         The file to write: ``.html``, or ``.gif`` or ``.mp4`` for a film, which needs ``symrot[film]``. The default is a
         page with the name of the scene in the current folder.
@@ -76,8 +80,8 @@ def show(
     return target
 
 
-def in_frame(trajectory: Trajectory) -> str:
-    """Return the HTML that shows a trajectory in a notebook: an ``iframe`` that holds its whole page."""
+def in_frame(trajectory: MotionSamples) -> str:
+    """Return the HTML that shows one motion in a notebook: an ``iframe`` that holds its whole page."""
     text = escape(page(*_scene_and_motion(trajectory)), quote=True)
     return f'<iframe srcdoc="{text}" style="width:100%;height:760px;border:0" title="motion"></iframe>'
 
@@ -90,16 +94,22 @@ def _state_at(scene: Scene, time: Fraction) -> Initial:
     return Initial((first, second, third), (a, b, c, d))
 
 
-def _scene_and_motion(motion: SceneSource | Trajectory) -> tuple[Scene, Trajectory | None]:
+def _scene_and_motion(motion: SceneSource | MotionSamples) -> tuple[Scene, Trajectory | None]:
     """Return the scene of a page, and the trajectory that the page plays, or None if it computes the motion."""
-    if isinstance(motion, Trajectory):
-        start, stop = (Fraction(float(time)) for time in (motion.t.min(), motion.t.max()))
+    if isinstance(motion, MotionSamples):
+        if motion.omega.ndim != 2:
+            raise InputError("show: expected one motion, got an ensemble; show one of its motions: ensemble[0].show()")
+        times = motion.t[np.isfinite(motion.omega).all(axis=1)]  # s, those that the motion reached
+        if not len(times):
+            raise InputError("show: expected a motion with samples, got one that reached none of its times")
+        start, stop = (Fraction(float(time)) for time in (times.min(), times.max()))
         if start == stop:
             raise InputError(f"show: expected a trajectory over a span of time, got the single time {float(start)!r} s")
         scene = motion.scene
-        if start != scene.span.start and not motion.has_external_torque:
+        played = motion if isinstance(motion, Trajectory) and motion.has_external_torque else None
+        if start != scene.span.start and played is None:
             scene = replace(scene, initial=_state_at(scene, start))
         scene = replace(scene, span=scene.span._replace(start=start, stop=stop))
         # a page cannot compute a torque without a formula (a Python function)
-        return scene, motion if motion.has_external_torque else None
+        return scene, played
     return load_scene(motion), None

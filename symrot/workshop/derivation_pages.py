@@ -14,6 +14,7 @@ from symrot.catalogue import READING_ORDER, derivation, names
 from symrot.errors import InputError
 from symrot.figures.table import figures_of
 from symrot.files.reading import refuse_special
+from symrot.lessons.other_names import OTHER_NAMES
 from symrot.lessons.page import APPENDIX, appendix, taught
 from symrot.lessons.table import LESSONS
 from symrot.proof.derivation import PrintedPage
@@ -283,7 +284,7 @@ def _only_links_to(present: set[str], link: re.Pattern[str], text: str) -> str:
 
 
 def _html(title: str, about: str, chapters: Chapters) -> dict[str, bytes]:
-    return _encoded(book(title, about, chapters)) | {math_font.FILE: math_font.content()}
+    return _encoded(book(title, about, chapters, OTHER_NAMES)) | {math_font.FILE: math_font.content()}
 
 
 def _latex(title: str, about: str, chapters: Chapters) -> dict[str, bytes]:

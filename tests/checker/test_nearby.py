@@ -37,6 +37,12 @@ FAULTS = (
     ("Omega = M g/(I_3 omega_3)", "factor", "Omega = l*g*M/(I_3*omega_3)"),
     ("theta = asin(q_0 q_2 - q_1 q_3)", "factor", "theta = asin(2*(q_0*q_2 - q_1*q_3))"),
     ("sum M_x = -I_xz w_z' + I_yz w_z", "exponent", "M_x = -I_xz*w_z' + I_yz*w_z^2"),
+    ("θ = acos((tr R + 1)/2)", "sign_of_term", "θ = acos((trace(R) - 1)/2)"),
+    ("T = π sqrt(L/g)", "factor", "T = 2*π*sqrt(L/g)"),
+    ("θ'' = (g/l) sin θ", "sign_of_term", "θ'' = -g/l*sin(θ)"),
+    ("V_eff = (p_φ - p_ψ cos θ)²/(I_1 sin²θ) + M g l cos θ", "factor",
+     "V_eff = (p_φ - p_ψ*cos(θ))^2/(I_1*sin(θ)^2)/2 + M*g*l*cos(θ)"),
+    ("θ = ω_0 t + αt²", "factor", "θ = ω_0*t + α*t^2/2"),
     ("M^2 = I_1^2 w_1^2 + I_2 w_2^2 + I_3^2 w_3^2", "exponent", "M^2 = I_1^2*w_1^2 + I_2^2*w_2^2 + I_3^2*w_3^2"),
 )  # fmt: skip
 
@@ -57,7 +63,7 @@ def test_the_part_at_fault_is_named_and_repaired(claim, code, repaired):
     "I = 13/20 m r^2", "a = p_psi/I_1", "I_z = 9/16 m R^2", "P = 2 M omega", "Omega = a g b/(c d)", "T = I/k",
     "E = a x^2 + b y^2", "tau = F d cos(theta)", "omega_2^2 = (M^2 - 2EI_1)/I_3", "V = -m g l cos(theta)",
     "I = 1/12 m L^2 + m d^2", "I = m (a^2 + 4 b^2)/12", "I = m (R^2 + 5 a^2/4)",
-    "tau = -m g l sin(theta)", "E = 1/2 m v^2 + 1/2 k x^2", "F = mu m g cos(theta)",
+    "tau = -m g l sin(theta)", "theta = -asin(a)", "E = 1/2 m v^2 + 1/2 k x^2", "F = mu m g cos(theta)",
 ])  # fmt: skip
 def test_a_formula_that_may_mean_something_else_is_not_accused(claim):
     """Few letters, another unit of the same form, or a letter of its own: nothing says that it has a fault."""
@@ -226,11 +232,24 @@ def test_a_difference_of_moments_is_open_without_the_plane_of_the_body():
 @pytest.mark.parametrize("claim", [
     "R_11 = cos phi cos theta cos psi - sin phi sin psi", "e_1 = (A_23 - A_32)/(2 sin Phi)", "phi = atan2(r_23, r_13)",
     "L_1' = (1/I_3 - 1/I_2) L_2 L_3", "omega = sqrt(kappa/I)",
+    "L = (I_1 w_1, I_1 w_2, I_3 w_3)", "a = (m_1 - m_2) g/(m_1 + m_2 + M/2)",
+    "θ = -asin(R_31)", r"R = \begin{pmatrix} \cos\theta & -\sin\theta \\ \sin\theta & \cos\theta \end{pmatrix}",
+    "ω² = ω_0² - 2αθ", "θ = ω_0 t - ½αt²", "θ = asin(2(q_0 q_2 + q_1 q_3))",
     "E = L^2/(2 I_1) + 1/2 (1/I_3 - 1/I_1) L_3^2", "I = m/6 (a^2 b^2 + b^2 c^2 + c^2 a^2)/(a^2 + b^2 + c^2)",
 ])  # fmt: skip
 def test_formulas_of_further_books_are_known(claim):
     """Entries of Euler matrices, an axis and an angle from a matrix, symmetric bodies, a torsional pendulum, a box."""
     assert symrot.check(claim).verdict == "recognised"
+
+
+def test_a_body_that_is_symmetric_about_axis_1_is_not_accused():
+    """The second I_2 may also be a misprint of I_3."""
+    verdict = symrot.check("L = (J_1 w_1, J_2 w_2, J_2 w_3)")
+    assert verdict.verdict == "definition" and "symmetric about axis 1" in verdict.reason
+
+
+def test_a_pendulum_with_the_other_sign_stands_upright():
+    assert any("upright" in note for note in symrot.check("θ'' = (g/l) sin θ").notes)
 
 
 def test_the_first_angle_of_a_matrix_is_not_called_as_the_third_one():

@@ -55,3 +55,10 @@ def test_a_tie_is_certain_only_if_it_is_exact():
     values, certain = (one + half).rounded()
     assert certain.all() and values[0] == 1.0
     assert not (exact(Fraction(1, 3)) * exact(Fraction(3)) + half).rounded()[1].any()
+
+
+@pytest.mark.parametrize("constant", [Fraction(1, 10**400), Fraction(10**400), Fraction(1, 3 * 10**320)])
+def test_a_constant_beyond_the_doubles_is_not_certain(constant):
+    """Rounded to 0, it would make every product a certain 0."""
+    with np.errstate(all="ignore"):
+        assert not (exact(constant) * exact(np.array([1.0, 1e300]))).rounded()[1].any()

@@ -102,13 +102,8 @@ CASES = (
 )  # fmt: skip
 
 
-@pytest.mark.skipif(NODE is None, reason="needs Node")
-def test_the_page_grades_numbers_as_python_does(tmp_path):
-    """The script of the page, run in Node without a browser, on answers of known worth."""
-    sheet = symrot.exercise("rod_about_end", seed=1)
-    (question,) = (each for each in sheet[0].questions if each.kind == "number")
-    value = float(question.decimal)
-    answers = [form.format(value=value, double=2 * value, unit=question.unit) for form, _ in CASES]
+def page_outcomes(sheet, question, answers, tmp_path):
+    """Return how the script of the page, run in Node without a browser, marks answers to a question such as ``1b``."""
     text = sheet.html()
     data = re.search(r'id="questions">(.*?)</script>', text, re.S)[1]
     script = re.search(r"<script>\n(.*)</script>", text, re.S)[1]
@@ -117,12 +112,31 @@ def test_the_page_grades_numbers_as_python_does(tmp_path):
         + json.dumps(data)
         + "}), querySelectorAll: () => []};\n"
     )
-    call = f'\nconsole.log(JSON.stringify({json.dumps(answers)}.map((text) => grade(text, questions["1b"])[0])));'
+    call = (
+        f"\nconsole.log(JSON.stringify({json.dumps(answers)}.map((text) => grade(text, questions['{question}'])[0])));"
+    )
     path = tmp_path / "page.js"
     path.write_text(page + script.replace('"use strict";', "") + call, encoding="utf-8")
     done = subprocess.run([NODE, str(path)], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    assert json.loads(done.stdout) == [outcome for _, outcome in CASES]
+    return json.loads(done.stdout)
+
+
+@pytest.mark.skipif(NODE is None, reason="needs Node")
+def test_the_page_grades_numbers_as_python_does(tmp_path):
+    sheet = symrot.exercise("rod_about_end", seed=1)
+    (question,) = (each for each in sheet[0].questions if each.kind == "number")
+    value = float(question.decimal)
+    answers = [form.format(value=value, double=2 * value, unit=question.unit) for form, _ in CASES]
+    assert page_outcomes(sheet, "1b", answers, tmp_path) == [outcome for _, outcome in CASES]
+
+
+@pytest.mark.skipif(NODE is None, reason="needs Node")
+def test_on_the_page_a_hertz_next_to_an_angle_is_one_rotation_per_second(tmp_path):
+    sheet = symrot.exercise("body_rates")
+    question = next(each for each in sheet[0].questions if each.kind == "number")
+    answers = [f"{float(question.decimal) / 6.283185307} Hz", f"{question.decimal} Hz"]
+    assert page_outcomes(sheet, f"1{question.key}", answers, tmp_path) == ["right", "wrong"]
 
 
 @pytest.mark.skipif(BROWSER is None, reason="needs Chromium")

@@ -42,6 +42,17 @@ def test_a_wrong_number_is_told_what_is_wrong(answer, code):
     assert mark.outcome == "wrong" and mark.code == code and mark.credit < 1 and mark.text, mark
 
 
+def test_next_to_an_angle_a_hertz_is_one_rotation_per_second():
+    exercise = symrot.exercise("body_rates")[0]
+    question = next(each for each in exercise.questions if each.kind == "number")
+    for text, outcome in (
+        (f"{float(question.decimal) / 6.283185307} Hz", "right"),
+        (f"{question.decimal} Hz", "wrong"),
+    ):
+        mark = next(each for each in symrot.grade(exercise, {question.key: text}) if each.key == question.key)
+        assert mark.outcome == outcome, mark
+
+
 @pytest.mark.parametrize(
     "key, answer", [("a", "m*L^2/"), ("a", "m*l^2/3"), ("a", "a = b = c"), ("b", "four"), ("b", "4 parsec")]
 )

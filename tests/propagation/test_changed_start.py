@@ -11,6 +11,7 @@ import pytest
 from symrot.build import cache as library
 from symrot.closed_form import registry as choose
 from symrot.closed_form.heavy_top import motion as heavy_top
+from symrot.ensemble.ensemble import propagate_ensemble
 from symrot.formula import exact_numbers as number
 from symrot.inertia import composite
 from symrot.planning import rules
@@ -191,3 +192,19 @@ def test_the_unit_vector_is_exact_or_good_to_320_bits():
         found = number.unit(vector)
         assert abs(sum(x * x for x in found) - 1) < Fraction(1, 2**318)
         assert all(x * vector[0] == y * found[0] for x, y in zip(found, vector, strict=True))
+
+
+def test_another_attitude_keeps_an_angular_velocity_given_in_space():
+    own = Scene.build(
+        body={"principal": [1, 2, "5/2"]},
+        initial={"omega_space": ["3/10", "7/10", "11/10"], "attitude": {"axis": [1, 2, 3], "angle": 1}},
+        span={"t": [0, 1], "samples": 2},
+    )
+    q = [0.1, -0.2, 0.3, 0.4]
+    single, again = propagate.propagate(own, quaternion=q), propagate.propagator(own)(quaternion=q)
+    turned = propagate.propagator(own)(attitude={"quaternion": q})
+    many = propagate_ensemble(own, quaternion=[q, [0, 2, 0, 0]])
+    assert np.array_equal(again.omega, single.omega) and np.array_equal(turned.omega, single.omega)
+    for each in (single, many[0], many[1]):
+        assert np.abs(each.omega_space[0] - [0.3, 0.7, 1.1]).max() < 1e-15
+    assert np.abs(many.omega[0] - single.omega).max() < 1e-14

@@ -225,6 +225,12 @@ def test_an_event_at_the_start_is_listed_and_ends_nothing():
     assert trajectory.t_events[0][1] == pytest.approx(4 * float(mpmath.ellipk(0.25)) * 1.0, abs=1e-13)
 
 
+@pytest.mark.parametrize("formula", ["t", "-t"])
+def test_a_formula_without_rounding_errors_is_zero_at_the_start(formula):
+    motion = run(scene((0, 0, 2), 10, body={"principal": [1, 2, "5/2"]}), [formula], "exact")
+    assert motion.t_events[0].tolist() == [0.0]
+
+
 def test_a_singularity_beyond_a_terminal_event_does_no_harm():
     torque = [{"kind": "expression", "torque": ["omega_1*omega_1", 0, 0]}]
     motion = scene((1, 0, 0), 3, torque=torque, body={"principal": [1, 1, 1]})

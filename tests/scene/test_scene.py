@@ -272,7 +272,7 @@ def test_the_prisms_are_brown_s():
 def test_the_cylinder_is_chen_s():
     found = load_scene("chen_cylinder")
     assert found.body.principal.moments == (Fraction("0.6375"), Fraction("0.6375"), Fraction("0.075"))
-    assert found.initial == ((1, 0, 1), (1, 0, 0, 0))
+    assert found.initial[:2] == ((1, 0, 1), (1, 0, 0, 0))
 
 
 def test_the_t_handle_spins_about_its_intermediate_axis():

@@ -89,3 +89,18 @@ def test_order_statistics_of_extreme_doubles():
 def test_a_statistic_that_cannot_be_used_is_one_sentence(text):
     with pytest.raises(InputError, match=r"statistics: expected one of mean, envelope"):
         read_statistics([text])
+
+
+@pytest.mark.parametrize("size", [1e-200, 1e200])
+def test_the_deviation_of_tiny_and_huge_values(size):
+    class Store:
+        class header:
+            count, times = 4, np.arange(1)
+
+        @staticmethod
+        def read(name, start, stop):
+            return size * np.array([[1.0], [2.0], [3.0], [4.0]])
+
+    output = Variable("x", ("time",), "J", "", "energy")
+    tables = {table.name: table for table in statistics_of(Store, read_statistics(["mean"]), [output], str)}
+    assert tables["x_std"].values / size == pytest.approx([np.sqrt(1.25)], rel=1e-14)

@@ -191,3 +191,16 @@ def test_a_derivative_that_does_not_exist_is_refused_before_the_sweep(scene, out
     vary = {"omega_1": "normal(0, 1)"} | ({"body.mass": [0.4, 0.6]} if scene == "heavy_top_loops" else {})
     with pytest.raises(InputError, match=message):
         symrot.sweep(scene, vary, count=2, outputs=output)
+
+
+def test_drawn_attitudes_keep_an_angular_velocity_given_in_space():
+    scene = {
+        "schema": 1, "body": {"principal": [1, 2, "5/2"]}, "span": {"t": [0, 1]},
+        "initial": {"omega_space": ["3/10", "7/10", "11/10"], "attitude": {"axis": [1, 2, 3], "angle": 1}},
+    }  # fmt: skip
+    more = {"attitudes": "uniform", "outputs": "omega_space@start", "workers": 1}
+    fixed = symrot.sweep(scene, count=4, **more)
+    varied = symrot.sweep(scene, {"initial.omega_space[0]": [1, 2]}, count=4, **more)
+    for result, first in ((fixed, np.full(4, 0.3)), (varied, np.array([1.0, 2.0, 1.0, 2.0]))):
+        rates = np.stack([result.array(f"omega_{axis}@start") for axis in "xyz"], axis=1)
+        assert np.abs(rates - np.stack([first, np.full(4, 0.7), np.full(4, 1.1)], axis=1)).max() < 1e-14

@@ -117,6 +117,16 @@ def test_a_trajectory_shows_its_own_start_and_span(tmp_path):
     assert trajectory._repr_html_().startswith("<iframe srcdoc=")
 
 
+def test_a_motion_of_an_ensemble_shows_its_own_start_and_span(tmp_path):
+    rates = [[0, 5, 1], [0, 6, 1]]
+    ensemble = symrot.propagate_ensemble("t_handle", omega=rates, t=[0.0, 3.0])
+    path = ensemble[1].show(tmp_path / "page.html")
+    single = symrot.propagator("t_handle")([0.0, 3.0], omega=rates[1]).show(tmp_path / "single.html")
+    assert path.read_bytes() == single.read_bytes()
+    with pytest.raises(InputError, match=r"got an ensemble; show one of its motions: ensemble\[0\]"):
+        symrot.show(ensemble, tmp_path / "page.html")
+
+
 def test_a_torque_of_python_is_played(tmp_path):
     scene = symrot.load_scene("tumbling_prism")
     trajectory = symrot.propagator(scene, torque=lambda t, omega, quaternion: (0.1, 0.0, 0.0))()

@@ -91,8 +91,8 @@ def derive() -> Derivation:
     seen, normal_s = dcm_sb.T * space_radius, Matrix([0, 0, 1])
     d.notation({"r": seen, "k": dcm_sb.T * normal_s}, attitude_rates() | {symbols.t: S.One})
     d.step(
-        "In body axes, the direction of the radius rotates with the angular velocity of the orbit minus that of the "
-        "body; $k$ is the normal of the orbit.",
+        "In body axes, the direction of the radius rotates with the angular velocity of the orbit minus the angular "
+        "velocity of the body; $k$ is the normal of the orbit.",
         rate(seen, attitude_rates() | {symbols.t: S.One}),
         seen.cross(OMEGA - n * dcm_sb.T * normal_s),
         because="in space the radius rotates about the normal at the rate $n$",

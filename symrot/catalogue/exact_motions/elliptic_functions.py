@@ -101,7 +101,7 @@ def _sums(d: Derivation) -> None:
         named=r"\begin{bmatrix} S \\ \hat C \\ \hat D \end{bmatrix}_{u = 0}",
     )
     d.step(
-        r"The values of sn at $u + w$ and $u - w$ have a simple sum, and so have those of dn, with $\Delta = 1 "
+        r"The values of sn at $u + w$ and $u - w$ have a simple sum, and the values of dn too, with $\Delta = 1 "
         r"- \mu\,\mathrm{sn}_w^2\,\mathrm{sn}^2$:",
         Matrix([s + shifted(-1)[0], dn + shifted(-1)[2]]),
         Matrix([2 * SN * CN_W * DN_W, 2 * DN * DN_W]) / BELOW,

@@ -33,7 +33,7 @@ def derive() -> Derivation:
     )
     h = SHARE
     d.passage(
-        "The notation is that of the page on [the attitude](free_body_attitude.md): at $t = 0$, halfway through the "
+        "The page on [the attitude](free_body_attitude.md) explains the notation: at $t = 0$, halfway through the "
         r"motion, the angular momentum has the components $\ell_1, 0, \ell_3$ with $H^2 = \ell_1^2 + \ell_3^2$. On "
         "the separatrix these components determine the intermediate moment:",
         ("B", MIDDLE),

@@ -15,9 +15,9 @@ def derive() -> Derivation:
         title="A spherical body",
         source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 32",
         about=(
-            "A body with three equal moments is called spherical. A cube is one example: its inertia tensor is like "
-            "that of a ball. Angular momentum and angular velocity are parallel for every axis of rotation, and "
-            "without a torque the body rotates steadily about a fixed axis."
+            "A body with three equal moments is called spherical. A cube is one example: its inertia tensor has "
+            "the form of a ball's tensor. Angular momentum and angular velocity are parallel for every axis of "
+            "rotation, and without a torque the body rotates steadily about a fixed axis."
         ),
     )
     inertia = diag(symbols.A, symbols.A, symbols.A)

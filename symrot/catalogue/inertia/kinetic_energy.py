@@ -68,8 +68,8 @@ def _sum(d: Derivation) -> None:
     tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
     d.notation(sums_over(MASSES, POINTS) | {"I": tensor, "v": V, "M": sum(MASSES)})
     d.step(
-        "König's theorem: the kinetic energy is that of the total mass at the centre of mass, plus the energy of the "
-        "rotation about the centre of mass.",
+        "König's theorem: the kinetic energy is the energy of the total mass, moving with the centre of mass, plus the "
+        "energy of the rotation about the centre of mass.",
         HALF * sum(m * squared(V + OMEGA.cross(p)) for m, p in zip(MASSES, POINTS, strict=True)),
         HALF * sum(MASSES) * squared(V) + HALF * OMEGA.dot(tensor * OMEGA),
         because=rf"the mixed term is $v \cdot (\omega \times {COUNT} m_i\,r_i) = 0$",

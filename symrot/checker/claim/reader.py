@@ -149,7 +149,7 @@ class _Text:
             clauses = [token for token in tokens[:-1] if token.start >= place]
             end = Token("mark", ";", place, place)
             tokens = [*clauses, *([end] if clauses else []), *tokens[: len(tokens) - 1 - len(clauses)], tokens[-1]]
-        self.tokens, self.totals = _without_totals(tokens)
+        self.tokens, self.totals = _without_totals(_without_lowering(tokens))
         if len(self.tokens) > MOST_PIECES:
             raise InputError(f"{prefix}expected at most {MOST_PIECES} numbers, names and signs, got {len(self.tokens)}")
 
@@ -456,6 +456,16 @@ def _crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collectio
             is_followed = last.kind == "name" and last.text != "x" and is_vector
             own = last if is_factor and is_followed and not last.breaks else after
             yield from (token.text for token in (before, own) if token.kind == "name")
+
+
+def _without_lowering(tokens: list[Token]) -> list[Token]:
+    """Return tokens without the mark that lowers a cross, as in ``[k]_×``."""
+    padded = [*tokens, tokens[-1]]
+    triples = zip([tokens[0], *tokens], tokens, padded[1:], strict=False)
+    return [
+        token for before, token, after in triples
+        if not (before.text == "]" and token.text == "_" and after.text in ("×", "x"))
+    ]  # fmt: skip
 
 
 def _without_totals(tokens: list[Token]) -> tuple[list[Token], list[str]]:

@@ -576,16 +576,36 @@ def _branches(
         for lift in lifts(ring, numerators[0]):
             branches = branch_requirements(lift.ring, [poly for poly in lift.numerators if poly])
             if branches is not None:
-                return branches, (lift.ring,)
-        within = principal(ring, numerators[0])
+                within = _within_range(ring, numerators[0]) if any(map(_is_long, branches)) else None
+                # -pi/2 <= asin(x) + asin(y) <= pi/2 in place of the signs of long sums
+                return within if within is not None and not any(map(_is_long, within[0])) else (branches, (lift.ring,))
+        within = _within_range(ring, numerators[0])
         if within is not None:
-            ends = [(end, ">= 0") for end in within.nonnegative if not surely_nonnegative(end)]
-            ends += [(end, "> 0") for end in within.positive if not end.is_positive]
-            text, signs = range_text(ends), tuple(end for end, _ in ends)
-            required = Requirement("principal_value", text, signs=signs, strict=within.positive)
-            # no condition is needed if the text is empty
-            return [required] if text else [], within.rings
+            return within
     return branches, ()
+
+
+MOST_LETTERS_OF_CONDITION = 80
+"""The most characters of a condition on signs, if the range of an inverse function says the same."""
+
+
+def _is_long(requirement: Requirement) -> bool:
+    return len(requirement.text) > MOST_LETTERS_OF_CONDITION
+
+
+def _within_range(
+    ring: FormulaRing, numerator: PolyElement
+) -> tuple[list[Requirement], tuple[FormulaRing, ...]] | None:
+    """Return the range of an inverse function in which a claim is true, with the rings of its proof; or None."""
+    within = principal(ring, numerator)
+    if within is None:
+        return None
+    ends = [(end, ">= 0") for end in within.nonnegative if not surely_nonnegative(end)]
+    ends += [(end, "> 0") for end in within.positive if not end.is_positive]
+    text, signs = range_text(ends), tuple(end for end, _ in ends)
+    required = Requirement("principal_value", text, signs=signs, strict=within.positive)
+    # no condition is needed if the text is empty
+    return [required] if text else [], within.rings
 
 
 def _obstacle(ring: FormulaRing) -> str:

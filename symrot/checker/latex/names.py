@@ -204,7 +204,9 @@ class NamesPart(SumsPart):
         ):
             self.index += 3
             self.timed.add(name)
-        self.refuse_call()
+        is_of_rates = name == "Omega" and self.at("(") and self.peek(1).text == "\\omega"
+        if not is_of_rates:  # the matrix Ω(ω) in q' = Ω(ω) q/2
+            self.refuse_call()
 
     def marked(self, mark: tree.Accent | tree.Font) -> Node:
         r"""Parse a name with a mark, such as ``\vec{r}``, ``\mathbf R`` or ``\hat n``; return the node of a vector."""

@@ -14,6 +14,7 @@ from symrot.checker.claim.tree import TIME, Node, walk
 from symrot.checker.context.admission import ANGLES, COMPONENTS, admits_letters, admits_name
 from symrot.checker.context.angle_orders import are_roll_pitch_yaw
 from symrot.checker.context.context import Context
+from symrot.checker.recognition.formulas.kinematics import OF_ONE_ENTRY
 from symrot.checker.recognition.identification import plain_name, unit_of
 from symrot.checker.recognition.known_formulas import CROSS_PRODUCT
 from symrot.checker.recognition.letters import is_atom
@@ -35,7 +36,9 @@ __all__ = [
     "has_word",
     "is_evident",
     "is_in_usual_sequence",
+    "is_inverted",
     "is_of_body",
+    "is_steady",
     "is_unusual",
     "keeps_places",
     "misfit_of",
@@ -193,6 +196,7 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     letters, words = names_in(named.formula), words_of(named)
     quantities = len(quantities_in(named.formula))
     count = len(letters | names_in(named.side)) if named.side.kind == "product" else quantities  # an equation
+    count += is_steady(near.known.name) and TIME in [node for _, node in walk(named.formula)]  # t is a letter of it
     is_new = not quantities_in(near.tree) <= quantities_in(named.formula)
     is_special = near.is_symmetric and not OF_ANGLES.search(near.known.name)
     if is_new and (
@@ -201,6 +205,10 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
         return False  # a special case: the missing letter is zero, or equal to another one
     if near.code in ("overall_sign", "sign_of_term") and re.fullmatch("lambda|sigma|s", named.name):
         return False  # the root of a growth rate, whose square has the other sign
+    if near.code == "sign_of_term" and is_steady(near.known.name):
+        return False  # alpha may be a deceleration
+    if is_inverted(named, near) or _is_multiple_of_period(named, near):
+        return True
     if near.has_other_unit and near.code in SAFE_BY_UNIT:
         is_energy = near.known.name.startswith("kinetic energy") and near.known.name.endswith("rolls")
         has_tension = "T" in letters | names_in(named.side) and claim.context.body is None
@@ -240,6 +248,32 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     is_exact = is_sum and not near.renamed and near.code == "sign_of_term"
     least = LEAST_SYMBOLS_EDITED + (not is_sum and near.code != "exponent") - is_exact
     return max(count, near.array_letters) >= least
+
+
+def is_steady(known: str) -> bool:
+    """Return whether ``known`` names a formula for constant angular acceleration."""
+    return "constant angular acceleration" in known
+
+
+def is_inverted(named: NamedFormula, near: Near) -> bool:
+    """Return whether a claim is the equation of motion of a pendulum with the wrong sign, ``theta'' = g/l*sin(theta)``.
+
+    For an angle from the upright position this sign is right.
+    """
+    is_motion = named.is_rate and len(named.side.args) > 2 and "pendulum" in near.known.name
+    return is_motion and near.code in ("sign_of_term", "overall_sign") and not has_terms(named.formula)
+
+
+def _is_multiple_of_period(named: NamedFormula, near: Near) -> bool:
+    """Return whether a claim gives a multiple of a known period: ``pi*sqrt(L/g)`` for ``2*pi*sqrt(L/g)``."""
+    # the factor before the root is 2 pi for all bodies, the one in it depends on the body
+    roots = [
+        {node for _, node in walk(tree) if node.kind == "call" and node.value == "sqrt"}
+        for tree in (named.formula, near.tree)
+    ]
+    has_pi = all(any(node.value == "pi" for _, node in walk(tree)) for tree in (named.formula, near.tree))
+    is_period = near.known.name.startswith("period of") and re.fullmatch("T(_[a-z]+)?", named.name) is not None
+    return is_period and near.code == "factor" and has_pi and bool(roots[0]) and roots[0] == roots[1]
 
 
 def _is_stated(claim: Claim, named: NamedFormula, near: Near) -> bool:
@@ -377,6 +411,8 @@ def keeps_places(named: NamedFormula, known: Identification) -> bool:
     entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(ENTRY, named.name)
     if entry and own and own[1] not in (entry[1], entry[1][::-1]):
         return False
+    if known.name in OF_ONE_ENTRY and not all(re.fullmatch(ENTRY, new) for new in known.mapping.values()):
+        return False  # asin of a letter is any angle
     angle_of = re.match(r"(first|third) angle of (ZXZ|ZYZ) of a rotation matrix", known.name)
     if angle_of and re.fullmatch(LAST_ANGLE if angle_of[1] == "first" else FIRST_ANGLE, named.name):
         return False

@@ -13,7 +13,7 @@ from sympy import Expr, ImmutableMatrix, Matrix, Mul, Symbol, diag
 from symrot import catalogue, symbols
 from symrot.checker.recognition.fingerprint import NotInField, fingerprint
 from symrot.checker.recognition.formulas.bodies import bodies
-from symrot.checker.recognition.formulas.kinematics import GYROSCOPE, along_axes, rotations, vectors
+from symrot.checker.recognition.formulas.kinematics import GYROSCOPE, OF_ONE_ENTRY, along_axes, rotations, vectors
 from symrot.checker.recognition.formulas.mechanics import one_axis, tops
 from symrot.checker.recognition.formulas.points import ANY_VECTORS, GENERAL, points
 from symrot.checker.recognition.relations import primitive, relations, solved
@@ -91,6 +91,8 @@ def _axes() -> Iterator[Named]:
     for axis in "xyz":
         rotation = elementary_rotation(axis.upper(), symbols.phi)
         yield f"rotation about the {axis} axis, body to space", f"R{axis}(phi)", rotation
+    flat = elementary_rotation("Z", symbols.phi)[:2, :2]
+    yield "rotation matrix in a plane, body to space", "Rz(phi)", flat
 
 
 def _quaternions() -> Iterator[Named]:
@@ -211,6 +213,10 @@ def _mechanics() -> Iterator[Named]:
         yield f"gyroscopic torque omega x I omega, {axes}", page_of, omega.cross(momentum)
         yield f"angular momentum I omega, {axes}", "derivations/angular_momentum.md", momentum
         yield f"kinetic energy of rotation, {axes}", "derivations/kinetic_energy.md", omega.dot(momentum) / 2
+    A, B, C = moments
+    for number, inertia in enumerate((diag(A, B, B), diag(A, B, A), diag(A, A, C)), start=1):
+        title = f"angular momentum I omega of a body that is symmetric about axis {number}"
+        yield title, "derivations/angular_momentum.md", inertia * omega
     point = Matrix(tensor.inertia_of_point(symbols.m, symbols.position))
     page_of = "derivations/parallel_axis.md"
     yield "inertia tensor of a point mass, which is what the parallel-axis theorem adds", page_of, point
@@ -327,7 +333,8 @@ def _selected(
     is_relation: bool = False,  # stored too: relations are looked up for equations only
 ) -> Iterator[tuple[str, Known]]:
     """Yield (key, formula) for formulas with at least ``least`` symbols and at most ``longest`` characters."""
-    of_letters = {*(name for name, *_ in along_axes()), GYROSCOPE, *SCALAR_PRODUCTS, *ANY_VECTORS, *GENERAL}
+    general = (*GENERAL, *OF_ONE_ENTRY)
+    of_letters = {*(name for name, *_ in along_axes()), GYROSCOPE, *SCALAR_PRODUCTS, *ANY_VECTORS, *general}
     seen, few = set(), {name for name, *_ in (*tops(), *one_axis(), *_solved(), *rotations(), *bodies(), *points())}
     for name, source, value in formulas:
         entries, shape = flatten(value)
@@ -338,7 +345,7 @@ def _selected(
             own = fingerprint(entries)
         except NotInField:
             continue
-        is_general = _is_general(entries) and not ending_of(name) and name not in GENERAL
+        is_general = _is_general(entries) and not ending_of(name) and name not in general
         if is_general or len(own.atoms) < least or len(text) > longest or (name, text) in seen:
             continue
         seen.add((name, text))

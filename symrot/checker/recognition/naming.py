@@ -33,7 +33,9 @@ from symrot.checker.recognition.evidence import (
     has_word,
     is_evident,
     is_in_usual_sequence,
+    is_inverted,
     is_of_body,
+    is_steady,
     is_unusual,
     keeps_places,
     misfit_of,
@@ -49,7 +51,7 @@ from symrot.checker.recognition.identification import identified, known_value
 from symrot.checker.recognition.known_formulas import ending_of
 from symrot.checker.recognition.letters import is_atom
 from symrot.checker.recognition.nearby import Near, near_formulas
-from symrot.checker.recognition.quantity_variants import is_evident_by_quantity, quantity_variants
+from symrot.checker.recognition.quantity_variants import is_evident_by_quantity, quantity_variants, without_inverse
 from symrot.checker.recognition.relations import terms_expanded, without_common_powers
 from symrot.checker.recognition.solved_relations import put_back, solved_claims
 from symrot.checker.repair.edits import COST, FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, single_edits
@@ -110,6 +112,11 @@ MOST_READINGS = 4
 MINUS_PRODUCTS = "products of inertia are those with the minus sign, I_xy = -integral of x*y dm"
 PLUS_PRODUCTS = "for products of inertia without the minus sign, I_xy = integral of x*y dm"
 
+DECELERATION = r"alpha(_\w+)?|a"
+"""The letters of angular accelerations."""
+
+UPRIGHT = "for an angle from the upright position, the equation is right as it stands"
+
 SQUARED = ", squared"
 """The end of the names of those known formulas whose root has the name."""
 
@@ -128,7 +135,10 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     if (mapped := _by_matrix(claim, named, repair)) is not None:
         return mapped
     readings = _readings(claim, named, named.formula, LEAST_SYMBOLS)
-    readings = readings or _with_other_products(claim, named, named.formula)
+    readings = readings or _with_other_products(claim, named, named.formula) or _slowing_down(claim, named)
+    if readings and not claim.context and (axes := _axes_of_symmetry(readings)):
+        return Verdict("definition", reason=f"it is right for a body that is symmetric about axis {axes}; for three "
+                                            "different moments of inertia, one of them has a wrong index")  # fmt: skip
     if readings:
         usual = _near_usual(claim, named, readings) if repair else None
         recognised = Verdict("recognised", recognised_as=readings, notes=_on_signs_of_products(claim, named, readings))
@@ -150,6 +160,13 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
             "it may be a definition"
         )
     return Verdict("definition", reason=reason)
+
+
+def _axes_of_symmetry(readings: Sequence[Identification]) -> str:
+    """Return "1" or "2" if all ``readings`` are for a body that is symmetric about this axis; otherwise ""."""
+    # I_2 twice in (I_1 w_1, I_2 w_2, I_2 w_3) may be a misprint; books choose axis 3 for the axis of symmetry
+    axes = {axis[1] if (axis := re.search("symmetric about axis ([12])$", known.name)) else "" for known in readings}
+    return axes.pop() if len(axes) == 1 else ""
 
 
 def _near_usual(claim: Claim, named: NamedFormula, readings: Sequence[Identification]) -> Verdict | None:
@@ -221,6 +238,25 @@ def _with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tu
     return ()
 
 
+def _slowing_down(claim: Claim, named: NamedFormula) -> tuple[Identification, ...]:
+    """Return the known formulas for constant angular acceleration that a claim gives with alpha as a deceleration."""
+    letters = sorted(name for name in names_in(named.formula) if re.fullmatch(DECELERATION, name))
+    for letter in letters:
+        other = named._replace(formula=_with_sign_of(named.formula, letter))
+        readings = _readings(claim, other, other.formula, LEAST_SYMBOLS)
+        slowing = [replace(known, how=f"{letter} is the deceleration") for known in readings if is_steady(known.name)]
+        if slowing:
+            return tuple(slowing)
+    return ()
+
+
+def _with_sign_of(tree: Node, name: str) -> Node:
+    """Return a tree with ``-name`` in place of ``name``."""
+    if tree == Node("name", name):
+        return negated(tree)
+    return replace(tree, args=tuple(_with_sign_of(child, name) for child in tree.args))
+
+
 def _on_signs_of_products(claim: Claim, named: NamedFormula, readings: Collection[Identification]) -> tuple[str, ...]:
     """Return a note, in a tuple, on the sign of products of inertia, or () if the sign does not matter or is stated."""
     names = [name for name in names_in(named.formula) if PRODUCT_OF_INERTIA.fullmatch(name)]
@@ -239,9 +275,23 @@ def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
     if named.solve is not None and _is_known_for_exchanged_masses(claim, named):
         return None
     near = _near(claim, named) if named.solve is not None else _near_relation(claim, named.side, named.formula)
+    near = _near_inside(claim, named) if near is None else near
     is_open = words_of(named) is not None or named.solve is None
     edited = _edited(claim, named) if near is None and is_open else near
     return _near_by_quantity(claim, named) if edited is None else edited
+
+
+def _near_inside(claim: Claim, named: NamedFormula) -> Verdict | None:
+    """Return the verdict "doubtful" on a claim ``theta = acos(u)`` if one change in u gives a known angle; or None."""
+    inside = without_inverse(named)
+    verdict = _near(claim, inside) if inside is not None else None
+    if inside is None or inside.solve is None or verdict is None or verdict.verdict != "doubtful":
+        return None
+    repairs = []
+    for edited in verdict.repairs:
+        whole = inside.solve(read_relation(edited.text)[2])
+        repairs.append(replace(edited, text=f"{text(named.side)} == {text(whole)}"))
+    return replace(verdict, repairs=tuple(repairs))
 
 
 def _near_by_quantity(claim: Claim, named: NamedFormula) -> Verdict | None:
@@ -355,7 +405,8 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     if not repairs:
         return None
     (_, readings), *_ = repairs.values()
-    return _doubtful(tuple(repair for repair, _ in repairs.values()), readings)
+    notes = (UPRIGHT,) if any(is_inverted(named, near) for near in nearby if near.tree in repairs) else ()
+    return _doubtful(tuple(repair for repair, _ in repairs.values()), readings, notes)
 
 
 def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identification, ...]:
@@ -595,5 +646,7 @@ def _without_function(value: Any) -> tuple[Any, str]:
     factor, function = value.as_coeff_Mul()
     if not isinstance(function, acos | asin | atan2):
         return value, ""
+    if factor < 0 and isinstance(function, asin):
+        factor, function = -factor, asin(-function.args[0], evaluate=False)  # asin is odd: -asin(u) is asin(-u)
     inside = Matrix(function.args) if isinstance(function, atan2) else function.args[0]
     return inside, f", {f'{factor} ' * (factor != 1)}{function.func}"

@@ -6,13 +6,15 @@ from typing import NamedTuple
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula, is_name_or_rate
-from symrot.checker.claim.tree import Node, negated, number, sum_of
+from symrot.checker.claim.tree import Node, negated, number, product, sum_of
 from symrot.checker.recognition.evidence import LEAST_SYMBOLS_EDITED, names_in, quantity_name
 from symrot.checker.repair.edits import COST, OPPOSITE, scaled
 
-__all__ = ["QuantityVariant", "is_evident_by_quantity", "quantity_variants"]
+__all__ = ["QuantityVariant", "is_evident_by_quantity", "quantity_variants", "without_inverse"]
 
 TWO = number(2)
+FUNCTION_OF = {"acos": "cos", "asin": "sin"}
+"""Inverse function -> the function."""
 
 
 class QuantityVariant(NamedTuple):
@@ -42,6 +44,27 @@ def quantity_variants(named: NamedFormula) -> Iterator[QuantityVariant]:
         if formula.kind == "sum" and all(map(is_name_or_rate, terms)):
             squares = [negated(_square_of(t.args[0])) if t.kind == "neg" else _square_of(t) for t in formula.args]
             yield QuantityVariant(square, sum_of(squares), "exponent", COST["exponent"])
+
+
+def without_inverse(named: NamedFormula) -> NamedFormula | None:
+    """Return the claim ``cos(theta/2) = u`` for ``theta = 2*acos(u)``; None for a formula of another form.
+
+    Its ``solve`` puts a formula in place of u in ``2*acos(u)``.
+    """
+    # acos(u) has no value at most random values of u
+    factors = named.formula.args if named.formula.kind == "product" else (named.formula,)
+    calls = [factor for factor in factors if factor.kind == "call" and factor.value in FUNCTION_OF]
+    others = [factor for factor in factors if factor not in calls]
+    if len(calls) != 1 or not is_name_or_rate(named.side) or any(factor.kind != "number" for factor in others):
+        return None
+    (call,) = calls
+    angle = product([named.side, Node("inv", None, (product(others),))]) if others else named.side
+
+    def solve(inside: Node) -> Node:
+        return product([*others, Node("call", call.value, (inside,))])
+
+    side = Node("call", FUNCTION_OF[str(call.value)], (angle,))
+    return named._replace(side=side, formula=call.args[0], solve=solve)
 
 
 def _square_of(tree: Node) -> Node:

@@ -78,6 +78,7 @@ BEFORE, AFTER = new_symbol("omega_i", "rad/s"), new_symbol("omega_f", "rad/s")
 START, END, TIME = new_symbol("theta_i", "rad"), new_symbol("theta_f", "rad"), new_symbol("t", "s")
 ALPHA, FALL, SLOPE = new_symbol("alpha_a", "rad/s^2"), new_symbol("a_l", "m/s^2"), new_symbol("beta", "rad")
 TORQUE, PERIOD, LENGTH = new_symbol("M", "N m"), new_symbol("T_p", "s"), new_symbol("q_d", "m")
+PULLEY = new_symbol("M_p", "kg")
 GYRATION = new_symbol("k_O", "m, of gyration")
 TILT = new_symbol("gamma", "rad")
 WHEEL_MOMENTUM = new_symbol("h_w", "kg m^2/s")
@@ -261,6 +262,11 @@ def _rolling() -> Iterator[Relation]:
     power = energy.diff(SPEED) * FALL - (first - second) * G * SPEED
     falling = cancel(power / SPEED)
     yield Relation("two masses on a pulley", PLANE, falling, {FALL: "acceleration of"})
+    for name in ("disk", "ring"):  # pulleys of a mass of their own
+        body = solid(name)
+        moment = body.inertia_about(tuple(body.center_of_mass))[2, 2].subs(MASS, PULLEY)
+        title = f"two masses on a pulley that is a {name}"
+        yield Relation(title, PLANE, cancel(falling.subs(A, moment)), {FALL: "acceleration of"})
     alone = falling.subs({first: MASS, second: 0})
     yield Relation("a mass that unwinds a string from a wheel", PLANE, alone, {FALL: "acceleration of"})
 

@@ -207,7 +207,8 @@ class Cursor(ABC):
             raise self.fail("a product sign before a number" if token.kind == "number" else "an operator")
         if token.text in ENGLISH:
             raise self.fail(f"each claim on a line of its own, without the word {token.text!r}")
-        return token.kind == "name" or token.text in FACTOR_MARKS or (token.text in ("|", "‖") and not self.bars)
+        is_mark = token.text in (*FACTOR_MARKS, "∫") or (token.text in ("|", "‖") and not self.bars)
+        return token.kind == "name" or is_mark
 
     def is_element(self) -> bool:
         """Return whether the token at the cursor is the element that ends the integral being parsed: dm or dx."""

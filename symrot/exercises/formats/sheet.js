@@ -5,8 +5,11 @@ const TOLERANCE = 0.005; // three significant digits
 const NAMES = Object.keys(units).sort((a, b) => b.length - a.length);
 const UNIT = new RegExp(`(/?)\\s*(${NAMES.join("|")})(?![A-Za-z])(?:\\^?\\(?(-?\\d+)\\)?)?`, "gy");
 
-/** Return {factor, dimension} of a text such as "kg m^2/s", or null if it is not a unit. */
-function unitOf(text) {
+/**
+ * Return {factor, dimension} of a text such as "kg m^2/s", or null if it is not a unit. A hertz is one per second, or
+ * with `rotations` one rotation per second.
+ */
+function unitOf(text, rotations) {
   let plain = text.trim().replace(/\*\*/g, "^").replace(/[*·⋅()]/g, " ").replace(/²/g, "^2").replace(/³/g, "^3");
   plain = plain.replace(/⁻¹/g, "^-1").replace(/⁻²/g, "^-2").replace(/^1\s*\//, "/").replace(/°/g, "deg");
   const divided = /\/\(/.test(text);
@@ -19,7 +22,8 @@ function unitOf(text) {
     if (!match) return null;
     below = match[1] === "/" || (divided && below);
     const power = (below ? -1 : 1) * Number(match[3] ?? 1);
-    factor *= units[match[2]].factor ** power;
+    const turn = rotations && match[2].endsWith("Hz") ? 2 * Math.PI : 1;
+    factor *= (turn * units[match[2]].factor) ** power;
     for (const [name, value] of Object.entries(units[match[2]].dimension))
       dimension[name] = (dimension[name] ?? 0) + value * power;
     place = UNIT.lastIndex;
@@ -78,7 +82,7 @@ function grade(text, question) {
   const number = arithmetic(text.replace(/^[^=]*=/, ""));
   if (!number) return ["wrong", "This is no number: write for example 0.125, 1.2e-3 or 3/8."];
   const [value, rest] = number;
-  const unit = rest.trim() ? unitOf(rest) : null;
+  const unit = rest.trim() ? unitOf(rest, /rad|rev|rpm|deg/.test(question.unit)) : null;
   if (rest.trim() && !unit) return ["wrong", `“${rest.trim()}” is no unit that this page knows.`];
   const truth = Number(question.value);
   if (unit && !same(unit.dimension, question.dimension))

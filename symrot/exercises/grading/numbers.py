@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import isfinite, log10, pi, sqrt
 
-from symrot.checker.units.conversion import UnitProduct
+from symrot.checker.units.conversion import ANGULAR, UnitProduct
 from symrot.checker.units.units import unit_text
 from symrot.errors import InputError
 from symrot.exercises.exercise import Question
@@ -34,6 +34,8 @@ _LATEX = (
 """LaTeX and signs of numbers with units -> plain text."""
 
 _EXPONENT = re.compile(r"(\d)\s*\*\s*10\s*(?:\^|\*\*)\s*\(?([+-]?\d+)\)?")
+_HERTZ = re.compile(r"(?<![A-Za-z])(k|M|)Hz\b")
+_ROTATIONS = {"": "rev/s", "k": "rev/ms", "M": "rev/us"}
 _PLAIN = re.compile(r"[-+]?\s*(\d*\.?\d*)(?:[eE][-+]?\d+)?")
 _FUNCTIONS: dict[str, Callable[..., float]] = {"sqrt": sqrt, "abs": abs}
 
@@ -66,7 +68,9 @@ def mark_number(key: str, answer: str, question: Question) -> Mark:
     question : Question
         Of kind ``"number"``.
     """
-    numbers = [*_readings(answer)]
+    # next to an angle, a hertz is one rotation per second, as the checker reads it
+    turns = not ANGULAR.isdisjoint(re.findall(r"[a-z]+", question.unit))
+    numbers = [*_readings(_HERTZ.sub(lambda match: _ROTATIONS[match[1]], answer) if turns else answer)]
     if not numbers:
         example = f"0.125 {question.unit}".strip()
         sentence = f"expected a number with a unit such as '{example}', got {answer[:60]!r}"

@@ -208,9 +208,7 @@ def polhode_constants(random: Random) -> Problem:
 
 
 def wobble_period(random: Random) -> Problem:
-    """Return a problem that asks for the period of a wobble seen from the body, such as the wobble of the
-    Earth's pole.
-    """
+    """Return a problem that asks for the period of a wobble seen from the body, such as that of the Earth's pole."""
     rates = euler_equations((A, A, C), None)
     period = 2 * pi * A / ((C - A) * omega_3)
     return Problem(

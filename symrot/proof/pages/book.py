@@ -32,21 +32,60 @@ const list = document.getElementById("results");
 const count = document.getElementById("count");
 const MOST = 60;
 
+// words that say nothing about a subject; "s" remains of "Euler's"
+const IDLE = new Set(["a", "an", "and", "by", "for", "from", "in", "is", "of", "on", "s", "the", "to", "with"]);
+const plain = (text) => text.normalize("NFD").replace(/[\\u0300-\\u036f]/g, "").toLowerCase();
+// axis and axes, body and bodies, matrix and matrices, gyroscope and gyroscopic have the same stem
+const stem = (word) => word.length > 5 ? word.replace(/(?:ices|ies|ix|es|is|s|e|y)$/, "") :
+  word.length > 3 ? word.replace(/(?:es|is|s|y)$/, "") : word;
+// in texts, all words are joined by single spaces: " the gimbal lock of"
+const flat = (text) => " " + plain(text).replace(/[^\\p{L}\\p{N}]+/gu, " ").trim();
+const PAGES = new Map();
+for (const [target, title, text] of ENTRIES) {
+  const name = target.split("#")[0];
+  if (!PAGES.has(name)) PAGES.set(name, { title: flat(title), names: "", entries: [] });
+  const page = PAGES.get(name);
+  if (title.endsWith(", also called")) page.names += plain(text).split(",").map((each) => flat(each) + " ,").join("");
+  page.entries.push({ target, title, text, words: flat(title + " " + text) });
+}
+
+// the pages that have most of the stems, the best page first, each with its entries that have all of them
+function ranked(stems) {
+  const phrase = " " + stems.join("\\\\p{L}* ") + "\\\\p{L}*";
+  const together = new RegExp(phrase, "u"), alone = new RegExp(`${phrase} ,`, "u");
+  const has = (words) => stems.filter((each) => words.includes(" " + each)).length;
+  const pages = [...PAGES].map(([name, page]) => {
+    const shares = page.entries.map((entry) => has(entry.words));
+    const most = Math.max(...shares);
+    const subject = page.title + " " + page.names;
+    const share = page.entries.filter((entry) => together.test(entry.words)).length / page.entries.length;
+    const rank = 4 * has(page.title) + 3 * has(page.names) + (together.test(page.title) ? 10 : 0) +
+      (together.test(page.names) ? 8 : 0) + (alone.test(page.names) ? 9 : 0) + 6 * share +
+      (name.includes("_appendix") ? -12 : 0);
+    return { most: has(page.entries.map((entry) => entry.words).join(" ") + subject), rank, name,
+      entries: page.entries.filter((_, place) => most > 0 && shares[place] === most) };
+  });
+  const best = Math.max(...pages.map((page) => page.most));
+  return best === 0 ? [] :
+    pages.filter((page) => page.most === best).sort((one, other) => other.rank - one.rank);
+}
+
 function search() {
-  const words = field.value.toLowerCase().split(/\\s+/).filter(Boolean);
-  const hits = words.length === 0 ? [] :
-    ENTRIES.filter(([, title, text]) => words.every((word) => (title + " " + text).toLowerCase().includes(word)));
-  list.replaceChildren(...hits.slice(0, MOST).map(([target, title, text]) => {
+  const all = flat(field.value).trim().split(" ").filter(Boolean);
+  const words = all.filter((word) => !IDLE.has(word));
+  const stems = (words.length > 0 ? words : all).map(stem);
+  const hits = stems.length === 0 ? [] : ranked(stems).flatMap((page) => page.entries);
+  list.replaceChildren(...hits.slice(0, MOST).map(({ target, title, text }) => {
     const item = document.createElement("li");
     const link = document.createElement("a");
-    const words = document.createElement("small");
+    const small = document.createElement("small");
     link.href = target;
     link.textContent = title;
-    words.textContent = text;
-    item.append(link, words);
+    small.textContent = text;
+    item.append(link, small);
     return item;
   }));
-  count.textContent = words.length === 0 ? "" :
+  count.textContent = stems.length === 0 ? "" :
     `${hits.length} ${hits.length === 1 ? "place" : "places"}` + (hits.length > MOST ? `, the first ${MOST}:` : "");
 }
 
@@ -61,7 +100,9 @@ FORM = (
 )
 
 
-def book(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) -> dict[str, str]:
+def book(
+    title: str, about: str, chapters: Mapping[str, Sequence[Page]], other_names: Mapping[str, str] | None = None
+) -> dict[str, str]:
     """Return the files of a book in HTML that has all the pages, as a map from file name to text.
 
     Parameters
@@ -70,6 +111,9 @@ def book(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) -> dict
         The title of the book, and a paragraph for the page of contents.
     chapters : mapping of str to sequence of Page
         A map from the title of a chapter to its pages, in reading order. An empty title is not printed.
+    other_names : mapping of str to str, optional
+        A map from the name of a page to other names of its subject, separated by commas, under which the search finds
+        the page.
 
     Returns
     -------
@@ -83,7 +127,7 @@ def book(title: str, about: str, chapters: Mapping[str, Sequence[Page]]) -> dict
     ['index.html', 'search.js', 'spin.html']
     """
     pages = [page for members in chapters.values() for page in members]
-    texts = {CONTENTS: _contents(title, about, chapters), SEARCH: _search(pages)}
+    texts = {CONTENTS: _contents(title, about, chapters), SEARCH: _search(pages, other_names or {})}
     for place, page in enumerate(pages):
         before, after = pages[place - 1] if place else None, pages[place + 1] if place + 1 < len(pages) else None
         turning = _turning(before, after)
@@ -159,11 +203,16 @@ def _plain(text: str) -> str:
     return unescape(re.sub(r"<[^>]*>", "", prose(text)))
 
 
-def _search(pages: Sequence[Page]) -> str:
+def _search(pages: Sequence[Page], other_names: Mapping[str, str]) -> str:
     entries = [
         [f"{page.name}.html{place}", _plain(title), _plain(text)]
         for page in pages
-        for place, title, text in _words(page)
+        for place, title, text in (*_words(page), *_also_called(page, other_names))
     ]
     lines = ",\n".join(json.dumps(entry, ensure_ascii=False) for entry in entries)
     return f"const ENTRIES = [\n{lines}\n];\n\n{SCRIPT}"
+
+
+def _also_called(page: Page, other_names: Mapping[str, str]) -> Iterator[tuple[str, str, str]]:
+    if page.name in other_names:
+        yield "", f"{page.title}, also called", other_names[page.name]

@@ -37,6 +37,7 @@ enum { SYMROT_TOUCHES = 129 };  /* samples of an interval of 64 units in the las
 
 static const double SYMROT_DISC_SIZE[SYMROT_DISCS] = {4.0, 2.0};  /* radii of discs, in halves of the interval */
 static const double SYMROT_LEBESGUE = 3.0;  /* factor by which errors of samples grow in the polynomial */
+static const double SYMROT_SERIES = 16.0;   /* rounding errors of the series itself: the samples of t have none */
 
 typedef struct {
     const double *rows, *edges, *p;  /* edges: pieces + 1 times, in the order of the motion */
@@ -294,7 +295,7 @@ static double symrot_extremum(symrot_search *search, int event, double t, double
 static int symrot_settle(symrot_search *search, int event, double a, double b, int smallest)
 {
     double times[SYMROT_POINTS], y[SYMROT_STATES] = {0.0}, r[SYMROT_STATES] = {0.0}, f[SYMROT_POINTS];
-    double c[SYMROT_POINTS], d[SYMROT_POINTS], e[SYMROT_POINTS], noise = 0.0, n0 = 0.0, n1 = 0.0, own;
+    double c[SYMROT_POINTS], d[SYMROT_POINTS], e[SYMROT_POINTS], noise = 0.0, largest = 0.0, n0 = 0.0, n1 = 0.0, own;
     const double centre = a + 0.5*(b - a), half = 0.5*fabs(b - a)*(1.0 + 1e-13) + DBL_EPSILON*fabs(centre);
     symrot_path(search, event, centre, half, y, r);
     const symrot_range all = symrot_event_range(event, centre, half, y, r, search->p);
@@ -328,6 +329,7 @@ static int symrot_settle(symrot_search *search, int event, double a, double b, i
         if (i == 0) n0 = own;
         if (i == SYMROT_DEGREE) n1 = own;
         noise = fmax(noise, own);
+        largest = fmax(largest, fabs(f[i]));
     }
     for (int k = 0; k <= SYMROT_DEGREE; ++k) {  /* x = -cos(i pi/n) increases with i */
         double sum = 0.5*(f[SYMROT_DEGREE] + (k%2 ? -f[0] : f[0]));
@@ -338,7 +340,8 @@ static int symrot_settle(symrot_search *search, int event, double a, double b, i
     c[0] *= 0.5;
     c[SYMROT_DEGREE] *= 0.5;
     /* Markov: derivatives of the rounding errors in the polynomial */
-    const double squared = (double)SYMROT_DEGREE*SYMROT_DEGREE, rounding = SYMROT_LEBESGUE*noise;
+    const double squared = (double)SYMROT_DEGREE*SYMROT_DEGREE;
+    const double rounding = SYMROT_LEBESGUE*noise + SYMROT_SERIES*DBL_EPSILON*largest;
     const double miss0 = bound*missing[0] + rounding, miss1 = bound*missing[1] + rounding*squared;
     const double miss2 = bound*missing[2] + rounding*squared*(squared - 1.0)*(1.0/3.0);
     const double rest0 = symrot_rest(c) + miss0;

@@ -26,7 +26,7 @@ FALSE = (
 )  # fmt: skip
 
 OPEN = (
-    "R^T R = I", "det R = 1", "|a × b| = a b sin θ", "a·b = |a| |b| cos θ", "det T = −sin ϑ", "q v q* = (0, w)", "Ixy = ∫ xy dm",
+    "A^T A = I", "det A = 1", "|a × b| = a b sin θ", "a·b = |a| |b| cos θ", "det T = −sin ϑ", "q v q* = (0, w)", "Ixy = ∫ xy dm",
     r"\dot R = S(\omega) R", r"{}^A R_B = {}^A R_C \, {}^C R_B", r"{}^A\mathbf p = {}^A R_B \, {}^B\mathbf p", "L = r × m v",
     r"\mathbf v' = q\,\mathbf v\,q^*", r"T^* = \frac12 m v^2", r"[I]_F = [FB]\,[I]_B\,[FB]^T",
     r"\mathbf H_2 = \mathbf H_1 + \int_{t_1}^{t_2}\mathbf M\,dt", "x = (-b ± √(b² − 4 a c))/(2 a)",

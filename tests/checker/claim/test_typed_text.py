@@ -225,7 +225,7 @@ def test_every_token_has_its_place():
     for token in tokens_of(source):
         assert 0 <= token.start <= token.end <= len(source)
     with pytest.raises(InputError, match="at position 11"):
-        symrot.check("ω̇₁ = ½ 𝜔 ∫x")
+        symrot.check("ω̇₁ = ½ 𝜔 ∑x")
 
 
 def test_sympy_equations_and_values_are_read():

@@ -36,6 +36,8 @@ def claims_of_reading(
     stated.check_names({name for chain in reading.lines for side in chain.sides for name in quantities_of(side)})
     context = [side for chain in reading.lines for side in chain.sides]
     numbers = _complex_numbers(reading.lines, context)
+    if numbers and all(unit.kind == "name" for unit in numbers.values()):
+        context = [substituted(side, numbers) for side in context if side.kind != "name"]
     assume, stated = _with_signs_of_products(assume, stated)
     for chain in reading.lines:
         links = chain.links
@@ -89,7 +91,7 @@ def _complex_numbers(lines: Sequence[Chain], formulas: Sequence[Node]) -> dict[s
     """Return the formula of each complex number z: ``x + i*y`` if a line defines z so, else ``Re_z + i*Im_z``."""
     unit = imaginary_unit(formulas)
     if unit is None:
-        return open_numbers(formulas)
+        return _names_of_unit(lines, formulas) or open_numbers(formulas)
     numbers = {
         str(chain.sides[0].value): chain.sides[1]
         for chain in lines
@@ -97,6 +99,14 @@ def _complex_numbers(lines: Sequence[Chain], formulas: Sequence[Node]) -> dict[s
     }
     own = {name: tree for name, tree in numbers.items() if name.removesuffix(BAR) not in numbers or BAR not in name}
     return own or open_numbers(formulas, str(unit.value))
+
+
+def _names_of_unit(lines: Sequence[Chain], formulas: Sequence[Node]) -> dict[str, Node]:
+    """Return {"q": i} for the lines ``q = i`` and ``q^2 = -1``, whose only letter is the imaginary unit; else {}."""
+    first = {chain.sides[0]: chain.sides[1] for chain in lines if chain.sides[0].kind == "name" and len(lines) > 1}
+    named = {str(name.value): side for name, side in first.items() if side in (Node("name", "i"), Node("name", "j"))}
+    letters = {str(node.value) for side in formulas for _, node in walk(side) if node.kind in ("name", "call")}
+    return named if letters - {*named} == {str(side.value) for side in named.values()} else {}
 
 
 def _needed(define: Sequence[tuple[str, Node]], used: set[str]) -> list[tuple[str, Node]]:

@@ -17,6 +17,7 @@ from symrot.checker.arrays.matrices import (
     with_lengths,
     without_time,
 )
+from symrot.checker.arrays.matrices_of_vectors import with_matrices_of_vectors
 from symrot.checker.arrays.pauli import with_pauli_matrices
 from symrot.checker.arrays.quaternions import Quaternions, used_quaternions
 from symrot.checker.claim.claims import Claim, assumed_names
@@ -43,7 +44,9 @@ from symrot.checker.latex.reader import Names, read_latex
 from symrot.checker.units.units import read_unit
 from symrot.errors import InputError
 
-__all__ = ["check_units", "claim_of_relation", "claim_of_text", "functions_of_time", "is_latex", "read_hypothesis"]
+__all__ = [
+    "ON_PAULI", "check_units", "claim_of_relation", "claim_of_text", "functions_of_time", "is_latex", "read_hypothesis",
+]  # fmt: skip
 
 ON_PAULI = "sigma_x, sigma_y and sigma_z are Pauli's matrices, and i is the imaginary unit"
 
@@ -64,11 +67,12 @@ def claim_of_text(source: str, assume: Sequence[str] = (), units: Mapping[str, s
 def claim_of_relation(
     relation: Relation, source: str, assume: Sequence[str] = (), units: Mapping[str, str] | None = None,
     define: Sequence[tuple[str, Node]] = (), notes: Sequence[str] = (), context: Sequence[Node] = (),
-    vectors: Sequence[Vector] = (),
+    vectors: Sequence[Vector] = (), pauli_as_numbers: bool = False,
 ) -> Claim:  # fmt: skip
     """Return the claim of an equation in a text.
 
-    ``define`` and ``context`` are the definitions and the other formulas of the same text.
+    ``define`` and ``context`` are the definitions and the other formulas of the same text. With ``pauli_as_numbers``,
+    sigma_x is a number, such as a stress, and not one of Pauli's matrices.
 
     Raises
     ------
@@ -88,7 +92,11 @@ def claim_of_relation(
     assume = [source for source in assume if matrices[source] is None]
     define = [*_with_entries([matrix for matrix in matrices.values() if matrix], relation), *define]
     hypotheses = _of_one_time([read_hypothesis(source, "given", words=words) for source in assume])
-    relation, pauli = with_pauli_matrices(relation, {name for name, _ in define})
+    with_matrices = with_matrices_of_vectors(relation, vectors, {name for name, _ in define})
+    vectors = [*(vector for vector in vectors if vector.name not in with_matrices.letters), *with_matrices.vectors]
+    relation, notes = with_matrices.relation, [*notes, *with_matrices.notes]
+    known = {name for name, _ in define}
+    relation, pauli = (relation, ()) if pauli_as_numbers else with_pauli_matrices(relation, known)
     define = [*pauli, *define]
     notes = [*notes, *([ON_PAULI] if pauli else [])]
     unit = None if pauli else imaginary_unit([*relation[1:], *context])
@@ -119,7 +127,9 @@ def claim_of_relation(
     relation = relation[0], with_time(relation[1], moving), with_time(relation[2], moving)
     hypotheses += tuple(vector.length_is_one for vector in vectors if vector.unit and not vector.is_axis)
     define = [*((vector.name, vector.components) for vector in vectors), *define]
-    notes = [*notes, *_on_vectors(vectors), *(["I is read as the unit matrix"] if with_units else [])]
+    hidden = {vector.name for vector in with_matrices.vectors}  # unit vectors without a hat
+    named = [replace(vector, unit=vector.unit and vector.name not in hidden) for vector in vectors]
+    notes = [*notes, *_on_vectors(named), *(["I is read as the unit matrix"] if with_units else [])]
     everything = [*relation[1:], *context, *(side for hypothesis in hypotheses for side in hypothesis[1:])]
     if has_natural_base(everything) and not any(name == "e" for name, _ in define):
         notes.append("e is read as the base of the exponential function")
@@ -148,7 +158,7 @@ def claim_of_relation(
         alternatives=() if of_axes == relation else (of_axes,),
         implied=True,
         sources=sources,
-        units=check_units(dict(units or {}), used, "claim"),
+        units={**_units_of_directions(vectors), **check_units(dict(units or {}), used, "claim")},
         has_parts=unit is not None or bool(on_indices),
         notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
     )
@@ -282,6 +292,11 @@ def _on_vectors(vectors: Sequence[Vector]) -> Iterator[str]:
             yield f"{vector.name} with a hat is the {vector.name} axis"
         elif vector.unit:
             yield f"{vector.name} has the length 1, as its hat says"
+
+
+def _units_of_directions(vectors: Sequence[Vector]) -> dict[str, str]:
+    """Return the unit "1" for each component of a vector of length 1, whose letter may be that of a rate."""
+    return {f"{v.name}_{axis}": "1" for v in vectors if v.unit and not v.is_axis for axis in v.axes}
 
 
 def _with_natural_base(relation: Relation) -> Relation:

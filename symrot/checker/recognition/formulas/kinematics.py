@@ -16,7 +16,7 @@ from symrot.conventions import SEQUENCES
 from symrot.kinematics import attitude, euler, quaternion, rotation_vector
 from symrot.kinematics.rotations import skew
 
-__all__ = ["GYROSCOPE", "along_axes", "rotations", "vectors"]
+__all__ = ["GYROSCOPE", "OF_ONE_ENTRY", "along_axes", "rotations", "vectors"]
 
 AXIS, ANGLE, SECOND_ANGLE = Matrix(symbols.axis), symbols.alpha, Symbol("beta", real=True)
 POSITION, OMEGA, ALPHA = Matrix(symbols.position), Matrix(symbols.omega_b), Matrix(symbols.omega_rates)
@@ -30,6 +30,11 @@ UNIT, PARAMETERS, RELATIVE, COMPOSITION, RODRIGUES, MOMENTUM, ENERGY, POWER, WHE
     for name in ("axis_and_angle", "euler_parameters", "relative_motion", "composition", "rodrigues",
                  "angular_momentum", "kinetic_energy", "work_and_power", "gyroscopic_wheel", "euler_body_rates")
 )  # fmt: skip
+
+PITCH = "pitch angle of a rotation matrix, asin"
+SECOND_ANGLE_OF_MATRIX = "second angle of ZXZ, and of ZYZ, of a rotation matrix, acos"
+OF_ONE_ENTRY = (PITCH, SECOND_ANGLE_OF_MATRIX)
+"""Angles that one entry of a matrix gives; only the name and the place of the entry say what is meant."""
 
 GYROSCOPE = "torque on a gyroscope whose axis precesses"
 
@@ -240,6 +245,12 @@ def _euler_angles() -> Iterator[Named]:
             yield f"{word} angle of {name} of a rotation matrix, atan2", PARAMETERS, pair
     assert matrix[2, 0] == -sin(pitch)
     yield "pitch angle of a unit quaternion, asin", PARAMETERS, -quaternion.quaternion_to_dcm(Q)[2, 0]
+    assert euler.dcm("XYZ")[0, 2] == sin(pitch)
+    of_xyz = expand(quaternion.quaternion_to_dcm(Q)[0, 2])
+    yield "second angle of XYZ of a unit quaternion, asin", PARAMETERS, of_xyz
+    yield PITCH, PARAMETERS, -ENTRIES[2, 0]
+    assert euler.dcm("ZXZ")[2, 2] == euler.dcm("ZYZ")[2, 2] == cos(symbols.theta)
+    yield SECOND_ANGLE_OF_MATRIX, PARAMETERS, ENTRIES[2, 2]
 
 
 def _with_words(name: str, source: str, column: Matrix) -> Iterator[Named]:

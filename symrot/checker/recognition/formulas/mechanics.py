@@ -6,7 +6,7 @@ Formulas of heavy tops occur twice: with the weight W, and with m g.
 from collections.abc import Iterator
 from typing import Any
 
-from sympy import Expr, Matrix, Rational, cos, diag, expand, limit, oo, pi, sin, solve
+from sympy import Expr, Matrix, Rational, cancel, cos, diag, expand, factor, limit, oo, pi, sin, solve
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA
@@ -52,7 +52,8 @@ def tops() -> Iterator[Named]:
         yield "energy of a heavy top", HEAVY, kinetic + potential
         effective = (reduced + potential).subs(DTHETA, 0)
         yield "effective potential of a heavy top", HEAVY, effective
-        yield "effective potential of a heavy top without its spin", HEAVY, effective - P_PSI**2 / (2 * C)
+        without_spin = factor(cancel(effective - potential - P_PSI**2 / (2 * C))) + potential
+        yield "effective potential of a heavy top without its spin", HEAVY, without_spin
         yield "energy of a heavy top as one of a single angle", HEAVY, reduced + potential
         yield from _steady(effective, spin, weight)
     yield from _free(omega)

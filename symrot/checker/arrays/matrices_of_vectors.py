@@ -1,0 +1,220 @@
+"""Letters that books use for the matrix of a vector: K for the skew matrix of k, ``Ω(ω)`` for the matrix of rates.
+
+In ``R = I + sin θ K + (1 - cos θ) K^2``, Rodrigues' formula, K is the skew matrix of a unit vector k, and the matrix
+exponential of θ K is R. In ``q' = 1/2 Ω(ω) q``, the product ``Ω(ω) q`` is the quaternion product of q and (0, ω).
+"""
+
+import re
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import cache
+from typing import NamedTuple
+
+from symrot import symbols
+from symrot.checker.claim.reader import read_expression
+from symrot.checker.claim.tree import TIME, Node, is_derivative, number, product, walk
+from symrot.checker.claim.vectors import Vector
+from symrot.exact.printing import as_text
+from symrot.kinematics.rotation_vector import dcm_of_axis_angle
+
+__all__ = ["WithMatrices", "with_matrices_of_vectors"]
+
+SKEW_LETTER = re.compile(r"[A-DF-HJ-Z]|Omega")
+"""The capital letters that may be skew matrices: all but E and I, which are unit matrices."""
+
+UNITS = ("I", "E", "I_3", "E_3")
+ANGLES = re.compile(r"(var)?(theta|phi)|alpha|beta|gamma|psi|delta|vartheta")
+ROTATION = re.compile(r"[RCQA](_\w+)?")
+"""The letters of angles in exponents, and of rotation matrices."""
+
+OMEGA = ("omega", "w")
+"""The letters of angular velocities."""
+
+
+class WithMatrices(NamedTuple):
+    """An equation with ``skew(k)`` for K, the unit vectors k that it has then, and notes on how it is read."""
+
+    relation: tuple[str, Node, Node]
+    vectors: tuple[Vector, ...] = ()
+    letters: tuple[str, ...] = ()  # the letters K that are replaced
+    notes: tuple[str, ...] = ()
+
+
+def with_matrices_of_vectors(
+    relation: tuple[str, Node, Node], vectors: Sequence[Vector], known: Collection[str]
+) -> WithMatrices:
+    """Return an equation in which letters for the matrix of a vector are replaced by formulas of the vector.
+
+    Parameters
+    ----------
+    relation : Relation
+    vectors : sequence of Vector
+        The vectors of the equation; those with a hat have the length 1.
+    known : collection of str
+        The names that the claim defines; they stay.
+    """
+    if (rates := _with_rate_matrix(relation, known)) is not None:
+        letters_of_rates = ("q", "p", "beta", "epsilon", "Omega")  # no vectors, though they may be bold
+        note = "Ω(ω) q is read as the product of the quaternions q and (0, ω)"
+        return WithMatrices(rates, (), letters_of_rates, (note,))
+    sign, *sides = relation
+    hats = {vector.name for vector in vectors if vector.unit and not vector.is_axis}
+    is_rotation = any(
+        (side.kind == "name" and ROTATION.fullmatch(str(side.value))) or _exponent(side) is not None for side in sides
+    )
+    sums = [node for side in sides for _, node in walk(side) if is_rotation and node.kind == "sum"]
+    letters = dict.fromkeys(name for node in sums for name in _skew_letters(node, hats, known))
+    letters |= dict.fromkeys(_in_exponents(sides, hats, known))
+    used = {str(node.value) for side in sides for _, node in walk(side) if node.kind == "name"}
+    of_axes = {name for name in used for node in sums for term in node.args if _is_outer(_factors(term), name)}
+    axes = {name: name if name in hats else _axis_name(name, used - of_axes) for name in letters}
+    made = [_rewritten(side, axes) for side in sides]
+    if made == sides:
+        return WithMatrices(relation)
+    notes = [f"{name} is read as the skew matrix of the unit vector {axis}" for name, axis in axes.items()]
+    new = tuple(Vector(axis, unit=True) for axis in dict.fromkeys(axes.values()) if axis not in hats)
+    return WithMatrices((sign, made[0], made[1]), new, tuple(name for name in axes if name not in hats), tuple(notes))
+
+
+def _axis_name(letter: str, used: Collection[str]) -> str:
+    """Return a name for the vector whose skew matrix is ``letter``: k for K; n if the claim uses k otherwise."""
+    return letter.lower() if letter.lower() not in used else "n"
+
+
+def _skew_letters(node: Node, hats: Collection[str], known: Collection[str]) -> Iterator[str]:
+    """Yield K for a sum such as ``I + sin(theta)*K + (1 - cos(theta))*K^2``; nothing for other sums."""
+    terms = [_factors(term) for term in node.args]
+    has_unit = any(factor.value in UNITS or factor == number(1) for term in terms for factor in term)
+    by_name: dict[str, list[set[str]]] = {}
+    for term in terms:
+        functions = {f"{part.value}({part.args[0]})" for factor in term for _, part in walk(factor)
+                     if part.kind == "call" and part.value in ("sin", "cos")}  # fmt: skip
+        for factor in term:
+            name = _name_of(factor)
+            if name not in known and (name in hats or SKEW_LETTER.fullmatch(name)):
+                by_name.setdefault(name, []).append(functions)
+    for name, functions_of_terms in by_name.items():
+        # a term with the sine, and one with the cosine
+        kinds = {text[:3] for functions in functions_of_terms for text in functions}
+        outer = any(_is_outer(term, name.lower()) for term in terms)
+        if has_unit and ((len(functions_of_terms) > 1 and kinds == {"sin", "cos"}) or (outer and kinds == {"sin"})):
+            yield name
+
+
+def _factors(term: Node) -> Sequence[Node]:
+    bare = term.args[0] if term.kind == "neg" else term
+    return bare.args if bare.kind == "product" else (bare,)
+
+
+def _name_of(factor: Node) -> str:
+    """Return the name K for K and for K^2, and for the length of K squared, as which a reader takes K^2."""
+    if factor.kind == "call" and factor.value == "dot" and factor.args[0] == factor.args[1]:
+        factor = factor.args[0]
+    base = factor.args[0] if factor.kind == "power" else factor
+    return str(base.value) if base.kind == "name" else ""
+
+
+def _is_outer(term: Sequence[Node], name: str) -> bool:
+    """Return whether the factors of a term end with ``k k^T`` for the name k."""
+    own = Node("name", name)
+    return tuple(term[-2:]) == (own, Node("transpose", None, (own,)))
+
+
+def _exponent(node: Node) -> Node | None:
+    """Return the exponent of a power of e, or of a call of exp; None for any other formula."""
+    if node.kind == "power" and node.args[0] == Node("name", "e"):
+        return node.args[1]
+    return node.args[0] if node.kind == "call" and node.value == "exp" and len(node.args) == 1 else None
+
+
+def _in_exponents(sides: Sequence[Node], hats: Collection[str], known: Collection[str]) -> Iterator[str]:
+    """Yield the letters of skew matrices in exponents: those with a hat, and K in ``R = e^(theta K)``."""
+    for side, other in (sides, sides[::-1]):
+        names_rotation = other.kind == "name" and ROTATION.fullmatch(str(other.value)) is not None
+        for _, node in walk(side):
+            exponent = _exponent(node)
+            factors = _factors(exponent) if exponent is not None else ()
+            if len(factors) == 2 and any(ANGLES.fullmatch(str(factor.value)) for factor in factors):
+                for name in map(_name_of, factors):
+                    is_letter = names_rotation and node is side and SKEW_LETTER.fullmatch(name) is not None
+                    if name not in known and (name in hats or is_letter):
+                        yield name
+
+
+def _rewritten(tree: Node, axes: Mapping[str, str]) -> Node:
+    """Return a tree with ``skew(k)`` for K and for K^2 as a scalar product, and without matrices in exponents.
+
+    ``axes`` maps K to k.
+    """
+    exponent = _exponent(tree)
+    factors = _factors(exponent) if exponent is not None else ()
+    if exponent is not None and exponent.kind != "neg" and len(factors) == 2:
+        for matrix, angle in (factors, factors[::-1]):
+            axis = axes.get(_name_of(matrix))
+            vector = Node("name", axis) if axis else matrix.args[0] if matrix.value == "skew" else None
+            if vector is not None and vector.kind == "name":
+                return _rotation(vector, angle)
+    if tree.kind == "call" and tree.value == "dot" and _name_of(tree) in axes:
+        return Node("power", None, (_rewritten(tree.args[0], axes), number(2)), tree.span)
+    if tree.kind == "name" and tree.value in axes:
+        return Node("call", "skew", (Node("name", axes[str(tree.value)], (), tree.span),), tree.span)
+    if tree.kind == "call" and tree.value == "skew" and tree.args[0].kind == "name":
+        return tree
+    made = replace(tree, args=tuple(_rewritten(child, axes) for child in tree.args))
+    is_sum = made.kind == "sum" and any(node.value == "skew" for _, node in walk(made))
+    return _with_unit(made) if is_sum else made
+
+
+def _with_unit(tree: Node) -> Node:
+    """Return a sum with matrices in which the unit matrix is I, where the text has E."""
+    unit = Node("name", "I")
+    terms = [unit if term.value == "E" and term.kind == "name" else term for term in tree.args]
+    return replace(tree, args=tuple(terms))
+
+
+@cache
+def _derived_rotation() -> Node:
+    return read_expression(as_text(dcm_of_axis_angle()))
+
+
+def _rotation(axis: Node, angle: Node) -> Node:
+    """Return the tree of the rotation matrix about the unit vector ``axis``, the exponential of angle times skew."""
+    places = {symbol.name: Node("index", None, (axis, number(n))) for n, symbol in enumerate(symbols.axis)}
+    return _substituted(_derived_rotation(), {**places, symbols.alpha.name: angle})
+
+
+def _substituted(tree: Node, nodes: Mapping[str, Node]) -> Node:
+    if tree.kind == "name":
+        return nodes.get(str(tree.value), tree)
+    return replace(tree, args=tuple(_substituted(child, nodes) for child in tree.args))
+
+
+def _with_rate_matrix(relation: tuple[str, Node, Node], known: Collection[str]) -> tuple[str, Node, Node] | None:
+    """Return ``q' = 1/2 q (0, ω)``, a product of quaternions, for ``q' = 1/2 Ω(ω) q``; None for other equations."""
+    sign, left, right = relation
+    rated = left.args[0] if is_derivative(left) and len(left.args) == 2 else left
+    name = str(rated.value).removesuffix("_dot")
+    if re.fullmatch("[qp]|beta|epsilon", name) is None or rated.value == name == left.value or "Omega" in known:
+        return None
+    factors = right.args if right.kind == "product" else (right,)
+    for place in range(len(factors)):
+        omega, rest = _argument(factors, place)
+        if omega is None or len(rest) != 1 or _bare(rest[0]) != Node("name", name):
+            continue
+        pair = Node("list", ("(", ")"), (number(0), omega))
+        return sign, left, product([*factors[:place], Node("call", "qmul", (rest[0], pair))])
+    return None
+
+
+def _argument(factors: Sequence[Node], place: int) -> tuple[Node | None, Sequence[Node]]:
+    """Return ω and the factors after ``Ω(ω)`` if this is at ``place``, as a call or as two factors; else (None, ())."""
+    factor, after = factors[place], factors[place + 1 :]
+    if factor.kind == "call" and factor.value == "Omega" and len(factor.args) == 1 and factor.args[0].value in OMEGA:
+        return factor.args[0], after
+    if factor == Node("name", "Omega") and after and after[0].kind == "name" and after[0].value in OMEGA:
+        return after[0], after[1:]
+    return None, ()
+
+
+def _bare(node: Node) -> Node:
+    return Node("name", node.value) if node.kind == "call" and node.args == (TIME,) else node
