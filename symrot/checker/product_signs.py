@@ -44,7 +44,10 @@ def with_sign(context: Context, name: Node, sign: str) -> Context:
 
 
 def with_minus_sign(claim: Claim) -> Claim:
-    """Return a claim with -I_xy for each product of inertia I_xy: ``I_xy = -a`` for ``I_xy = a``."""
+    """Return a claim with -I_xy for each product of inertia I_xy.
+
+    ``L = I_xy*w`` becomes ``L = -I_xy*w``; ``I_xy = a`` becomes ``I_xy = -a``, which says the same as ``-I_xy = a``.
+    """
     if claim.relation is None:
         return claim
     meanings = tuple(

@@ -1,8 +1,8 @@
 """Constants of many motions in closed form, as arrays (a batch); every bit is the same as for single motions.
 
-One call of C computes a batch. Arguments: ``omega`` are the initial angular velocities, shape (n, 3); ``start`` are the
-initial attitudes that :func:`attitudes` returns; ``across`` and ``own`` are moments of inertia about an axis normal to
-the symmetry axis and about the symmetry axis. A double-double number is a sum hi + lo of two doubles.
+C then computes the motions from these constants. Arguments: ``omega`` are the initial angular velocities, shape (n, 3);
+``start`` are the initial attitudes that :func:`attitudes` returns; ``across`` and ``own`` are moments of inertia about
+an axis normal to the symmetry axis and about the symmetry axis. A double-double number is a sum hi + lo of two doubles.
 """
 
 # Sums in which all digits may cancel are computed in integers, one motion after the other; all other constants are

@@ -138,7 +138,7 @@ class Derivation(PrintedPage):
             self._note(left, right)
 
     def nonzero(self, text: str, expression: Expr, named: str) -> None:
-        """State on the page that an expression is not zero: ``text``, then its LaTeX ``named``, then "is not 0"."""
+        """Assume that an expression is not zero, and print this: ``text``, its LaTeX ``named``, "is not 0"."""
         self.items.append(Passage(f"{text} ${named} \\neq 0$."))
         # a step in which the expression is a denominator need not repeat this condition
         self.assumed += [part.expand() for part in (expression, *_factors(expression))]

@@ -18,7 +18,7 @@ from symrot.scene.body import Body
 from symrot.scene.content import Content, plain
 from symrot.scene.torque import Torque
 
-__all__ = ["Path", "changed", "number_path", "path_of", "present_value", "replaces_shapes"]
+__all__ = ["Path", "changed", "in_order", "number_path", "path_of", "present_value", "set_last"]
 
 Path = tuple[str | int, ...]
 
@@ -45,6 +45,7 @@ EXCLUSIVE: dict[tuple[str | int, str | int], str] = {
 """Table and key of a value -> the key of the same table that the value replaces."""
 
 RATES = ("omega_1", "omega_2", "omega_3")
+MOST_STEPS = 1_000_000  # more than any path has
 TENSOR = ("I_xx", "I_yy", "I_zz", "I_xy", "I_xz", "I_yz")
 INDEX = {"x": 0, "y": 1, "z": 2}
 NO_DIMENSIONS = ("shape", "part", "mesh", "flip", "principal", "inertia", "about", "fixed_point", "name")
@@ -158,12 +159,60 @@ def number_path(content: Content, key: str, omega_b: Sequence[Fraction], body: B
     return () if isinstance(value, bool | dict | list | tuple) or place.component is not None else place.path
 
 
-def replaces_shapes(key: str) -> bool:
-    """Return whether a change by ``key``, such as ``I_xx``, replaces the shapes of the body by moments of inertia.
+def set_last(key: str) -> bool:
+    """Return whether a change by ``key`` starts from numbers that other changes may set, so that it comes after them.
 
-    Such a key sets a moment of inertia or the centre of mass.
+    ``I_xx`` and ``center_of_mass`` replace the shapes of the body by moments of inertia; ``omega_2`` keeps the other
+    two components of omega in the body, which depend on the attitude if the scene gives omega in space.
     """
-    return key in (*TENSOR, "principal") or str(key).rpartition(".")[2].startswith("center_of_mass")
+    return key in (*TENSOR, *RATES, "principal") or str(key).rpartition(".")[2].startswith("center_of_mass")
+
+
+def in_order(
+    content: Content, changes: Mapping[str, Any], omega_b: Sequence[Fraction], body: Body, torques: Sequence[Torque]
+) -> Content:
+    """Return ``changes`` in the order in which none replaces the value of another: ``omega`` before ``omega_2``.
+
+    Raises
+    ------
+    InputError
+        If two keys set the same value, or values that exclude each other, such as mass and density.
+    """
+    scene = _Scene(content, omega_b, body, torques)
+    paths: dict[str, Path] = {}
+    for key in changes:
+        path = _whole_path(scene, key)
+        for other, before in paths.items():
+            if path and path == before:
+                raise InputError(f"{key}: expected each value once, got {_text(Place(path))} by {other}, too")
+            if path and before and _exclude(path, before):
+                raise InputError(f"{key}: expected either {other} or {key}, since each replaces the other, got both")
+        paths[key] = path
+    # a key that names nothing yet may name something in a table that another change sets
+    # afterwards the name center_of_mass alone would name two values
+    rank = {key: (len(path) or MOST_STEPS, not str(key).startswith("center_of_mass")) for key, path in paths.items()}
+    return {key: changes[key] for key in sorted(changes, key=lambda key: rank[key])}
+
+
+def _whole_path(scene: _Scene, key: str) -> Path:
+    """Return the path of the value that ``key`` names, down to the component of a vector; () if it names none yet."""
+    if key == "principal":
+        return ("body", "inertia")
+    if key in TENSOR:
+        return ("body", "inertia", key[-2:])
+    try:
+        place = _place(scene, key)
+    except InputError:
+        return ()
+    return place.path if place.component is None else (*place.path, place.component)
+
+
+def _exclude(one: Path, other: Path) -> bool:
+    """Return whether two values exclude each other: they are in the same table, under keys such as mass and density."""
+    depth = 2 if one[0] == "torque" else 1
+    if one[:depth] != other[:depth] or min(len(one), len(other)) <= depth:
+        return False
+    return EXCLUSIVE.get((one[0], one[depth])) == other[depth]
 
 
 def _set(scene: _Scene, key: str, value: Any) -> None:

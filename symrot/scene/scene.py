@@ -15,7 +15,7 @@ from symrot.dynamics.torque_kinds import TABLE_KIND
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import read, show
 from symrot.scene.body import Body, read_body
-from symrot.scene.changes import changed, present_value, replaces_shapes
+from symrot.scene.changes import changed, in_order, present_value, set_last
 from symrot.scene.content import Content, plain, toml_text
 from symrot.scene.file import SHIPPED, find_scene, read_toml, shipped_names
 from symrot.scene.folders import Folders
@@ -200,7 +200,8 @@ class Scene:
         Raises
         ------
         InputError
-            If a key names nothing in the scene, or if the new scene is not valid.
+            If a key names nothing in the scene, if two keys set one value or exclude each other, as mass and density,
+            or if the new scene is not valid.
 
         Examples
         --------
@@ -212,7 +213,9 @@ class Scene:
         if changes is not None and not isinstance(changes, Mapping):
             raise InputError(f"expected a dict of new values by name, got {show(changes)}")
         every = {**(changes or {}), **values}
-        last = {key: value for key, value in every.items() if replaces_shapes(key)}
+        if len(every) > 1:
+            every = in_order(self._content(), every, self.initial.omega_b, self.body, self.torques)
+        last = {key: value for key, value in every.items() if set_last(key)}
         first = {key: value for key, value in every.items() if key not in last}
         shaped = self._changed(first) if first or not last else self
         return shaped._changed(last) if last else shaped

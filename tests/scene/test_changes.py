@@ -100,6 +100,35 @@ def test_the_order_of_changes_does_not_matter():
     assert scene.torques[0].values["weight"] == Fraction(981, 100)
 
 
+SPACE = symrot.Scene.build(
+    body={"inertia": {"xx": 1, "yy": 2, "zz": "5/2", "xy": "1/10"}},
+    initial={"omega_space": ["3/10", "7/10", 1], "attitude": ["ZXZ", ["1/10", "1/5", "3/10"]]},
+    span={"t": [0, 1]},
+)
+
+
+@pytest.mark.parametrize("scene, changes, read, expected", [
+    (TOP, {"omega_2": 5, "omega": [1, 2, 3]}, lambda s: s.initial.omega_b, (1, 5, 3)),
+    (TOP, {"initial.omega[1]": 5, "omega": [1, 2, 3]}, lambda s: s.initial.omega_b, (1, 5, 3)),
+    (TOP, {"span.t[1]": 5, "t": [1, 9]}, lambda s: s.span[:2], (1, 5)),
+    (TOP, {"I_xx": "11/5000", "center_of_mass": [0, 0, 1]}, lambda s: (s.body.inertia[0][0], s.body.center_of_mass[2]), (Fraction(11, 5000), 1)),
+    (SPACE, {"omega_2": 5, "attitude": [0, 1, 0, 0]}, lambda s: s.initial.omega_b, (Fraction(3, 10), 5, -1)),
+], ids=["omega", "path", "span", "inertia", "attitude"])  # fmt: skip
+def test_no_change_replaces_the_value_of_another(scene, changes, read, expected):
+    for each in (changes, dict(reversed(changes.items()))):
+        assert read(scene.with_(each)) == expected
+
+
+@pytest.mark.parametrize("changes", [
+    {"weight": 50, "gravity": 5}, {"gravity": 5, "torque[0].gravity": 7}, {"mass": 3, "body.density": 100},
+    {"mass": 3, "body.mass": 4}, {"omega_2": 5, "omega_space": [1, 0, 0]}, {"attitude": [1, 0, 0, 0], "initial.attitude": [0, 1, 0, 0]},
+])  # fmt: skip
+def test_changes_of_which_one_would_be_lost_are_refused(changes):
+    for each in (changes, dict(reversed(changes.items()))):
+        with pytest.raises(symrot.InputError, match=r"expected each value once|since each replaces the other"):
+            TOP.with_(each)
+
+
 ANGLES = [0.1, 0.2, 0.3]
 ROTATION = Rotation.from_euler("ZXZ", ANGLES)
 

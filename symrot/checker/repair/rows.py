@@ -158,7 +158,10 @@ def rotation_of_quaternion(*q: Any) -> Rows:
 
 
 def agree(left: Any, right: Any) -> list[bool] | None:
-    """Return, for each entry, whether two values agree to double precision; return None if their shapes differ."""
+    """Return, for each entry, whether two values differ by less than rounding can cause; 0 is a zero of every shape.
+
+    None if the shapes differ.
+    """
     lefts, rights = entries_of(left), entries_of(right)
     if shape_of(left) != shape_of(right):
         if not is_matrix(left) and lefts == [0.0]:
