@@ -341,7 +341,7 @@ class _Walk:
         yield part.stop, part.last
 
     def _rests(self, part: _Part, mode: str) -> bool:
-        """Return whether the guard of a mode is zero throughout an interval."""
+        """Return whether the guard of a mode is zero at the start, near the middle and at the end of an interval."""
         return all(self._guard(part, mode, *place).value == 0.0 for place in self._places(part))
 
     def _is_smooth_at(self, part: _Part, mode: str) -> bool:
@@ -665,5 +665,5 @@ ZEROS = [0.0]
 
 
 def _alike(left: Floats, right: Floats) -> NDArray[np.bool_]:
-    """Return where two rows of derivatives are equal up to rounding."""
+    """Return where two rows of derivatives are equal up to a relative difference of 1e-9."""
     return np.abs(left - right) <= ALIKE * np.maximum(np.abs(left), np.abs(right))
