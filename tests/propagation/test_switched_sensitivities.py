@@ -38,6 +38,8 @@ def test_derivatives_by_the_times_of_a_thruster_pulse():
         assert np.allclose(column(motion, name), values, rtol=1e-14, atol=0)
     # exactly at the switch the derivative by its time jumps, and has no value
     assert np.isnan(column(motion, "b", 1)).all() and np.isfinite(column(motion, "k", 1)).all()
+    ended = symrot.propagate(content, t=[0, b], sensitivities=["a", "b", "k", "I_zz"])
+    assert np.array_equal(ended.sensitivities.omega[-1], motion.sensitivities.omega[1], equal_nan=True)
     assert [each.slopes.tolist() for each in motion.sensitivities.switchings] == [[1, 0, 0, 0], [0, 1, 0, 0]]
 
 
