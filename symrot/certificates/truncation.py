@@ -16,6 +16,7 @@ from typing import Any
 
 from mpmath import iv
 
+from symrot.certificates.packed_polynomials import PackedPolynomial, variables
 from symrot.codegen.steps import SIZE, Method, RungeKutta, TaylorSeries, WithDerivatives, stepped
 from symrot.codegen.taylor.coefficients import coefficients
 from symrot.codegen.taylor.recurrences import recurrences
@@ -414,30 +415,28 @@ def _problem(rates: Program, method: Method, states: Sequence[str], box: Box) ->
     formulas = [node for _, node in (*rates.temporaries, *rates.outputs)]
     if not orders or not all(map(_is_polynomial, formulas)):
         return _Problem(rates, method, states, ())
-    from sympy import QQ, ring
-
     names = [*states, *(name for name, (low, high) in box.items() if name not in (*states, SIZE) and low < high), "t"]
-    domain, *generators = ring(list(dict.fromkeys(names)), QQ)
+    names = list(dict.fromkeys(names))
 
-    def number(value: Fraction) -> Any:
-        return domain(QQ(value.numerator, value.denominator))
+    def number(value: Fraction) -> PackedPolynomial:
+        return PackedPolynomial.constant(names, value)
 
+    zero = number(Fraction(0))
     values = {name: number(low) for name, (low, _) in box.items()}
-    values |= dict(zip(dict.fromkeys(names), generators, strict=True))
-    expanded = {name: _terms(each) for name, each in rates.evaluate(values, {}, number).items()}
+    values |= dict(zip(names, variables(names), strict=True))
+    expanded = {name: each.terms() for name, each in rates.evaluate(values, {}, number).items()}
     bare = Program(rates.signature, (), tuple((name, _sum_of(terms)) for name, terms in expanded.items()))
     count = orders[-1] + 1
     for order in range(1, count):  # the polynomials grow with the order, so that too long ones are noticed early
         exact = coefficients(recurrences(bare), order, values, {}, number)
-        if max(len(_terms(domain(0) + state[order])) for state in exact) > MOST_TERMS:
+        if max(len(zero + state[order]) for state in exact) > MOST_TERMS:
             return _Problem(bare, method, states, ())
     size = _Power((0, number(Fraction(1)), *(0,) * (count - 2)))
     start = {name: _Power.of(value, count) for name, value in values.items() if name != SIZE}
     after = stepped(bare, method, start, size, {}, lambda value: _Power.of(number(value), count))
     own = [_Power.of(each, count).terms for each in after]
     leading = tuple(
-        [_terms(domain(0) + mine[order] - step[order]) for mine, step in zip(exact, own, strict=True)]
-        for order in orders
+        [(zero + mine[order] - step[order]).terms() for mine, step in zip(exact, own, strict=True)] for order in orders
     )
     return _Problem(bare, method, states, leading)
 
@@ -460,17 +459,6 @@ def _is_polynomial(node: Node) -> bool:
     if node[0] == "call" or (node[0] == "/" and node[2][0] != "number"):
         return False
     return _is_polynomial(node[1]) and node[2] >= 0 if node[0] == "**" else all(map(_is_polynomial, node[1:]))
-
-
-def _terms(polynomial: Any) -> Terms:
-    """Return the terms of a polynomial as pairs (coefficient, powers): (2, (("x", 3),)) for ``2*x**3``."""
-    names = [str(symbol) for symbol in polynomial.ring.symbols]
-    return [
-        (Fraction(int(value.numerator), int(value.denominator)),
-         tuple((name, power) for name, power in zip(names, powers, strict=True) if power))
-        for powers, value in polynomial.terms()
-        if value
-    ]  # fmt: skip
 
 
 def _sum_of(terms: Terms) -> Node:

@@ -10,7 +10,7 @@ from sympy import Expr, Rational, Symbol, pi, sstr
 
 from symrot.exact.decide import decide
 from symrot.exercises.problem import Asked, Line, Problem, Quantity
-from symrot.exercises.sketches import sketch
+from symrot.exercises.sketches.table import sketch
 from symrot.exercises.units import decimal, factor_of, unit_latex
 from symrot.proof.derivation import ProofError
 from symrot.proof.notation.printer import PagePrinter
@@ -229,7 +229,7 @@ def make(template: str, topic: str, seed: int, problem: Problem, source: Random)
         template, topic, seed, problem.title, problem.statement,
         tuple(Datum(sstr(q.symbol), formula(q.symbol), number, q.unit, q.words) for q, number in drawn),
         tuple(_questions(problem, values)), _hints(problem, drawn), tuple(_solution(template, problem, drawn, values)),
-        sketch(template),
+        sketch(template, *problem.sketch),
     )  # fmt: skip
 
 

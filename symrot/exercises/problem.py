@@ -129,6 +129,8 @@ class Problem:
         The quantities that the questions ask for.
     fits : callable
         A function that takes numbers (symbol -> value in SI units) and returns whether they are possible together.
+    sketch : tuple of str
+        What the template's sketch depends on, such as the sequence of the Euler angles.
     """
 
     title: str
@@ -138,6 +140,7 @@ class Problem:
     lines: tuple[Line, ...]
     asked: tuple[Asked, ...]
     fits: Callable[[Mapping[Symbol, Expr]], bool] = lambda values: True
+    sketch: tuple[str, ...] = ()
 
 
 Template = Callable[[Random], Problem]

@@ -10,9 +10,10 @@ from symrot.figures.view import Floats, Plane, View
 from symrot.kinematics.conversions import axis_angle_to_quaternion, euler_to_dcm
 
 __all__ = [
-    "angular_velocity", "double_cover", "gimbal_lock", "gimbals", "intermediate_frames", "order_of_rotations",
-    "plane_rotation", "projected_quaternions", "proper_euler", "rodrigues_rotation", "rotation_vectors",
-    "tait_bryan", "two_points",
+    "angular_velocity", "brick", "double_cover", "gimbal_lock", "gimbal_rings", "gimbals", "intermediate_frames",
+    "order_of_rotations",
+    "plane_rotation", "projected_quaternions", "proper_euler", "ring_normals", "rodrigues_rotation", "rotation_vectors",
+    "tait_bryan", "three_rotations", "two_points",
 ]  # fmt: skip
 
 LETTERS = "xyz"
@@ -66,7 +67,7 @@ def order_of_rotations() -> Picture:
     for row, (words, matrices) in enumerate(rows):
         for column, matrix in enumerate(matrices):
             view = View(azimuth=30, elevation=22, scale=52, origin=(175.0 * column, 205.0 * row))
-            _brick(picture, view, matrix)
+            brick(picture, view, matrix)
             if column:
                 picture.arrow(Plane(1.0), (175.0 * column - 105, -205.0 * row), (175.0 * column - 70, -205.0 * row),
                               style="soft thick")  # fmt: skip
@@ -74,7 +75,7 @@ def order_of_rotations() -> Picture:
     return picture
 
 
-def _brick(picture: Picture, view: View, matrix: Floats) -> None:
+def brick(picture: Picture, view: View, matrix: Floats) -> None:
     """Draw a box in the attitude ``matrix`` with its axes; only the faces that point toward the viewer are drawn."""
     half = np.array([0.9, 0.55, 0.22])
     for i in range(3):
@@ -103,7 +104,7 @@ def intermediate_frames(sequence: str, angles: Sequence[float]) -> list[Floats]:
     return [np.asarray(euler_to_dcm(step, sequence, degrees=True), dtype=float) for step in steps]
 
 
-def _three_rotations(sequence: str, angles: Sequence[float], letters: Sequence[str], azimuth: float) -> Picture:
+def three_rotations(sequence: str, angles: Sequence[float], letters: Sequence[str], azimuth: float) -> Picture:
     """Draw the three rotations of an intrinsic sequence, one in each panel; angles in degrees.
 
     ``letters`` are the labels of the angles; ``azimuth`` is the direction from which the frames are seen, in degrees.
@@ -129,12 +130,12 @@ def _three_rotations(sequence: str, angles: Sequence[float], letters: Sequence[s
 
 def proper_euler() -> Picture:
     """Draw the three rotations of the sequence ZXZ: precession, nutation and spin."""
-    return _three_rotations("ZXZ", (40.0, 38.0, 45.0), ("ϕ", "θ", "ψ"), 35.0)
+    return three_rotations("ZXZ", (40.0, 38.0, 45.0), ("ϕ", "θ", "ψ"), 35.0)
 
 
 def tait_bryan() -> Picture:
     """Draw the three rotations of the sequence ZYX: yaw, pitch and roll."""
-    return _three_rotations("ZYX", (40.0, 30.0, 40.0), ("ψ", "θ", "ϕ"), 8.0)
+    return three_rotations("ZYX", (40.0, 30.0, 40.0), ("ψ", "θ", "ϕ"), 8.0)
 
 
 def gimbals(sequence: str, angles: Sequence[float]) -> list[Floats]:
@@ -148,18 +149,35 @@ def gimbal_lock() -> Picture:
     picture = Picture()
     for column, (words, angles) in enumerate((("three axes", (25.0, 35.0, 20.0)), ("locked", (25.0, 90.0, 20.0)))):
         view = View(azimuth=32, elevation=24, scale=88, origin=(330.0 * column, 0.0))
-        axes, frames = gimbals("ZYX", angles), intermediate_frames("ZYX", angles)
-        # each ring contains its own axis and the axis of the ring inside it; the inner ring is around the body
-        normals = (np.cross(axes[0], axes[1]), np.cross(axes[1], axes[2]), frames[3][:, 2])
-        for n, radius in enumerate((1.25, 1.0, 0.72)):
-            ring = circle((0, 0, 0), normals[n], radius)
-            picture.curve(view, ring, f"{COLOURS[n]} thick", ring @ view.toward > 0, hidden="thin")
-        for n, reach in enumerate((1.25, 1.0, 0.72)):
-            outer = (1.65, 1.3, 1.5)[n]
-            picture.arrow(view, reach * axes[n], outer * axes[n], ("ψ", "θ", "ϕ")[n], COLOURS[n])
-            picture.curve(view, [-reach * axes[n], -(outer - 0.2) * axes[n]], COLOURS[n])
+        gimbal_rings(picture, view, "ZYX", angles, ("ψ", "θ", "ϕ"))
         picture.label(view, (0, 0, 0), words, (0, 165))
     return picture
+
+
+def ring_normals(sequence: str, angles: Sequence[float]) -> Floats:
+    """Return the normals of the outer, middle and inner ring of a gimbal as rows; angles in degrees."""
+    axes, body = gimbals(sequence, angles), intermediate_frames(sequence, angles)[3]
+    # each ring contains its own axis and the axis of the ring inside it; the inner ring is around the body
+    inner = body[:, ("XYZ".index(sequence[2]) + 2) % 3]
+    return np.array([np.cross(axes[0], axes[1]), np.cross(axes[1], axes[2]), inner])
+
+
+def gimbal_rings(picture: Picture, view: View, sequence: str, angles: Sequence[float], letters: Sequence[str]) -> None:
+    """Draw the three rings of a gimbal for a sequence, with the letters of its angles at the axes.
+
+    Angles are in degrees.
+    """
+    axes, normals = gimbals(sequence, angles), ring_normals(sequence, angles)
+    for n, radius in enumerate((1.25, 1.0, 0.72)):
+        ring = circle((0, 0, 0), normals[n], radius)
+        picture.curve(view, ring, f"{COLOURS[n]} thick", ring @ view.toward > 0, hidden="thin")
+    for n, reach in enumerate((1.25, 1.0, 0.72)):
+        outer = (1.65, 1.3, 1.5)[n]
+        # where outer and inner axis have the same direction, the inner arrow ends inside the ring
+        if n == 2 and axes[0] @ axes[2] > 0.999:
+            outer = 1.0
+        picture.arrow(view, reach * axes[n], outer * axes[n], letters[n], COLOURS[n])
+        picture.curve(view, [-reach * axes[n], -(outer - 0.2) * axes[n]], COLOURS[n])
 
 
 def double_cover() -> Picture:

@@ -120,26 +120,26 @@ def polhode_curves() -> tuple[list[Floats], Floats]:
     return loops, np.array(planes)
 
 
-def polhodes() -> Picture:
-    """Draw polhodes and the separatrix on an energy ellipsoid."""
+def polhodes(largest_first: bool = False) -> Picture:
+    """Draw polhodes and the separatrix on an energy ellipsoid.
+
+    The moments increase from axis 1 to axis 3, or decrease if ``largest_first``.
+    """
     picture, shape = Picture(), np.diag(MOMENTS)
     loops, planes = polhode_curves()
-    scale = View(VIEW.azimuth, VIEW.elevation, 170)
-    picture.area(scale, outline(shape, scale), "fill-soft")
-    picture.curve(scale, outline(shape, scale), "soft", closed=True)
+    # axes 1, 2, 3 of a body whose moments decrease are the axes z, -y, x here, seen from the side of -y
+    view = View(-VIEW.azimuth if largest_first else VIEW.azimuth, VIEW.elevation, 170)
+    picture.area(view, outline(shape, view), "fill-soft")
+    picture.curve(view, outline(shape, view), "soft", closed=True)
     for loop in loops:
-        picture.curve(scale, loop, "blue", loop @ shape @ scale.toward > 0)
+        picture.curve(view, loop, "blue", loop @ shape @ view.toward > 0)
     for plane in planes:
-        picture.curve(scale, plane, "red thick", plane @ shape @ scale.toward > 0)
-    _principal_axes(picture, scale, 1 / np.sqrt(MOMENTS))
+        picture.curve(view, plane, "red thick", plane @ shape @ view.toward > 0)
+    axes = np.eye(3)[::-1] * [[1], [-1], [1]] if largest_first else np.eye(3)
+    for number, direction in enumerate(axes):
+        semi_axis = direction / np.sqrt(MOMENTS @ direction**2)
+        picture.arrow(view, semi_axis, semi_axis + 0.32 * direction, f"ω_{number + 1}")
     return picture
-
-
-def _principal_axes(picture: Picture, view: View, axes: Floats, reach: float = 0.32) -> None:
-    """Draw the principal axes outside an ellipsoid with the semi-axes ``axes``, each over the length ``reach``."""
-    for i, semi_axis in enumerate(axes):
-        direction = np.eye(3)[i]
-        picture.arrow(view, semi_axis * direction, (semi_axis + reach) * direction, f"ω_{i + 1}")
 
 
 def momentum_sphere() -> Picture:

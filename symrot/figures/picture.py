@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from symrot.figures.view import Floats, Plane, Points, View
 
-__all__ = ["STYLE", "Picture"]
+__all__ = ["COLOURS", "STYLE", "Picture"]
 
 MARGIN = 8.0
 ARROW, HALF_WIDTH = 9.0, 3.4  # length and half the width of the head of an arrow, points
@@ -47,6 +47,7 @@ STYLE = (
     ".sf text.word{font-style:normal;font-size:13px}.sf tspan{font-size:11px}"
     f"{_colours(0)}@media (prefers-color-scheme:dark){{{_colours(1)}}}"
 )
+BARS = ".sf path.bar{stroke-width:5}"  # for pictures with rods
 
 
 class Picture:
@@ -123,21 +124,23 @@ class Picture:
     def label(self, view: View | Plane, point: ArrayLike, text: str, aside: tuple[float, float] = (0.0, 0.0)) -> None:
         """Write a label at a point, moved by ``aside`` (SVG units, y downward).
 
-        A label of one letter, with or without a subscript after ``_``, is in italics; other text is upright.
+        A letter, with or without a subscript after ``_``, and a product such as ``m g`` are in italics; other text is
+        upright.
         """
         (place,) = view.project(point)
         self._text(place + np.array(aside), text)
 
-    def svg(self, title: str, description: str) -> str:
-        """Return the picture as SVG text; screen readers read its title and its description."""
+    def svg(self, title: str, description: str = "") -> str:
+        """Return the picture as SVG text; screen readers read its title and its description, if there is one."""
         corners = np.concatenate(self._corners)
         low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
         (x, y), (width, height) = low, high - low
         box = " ".join(map(_number, (x, y, width, height)))
         size = f'width="{_number(width)}" height="{_number(height)}"'
         head = f'<svg xmlns="http://www.w3.org/2000/svg" class="sf" role="img" viewBox="{box}" {size}>'
-        words = f"<title>{escape(title)}</title>\n<desc>{escape(description)}</desc>\n<style>{STYLE}</style>"
-        return "\n".join([head, words, *self._parts, "</svg>"]) + "\n"
+        words = [f"<title>{escape(title)}</title>", *([f"<desc>{escape(description)}</desc>"] if description else [])]
+        bars = BARS if any('bar"' in part for part in self._parts) else ""
+        return "\n".join([head, *words, f"<style>{bars}{STYLE}</style>", *self._parts, "</svg>"]) + "\n"
 
     def _path(self, places: Floats, style: str, closed: bool = False) -> None:
         self._corners.append(places)
@@ -191,7 +194,7 @@ SYMBOL = re.compile(r"[−]?[A-Za-zΑ-ωϕ][′″‴]?(_[\w⊥∥]+)?")
 
 
 def _is_symbol(text: str) -> bool:
-    return bool(SYMBOL.fullmatch(text))
+    return all(SYMBOL.fullmatch(factor) for factor in text.split(" "))
 
 
 def _width(text: str) -> float:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from symrot.results.labels import Labelled
 from symrot.results.tables import BY
 
-__all__ = ["OUTPUTS", "Sensitivities", "Sensitivity", "quotient_unit", "restored"]
+__all__ = ["OUTPUTS", "Sensitivities", "Sensitivity", "SwitchSlopes", "quotient_unit", "restored"]
 
 OUTPUTS = {  # quantity -> components, unit, frame, meaning
     "omega": (("omega_1", "omega_2", "omega_3"), "rad/s", "body", "angular velocity, body components"),
@@ -46,6 +46,32 @@ class Sensitivity(NamedTuple):
     rotation: Floats
 
 
+class SwitchSlopes(NamedTuple):
+    """The derivatives of the time at which a function in a torque, such as ``sign(omega_3)``, switches.
+
+    Attributes
+    ----------
+    t : float
+        The time, s.
+    function, how : str
+        The function, and how it switches, as in ``stats.switchings`` of a trajectory.
+    slopes : array, shape (m,)
+        The derivatives of the time by the m variables, s per unit of each variable; NaN where they do not exist.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> motion = symrot.propagate("friction_wheel", t=[7], sensitivities=["omega_3"])
+    >>> motion.sensitivities.switchings[0].slopes.round(9).tolist()
+    [0.2]
+    """
+
+    t: float
+    function: str
+    how: str
+    slopes: Floats
+
+
 @dataclass(frozen=True, eq=False)
 class Sensitivities(Mapping[str, Sensitivity]):
     """Derivatives of a motion at n samples, by m variables: a mapping from the requested names to derivatives.
@@ -64,6 +90,8 @@ class Sensitivities(Mapping[str, Sensitivity]):
     t_events : tuple of arrays, shape (k, m)
         For each event, the derivatives of its k times, s per unit of the variable; NaN where the formula of the event
         touches zero. Files of samples do not contain these derivatives.
+    switchings : tuple of SwitchSlopes
+        The switches of the torques up to the last sample, with the derivatives of their times.
 
     Examples
     --------
@@ -80,6 +108,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
     quaternion: Floats
     rotation: Floats
     t_events: tuple[Floats, ...] = ()
+    switchings: tuple[SwitchSlopes, ...] = ()
 
     def __getitem__(self, name: str) -> Sensitivity:
         if name in self.groups:

@@ -42,6 +42,7 @@ FAULTS = (
     ("θ'' = (g/l) sin θ", "sign_of_term", "θ'' = -g/l*sin(θ)"),
     ("V_eff = (p_φ - p_ψ cos θ)²/(I_1 sin²θ) + M g l cos θ", "factor",
      "V_eff = (p_φ - p_ψ*cos(θ))^2/(I_1*sin(θ)^2)/2 + M*g*l*cos(θ)"),
+    (r"T = \frac{mg}{1 + mR/I}", "exponent", r"T = m \frac{g}{1 + m \frac{R^2}{I}}"),
     ("θ = ω_0 t + αt²", "factor", "θ = ω_0*t + α*t^2/2"),
     ("M^2 = I_1^2 w_1^2 + I_2 w_2^2 + I_3^2 w_3^2", "exponent", "M^2 = I_1^2*w_1^2 + I_2^2*w_2^2 + I_3^2*w_3^2"),
 )  # fmt: skip
@@ -234,7 +235,7 @@ def test_a_difference_of_moments_is_open_without_the_plane_of_the_body():
     "L_1' = (1/I_3 - 1/I_2) L_2 L_3", "omega = sqrt(kappa/I)",
     "L = (I_1 w_1, I_1 w_2, I_3 w_3)", "a = (m_1 - m_2) g/(m_1 + m_2 + M/2)",
     "θ = -asin(R_31)", r"R = \begin{pmatrix} \cos\theta & -\sin\theta \\ \sin\theta & \cos\theta \end{pmatrix}",
-    "ω² = ω_0² - 2αθ", "θ = ω_0 t - ½αt²", "θ = asin(2(q_0 q_2 + q_1 q_3))",
+    "T = m g/(1 + m R^2/I)", "ω² = ω_0² - 2αθ", "θ = ω_0 t - ½αt²", "θ = asin(2(q_0 q_2 + q_1 q_3))",
     "E = L^2/(2 I_1) + 1/2 (1/I_3 - 1/I_1) L_3^2", "I = m/6 (a^2 b^2 + b^2 c^2 + c^2 a^2)/(a^2 + b^2 + c^2)",
 ])  # fmt: skip
 def test_formulas_of_further_books_are_known(claim):

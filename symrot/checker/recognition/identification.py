@@ -63,7 +63,8 @@ LAST_FIRST = (3, 0, 1, 2)
 
 
 LETTERS = {
-    "kg m^2": r"[ABCIJ]\w*|lambda_?[1-3]", "kg": r"[mM]\w*", "N": r"[WPFG]\w*", "m": r"[a-hlrsxyzLRD]\w*|ell",
+    "kg m^2": r"[ABCIJ]\w*|lambda_?[1-3]", "kg": r"[mM]\w*", "N": r"[WPFG]\w*",
+    "N, of a string": r"[TSF](_\w+)?", "m": r"[a-hlrsxyzLRD]\w*|ell",
     "kg m^2/s": r"[LHGhpM]\w*",
     "kg m/s": r"[pP]\w*", "N m, of momentum": r"d[LHhM]\w*",
     "N m": r"(M|N|T|Q|tau|Gamma)(_\w+)?|K_?[1-3xyz]",
@@ -376,7 +377,7 @@ def _keeps_units(pairs: Sequence[tuple[str, str]]) -> bool:
 
 def _is_usual(known: Expr, own: Expr) -> bool:
     """Return whether books use the claim's letter ``own`` with the unit of ``known``, a symbol of a known formula."""
-    return _has_usual_letter(as_text(known), as_text(own))
+    return _has_usual_letter(_name(known), _name(own))
 
 
 def _has_usual_letter(known: str, own: str) -> bool:
@@ -417,12 +418,12 @@ def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Ite
     if {row: len(atoms) for row, atoms in mine.items()} != {row: len(atoms) for row, atoms in groups.items()}:
         return
     choices = []
-    own_names = {plain_name(as_text(atom)) for atom in own.atoms}
+    own_names = {plain_name(_name(atom)) for atom in own.atoms}
     # symbols with the names of the known formula stay as they are while the orders of the others are tried
-    ordered_groups = sorted(groups.items(), key=lambda group: not {*map(as_text, group[1])} <= own_names)
+    ordered_groups = sorted(groups.items(), key=lambda group: not {*map(_name, group[1])} <= own_names)
     for row, atoms in ordered_groups:
-        names = {as_text(atom) for atom in atoms}
-        ordered = sorted(mine[row], key=lambda atom: (as_text(atom) not in names, as_text(atom)))
+        names = {_name(atom) for atom in atoms}
+        ordered = sorted(mine[row], key=lambda atom: (_name(atom) not in names, _name(atom)))
         choices.append([(atoms, chosen) for chosen in _nearest(atoms, ordered)])
     for chosen in product(*choices):
         yield {a: b for atoms, others in chosen for a, b in zip(atoms, others, strict=True)}
@@ -430,7 +431,7 @@ def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Ite
 
 def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, ...]]:
     """Return ``others`` in several orders, to be paired one by one with ``atoms``; the most plausible order first."""
-    known = {atom: (as_text(atom), unit_of(as_text(atom))) for atom in (*atoms, *others)}
+    known = {atom: (_name(atom), unit_of(_name(atom))) for atom in (*atoms, *others)}
 
     def differences(order: tuple[Expr, ...]) -> tuple[int, int, int]:
         pairs = [(known[atom], known[other]) for atom, other in zip(atoms, order, strict=True)]
@@ -464,6 +465,7 @@ def _likeliest(
     return ordered
 
 
+@lru_cache(maxsize=20_000)
 def unit_of(name: str) -> str | None:
     """Return the conventional unit of a symbol, or None if books use the symbol for different quantities."""
     name = plain_name(name)

@@ -15,7 +15,6 @@ HEAD = r"""\documentclass[a4paper]{article}
 \usepackage{amsmath}
 \usepackage{graphicx}
 \usepackage{tikz}
-\usetikzlibrary{svg.path}
 \usepackage[margin=22mm]{geometry}
 \setlength{\parindent}{0pt}
 \setlength{\parskip}{4pt}
@@ -37,7 +36,11 @@ def latex_sheet(exercises: Sequence[Exercise], solutions: bool = True) -> str:
         parts += [
             rf"\subsection*{{{number}. {prose(exercise.title)}}}",
             prose(exercise.statement),
-            *([f"\\begin{{center}}\n{tikz(exercise.figure)}\n\\end{{center}}"] if exercise.figure else []),
+            *(
+                [f"\\nopagebreak\n\\begin{{center}}\n{tikz(exercise.figure)}\n\\end{{center}}"]
+                if exercise.figure
+                else []
+            ),
             prose(data_text(exercise.data)),
             f"\\begin{{itemize}}\n{questions}\n\\end{{itemize}}",
         ]

@@ -41,6 +41,7 @@ def point_turned_twice(random: Random) -> Problem:
             ),
         ),
         (Asked(name, f"the coordinate of the point along ${AXES[row]}$ afterwards", formula, "m"),),
+        sketch=(one, two),
     )
 
 
@@ -62,6 +63,7 @@ def angle_of_two_rotations(random: Random) -> Problem:
             Line("The angle between 0 and 180 degrees.", acos((matrix.trace() - 1) / 2), angle, r"\alpha"),
         ),
         (Asked(r"\alpha", "the angle of that rotation", angle, "deg"),),
+        sketch=(one, two),
     )
 
 
@@ -82,6 +84,7 @@ def order_matters(random: Random) -> Problem:
         (FIRST, SECOND),
         (Line("The square of the length of the difference.", (difference.T * difference)[0], square, "d^2"),),
         (Asked("d^2", "the square of the distance of the two end points", square, ""),),
+        sketch=(one, two),
     )
 
 
@@ -99,6 +102,7 @@ def relative_rotation(random: Random) -> Problem:
         (FIRST, SECOND),
         (Line("The trace minus one, divided by two.", (relative.trace() - 1) / 2, cosine, r"\cos\alpha"),),
         (Asked(r"\cos\alpha", "the cosine of the angle between the attitudes", cosine, ""),),
+        sketch=(one, two),
     )
 
 
@@ -120,4 +124,5 @@ def rotation_in_steps(random: Random) -> Problem:
             Line("The addition theorem.", matrix[place, place], entry, "R"),
         ),
         (Asked("R", f"the entry ({place + 1}, {place + 1}) of the matrix of both rotations", entry, ""),),
+        sketch=(axis, "ϕ", "θ"),
     )

@@ -55,6 +55,7 @@ def _rate(random: Random, frame: str, name: str) -> Problem:
             ),
         ),
         (Asked(letter, f"a component of the angular velocity in {axes}", sum(columns), "rad/s"),),
+        sketch=(sequence,),
     )
 
 
@@ -87,6 +88,7 @@ def angle_rates_from_omega(random: Random) -> Problem:
         symbols + rates,
         (Line("Row of the inverse of the rate matrix, times the angular velocity.", rate, result, name),),
         (Asked(name, f"the rate of the {('first', 'second', 'third')[place]} angle", result, "rad/s"),),
+        sketch=(sequence,),
     )
 
 
@@ -104,6 +106,7 @@ def matrix_entry(random: Random) -> Problem:
         _quantities(entry),
         (Line("The entry of the product of the three rotations.", _product(sequence)[row, column], entry, name),),
         (Asked(name, f"the entry in row {row + 1} and column {column + 1}", entry, ""),),
+        sketch=(sequence,),
     )
 
 
@@ -155,6 +158,7 @@ def speed_of_rotation(random: Random) -> Problem:
             Line("The root is taken.", sqrt(square), speed, r"|\omega|"),
         ),
         (Asked(r"|\omega|", "the magnitude of the angular velocity", speed, "rad/s"),),
+        sketch=(sequence,),
     )
 
 
@@ -172,6 +176,7 @@ def vertical_in_body(random: Random) -> Problem:
         _quantities(entry),
         chain(name, "The entry of the third row of the matrix.", _product(sequence)[2, row], entry, entry),
         (Asked(name, f"component {row + 1} of the unit vector along $z$, in the body", entry, ""),),
+        sketch=(sequence,),
     )
 
 

@@ -76,6 +76,7 @@ def driven_acceleration(random: Random) -> Problem:
             Line("The equation is solved for the angular acceleration.", acceleration, acceleration, name),
         ),
         (Asked(name, f"the angular acceleration about axis {row + 1}", acceleration, "rad/s^2"),),
+        sketch=(f"τ_{row + 1}",),
     )
 
 
@@ -101,6 +102,7 @@ def torque_to_keep(random: Random) -> Problem:
             "A factor is put in front.",
         ),
         (Asked(name, f"the torque about axis {row + 1}", needed.factor(), "N m"),),
+        sketch=(f"τ_{row + 1}",),
     )
 
 
@@ -138,6 +140,7 @@ def angular_momentum(random: Random) -> Problem:
             Line("The root is taken.", sqrt(square), sqrt(square), "H"),
         ),
         (Asked("H", "the magnitude of the angular momentum", sqrt(square), "kg m^2/s"),),
+        sketch=("H",),
     )
 
 
@@ -181,4 +184,5 @@ def power_of_torque(random: Random) -> Problem:
             ),
         ),
         (Asked("P", "the power", formula, "W"),),
+        sketch=("τ",),
     )

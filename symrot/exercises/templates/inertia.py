@@ -85,6 +85,7 @@ def solid_about_axis(random: Random) -> Problem:
         (MASS, RADIUS),
         lines,
         (Asked("I_{zz}", "the moment of inertia about the axis", moment, "kg m^2"),),
+        sketch=(body.name,),
     )
 
 

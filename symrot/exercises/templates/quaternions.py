@@ -81,6 +81,7 @@ def component_of_rotation(random: Random) -> Problem:
         (quantity(alpha, "30 45 60 90 120 180", "deg", "angle"),),
         (Line("The component of the quaternion of axis and angle.", q[place], formula, f"q_{place}"),),
         (Asked(f"q_{place}", f"the {PARTS[place]} of its quaternion", formula, ""),),
+        sketch=("z",),
     )
 
 
@@ -100,6 +101,7 @@ def rotated_vector(random: Random) -> Problem:
         _numbers(tuple(symbol for symbol in quaternion if entry.has(symbol))),
         (Line("The component of the triple product.", rotated, entry, name),),
         (Asked(name, f"component {row + 1} of the rotated vector", entry, ""),),
+        sketch=(str(column + 1),),
     )
 
 
@@ -159,4 +161,5 @@ def twice_the_angle(random: Random) -> Problem:
             Line("The theorem of the double angle.", square, cos(alpha), "r_0"),
         ),
         (Asked("r_0", "the scalar part of the quaternion of both rotations together", cos(alpha), ""),),
+        sketch=("z", "α", "α"),
     )

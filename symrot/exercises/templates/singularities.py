@@ -26,6 +26,7 @@ def determinant(random: Random) -> Problem:
         (quantity(theta, "30 45 60 120 135 150", "deg", "second angle"),),
         (Line("The determinant depends on the second angle alone.", Matrix(matrix).det(), value, r"\det B"),),
         (Asked(r"\det B", "the determinant", value, ""),),
+        sketch=(sequence,),
     )
 
 
@@ -51,6 +52,7 @@ def growth_near_lock(random: Random) -> Problem:
             ),
         ),
         (Asked(r"\dot\phi", "the rate of the first angle", rate, "rad/s"),),
+        sketch=(sequence,),
     )
 
 
@@ -73,6 +75,7 @@ def only_sum_of_angles(random: Random) -> Problem:
             Line("By the addition theorem, only the sum of the angles remains.", matrix[0, 0], entry, "R_{11}"),
         ),
         (Asked("R_{11}", "the first entry of the rotation matrix", entry, ""),),
+        sketch=("ZXZ",),
     )
 
 
@@ -100,4 +103,5 @@ def angle_of_lock(random: Random) -> Problem:
                 as_formula=False,
             ),
         ),
+        sketch=(sequence,),
     )

@@ -16,7 +16,17 @@ from symrot.planning.general_structure import switched
 from symrot.scene.changes import path_of
 from symrot.scene.scene import Scene
 
-__all__ = ["ATTITUDE", "STEP", "Variable", "difference", "groups_of", "read_variables", "require_smooth", "slopes"]
+__all__ = [
+    "ATTITUDE",
+    "STEP",
+    "Variable",
+    "difference",
+    "groups_of",
+    "read_variables",
+    "require_formulas",
+    "require_smooth",
+    "slopes",
+]
 
 ATTITUDE = "attitude"
 MOST_VARIABLES = 100
@@ -55,10 +65,15 @@ class Variable:
     axis: int = 0
 
 
-def require_smooth(scene: Scene) -> None:
-    """Raise InputError unless the torques of a scene have derivatives: no table, and no formulas that jump or bend."""
+def require_formulas(scene: Scene) -> None:
+    """Raise InputError if a torque of a scene is given by samples, which have no derivatives."""
     if scene.table is not None:
         raise InputError(f"{scene.name}: expected torques with formulas for sensitivities, got a torque of kind table")
+
+
+def require_smooth(scene: Scene) -> None:
+    """Raise InputError if a torque of a scene is given by samples, or by formulas that jump or bend."""
+    require_formulas(scene)
     if switched(scene):
         raise InputError(
             f"{scene.name}: expected smooth torques for sensitivities, got formulas that jump or bend (abs, sign, ..), "

@@ -1,0 +1,1 @@
+"""Sketches of exercises, drawn with the lines and arrows of :mod:`symrot.figures.picture`."""
