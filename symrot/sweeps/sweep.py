@@ -333,8 +333,8 @@ def _require_derivatives(scene: Scene, content: Content | None, design: Design, 
     """Raise InputError if the motions of a sweep have no derivatives by the variables ``keys``."""
     from symrot.ensemble.sensitivities import read_columns
 
-    # None under torques with a jump or a kink, and none by a variable that sets a quantity which the sweep varies in
-    # another way: mass and radius of a body both set its moments of inertia.
+    # none by a variable that sets a quantity which the sweep varies in another way: mass and radius of a body both set
+    # its moments of inertia
     varying = ["quaternion"] if design.attitudes == "uniform" else []
     for axis in design.axes:
         path = axis.target.path
