@@ -67,7 +67,7 @@ _NAMES_OF_MODULES = {
     "report.output": ("save",),
     "report.plot": ("plot",),
     "results.saved": ("SavedTrajectory", "load"),
-    "results.sensitivity": ("Sensitivities", "Sensitivity"),
+    "results.sensitivity": ("Sensitivities", "Sensitivity", "SwitchSlopes"),
     "sweeps.sweep": ("Sweep", "sweep"),
     "viewer.show": ("show",),
     "notebook.show": ("in_notebook",),

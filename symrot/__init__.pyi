@@ -39,7 +39,7 @@ from symrot.propagation.trajectory import Invariant, Trajectory
 from symrot.report.output import save
 from symrot.report.plot import plot
 from symrot.results.saved import SavedTrajectory, load
-from symrot.results.sensitivity import Sensitivities, Sensitivity
+from symrot.results.sensitivity import Sensitivities, Sensitivity, SwitchSlopes
 from symrot.scene.body import Body
 from symrot.scene.samples import Table
 from symrot.scene.scene import Scene, load_scene, shipped_scenes
@@ -121,6 +121,7 @@ __all__ = [
     "Step",
     "Structure",
     "Sweep",
+    "SwitchSlopes",
     "SymrotError",
     "Table",
     "Torque",

@@ -45,7 +45,8 @@ def propagator(
     scene : Scene, mapping, str or Path
         A scene, the content of a scene file as a dict, the name of a shipped scene, or the path of a scene file.
     method : str
-        One of :data:`symrot.propagation.method.METHODS`, or a method of SciPy such as ``"scipy:LSODA"``.
+        One of :data:`symrot.propagation.method.METHODS` except ``constant``, or a method of SciPy such as
+        ``"scipy:LSODA"``.
     tolerance : float, optional
         Error of the trajectory to aim for, in rad for the attitude and relative to its size for the angular velocity;
         default: the tolerance of the scene.
@@ -132,9 +133,9 @@ def propagator(
                 f"max_step: leave it out unless a torque without a formula acts, got {number.show(max_step)}"
             )
         if switched(scene):
-            from symrot.propagation.switched.motion import SwitchedPropagator
+            from symrot.propagation.switched.propagator import SwitchedPropagator
 
-            return SwitchedPropagator(scene, method, aim)
+            return SwitchedPropagator(scene, method, aim, sensitivities)
         return Propagator(scene, method, aim, sensitivities)
     if method not in ("auto", "dop853"):
         raise InputError(f"method: expected 'auto' or 'dop853' for a torque without a formula, got {method!r}")
@@ -149,14 +150,14 @@ def propagator(
 
 
 def _refuse_sensitivities(scene: Scene, torque: Any, state: str) -> None:
-    """Raise InputError for motions without derivatives: Euler angles as state, or a torque without smooth formulas."""
+    """Raise InputError for motions without derivatives: Euler angles as state, or a torque without formulas."""
     if state != "quaternion":
         raise InputError(f"sensitivities: expected state='quaternion', got {state!r}; Euler angles have none")
     if torque is not None:
         raise InputError("sensitivities: expected torques with formulas, got a torque that is a function or a table")
-    from symrot.propagation.sensitivities.variables import require_smooth
+    from symrot.propagation.sensitivities.variables import require_formulas
 
-    require_smooth(scene)
+    require_formulas(scene)
 
 
 def _with_values(

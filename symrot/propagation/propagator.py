@@ -207,7 +207,7 @@ class Propagator:
         """Return the derivatives of the motion of ``scene`` at times, s; None if the propagator computes none."""
         if self.sensitivities is None:
             return None
-        from symrot.propagation.sensitivities.variation import variation
+        from symrot.propagation.sensitivities.derivatives import variation
 
         return variation(scene, self.sensitivities, times)
 
@@ -216,7 +216,7 @@ class Propagator:
 
         The state is omega, rad/s, then a small rotation about the body axes, rad.
         """
-        from symrot.propagation.sensitivities.variation import transition_matrix
+        from symrot.propagation.sensitivities.derivatives import transition_matrix
 
         return transition_matrix(scene, t0, t1)
 
@@ -245,7 +245,7 @@ class Propagator:
             raise result.error
         derivatives = self.sensitivities_of(trajectory.scene, result.t)
         if derivatives is not None and self.sensitivities is not None:
-            from symrot.propagation.sensitivities.variation import event_slopes
+            from symrot.propagation.sensitivities.derivatives import event_slopes
 
             slopes = event_slopes(trajectory.scene, self.sensitivities, result)
             trajectory.sensitivities = replace(derivatives, t_events=slopes)

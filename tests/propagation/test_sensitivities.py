@@ -36,6 +36,15 @@ SYMMETRIC = {
 }
 
 
+SWITCHED = {
+    **TOP,
+    "torque": [
+        *TOP["torque"],
+        {"kind": "expression", "parameters": {"k": "1/4"}, "torque": ["-k*sign(omega_1)", "0", "0"]},
+    ],
+}
+
+
 UNIT = 1 << 190  # numbers of the reference are integers, in units of 2^-190: 57 digits
 CHANGE = UNIT >> 60  # of a variable: central differences then have errors near 1e-36
 
@@ -63,10 +72,29 @@ def convolved(f, g):
     return sum(map(mul, f, reversed(g))) // UNIT
 
 
-def motion(omega, q, moments, weight, center, damping, duration):
-    """Return omega and q after a time, from Taylor series of 57 digits of Euler's equations, written out here."""
-    state = [*omega, *q]
-    for _ in range(duration * 8):
+def value(series, time):
+    total = 0
+    for coefficient in reversed(series):
+        total = coefficient + times(total, time)
+    return total
+
+
+def root(series, time):
+    """Return the zero of a series between 0 and ``time``, at which its sign differs from that just after 0."""
+    low, high, after = 0, time, value(series, time) > 0
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if (value(series, middle) > 0) == after else (middle, high)
+    return high
+
+
+def motion(omega, q, moments, weight, center, damping, duration, dry=0):
+    """Return omega and q after a time, from Taylor series of 57 digits of Euler's equations, written out here.
+
+    The torque ``-dry*sign(omega_1)`` may act too; a step ends where omega_1 changes its sign.
+    """
+    state, sign, rest = [*omega, *q], 1 if omega[0] > 0 else -1, duration * UNIT
+    while rest:
         x = [[value] for value in state]
         for n in range(48):
             w1, w2, w3, p0, p1, p2, p3 = x
@@ -81,6 +109,7 @@ def motion(omega, q, moments, weight, center, damping, duration):
                 j, k = (i + 1) % 3, (i + 2) % 3
                 arm = times(center[j], down[k]) - times(center[k], down[j])
                 torque = times(moments[j] - moments[k], across[i]) - times(damping[i], x[i][n]) + times(weight, arm)
+                torque -= sign * dry * (i == 0 and n == 0)
                 rates.append(torque * UNIT // moments[i])
             rates += [
                 -(convolved(p1, w1) + convolved(p2, w2) + convolved(p3, w3)) // 2,
@@ -90,13 +119,17 @@ def motion(omega, q, moments, weight, center, damping, duration):
             ]
             for series, rate in zip(x, rates, strict=True):
                 series.append(rate // (n + 1))
-        state = [sum(c >> (3 * n) for n, c in enumerate(series)) for series in x]  # at 1/8 s
+        step = min(UNIT // 8, rest)
+        if dry and value(x[0], step) * sign < 0:
+            step, sign = root(x[0], step), -sign
+        state, rest = [value(series, step) for series in x], rest - step
     return state
 
 
 def reference(scene, change, duration):
     """Return the derivatives of omega, of the quaternion and of the small rotation by what ``change`` changes."""
     heavy, *damped = scene.torques
+    dry = fixed(damped[1].number("k")) if len(damped) > 1 else 0
     ends = []
     for sign in (-1, 0, 1):
         values = {
@@ -104,6 +137,7 @@ def reference(scene, change, duration):
             "moments": [fixed(scene.body.inertia[i][i]) for i in range(3)], "weight": fixed(heavy.number("weight")),
             "center": [*map(fixed, heavy.vector("center_of_mass"))],
             "damping": [*map(fixed, damped[0].vector("linear"))] if damped else [0, 0, 0],
+            "dry": dry,
         }  # fmt: skip
         change(values, sign * CHANGE)
         ends.append(motion(**values, duration=duration))
@@ -128,20 +162,22 @@ def rotated(values, size):
 
 
 @needs_compiler
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(
     ("content", "duration", "changes"),
     [
+        (SWITCHED, 2, {"omega_2": of("omega", 1), "weight": of("weight"), "I_yy": of("moments", 1), "k": of("dry")}),
         (TOP, 2, {"omega_2": of("omega", 1), "weight": of("weight"), "I_yy": of("moments", 1),
                   "linear_2": of("damping", 1)}),
         (SYMMETRIC, 5, {"I_xx": of("moments", 0), "omega_1": of("omega", 0)}),
     ],
-    ids=["damped", "exact"],
+    ids=["switched", "damped", "exact"],
 )  # fmt: skip
 def test_sensitivities_agree_with_motions_of_fifty_digits(content, duration, changes):
-    """The second motion has a closed form, which a change of I_xx, of the centre or of omega_1 leaves."""
+    """The first torque switches; the last motion has a closed form, which a change of I_xx or omega_1 leaves."""
     scene = symrot.Scene.from_dict(content)
     trajectory = symrot.propagate(scene, t=[0, duration], sensitivities=list(changes))
+    assert len(trajectory.sensitivities.switchings) == (content is SWITCHED)
     for name, change in changes.items():
         expected, computed = reference(scene, change, duration), trajectory.sensitivities[name]
         for part, own in zip(expected, (computed.omega, computed.quaternion, computed.rotation), strict=True):
@@ -210,6 +246,39 @@ def test_the_times_of_events_have_derivatives():
 
 
 @needs_compiler
+def test_derivatives_of_times_travel_in_files_and_tables(tmp_path):
+    pytest.importorskip("pandas")
+    motion = symrot.propagate(TOP, sensitivities=["weight"], events=["omega_1*q0 + t - 1", "(t - 1/2)**2"], t=[0, 2])
+    motion.save(tmp_path / "motion.npz")
+    saved, slopes = symrot.load(tmp_path / "motion.npz"), motion.sensitivities.t_events
+    assert all(map(np.array_equal, saved.sensitivities.t_events, slopes, [True, True]))
+    for each in (motion, saved):
+        frame = each.at_events[0].to_dataframe()
+        assert frame["t_by_weight"].tolist() == slopes[0][:, 0].tolist()
+        assert frame.attrs["units"]["t_by_weight"] == "(s)/(N)"
+
+
+@needs_compiler
+def test_numbers_of_the_scene_file_are_variables():
+    """By the radius of a solid sphere m = 4/3 pi rho r^3, C = 2/5 m r^2; a friction k slows it as exp(-k t/C)."""
+    ball = {
+        "schema": 1, "body": {"part": [{"shape": "sphere", "radius": "1/2", "density": 3}]},
+        "initial": {"omega": [0, 0, 2], "attitude": {"sequence": "ZXZ", "angles": [0, 30, 0], "degrees": True}},
+        "span": {"t": [0, 2], "samples": 2}, "torque": [{"kind": "damping", "linear": ["1/3", "1/3", "1/3"]}],
+    }  # fmt: skip
+    names = ["body.part[0].radius", "body.part[0].density", "torque[0].linear[2]", "initial.attitude.angles[1]"]
+    own = symrot.propagate(ball, sensitivities=names).sensitivities
+    inertia = 8 / 15 * np.pi * 3 / 2**5
+    power = 2 / 3 / inertia
+    scale = 2 * np.exp(-power) * power
+    expected = [scale * 5 / (1 / 2), scale / 3, -scale * 3, 0]
+    assert np.allclose(own.omega[-1, 2], expected, rtol=1e-13, atol=0)
+    assert own.units == ("m", "kg/m^3", "N m s", "deg")
+    # a rotation of the start by 1 deg about axis 1, then by the angle of the motion about axis 3
+    assert np.isclose(np.linalg.norm(own[names[3]].rotation[-1]), np.pi / 180, rtol=1e-14)
+
+
+@needs_compiler
 def test_sensitivities_leave_the_motion_as_it_is():
     scene = symrot.Scene.from_dict(TOP)
     with_them, without = symrot.propagate(scene, sensitivities=["omega", "attitude"]), symrot.propagate(scene)
@@ -255,11 +324,10 @@ def test_what_has_no_sensitivities_is_refused_in_a_sentence(options, message):
         symrot.propagate(symrot.Scene.from_dict(TOP), **options)
 
 
-def test_torques_that_switch_have_no_sensitivities():
-    with pytest.raises(InputError, match="jump or bend"):
-        symrot.propagate("friction_wheel", sensitivities=["omega"])
-    with pytest.raises(InputError, match="jump or bend"):
-        symrot.propagate("friction_wheel").transition(0, 1)
+def test_a_transition_needs_formulas_and_finite_times():
+    table = {"kind": "table", "t": [0, 1, 2, 3], "moment": [[0, 0, 1]] * 4}
+    with pytest.raises(InputError, match="torques with formulas"):
+        symrot.propagate({**TOP, "torque": [table]}).transition(0, 1)
     with pytest.raises(InputError, match="finite times"):
         symrot.propagate("t_handle").transition(0, inf)
 

@@ -132,6 +132,8 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("roll", ("bank", "roll angle"), ("roll",), "psi", "rad"),
     Quantity("mass", (), (), "m|m_[12]", "kg"),
     Quantity("weight", (), (), "W", "N"),
+    Quantity("tension", ("tension of string", "tension in string", "string tension", "force in string",
+                         "tension of rope", "tension in rope"), ("tension of",), "T_s", "N"),
     Quantity("gravity", ("gravitational acceleration", "acceleration of gravity"), (), "g", "m/s^2"),
     Quantity("radius", (), (), "R|r|R_1|R_2", "m"),
     Quantity("length", (), (), "L", "m"),

@@ -86,7 +86,7 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"a(_?[a-zA-Z0-9]+)?", ("acceleration", "frequency")),
     (r"v(_?[a-zA-Z0-9]+)?", ("speed", "velocity of", "product", "vector")),
     (r"T(_?rot)?|K|K_?E|E(_?(k|kin|rot))?|KE",
-     ("kinetic energy", "torque", "rotation matrix", "period", "energy of", "Jacobian")),
+     ("kinetic energy", "torque", "rotation matrix", "period", "energy of", "Jacobian", "tension of")),
     (r"d(T|E|K|KE|W)", ("power",)), (r"sigma(_?[1-3i])?", ("modified Rodrigues",)),
     (r"(V|U)_?eff", ("effective potential",)),
     (r"W", ("work", "potential", "energy")),

@@ -63,7 +63,8 @@ LAST_FIRST = (3, 0, 1, 2)
 
 
 LETTERS = {
-    "kg m^2": r"[ABCIJ]\w*|lambda_?[1-3]", "kg": r"[mM]\w*", "N": r"[WPFG]\w*", "m": r"[a-hlrsxyzLRD]\w*|ell",
+    "kg m^2": r"[ABCIJ]\w*|lambda_?[1-3]", "kg": r"[mM]\w*", "N": r"[WPFG]\w*",
+    "N, of a string": r"[TSF](_\w+)?", "m": r"[a-hlrsxyzLRD]\w*|ell",
     "kg m^2/s": r"[LHGhpM]\w*",
     "kg m/s": r"[pP]\w*", "N m, of momentum": r"d[LHhM]\w*",
     "N m": r"(M|N|T|Q|tau|Gamma)(_\w+)?|K_?[1-3xyz]",

@@ -79,6 +79,7 @@ START, END, TIME = new_symbol("theta_i", "rad"), new_symbol("theta_f", "rad"), n
 ALPHA, FALL, SLOPE = new_symbol("alpha_a", "rad/s^2"), new_symbol("a_l", "m/s^2"), new_symbol("beta", "rad")
 TORQUE, PERIOD, LENGTH = new_symbol("M", "N m"), new_symbol("T_p", "s"), new_symbol("q_d", "m")
 PULLEY = new_symbol("M_p", "kg")
+TENSION = new_symbol("T_s", "N, of a string")
 GYRATION = new_symbol("k_O", "m, of gyration")
 TILT = new_symbol("gamma", "rad")
 WHEEL_MOMENTUM = new_symbol("h_w", "kg m^2/s")
@@ -269,6 +270,13 @@ def _rolling() -> Iterator[Relation]:
         yield Relation(title, PLANE, cancel(falling.subs(A, moment)), {FALL: "acceleration of"})
     alone = falling.subs({first: MASS, second: 0})
     yield Relation("a mass that unwinds a string from a wheel", PLANE, alone, {FALL: "acceleration of"})
+    # the string slows the fall: m g - T = m a
+    (slowed,) = solve(alone, FALL)
+    unrolling = cancel(TENSION - MASS * (G - slowed))
+    yield Relation("the string of an unrolling body", PLANE, unrolling, {TENSION: "tension of"})
+    (lifted,) = solve(falling.subs(A, 0), FALL)
+    light = cancel(TENSION - second * (G + lifted))
+    yield Relation("the string of two masses on a light pulley", PLANE, light, {TENSION: "tension of"})
 
 
 def _pendulum() -> Iterator[Relation]:

@@ -65,7 +65,9 @@ BEFORE_INDEX = USUAL_LETTERS | {"E", "T"}
 
 UNITS = ("rpm", "deg", "rad", "kg", "mm", "cm", "km", "Hz", "ms", "rev", "min")
 
-ENGLISH = frozenset(["and", "or", "if", "for", "where", "then", "with", "when", "mod", "is", "are", "so", "but", "not"])
+ENGLISH = frozenset(
+    ["and", "or", "if", "for", "where", "then", "with", "when", "mod", "is", "are", "so", "but", "not", "of", "the"]
+)
 """Words between formulas, which are no factors."""
 
 SCALARS = frozenset("bckmn")

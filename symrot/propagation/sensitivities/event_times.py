@@ -16,7 +16,7 @@ from symrot.formula.switches import STATES
 from symrot.formula.tree import evaluate, operations
 from symrot.propagation.events.events import Event
 
-__all__ = ["event_time_slopes", "require_smooth_events"]
+__all__ = ["TOUCHING", "along_motion", "event_time_slopes", "require_smooth_events"]
 
 Floats = NDArray[np.float64]
 TOUCHING = "touching"
@@ -57,15 +57,26 @@ def event_time_slopes(
     >>> event_time_slopes(Event("omega_3 - 1"), ["rising"], np.array([0.5]), *rows)
     array([[-0.5]])
     """
-    node, functions = event.node, dual_functions(FLOAT_FUNCTIONS)
     result = np.full((len(times), slopes.shape[2]), np.nan)
     for k, kind in enumerate(kinds):
         if kind == TOUCHING:
             continue
-        values = {name: Dual(float(x), {name: 1.0}) for name, x in zip(STATES, states[k], strict=True)}
-        formula = evaluate(node, {**values, "t": Dual(float(times[k]), {"t": 1.0})}, functions, float)
-        gradient = np.array([formula.slopes.get(name, 0.0) for name in STATES])
-        along = formula.slopes.get("t", 0.0) + gradient @ rates[k]
+        by_time, gradient = _gradient(event, float(times[k]), states[k])
+        along = by_time + gradient @ rates[k]
         if along:
             result[k] = -(gradient @ slopes[k]) / along
     return result
+
+
+def along_motion(event: Event, time: float, state: Floats, rates: Floats) -> float:
+    """Return the time derivative of the formula of an event along a motion with a given state and its rates."""
+    by_time, gradient = _gradient(event, time, state)
+    return by_time + float(gradient @ rates)
+
+
+def _gradient(event: Event, time: float, state: Floats) -> tuple[float, Floats]:
+    """Return the derivatives of the formula of an event by time and by the seven states."""
+    values = {name: Dual(float(x), {name: 1.0}) for name, x in zip(STATES, state, strict=True)}
+    values["t"] = Dual(time, {"t": 1.0})
+    formula = evaluate(event.node, values, dual_functions(FLOAT_FUNCTIONS), float)
+    return float(formula.slopes.get("t", 0.0)), np.array([formula.slopes.get(name, 0.0) for name in STATES])

@@ -22,7 +22,7 @@ from symrot.formula import exact_numbers as number
 from symrot.formula.float_functions import FLOAT_FUNCTIONS
 from symrot.formula.program import Program, node_from_json, node_to_json
 from symrot.formula.switches import STATES
-from symrot.planning.general_structure import PRODUCTS, constants_of, general_structure
+from symrot.planning.general_structure import PRODUCTS, constants_of, general_structure, switched
 from symrot.planning.plan import Plan
 from symrot.planning.rules import UNIT_FIELDS, pattern
 from symrot.planning.scene_kernel import EPOCH, Parameters
@@ -30,11 +30,11 @@ from symrot.propagation.binding import value_of
 from symrot.propagation.compiled_models import has_formulas, kernel_key
 from symrot.propagation.events.event_result import EventResult
 from symrot.propagation.sensitivities.event_times import event_time_slopes
-from symrot.propagation.sensitivities.variables import Variable, difference, groups_of, read_variables, require_smooth
+from symrot.propagation.sensitivities.variables import Variable, difference, read_variables
 from symrot.propagation.steppers import taylor
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.time_shift import starts_far
-from symrot.results.sensitivity import Sensitivities
+from symrot.results.sensitivity import SwitchSlopes
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial
 
@@ -47,15 +47,15 @@ __all__ = [
     "TOLERANCE",
     "TRIES",
     "Column",
+    "SmoothEquations",
     "columns_of",
-    "event_slopes",
+    "follow_columns",
     "motion_library",
     "rates_of",
     "rotation_slopes",
     "small_rotation",
     "structure_of",
-    "transition_matrix",
-    "variation",
+    "unit_of",
     "variation_source",
 ]
 
@@ -66,67 +66,6 @@ AT_ONCE = 6  # columns in one library: many more would take a compiler too long
 TOLERANCE = 1e-16
 SMALL = 2.0**-6  # largest size of a column below which it is integrated again in smaller units
 TRIES = 4
-MOST_RECENT = 8
-TRANSITION = ("omega", "attitude")
-
-
-def variation(scene: Scene, keys: Sequence[str], times: Floats) -> Sensitivities:
-    """Return the derivatives of omega, quaternion and attitude (small rotation about the body axes) at sample times.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene with the initial state of the motion.
-    keys : sequence of str
-        The variables, see :func:`symrot.propagation.sensitivities.variables.read_variables`.
-    times : array, shape (n,)
-        Sample times, s.
-
-    Raises
-    ------
-    InputError
-        If the scene has torques that switch or a table of samples, or if a key names no variable.
-    PropagationError
-        If the motion cannot be followed to the last time.
-    """
-    equations = _equations(scene, tuple(keys) if isinstance(keys, list) else keys)
-    values, slopes = equations.follow(scene, times)
-    omega, quaternion = slopes[:, :RATES], slopes[:, RATES:]
-    variables = equations.variables
-    return Sensitivities(
-        tuple(variable.name for variable in variables),
-        tuple(variable.unit for variable in variables),
-        groups_of(variables),
-        omega,
-        quaternion,
-        small_rotation(values[:, RATES:], quaternion),
-    )
-
-
-def event_slopes(scene: Scene, keys: Sequence[str], result: EventResult) -> tuple[Floats, ...]:
-    """Return one array for each event: derivatives of its k times by the m variables ``keys``, shape (k, m)."""
-    equations = _equations(scene, tuple(keys) if isinstance(keys, list) else keys)
-    slopes = []
-    for event, kinds, times in zip(result.events, result.kinds, result.t_events, strict=True):
-        states, by = equations.follow(scene, times)
-        slopes.append(event_time_slopes(event, kinds, times, states, equations.rates(scene, times, states), by))
-    return tuple(slopes)
-
-
-def transition_matrix(scene: Scene, start: float, stop: float) -> Floats:
-    """Return the state transition matrix of a scene's motion from ``start`` to ``stop``, s, shape (6, 6).
-
-    The state is omega, then a small rotation about the body axes.
-    """
-    # both times in s, in any order; _equations raises InputError if the torques have no derivatives
-    if start != float(scene.span.start):
-        values, _ = _equations(scene, TRANSITION).follow(scene, np.array([start]))
-        omega, q = values[0, :RATES], values[0, RATES:] / np.linalg.norm(values[0, RATES:])
-        exact = [Fraction(x) for x in (*omega.tolist(), *q.tolist())]
-        initial = Initial((exact[0], exact[1], exact[2]), (exact[3], exact[4], exact[5], exact[6]))
-        scene = replace(scene, initial=initial)
-    values, slopes = _equations(scene, TRANSITION).follow(scene, np.array([stop]), start)
-    return np.concatenate([slopes[0, :RATES], small_rotation(values[:, RATES:], slopes[:, RATES:])[0]])
 
 
 # ------------------------------------------------------------------------------------------------ columns
@@ -185,7 +124,7 @@ def _start(scene: Scene) -> dict[str, Fraction]:
 
 
 def columns_of(scene: Scene, variables: Sequence[Variable]) -> list[Column]:
-    general = general_structure(scene)
+    general = general_structure(scene, switched(scene))
     return [Column(scene, variable, general) for variable in variables]
 
 
@@ -197,7 +136,7 @@ def structure_of(scene: Scene, columns: Sequence[Column], varying: Collection[st
     # They become parameters even if they are now zero or one, since derivatives by them are needed; so do constants
     # that differ between the motions of an ensemble (varying). Other zeros and ones simplify the equations.
     moving = {name for column in columns for name in column.constants} | set(varying)
-    general, inertia = general_structure(scene), scene.body.inertia
+    general, inertia = general_structure(scene, switched(scene)), scene.body.inertia
     nonzero = {name for name, (i, j) in PRODUCTS.items() if inertia[i][j] != 0 or name in moving}
     entries = tuple(name for name in general.inertia.entries if name not in PRODUCTS or name in nonzero)  # type: ignore[union-attr]
     torques: list[FieldTorque | FormulaTorque] = []
@@ -309,11 +248,10 @@ def motion_library(plan: Plan, rates: Program, depends: Sequence[Sequence[str]])
 # ------------------------------------------------------------------------------------------------ motions
 
 
-class _Equations:
+class SmoothEquations:
     """The compiled equations of a scene's motion, from any initial state, and of its derivatives by variables."""
 
     def __init__(self, scene: Scene, keys: Sequence[str]) -> None:
-        require_smooth(scene)
         self.scene, self.keys, self.variables = scene, keys, read_variables(scene, keys)
         columns = columns_of(scene, self.variables)
         self.restartable = all(column.restartable for column in columns)
@@ -339,7 +277,19 @@ class _Equations:
         results = [part.follow(scene, times, begin, epoch) for part in parts]
         return results[0][0], np.concatenate([slopes for _, slopes in results], axis=2)
 
-    def rates(self, scene: Scene, times: Floats, states: Floats) -> Floats:
+    def event_slopes(self, scene: Scene, result: EventResult) -> tuple[Floats, ...]:
+        """Return one array for each event: derivatives of its k times by the m variables, shape (k, m)."""
+        slopes = []
+        for event, kinds, times in zip(result.events, result.kinds, result.t_events, strict=True):
+            states, by = self.follow(scene, times)
+            slopes.append(event_time_slopes(event, kinds, times, states, self._rates(scene, times, states), by))
+        return tuple(slopes)
+
+    def switchings(self, scene: Scene, times: Floats) -> tuple[SwitchSlopes, ...]:
+        """Return no switches: the torques are smooth."""
+        return ()
+
+    def _rates(self, scene: Scene, times: Floats, states: Floats) -> Floats:
         """Return the time derivatives of the states of the motion of ``scene`` at n times, shape (n, 7)."""
         parts, epoch = self._chosen(float(scene.span.start), times)
         rows = [parts[0].rates(t, state) for t, state in zip(times - epoch, states, strict=True)]
@@ -356,19 +306,6 @@ class _Equations:
         if epoch != self._moved[0]:
             self._moved = (epoch, _parts(self.scene, self._columns, epoch))
         return self._moved[1]
-
-
-_recent: list[_Equations] = []
-"""The equations that were used last; a propagator with another initial state needs the same ones again."""
-
-
-def _equations(scene: Scene, keys: Sequence[str]) -> _Equations:
-    """Return the equations of a scene's motion and its derivatives by ``keys``; recent ones are used again."""
-    equations = next((each for each in _recent if each.fit(scene, keys)), None)
-    if equations is None:
-        equations = _Equations(scene, keys)
-        _recent[:] = [equations, *_recent[: MOST_RECENT - 1]]
-    return equations
 
 
 def _parts(scene: Scene, columns: Sequence[Column], epoch: float = 0.0) -> "list[_Part]":
@@ -404,40 +341,79 @@ class _Part:
         return list(self._rates.evaluate({**values, "t": float(time)}, FLOAT_FUNCTIONS, float).values())
 
     def follow(self, scene: Scene, times: Floats, begin: float, epoch: float) -> tuple[Floats, Floats]:
-        """Return the states at times and their derivatives, as :meth:`_Equations.follow` does."""
-        columns, size = self.columns, len(STATES)
+        """Return the states at times and their derivatives, as :meth:`SmoothEquations.follow` does."""
         start = [float(value) for value in (*scene.initial.omega_b, *scene.initial.quaternion)]
-        starts = [column.start_from(scene.initial) for column in columns]
-        units = [_size(scene, column) for column in columns]
-        # Each column is multiplied by its unit, a power of two near the size of its variable. If it then stays below
-        # SMALL, the control of errors hardly sees it: the motion is integrated again with a larger unit.
-        for attempt in range(TRIES):
-            state, p = list(start), list(self._values)
-            for unit, own, slopes in zip(units, starts, self._slopes, strict=True):
-                state += [unit * slope for slope in own]
-                p += [unit * slope for slope in slopes]
-            motion = taylor.integration(self._path, p, state, begin - epoch, TOLERANCE)
-            try:
-                samples, _ = motion.sample(times - epoch)
-            except IntegrationStopped as error:
-                raise PropagationError(f"{scene.name}: sensitivities: {error.later(epoch)}") from None
-            except PropagationError as error:
-                raise PropagationError(f"{scene.name}: sensitivities: {error}") from None
-            derivatives = samples[:, size:].reshape(len(times), len(columns), size)
-            largest = np.max(np.abs(derivatives[:, :, RATES:]), axis=(0, 2), initial=0.0)
-            small = [k for k, reached in enumerate(largest.tolist()) if 0.0 < reached < SMALL]
-            if not small or attempt == TRIES - 1:
-                break
-            for k in small:
-                units[k] = ldexp(units[k], 1 - frexp(largest[k])[1])
-        scaled = derivatives / np.array(units)[None, :, None]
-        return samples[:, :size], np.ascontiguousarray(scaled.transpose(0, 2, 1))
+        starts = [column.start_from(scene.initial) for column in self.columns]
+        units = [unit_of(scene, column) for column in self.columns]
+
+        def labelled(error: PropagationError) -> PropagationError:
+            later = error.later(epoch) if isinstance(error, IntegrationStopped) else error
+            return PropagationError(f"{scene.name}: sensitivities: {later}")
+
+        states, derivatives, _ = follow_columns(
+            self._path, self._values, self._slopes, start, starts, units, begin - epoch, times - epoch, labelled
+        )
+        return states, derivatives
 
 
-def _size(scene: Scene, column: Column) -> float:
+def follow_columns(
+    path: Path,
+    values: Sequence[float],
+    slopes: Sequence[Sequence[float]],
+    start: Sequence[float],
+    starts: Sequence[Sequence[float]],
+    units: Sequence[float],
+    begin: float,
+    times: Floats,
+    labelled: Callable[[PropagationError], PropagationError],
+) -> tuple[Floats, Floats, list[float]]:
+    """Return states at n times, shape (n, 7), their derivatives by m variables, (n, 7, m), and the units used last.
+
+    Parameters
+    ----------
+    path : Path
+        The library of :func:`motion_library`.
+    values, slopes : sequences
+        The parameters of the rates, and for each variable the derivatives of those that depend on it.
+    start, starts : sequences
+        The states at the time ``begin``, and for each variable their derivatives.
+    units : m numbers
+        Powers of two, near the sizes of the variables.
+    begin : float
+        Initial time, s, on the clock of the library.
+    times : array, shape (n,)
+        Sample times, s, on that clock.
+    labelled : function
+        Takes the error of a motion that stops early, and returns the error to raise.
+    """
+    # Each column is multiplied by its unit. If it then stays below SMALL, the control of errors hardly sees it: the
+    # motion is integrated again with a larger unit.
+    units, size = list(units), len(STATES)
+    for attempt in range(TRIES):
+        state, p = list(start), list(values)
+        for unit, own, by in zip(units, starts, slopes, strict=True):
+            state += [unit * slope for slope in own]
+            p += [unit * slope for slope in by]
+        motion = taylor.integration(path, p, state, begin, TOLERANCE)
+        try:
+            samples, _ = motion.sample(times)
+        except PropagationError as error:
+            raise labelled(error) from None
+        derivatives = samples[:, size:].reshape(len(times), len(starts), size)
+        largest = np.max(np.abs(derivatives[:, :, RATES:]), axis=(0, 2), initial=0.0)
+        small = [k for k, reached in enumerate(largest.tolist()) if 0.0 < reached < SMALL]
+        if not small or attempt == TRIES - 1:
+            break
+        for k in small:
+            units[k] = ldexp(units[k], 1 - frexp(largest[k])[1])
+    scaled = derivatives / np.array(units)[None, :, None]
+    return samples[:, :size], np.ascontiguousarray(scaled.transpose(0, 2, 1)), units
+
+
+def unit_of(scene: Scene, column: Column) -> float:
     """Return a power of two near the value of a column's variable, by which its derivatives are multiplied.
 
-    It is 1 for zero or a rotation.
+    For omega, it is near the largest component; for zero or a rotation, it is 1.
     """
     # a column times this number is about as large as the states, so that one error control fits both
     value = abs(float(column.variable.value))

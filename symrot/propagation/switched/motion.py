@@ -11,33 +11,21 @@ from typing import Any, final
 import numpy as np
 
 from symrot.errors import PropagationError
-from symrot.planning.plan import Plan, make_plan
+from symrot.planning.plan import Plan
 from symrot.propagation.compiled_models import scene_kernel
 from symrot.propagation.events.polynomials import Piece
-from symrot.propagation.method import Choice, choose_method
-from symrot.propagation.motion import Motion, MotionInParts, Setup
-from symrot.propagation.propagator import Propagator
+from symrot.propagation.method import Choice
+from symrot.propagation.motion import MotionInParts, Setup
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped, add_samples
 from symrot.propagation.steppers.stepping import Floats, Recording, Stats, Switching, split_at, stats_of
 from symrot.propagation.switched.run import Chunk, SwitchedRun
 from symrot.propagation.switched.system import SwitchedSystem
-from symrot.scene.tables import Initial
 
-__all__ = ["SwitchedMotion", "SwitchedPropagator"]
+__all__ = ["SwitchedMotion"]
 
 
 # While a stepper follows a regime, the guards are searched for zeros like the formulas of events, to the last bits.
 # Where a guard changes its sign, the integration ends exactly and continues with the new mode.
-class SwitchedPropagator(Propagator):
-    """Propagator of a scene with switching functions (sign, abs, ..) in its torques; see :func:`symrot.propagator`."""
-
-    def _planned(self, initial: Initial | None = None) -> Plan:
-        return make_plan(self.scene, initial, switched=True)
-
-    def _prepare(self, plan: Plan) -> Motion:
-        return SwitchedMotion(plan, choose_method(plan, self._method), self.tolerance)
-
-
 # In sliding motion (dry friction at rest, relay control), the mode takes the value that keeps the guard at zero, until
 # this value leaves the range of the function. Source: A. F. Filippov, Differential Equations with Discontinuous
 # Righthand Sides, Kluwer 1988, sections 4 and 8.

@@ -1,0 +1,107 @@
+"""Derivatives of motions through the switches of torques, against closed forms and where they do not exist."""
+
+import json
+
+import numpy as np
+import pytest
+
+import symrot
+from symrot.cli.main import main
+from symrot.errors import InputError, PropagationError
+from tests.needs import needs_compiler
+
+pytestmark = pytest.mark.usefixtures("quick_compiler")
+
+
+def scene(torque, parameters, omega, stop=4, principal=(2, 2, 3)):
+    return {
+        "schema": 1, "body": {"principal": list(principal)}, "initial": {"omega": list(omega)},
+        "span": {"t": [0, stop], "samples": 3},
+        "torque": [{"kind": "expression", "parameters": parameters, "torque": torque}],
+    }  # fmt: skip
+
+
+def column(motion, name, sample=-1):
+    return motion.sensitivities[name].omega[sample, 2], motion.sensitivities[name].rotation[sample, 2]
+
+
+@needs_compiler
+def test_derivatives_by_the_times_of_a_thruster_pulse():
+    """A torque k from a to b: omega_3 = 1 + k (b - a)/C, and the angle is 4 + k/C (b - a)(4 - (a + b)/2)."""
+    a, b, k, c = 0.5, 1.5, 2.0, 3.0
+    content = scene(["0", "0", "where(t > a and t < b, k, 0)"], {"a": "1/2", "b": "3/2", "k": 2}, (0, 0, 1))
+    motion = symrot.propagate(content, t=[0, b, 4], sensitivities=["a", "b", "k", "I_zz"])
+    expected = {
+        "a": (-k / c, -k / c * (4 - a)),
+        "b": (k / c, k / c * (4 - b)),
+        "k": ((b - a) / c, (b - a) / c * (4 - (a + b) / 2)),
+        "I_zz": (-k * (b - a) / c**2, -k / c**2 * (b - a) * (4 - (a + b) / 2)),
+    }
+    for name, values in expected.items():
+        assert np.allclose(column(motion, name), values, rtol=1e-14, atol=0)
+    # exactly at the switch the derivative by its time jumps, and has no value
+    assert np.isnan(column(motion, "b", 1)).all() and np.isfinite(column(motion, "k", 1)).all()
+    ended = symrot.propagate(content, t=[0, b], sensitivities=["a", "b", "k", "I_zz"])
+    assert np.array_equal(ended.sensitivities.omega[-1], motion.sensitivities.omega[1], equal_nan=True)
+    assert [each.slopes.tolist() for each in motion.sensitivities.switchings] == [[1, 0, 0, 0], [0, 1, 0, 0]]
+
+
+@needs_compiler
+def test_derivatives_by_dry_friction_on_one_axis():
+    """The wheel stops at t = C omega_0/k and slips again at t = 8 + 20 k, when a growing torque exceeds k."""
+    motion = symrot.propagate(
+        "friction_wheel", t=[3, 7, 16], sensitivities=["omega_3", "k", "I_zz"], events=["omega_3 == 20"]
+    )
+    omega = np.array([motion.sensitivities[name].omega[:, 2] for name in ("omega_3", "k", "I_zz")])
+    assert np.allclose(omega, [[1, 0, 0], [-60, 0, -60], [300, 0, -90]], rtol=1e-13, atol=1e-13)
+    stops, kink, slips = (each.slopes for each in motion.sensitivities.switchings)
+    assert np.allclose([stops, kink, slips], [[0.2, -24, 120], [0, 0, 0], [0, 20, 0]], rtol=1e-13, atol=0)
+    assert np.allclose(motion.sensitivities.t_events[0], [[0.2, -8, 40]], rtol=1e-13, atol=0)
+    assert np.allclose(motion.transition(3, 7)[2], 0.0, atol=1e-13)
+
+
+@needs_compiler
+def test_a_report_says_where_the_last_sample_has_no_derivative(capsys):
+    arguments = ["run", "friction_wheel", "--sensitivities", "k", "--set", "span.t=[0,6]"]
+    assert main(arguments) == 0 and "no derivative: a torque switches" in capsys.readouterr().out
+    assert main([*arguments, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out, parse_constant=float)["final"]["sensitivities"]["k"]["omega"] is None
+
+
+@needs_compiler
+def test_derivatives_of_a_body_that_friction_holds_at_rest_from_the_start():
+    """Friction stops each small rotation about axes 1 and 2 at once, so their derivatives vanish."""
+    content = scene([f"-c*sign(omega_{i})" for i in (1, 2, 3)], {"c": 1}, (0, 0, 1), stop=2)
+    motion = symrot.propagate(content, sensitivities=["omega"])
+    assert np.array_equal(motion.sensitivities.omega[-1], np.diag([0.0, 0.0, 1.0]))
+
+
+@needs_compiler
+@pytest.mark.parametrize(
+    ("torque", "parameters", "names", "message"),
+    [
+        ("sign((t - 1)**2 - p)", {"p": 0}, ["p"], "touches zero"),
+        ("where(t > a, 1, 0) - where(t > b, 3, 0)", {"a": 1, "b": 1}, ["a"], "a < t and b < t switch at once"),
+        ("where(t >= a, 1, 0)", {"a": 0}, ["a"], "starts where t < a switches"),
+        ("floor(omega_3) - 3", {}, ["omega_3"], "starts where floor"),
+        ("abs(omega_1)", {}, ["omega_1"], "stays at zero"),
+    ],
+)
+def test_where_derivatives_do_not_exist_a_sentence_says_so(torque, parameters, names, message):
+    with pytest.raises((PropagationError, InputError), match=message):
+        symrot.propagate(scene(["0", "0", torque], parameters, (0, 0, 1)), sensitivities=names)
+
+
+@needs_compiler
+def test_a_variable_that_leaves_an_argument_at_zero_has_derivatives_there():
+    content = scene(["0", "0", "k*t + abs(omega_1)"], {"k": 1}, (0, 0, 1))
+    assert np.isclose(column(symrot.propagate(content, t=[3], sensitivities=["k"]), "k")[0], 1.5, rtol=1e-14)
+
+
+@needs_compiler
+def test_a_kink_at_rest_has_derivatives_if_both_sides_agree():
+    """The square of omega_1 times its sign has the derivative zero at omega_1 = 0."""
+    content = scene(["-abs(omega_1)*omega_1", "0", "0"], {}, (0, 0, 1))
+    motion = symrot.propagate(content, sensitivities=["omega_3", "omega_1"])
+    assert np.isfinite(motion.sensitivities.omega).all()
+    assert np.isclose(np.linalg.norm(motion.sensitivities["omega_1"].omega[-1]), 1.0)
