@@ -344,7 +344,7 @@ class _Walk:
         yield part.stop, part.last
 
     def _rests(self, part: _Part, mode: str) -> bool:
-        """Return whether the guard of a mode is zero throughout an interval."""
+        """Return whether the guard of a mode is zero at the start, near the middle and at the end of an interval."""
         return all(self._guard(part, mode, *place).value == 0.0 for place in self._places(part))
 
     def _is_smooth_at(self, part: _Part, mode: str) -> bool:
@@ -754,6 +754,6 @@ ZEROS = [0.0]
 
 
 def _alike(left: Floats, right: Floats) -> NDArray[np.bool_]:
-    """Return where two arrays of derivatives are equal up to rounding; each column of a matrix has its own scale."""
+    """Return where derivatives differ by at most 1e-9 of their size, that of the column if they form a matrix."""
     sizes = np.maximum(np.abs(left), np.abs(right))
     return np.abs(left - right) <= ALIKE * (sizes if sizes.ndim == 1 else sizes.max(axis=0))
