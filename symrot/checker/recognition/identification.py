@@ -88,7 +88,7 @@ class View:
 def identify(
     formula: Any, *, most: int = MOST, body: str = "", frame: str = "", sequence: str = ""
 ) -> list[Identification]:
-    """Return the known formulas to which a formula is equal; those with the same letters come first.
+    """Return the known formulas that a formula equals, up to letters, sign and transposition; the most similar first.
 
     Parameters
     ----------
@@ -488,7 +488,7 @@ def _factor(
     idle: Sequence[Expr],  # symbols in own that do not change its value
     factors: Sequence[Rational],
 ) -> Rational | None:
-    """Return the first k in ``factors`` with own = k * theirs at a random point, or None if there is none."""
+    """Return the first k in ``factors`` with own = k * theirs at a test point, or None if there is none."""
     for draw in range(MOST_DRAWS):
         point = {mine: pow(7 + 2 * draw, 40 + n * n, PRIME) for n, mine in enumerate(pairing)}
         try:
