@@ -1,6 +1,7 @@
 """Trajectories: the states of a motion at the sample times, and quantities that are computed from them on first use."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from pickle import PicklingError
@@ -318,7 +319,11 @@ class Trajectory(MotionSamples):
     def at_events(self) -> "list[Trajectory]":
         """For each requested event, the trajectory at the times of the event; an empty list if none was requested."""
         pairs = zip(self.t_events or (), self.y_events or (), strict=True)
-        return [self._sampled(t, states) for t, states in pairs]
+        samples = [self._sampled(t, states) for t, states in pairs]
+        for place, each in enumerate(samples):
+            if each.sensitivities is not None and self.sensitivities is not None:
+                each.sensitivities = replace(each.sensitivities, times=self.sensitivities.t_events[place])
+        return samples
 
     def _sampled(self, t: Floats, states: Floats) -> "Trajectory":
         other = Trajectory(self._motion, t, states, self.method, self.stats, self.message, propagator=self._propagator)
@@ -340,8 +345,9 @@ class Trajectory(MotionSamples):
         Raises
         ------
         InputError
-            If the times are not finite, or if the torques have no derivatives: a torque without a formula, or formulas
-            that jump or bend.
+            If the times are not finite, or if a torque has no formula.
+        PropagationError
+            If the motion cannot be followed to both times, or if it has no derivatives beyond a switch of a torque.
 
         Examples
         --------
@@ -392,7 +398,7 @@ class Trajectory(MotionSamples):
     def save(self, path: str | Path, quantities: Sequence[str] | None = None) -> list[str]:
         """Write the samples with labels and events to a file; see :func:`symrot.save`.
 
-        ``quantities`` default to angular velocity, attitude and the scene's output quantities.
+        ``quantities`` default to omega, the attitude if computed, the scene's output quantities and any derivatives.
         """
         if quantities is None:
             present = ("omega", "quaternion") if self.has_attitude else ("omega",)

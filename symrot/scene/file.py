@@ -48,8 +48,8 @@ def find_scene(source: str | Path) -> Path:
     Raises
     ------
     InputError
-        If there is no such scene, or if the path is a folder; the message lists the shipped scenes and the most similar
-        name.
+        If the path is a folder, or if there is no such scene; the message then proposes the most similar name, or
+        lists the shipped scenes.
     """
     if not isinstance(source, str | Path) or not str(source).strip() or "\0" in str(source):
         raise InputError(f"expected the name of a scene or the path of a scene file, got {str(source)[:60]!r}")
@@ -88,7 +88,7 @@ def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
     ------
     InputError
         If the file cannot be read, is not a regular file, is larger than 1 MB, is empty, is not UTF-8 text, or is not
-        TOML; in the last case the message names the line.
+        TOML; in the last case the message usually names the line.
     """
     try:
         content = read_input(path, LARGEST_FILE)

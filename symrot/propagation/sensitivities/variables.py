@@ -4,6 +4,7 @@ The kernel's constants, such as moments of inertia, follow exactly from a scene'
 difference quotients over a step of 2^-80 of a variable, with errors below 2^-70.
 """
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -12,7 +13,6 @@ from typing import Any
 from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import read, show
-from symrot.planning.general_structure import switched
 from symrot.scene.changes import path_of
 from symrot.scene.scene import Scene
 
@@ -24,7 +24,6 @@ __all__ = [
     "groups_of",
     "read_variables",
     "require_formulas",
-    "require_smooth",
     "slopes",
 ]
 
@@ -37,7 +36,22 @@ NO_TABLES = ("schema", "title", "source", "span", "output", "accuracy")
 STEP = Fraction(1, 1 << 80)
 AGREEMENT = Fraction(1, 1 << 60)
 UNITS = {**dict.fromkeys(RATES, "rad/s"), **dict.fromkeys(TENSOR, "kg m^2"), "mass": "kg", "density": "kg/m^3"}
-LENGTHS = ("radius", "length", "a", "b", "c", "height", "width", "depth", "thickness", "inner_radius", "outer_radius")
+ANGLES = ("angle", "angles")
+LENGTHS = (
+    "at",
+    "fixed_point",
+    "radius",
+    "length",
+    "a",
+    "b",
+    "c",
+    "height",
+    "width",
+    "depth",
+    "thickness",
+    "inner_radius",
+    "outer_radius",
+)
 
 
 @dataclass(frozen=True)
@@ -69,16 +83,6 @@ def require_formulas(scene: Scene) -> None:
     """Raise InputError if a torque of a scene is given by samples, which have no derivatives."""
     if scene.table is not None:
         raise InputError(f"{scene.name}: expected torques with formulas for sensitivities, got a torque of kind table")
-
-
-def require_smooth(scene: Scene) -> None:
-    """Raise InputError if a torque of a scene is given by samples, or by formulas that jump or bend."""
-    require_formulas(scene)
-    if switched(scene):
-        raise InputError(
-            f"{scene.name}: expected smooth torques for sensitivities, got formulas that jump or bend (abs, sign, ..), "
-            "at which the derivatives of a motion jump"
-        )
 
 
 def read_variables(scene: Scene, keys: Sequence[str]) -> list[Variable]:
@@ -159,9 +163,15 @@ def _number(key: str, value: Any) -> Fraction:
 
 def _unit(scene: Scene, key: str) -> str:
     """Return the SI unit of a key of :meth:`symrot.Scene.with_`: ``"kg"`` for ``"body.mass"``; empty if unknown."""
-    last = key.rpartition(".")[2]
+    last = re.sub(r"\[\d+\]$", "", key.rpartition(".")[2])
     if last in UNITS:
         return UNITS[last]
+    if last in ANGLES:
+        try:
+            degrees = bool(scene.value(key.rpartition(".")[0] + ".degrees"))
+        except InputError:
+            degrees = False
+        return "deg" if degrees else "rad"
     stem = last.removesuffix("_1").removesuffix("_2").removesuffix("_3")
     for torque in scene.torques:
         kind = TORQUE_KINDS.get(torque.kind)
