@@ -55,6 +55,8 @@ WITHOUT_CONTEXT = {
     "q̇ = ½Ω(ω)q": "recognised",
     r"\dot{\mathbf q} = \frac12 \boldsymbol\Omega(\boldsymbol\omega)\mathbf q": "recognised",
     "q̇ = 2Ω(ω)q": "definition",
+    r"T = ½ I \omega²": "recognised",
+    r"\omega = L \over I": "recognised",
     "q^2 = -1 where q = i": "true",
     "q = i; q^2 = 1": "false",
     "(σ_x+σ_y)² = σ_x² + 2σ_xσ_y + σ_y²": "conditional",
