@@ -106,8 +106,9 @@ def dual_functions(functions: Mapping[str, Callable[..., Any]]) -> dict[str, Cal
     def atan2(y: Any, x: Any) -> Dual:
         top, right = (each if isinstance(each, Dual) else Dual(each, {}) for each in (y, x))
         size = right.value * right.value + top.value * top.value
-        slopes = (right.value / size * top + (-top.value / size) * right).slopes
-        return Dual(f["atan2"](top.value, right.value), slopes)
+        # a plain number of any kind cannot multiply a dual number from the left
+        moved = top._with(0, right.value / size) + right._with(0, -top.value / size)
+        return Dual(f["atan2"](top.value, right.value), moved.slopes)
 
     def absolute(argument: Any) -> Any:
         raise InputError("expected formulas with derivatives, got abs, which has none at zero")

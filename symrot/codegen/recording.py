@@ -18,6 +18,7 @@ from symrot.formula.tree import Node
 __all__ = ["Recorded", "Recorder", "is_exactly"]
 
 ANONYMOUS = "#"  # first letter of temporaries that get their names later
+MOST_LEVELS = 200  # of operations inside each other in one formula, which functions over trees call one by one
 
 
 class Recorder:
@@ -57,18 +58,20 @@ class Recorder:
                 uses.update(operations[index].operands)
                 needed.update(operations[index].operands)
         nodes: dict[int, Node] = {}
+        depths: dict[int, int] = {}
         temporaries: list[tuple[str, Node]] = []
         for index in sorted(needed):
             kind, operands, value = operations[index]
             if kind in ("number", "symbol"):
-                nodes[index] = (kind, value)
+                nodes[index], depths[index] = (kind, value), 1
                 continue
             parts = tuple(nodes[i] for i in operands)
             node: Node = ("call", kind.removeprefix("call "), parts) if kind.startswith("call ") else (kind, *parts)
-            # a repeated result or a call becomes a temporary
-            if uses[index] > 1 or node[0] == "call":
+            depths[index] = 1 + max(depths[i] for i in operands)
+            # a repeated result, a call or a formula of very many levels becomes a temporary
+            if uses[index] > 1 or node[0] == "call" or depths[index] > MOST_LEVELS:
                 temporaries.append((f"{ANONYMOUS}{index}", node))
-                node = ("symbol", f"{ANONYMOUS}{index}")
+                node, depths[index] = ("symbol", f"{ANONYMOUS}{index}"), 1
             nodes[index] = node
         program = Program(signature, tuple(temporaries), tuple((name, nodes[i]) for name, i in roots.items()))
         return with_names(program, [name for name, _ in temporaries], {})

@@ -1,6 +1,7 @@
 """Trajectories: the states of a motion at the sample times, and quantities that are computed from them on first use."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from pickle import PicklingError
@@ -318,7 +319,11 @@ class Trajectory(MotionSamples):
     def at_events(self) -> "list[Trajectory]":
         """For each requested event, the trajectory at the times of the event; an empty list if none was requested."""
         pairs = zip(self.t_events or (), self.y_events or (), strict=True)
-        return [self._sampled(t, states) for t, states in pairs]
+        samples = [self._sampled(t, states) for t, states in pairs]
+        for place, each in enumerate(samples):
+            if each.sensitivities is not None and self.sensitivities is not None:
+                each.sensitivities = replace(each.sensitivities, times=self.sensitivities.t_events[place])
+        return samples
 
     def _sampled(self, t: Floats, states: Floats) -> "Trajectory":
         other = Trajectory(self._motion, t, states, self.method, self.stats, self.message, propagator=self._propagator)

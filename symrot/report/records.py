@@ -121,10 +121,10 @@ class LostRecord(TypedDict):
 class DerivativeRecord(TypedDict):
     """The derivatives of the last sample by one variable, an initial value or a constant."""
 
-    # of the angular velocity, rad/s per unit
-    omega: list[float]
+    # of the angular velocity, rad/s per unit; None at a switch of a torque, where the derivative jumps
+    omega: list[float] | None
     # of the attitude: times a small change of the variable, the rotation vector, rad, in body axes
-    rotation: list[float]
+    rotation: list[float] | None
     # of the variable
     unit: str
 

@@ -6,6 +6,9 @@ from symrot import __version__
 from symrot.report.layout import apart, columns, duration, exact, fields, number_text, one_line
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from symrot.propagation.propagator import Propagator
     from symrot.propagation.trajectory import Trajectory
     from symrot.report.records import (
@@ -42,7 +45,11 @@ def facts(propagator: "Propagator", trajectory: "Trajectory", preparation: float
         final["quaternion"] = trajectory.quaternion[-1].tolist()
     if (every := trajectory.sensitivities) is not None:
         final["sensitivities"] = {
-            name: {"omega": every[name].omega[-1].tolist(), "rotation": every[name].rotation[-1].tolist(), "unit": unit}
+            name: {
+                "omega": _unless_nan(every[name].omega[-1]),
+                "rotation": _unless_nan(every[name].rotation[-1]),
+                "unit": unit,
+            }
             for name, unit in zip(every.variables, every.units, strict=True)
         }
     return {
@@ -199,6 +206,12 @@ def _lost(candidates: "list[LostRecord]") -> list[tuple[str, str]]:
     return [("not kept" if number == 0 else "", row) for number, row in enumerate(rows)]
 
 
+def _unless_nan(row: "NDArray[np.float64]") -> list[float] | None:
+    """Return derivatives as a list; None if they do not exist, at a switch of a torque."""
+    values: list[float] = row.tolist()
+    return None if any(value != value for value in values) else values
+
+
 def _final(final: "FinalRecord", start: float) -> list[str]:
     rows = [
         ("end", f"t = {apart(start, final['t'])[1]} s"),
@@ -207,8 +220,12 @@ def _final(final: "FinalRecord", start: float) -> list[str]:
     if "quaternion" in final:
         rows.append(("  attitude", f"({_numbers(final['quaternion'], 12)}) as a quaternion"))
     for name, slopes in final.get("sensitivities", {}).items():
-        rows.append((f"  by {name}", f"omega ({_numbers(slopes['omega'], 9)}), "
-                     f"rotation about the body axes ({_numbers(slopes['rotation'], 9)})"))  # fmt: skip
+        omega, rotation = slopes["omega"], slopes["rotation"]
+        if omega is None or rotation is None:
+            rows.append((f"  by {name}", "no derivative: a torque switches at this time, and the derivative jumps"))
+            continue
+        rows.append((f"  by {name}", f"omega ({_numbers(omega, 9)}), "
+                     f"rotation about the body axes ({_numbers(rotation, 9)})"))  # fmt: skip
     return [f"  {line}" for line in fields(rows)]
 
 

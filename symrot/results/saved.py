@@ -19,7 +19,7 @@ from symrot.errors import InputError
 from symrot.files.reading import refuse_special
 from symrot.results.labels import About, Labelled, event_array
 from symrot.results.samples import Samples
-from symrot.results.sensitivity import Sensitivities, restored
+from symrot.results.sensitivity import Sensitivities, event_time_items, restored, time_slopes
 
 __all__ = ["SavedTrajectory", "load"]
 
@@ -179,10 +179,19 @@ def _saved(content: Any) -> SavedTrajectory:
     if not isinstance(saved.metadata["status"], int) or None in saved._about:
         raise ValueError("its metadata are damaged")
     for number, event in enumerate(metadata["events"], start=1):
-        states = SavedTrajectory(metadata, _items(content, metadata, lambda name, k=number: event_array(k, name)))
+        items = _items(content, metadata, lambda name, k=number: event_array(k, name))
+        states = SavedTrajectory(metadata, [*items, *_time_items(metadata.get("sensitivities"), number)])
         saved.at_events.append(states)
         saved.event_kinds.append(list(event["kinds"]))
     return saved
+
+
+def _time_items(record: dict[str, Any] | None, number: int) -> list[Labelled]:
+    """Return the derivatives of the times of event ``number``, from 1, with labels; empty if the file has none."""
+    if record is None or len(record.get("t_events", ())) < number:
+        return []
+    slopes = time_slopes(record["t_events"][number - 1], len(record["variables"]))
+    return event_time_items(record["variables"], record["units"], slopes)
 
 
 def _items(content: Any, metadata: dict[str, Any], array: Any) -> list[Labelled]:

@@ -1,6 +1,6 @@
 """Derivatives of a motion by initial values and constants, at the sample times, with labels."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -10,7 +10,10 @@ from numpy.typing import NDArray
 from symrot.results.labels import Labelled
 from symrot.results.tables import BY
 
-__all__ = ["OUTPUTS", "Sensitivities", "Sensitivity", "SwitchSlopes", "quotient_unit", "restored"]
+__all__ = [
+    "OUTPUTS", "Sensitivities", "Sensitivity", "SwitchSlopes", "event_time_items", "quotient_unit", "restored",
+    "time_slopes",
+]  # fmt: skip
 
 OUTPUTS = {  # quantity -> components, unit, frame, meaning
     "omega": (("omega_1", "omega_2", "omega_3"), "rad/s", "body", "angular velocity, body components"),
@@ -19,6 +22,7 @@ OUTPUTS = {  # quantity -> components, unit, frame, meaning
 }
 
 Floats = NDArray[np.float64]
+TIME = "t"
 
 
 class Sensitivity(NamedTuple):
@@ -89,9 +93,11 @@ class Sensitivities(Mapping[str, Sensitivity]):
         The derivatives, as in :class:`Sensitivity`; for an ensemble, with one more axis, the first, over the motions.
     t_events : tuple of arrays, shape (k, m)
         For each event, the derivatives of its k times, s per unit of the variable; NaN where the formula of the event
-        touches zero. Files of samples do not contain these derivatives.
+        touches zero.
     switchings : tuple of SwitchSlopes
         The switches of the torques up to the last sample, with the derivatives of their times.
+    times : array, shape (n, m), or None
+        For the samples at an event, ``at_events`` of a trajectory: the derivatives of the times of the samples.
 
     Examples
     --------
@@ -109,6 +115,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
     rotation: Floats
     t_events: tuple[Floats, ...] = ()
     switchings: tuple[SwitchSlopes, ...] = ()
+    times: Floats | None = None
 
     def __getitem__(self, name: str) -> Sensitivity:
         if name in self.groups:
@@ -138,11 +145,21 @@ class Sensitivities(Mapping[str, Sensitivity]):
 
     @property
     def record(self) -> dict[str, Any]:
-        """The names and units of the variables and the requested groups, as data for JSON.
+        """The names and units of the variables, the requested groups, and the derivatives of times, as data for JSON.
 
         A file of samples contains this record; :func:`restored` reads it.
         """
-        return {"variables": list(self.variables), "units": list(self.units), "groups": dict(self.groups)}
+        record: dict[str, Any] = {
+            "variables": list(self.variables),
+            "units": list(self.units),
+            "groups": dict(self.groups),
+        }
+        record["t_events"] = [[_numbers(row) for row in rows] for rows in self.t_events]
+        record["switchings"] = [
+            {"t": each.t, "function": each.function, "how": each.how, "slopes": _numbers(each.slopes)}
+            for each in self.switchings
+        ]
+        return record
 
     def _labelled(self) -> list[Labelled]:
         """Return the derivatives with labels, for tables.
@@ -159,7 +176,22 @@ class Sensitivities(Mapping[str, Sensitivity]):
                 items.append(
                     Labelled(f"{quantity}{BY}{variable}", values, names, quotient_unit(own, unit), frame, text)
                 )
-        return items
+        return items if self.times is None else [*items, *event_time_items(self.variables, self.units, self.times)]
+
+
+def event_time_items(variables: Sequence[str], units: Sequence[str], slopes: Floats) -> list[Labelled]:
+    """Return the derivatives of k event times by m variables, shape (k, m), with labels such as ``t_by_weight``."""
+    items = []
+    for number, (variable, unit) in enumerate(zip(variables, units, strict=True)):
+        name = f"{TIME}{BY}{variable}"
+        text = f"derivative of the time of the event, by {variable}"
+        items.append(Labelled(name, slopes[:, number], (name,), quotient_unit("s", unit), "", text))
+    return items
+
+
+def _numbers(row: Floats) -> list[float | None]:
+    """Return a row of derivatives for JSON, which has no NaN: None where a derivative does not exist."""
+    return [None if value != value else value for value in row.tolist()]
 
 
 def quotient_unit(unit: str, other: str) -> str:
@@ -180,4 +212,20 @@ def restored(record: Mapping[str, Any], items: Mapping[str, Labelled]) -> Sensit
         np.stack([items[f"{quantity}{BY}{variable}"].values for variable in variables], axis=-1) for quantity in OUTPUTS
     )
     groups = {str(key): tuple(places) for key, places in record["groups"].items()}
-    return Sensitivities(tuple(variables), tuple(record["units"]), groups, omega, quaternion, rotation)
+    # files of earlier versions have no derivatives of times
+    t_events = tuple(time_slopes(rows, len(variables)) for rows in record.get("t_events", ()))
+    switchings = tuple(
+        SwitchSlopes(float(each["t"]), str(each["function"]), str(each["how"]), time_slopes([each["slopes"]], None)[0])
+        for each in record.get("switchings", ())
+    )
+    of_times = [items[f"{TIME}{BY}{variable}"].values for variable in variables if f"{TIME}{BY}{variable}" in items]
+    times = np.stack(of_times, axis=-1) if of_times else None
+    return Sensitivities(
+        tuple(variables), tuple(record["units"]), groups, omega, quaternion, rotation, t_events, switchings, times
+    )
+
+
+def time_slopes(rows: Sequence[Sequence[float | None]], variables: int | None) -> Floats:
+    """Return the derivatives of times from a file, shape (k, m); None in the file is NaN in the result."""
+    table = np.array([[np.nan if value is None else value for value in row] for row in rows], dtype=np.float64)
+    return table if variables is None else table.reshape(len(rows), variables)

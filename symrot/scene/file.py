@@ -48,8 +48,8 @@ def find_scene(source: str | Path) -> Path:
     Raises
     ------
     InputError
-        If there is no such scene, or if the path is a folder; the message lists the shipped scenes and the most similar
-        name.
+        If the path is a folder, or if there is no such scene; the message then proposes the most similar name, or
+        lists the shipped scenes.
     """
     if not isinstance(source, str | Path) or not str(source).strip() or "\0" in str(source):
         raise InputError(f"expected the name of a scene or the path of a scene file, got {str(source)[:60]!r}")

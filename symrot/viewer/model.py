@@ -300,7 +300,7 @@ def _angle_kernels(sequence: str) -> dict[str, Program]:
 
 
 def _kernel_text(kernel: SceneKernel, constants: Sequence[str], sequence: str) -> str:
-    """Return the JavaScript of all functions with which a page computes the motion of a scene."""
+    """Return the JavaScript of the equations of a scene: rates, output quantities, parameters, Euler angles."""
     # time derivatives of the state, output quantities, and the parameters of both from the constants
     programs = {
         "rates": kernel.rates,

@@ -87,7 +87,7 @@ def changed_somewhere(data, chance):
 
 
 @pytest.mark.thinned(2)
-@pytest.mark.parametrize(("seed", "count"), [("", 10), pytest.param("more", 200, marks=pytest.mark.campaign)])
+@pytest.mark.parametrize(("seed", "count"), [("", 6), pytest.param("more", 200, marks=pytest.mark.campaign)])
 @pytest.mark.parametrize(
     "name",
     [

@@ -95,8 +95,9 @@ def test_texts_are_written_as_their_form_says():
             ast.parse(text, mode="eval")
 
 
-def test_the_oracle_agrees_with_every_label():
-    assert [sentence for sentence in map(verify.disagreement, ENTRIES) if sentence] == []
+@pytest.mark.parametrize("step", [3, pytest.param(1, marks=pytest.mark.campaign)])
+def test_the_oracle_agrees_with_every_label(step):
+    assert [sentence for sentence in map(verify.disagreement, ENTRIES[::step]) if sentence] == []
 
 
 def test_the_oracle_contradicts_a_wrong_label():

@@ -217,8 +217,9 @@ LONG = (
 )
 
 
-@pytest.mark.thinned(2)
-@pytest.mark.parametrize("claim", LONG)
+@pytest.mark.parametrize(
+    "claim", [*LONG[2::2], *(pytest.param(claim, marks=pytest.mark.campaign) for claim in (LONG[0], *LONG[1::2]))]
+)
 def test_an_answer_comes_within_a_few_seconds_of_work(claim):
     """Sums of 16 angles were expanded, polynomials factored over fields of degree 4, and one pair replaced endlessly."""
     start = process_time()

@@ -51,10 +51,13 @@ def test_what_has_no_value_is_outside():
 # -- the file ---------------------------------------------------------------------------------------------------------
 
 
-def test_the_file_is_as_printed():
-    """The part without the steps of derivations, which take longer."""
-    printed = known_formulas.page(known_formulas.stated())
-    assert known_formulas.FILE.read_text(encoding="utf-8").startswith(printed)
+def test_the_file_is_as_printed(monkeypatch):
+    """The formulas of the file are those that symrot derives, in this order: here without those that take longer."""
+    for group in ("_solids", "tops", "_solved", "bodies"):
+        monkeypatch.setattr(known_formulas, group, lambda: iter(()))
+    printed = known_formulas.page(known_formulas.stated()).rstrip().split("\n\n")
+    in_the_file = iter(known_formulas.FILE.read_text(encoding="utf-8").split("\n\n"))
+    assert len(printed) > 300 and all(formula in in_the_file for formula in printed)
 
 
 @pytest.mark.campaign

@@ -177,6 +177,7 @@ def test_only_a_special_case_or_another_axis_excuses_a_formula_near_a_known_one(
     assert symrot.check(claim).verdict == verdict
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(("claim", "where", "repair"), [
     ("K = 1/2 m v^2 (1 + k/R)", ["k = radius of gyration"], "K = 1/2*m*v^2*(1 + k^2/R^2)"),
     ("U = 1/2 I (omega_2 - omega_1)^2", ["U = work"], "U = 1/2*I*(omega_2^2 - omega_1^2)"),
@@ -202,6 +203,7 @@ def test_the_torque_of_the_gravity_gradient_is_known_in_the_letters_of_books(cla
     assert symrot.check(claim).verdict == "recognised"
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(("lines", "repair"), [
     (("I_1 = m/5 (b^2 + c^2)", "I_2 = m/5 (a^2 + b^2)", "I_3 = m/5 (a^2 + b^2)"), "I_2 = m/5*(a^2 + c^2)"),
     (("omega_x = theta' cos phi + psi' sin theta sin phi", "omega_y = theta' sin phi - psi' sin theta cos phi",

@@ -79,7 +79,7 @@ WAYS = ["group", "alone"]
 )  # fmt: skip
 def test_a_command_ends_when_it_is_interrupted(command, to_group, tmp_path):
     process = started(COMMANDS[command], tmp_path)
-    time.sleep(random.uniform(0.3, 1.5))  # at any time: the test holds for all of them
+    time.sleep(random.uniform(0.2, 0.9))  # at any time: the test holds for all of them
     if process.poll() is not None:
         process.communicate()
         pytest.skip("it was done before")

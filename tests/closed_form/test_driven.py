@@ -172,7 +172,7 @@ def errors_of(motions):
 
 def test_damped_angles_of_random_motions(way):
     """Errors are below 1e-15 for every implementation: C, integers for a few times, pairs of doubles for many."""
-    assert (errors_of(random_motions(40)) <= BAR).all()
+    assert (errors_of(random_motions(20)) <= BAR).all()
 
 
 def test_doubles_alone_would_not_do(monkeypatch, no_compiler):

@@ -353,7 +353,7 @@ def test_a_formula_equals_itself_rewritten(formula):
         assume(False)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(formulas, formulas)
 def test_zero_is_never_said_of_what_50_digits_see(left, right):
     """The normal form is 0 if and only if the value at a generic point, which no identity singles out, is 0."""

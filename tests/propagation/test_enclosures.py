@@ -352,7 +352,7 @@ def test_a_function_without_series_is_not_enclosed():
 
 
 @needs_compiler
-@pytest.mark.parametrize("method", ["taylor", "dop853"])
+@pytest.mark.parametrize("method", [pytest.param("taylor", marks=pytest.mark.campaign), "dop853"])
 def test_a_hopeless_motion_is_given_up_with_its_samples(method, monkeypatch):
     monkeypatch.setattr(stepping, "PATIENCE", 2000)
     monkeypatch.setattr(integration_stopped, "HOPELESS", 1e-3)

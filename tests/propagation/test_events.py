@@ -321,7 +321,7 @@ def test_dense_zeros_of_exact_motions_are_counted():
         assert len(found) == len(exact) and abs(found - exact).max() < 2 * ULP
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(3)
 @pytest.mark.shipped_flags
 @pytest.mark.parametrize("formula", ["sin(1/(t - 5))", "asin(sin(t)) - t", "sin(1e8*t)"])
 def test_zeros_that_cannot_be_told_apart_end_in_a_sentence(formula):

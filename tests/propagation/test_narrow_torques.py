@@ -128,7 +128,11 @@ SCIPY = ("scipy:DOP853", "scipy:RK45", "scipy:Radau", "scipy:BDF", "scipy:LSODA"
     ("method", "follow", "switch"),
     [
         *((method, alone, switch) for method in ("taylor", "dop853", *SCIPY) for switch in ("", " + step(t - 1/4)/10")),
-        *((method, in_an_ensemble, "") for method in ("taylor", "dop853", *SCIPY)),
+        *((method, in_an_ensemble, "") for method in ("taylor", "dop853", "scipy:DOP853", "scipy:RK45", "scipy:LSODA")),
+        *(
+            pytest.param(method, in_an_ensemble, "", marks=pytest.mark.campaign)
+            for method in ("scipy:Radau", "scipy:BDF")
+        ),
         *((method, in_angles, "") for method in ("taylor", "dop853")),
     ],
 )

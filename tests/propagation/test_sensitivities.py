@@ -246,6 +246,39 @@ def test_the_times_of_events_have_derivatives():
 
 
 @needs_compiler
+def test_derivatives_of_times_travel_in_files_and_tables(tmp_path):
+    pytest.importorskip("pandas")
+    motion = symrot.propagate(TOP, sensitivities=["weight"], events=["omega_1*q0 + t - 1", "(t - 1/2)**2"], t=[0, 2])
+    motion.save(tmp_path / "motion.npz")
+    saved, slopes = symrot.load(tmp_path / "motion.npz"), motion.sensitivities.t_events
+    assert all(map(np.array_equal, saved.sensitivities.t_events, slopes, [True, True]))
+    for each in (motion, saved):
+        frame = each.at_events[0].to_dataframe()
+        assert frame["t_by_weight"].tolist() == slopes[0][:, 0].tolist()
+        assert frame.attrs["units"]["t_by_weight"] == "(s)/(N)"
+
+
+@needs_compiler
+def test_numbers_of_the_scene_file_are_variables():
+    """By the radius of a solid sphere m = 4/3 pi rho r^3, C = 2/5 m r^2; a friction k slows it as exp(-k t/C)."""
+    ball = {
+        "schema": 1, "body": {"part": [{"shape": "sphere", "radius": "1/2", "density": 3}]},
+        "initial": {"omega": [0, 0, 2], "attitude": {"sequence": "ZXZ", "angles": [0, 30, 0], "degrees": True}},
+        "span": {"t": [0, 2], "samples": 2}, "torque": [{"kind": "damping", "linear": ["1/3", "1/3", "1/3"]}],
+    }  # fmt: skip
+    names = ["body.part[0].radius", "body.part[0].density", "torque[0].linear[2]", "initial.attitude.angles[1]"]
+    own = symrot.propagate(ball, sensitivities=names).sensitivities
+    inertia = 8 / 15 * np.pi * 3 / 2**5
+    power = 2 / 3 / inertia
+    scale = 2 * np.exp(-power) * power
+    expected = [scale * 5 / (1 / 2), scale / 3, -scale * 3, 0]
+    assert np.allclose(own.omega[-1, 2], expected, rtol=1e-13, atol=0)
+    assert own.units == ("m", "kg/m^3", "N m s", "deg")
+    # a rotation of the start by 1 deg about axis 1, then by the angle of the motion about axis 3
+    assert np.isclose(np.linalg.norm(own[names[3]].rotation[-1]), np.pi / 180, rtol=1e-14)
+
+
+@needs_compiler
 def test_sensitivities_leave_the_motion_as_it_is():
     scene = symrot.Scene.from_dict(TOP)
     with_them, without = symrot.propagate(scene, sensitivities=["omega", "attitude"]), symrot.propagate(scene)

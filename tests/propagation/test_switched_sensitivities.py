@@ -1,9 +1,12 @@
 """Derivatives of motions through the switches of torques, against closed forms and where they do not exist."""
 
+import json
+
 import numpy as np
 import pytest
 
 import symrot
+from symrot.cli.main import main
 from symrot.errors import InputError, PropagationError
 from tests.needs import needs_compiler
 
@@ -38,6 +41,8 @@ def test_derivatives_by_the_times_of_a_thruster_pulse():
         assert np.allclose(column(motion, name), values, rtol=1e-14, atol=0)
     # exactly at the switch the derivative by its time jumps, and has no value
     assert np.isnan(column(motion, "b", 1)).all() and np.isfinite(column(motion, "k", 1)).all()
+    ended = symrot.propagate(content, t=[0, b], sensitivities=["a", "b", "k", "I_zz"])
+    assert np.array_equal(ended.sensitivities.omega[-1], motion.sensitivities.omega[1], equal_nan=True)
     assert [each.slopes.tolist() for each in motion.sensitivities.switchings] == [[1, 0, 0, 0], [0, 1, 0, 0]]
 
 
@@ -53,6 +58,14 @@ def test_derivatives_by_dry_friction_on_one_axis():
     assert np.allclose([stops, kink, slips], [[0.2, -24, 120], [0, 0, 0], [0, 20, 0]], rtol=1e-13, atol=0)
     assert np.allclose(motion.sensitivities.t_events[0], [[0.2, -8, 40]], rtol=1e-13, atol=0)
     assert np.allclose(motion.transition(3, 7)[2], 0.0, atol=1e-13)
+
+
+@needs_compiler
+def test_a_report_says_where_the_last_sample_has_no_derivative(capsys):
+    arguments = ["run", "friction_wheel", "--sensitivities", "k", "--set", "span.t=[0,6]"]
+    assert main(arguments) == 0 and "no derivative: a torque switches" in capsys.readouterr().out
+    assert main([*arguments, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out, parse_constant=float)["final"]["sensitivities"]["k"]["omega"] is None
 
 
 @needs_compiler

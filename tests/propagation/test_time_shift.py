@@ -143,7 +143,7 @@ def test_taylor_steps_keep_phases_over_a_long_span():
     assert abs(found.omega[0, 2] - expected[0][2]) < 2e-14
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(4)
 @pytest.mark.parametrize("t0, end", [(0, 10_000), (0, -10_000), (-400, 9_000), (10_000, 20_000)])
 def test_dormand_prince_steps_keep_phases_over_a_long_span(t0, end):
     """Samples, dense output and events keep the tolerance, with the scene's clock and with a shifted one."""

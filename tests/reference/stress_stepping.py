@@ -217,7 +217,7 @@ def s30(long):
 
     The bars were set for medians.
     """
-    top, count, found = *((5, 8) if long else (3, 3)), []
+    top, count, found = *((5, 8) if long else (3, 1)), []
     for every in (4, taylor.PROJECTED_EVERY):
         energies, attitudes = _long_runs(PLATE_STATES[:count], [10.0**top], every)
         title = f"1e{top} rev, every {every} steps, worst of {count}"

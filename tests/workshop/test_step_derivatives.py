@@ -5,12 +5,15 @@ import subprocess
 from dataclasses import replace
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
 from symrot.certificates.step_certificate import step_certificate
 from symrot.cli.main import main
 from symrot.codegen.steps import RK4, WithDerivatives
 from symrot.errors import CertificateError, InputError
+from symrot.scene.scene import Scene
+from symrot.workshop.emit import emit
 from symrot.workshop.step_text import step_text
 from tests.needs import needs_compiler
 
@@ -58,3 +61,31 @@ def test_the_certificate_names_the_inputs():
 def test_unknown_inputs_are_refused(jacobian):
     with pytest.raises(InputError, match="jacobian: expected"):
         step_text(SCENE, "rk4", None, jacobian)
+
+
+def test_derivatives_of_an_angle_of_two_states():
+    scene = Scene.build(
+        name="angle",
+        body={"principal": [1, 2, 3]},
+        initial={"omega": [1, 2, 3]},
+        torque=[{"kind": "expression", "torque": ["atan2(omega_1, omega_2)", "0", "0"]}],
+        span={"t": [0, 1]},
+        output={"quantities": ["omega"]},
+    )
+    steps = []
+    for jacobian in ([], ["omega_1"]):
+        kernel, room = emit(scene, target="numpy", step="rk4", jacobian=jacobian), {}
+        exec(kernel.source, room)
+        steps.append(room[kernel.name])
+    p = step_text(scene, "rk4").rates.inputs.parameters
+    plain, full = steps
+    above, below = (np.asarray(plain(0.0, [1 + h, 2, 3], p, 0.1)) for h in (1e-6, -1e-6))
+    assert np.abs(full(0.0, [1, 2, 3], p, 0.1)[1] - (above - below) / 2e-6).max() < 1e-8
+
+
+def test_a_high_power_has_a_taylor_step():
+    torque = [{"kind": "expression", "torque": ["omega_1**64", "0", "0"]}]
+    scene = Scene.build(
+        name="power", body={"principal": [1, 2, 3]}, initial={"omega": [1, 2, 3]}, torque=torque, span={"t": [0, 1]}
+    )
+    assert len(step_text(scene, "taylor")._program.outputs) == 7

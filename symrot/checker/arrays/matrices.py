@@ -143,10 +143,10 @@ def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, 
 
 
 def rate_matrices(relation: tuple[str, Node, Node]) -> dict[str, bool]:
-    """Return {"R": True} for an equation such as ``R' = skew(w) R``; False if R does not depend on time."""
+    """Return {"R": True} for an equation such as ``R' = skew(w) R``, and {"R": False} for ``R_dot = skew(w) R``."""
     matrices: dict[str, bool] = {}
     for side, other in (relation[1:], relation[:0:-1]):
-        # R' is the derivative of R(t); R_dot is a symbol, beside a matrix R of plain symbols
+        # R' is the derivative of R(t); beside R_dot, which is a symbol, R does not depend on t
         is_rate = is_derivative(side) and len(side.args) == 2
         name = str(side.args[0].value) if is_rate else str(side.value).removesuffix("_dot")
         if not name[:1].isupper() or (not is_rate and name == side.value):

@@ -119,7 +119,7 @@ def _powers(formula: Node, numeric: NumericFilter) -> Iterator[Edit]:
 
 
 def _conjugates(formula: Node) -> Iterator[Edit]:
-    """Yield edits of quaternion products: ``qmul(conjugate(q), p)`` for ``qmul(q, p)``, or the reverse."""
+    """Yield edits that conjugate one factor of a product: ``qmul(conjugate(q), p)`` for ``qmul(q, p)``, or undo it."""
     for path, node in walk(formula):
         for place, factor in enumerate(node.args if node.kind == "call" and node.value == "qmul" else ()):
             is_conjugate = factor.kind == "call" and factor.value == "conjugate"

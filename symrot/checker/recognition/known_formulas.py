@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -271,6 +271,12 @@ def _letters_of_books(torque: Matrix) -> list[dict[Symbol, Symbol]]:
     return [rate | dict(zip(direction, column, strict=True)) for column in columns]
 
 
+@cache
+def _formulas_of(group: Callable[[], Iterator[Named]]) -> tuple[Named, ...]:
+    """Return the formulas that a function of this file or of ``formulas`` yields, derived once per process."""
+    return tuple(group())
+
+
 def stated() -> Iterator[Named]:
     """Yield the formulas of kinematics, inertia and dynamics in a fixed order, then the components of the vectors."""
     columns: list[Named] = []
@@ -292,7 +298,7 @@ def stated() -> Iterator[Named]:
         rotations,
         bodies,
     ):
-        for name, source, value in group():
+        for name, source, value in _formulas_of(group):
             yield name, source, value
             if getattr(value, "shape", None) in COMPONENTS and group is not along_axes:
                 columns.append((name, source, value))
@@ -345,8 +351,9 @@ def _selected(
 ) -> Iterator[tuple[str, Known]]:
     """Yield (key, formula) for formulas with at least ``least`` symbols and at most ``longest`` characters."""
     general = (*GENERAL, *OF_ONE_ENTRY)
-    of_letters = {*(name for name, *_ in along_axes()), GYROSCOPE, *SCALAR_PRODUCTS, *ANY_VECTORS, *general}
-    seen, few = set(), {name for name, *_ in (*tops(), *one_axis(), *_solved(), *rotations(), *bodies(), *points())}
+    of_letters = {*(name for name, *_ in _formulas_of(along_axes)), GYROSCOPE, *SCALAR_PRODUCTS, *ANY_VECTORS, *general}
+    groups = (tops, one_axis, _solved, rotations, bodies, points)
+    seen, few = set(), {name for group in groups for name, *_ in _formulas_of(group)}
     for name, source, value in formulas:
         entries, shape = flatten(value)
         if sum(entry.count_ops() for entry in entries) > longest // 3:

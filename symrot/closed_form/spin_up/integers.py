@@ -114,8 +114,10 @@ class Integers:
         return Near(rounded(self._sweep.across * self._scale / self._root))
 
     def _side(self, omega: Fraction) -> int:
-        """Return -1, 0 or 1 for an axial rate Omega = ``omega`` that occurs before, near or after resonance."""
-        if self._sweep.series.wide:  # the asymptotic series holds everywhere
+        """Return the formula for an axial rate ``omega``: 1 or -1 for the asymptotic series after or before resonance,
+        0 for the series near it.
+        """
+        if self._sweep.series.wide:  # then it holds everywhere
             return 1
         return 0 if abs(omega) < self._edge else 1 if omega > 0 else -1
 

@@ -516,12 +516,8 @@ class _Walk:
         for mode in [*changed, *sorted(held)]:
             if mode in before.regime.formulas:
                 guard = self._guard(before, mode, before.stop, before.last)
-                size = guard.size(f) * max(abs(before.stop), np.spacing(1.0)) + float(
-                    np.abs(guard.states) @ np.abs(before.last)
-                )
-                distance = min(abs(guard.value), abs(1.0 - guard.value))
                 # a guard with another switching function inside jumps over zero, and follows that function
-                if (distance if self.by_name[mode].kind == "floor" else abs(guard.value)) <= AT_ZERO * max(size, 1e-9):
+                if self._is_zero(before, mode, guard, f):
                     causes[mode] = guard
         jumps = {mode: guard for mode, guard in causes.items() if not is_continuous(self.by_name[mode])}
         rows: dict[str, Floats] = {}
@@ -548,6 +544,24 @@ class _Walk:
                 rows[mode] = np.full(len(by.T), np.nan) if grazes else 0.0 - value.change(by) / speed
         self._note(after.begin, rows, rows[first] if first is not None else None)
         return by if first is None else np.asarray(by - np.outer(later - f, rows[first]))
+
+    def _is_zero(self, part: _Part, mode: str, guard: _Gradient, rates: Floats) -> bool:
+        """Return whether a guard is zero at the end of an interval; for floor(x): whether x is a whole number."""
+        size = guard.size(rates) * abs(part.stop) + float(np.abs(guard.states) @ np.abs(part.last))
+        distances = (0.0, 1.0) if self.by_name[mode].kind == "floor" else (0.0,)
+        return min(abs(guard.value - zero) for zero in distances) <= AT_ZERO * size
+
+    def _jumps_at_end(self) -> NDArray[np.bool_]:
+        """Return for each variable whether the derivatives by it may jump exactly at the end of the motion."""
+        part, jumps = self.parts[-1], np.zeros(len(self.equations.columns), dtype=np.bool_)
+        f = self.rates(part, part.stop, part.last)
+        for guard, on in zip(part.regime.guards, part.regime.active(part.modes), strict=True):
+            mode = guard.mode
+            if on and mode in part.regime.formulas and mode not in part.held and not is_continuous(self.by_name[mode]):
+                gradient = self._guard(part, mode, part.stop, part.last)
+                if self._is_zero(part, mode, gradient, f) and not self._rests(part, mode):
+                    jumps |= gradient.change(part.after) != 0.0
+        return jumps
 
     def _note(self, instant: Instant, rows: Mapping[str, Floats], others: Floats | None) -> None:
         """Add the functions that switch at an instant, with the derivatives of the time, to :attr:`switchings`."""
@@ -638,9 +652,10 @@ class _Walk:
             own = np.asarray(part.zero.since(ordered[count:last]))
             chosen = order[count:last]
             states[chosen], by[chosen] = self._integrate(part, own)
-            if not final:
-                jump = ~np.isclose(part.after, self.parts[place + 1].before, rtol=ALIKE, atol=ALIKE).all(axis=0)
-                at_switch = chosen[ordered[count:last] == part.end.high]
+            at_switch = chosen[ordered[count:last] == part.end.high]
+            if len(at_switch):
+                following = None if final else self.parts[place + 1].before
+                jump = self._jumps_at_end() if following is None else ~_alike(part.after, following).all(axis=0)
                 by[at_switch[:, None], :, np.flatnonzero(jump)] = np.nan
             count = last
         return states, by
@@ -665,5 +680,6 @@ ZEROS = [0.0]
 
 
 def _alike(left: Floats, right: Floats) -> NDArray[np.bool_]:
-    """Return where two rows of derivatives are equal up to rounding."""
-    return np.abs(left - right) <= ALIKE * np.maximum(np.abs(left), np.abs(right))
+    """Return where two arrays of derivatives are equal up to rounding; each column of a matrix has its own scale."""
+    sizes = np.maximum(np.abs(left), np.abs(right))
+    return np.abs(left - right) <= ALIKE * (sizes if sizes.ndim == 1 else sizes.max(axis=0))

@@ -4,6 +4,7 @@ The kernel's constants, such as moments of inertia, follow exactly from a scene'
 difference quotients over a step of 2^-80 of a variable, with errors below 2^-70.
 """
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -37,7 +38,22 @@ NO_TABLES = ("schema", "title", "source", "span", "output", "accuracy")
 STEP = Fraction(1, 1 << 80)
 AGREEMENT = Fraction(1, 1 << 60)
 UNITS = {**dict.fromkeys(RATES, "rad/s"), **dict.fromkeys(TENSOR, "kg m^2"), "mass": "kg", "density": "kg/m^3"}
-LENGTHS = ("radius", "length", "a", "b", "c", "height", "width", "depth", "thickness", "inner_radius", "outer_radius")
+ANGLES = ("angle", "angles")
+LENGTHS = (
+    "at",
+    "fixed_point",
+    "radius",
+    "length",
+    "a",
+    "b",
+    "c",
+    "height",
+    "width",
+    "depth",
+    "thickness",
+    "inner_radius",
+    "outer_radius",
+)
 
 
 @dataclass(frozen=True)
@@ -159,9 +175,15 @@ def _number(key: str, value: Any) -> Fraction:
 
 def _unit(scene: Scene, key: str) -> str:
     """Return the SI unit of a key of :meth:`symrot.Scene.with_`: ``"kg"`` for ``"body.mass"``; empty if unknown."""
-    last = key.rpartition(".")[2]
+    last = re.sub(r"\[\d+\]$", "", key.rpartition(".")[2])
     if last in UNITS:
         return UNITS[last]
+    if last in ANGLES:
+        try:
+            degrees = bool(scene.value(key.rpartition(".")[0] + ".degrees"))
+        except InputError:
+            degrees = False
+        return "deg" if degrees else "rad"
     stem = last.removesuffix("_1").removesuffix("_2").removesuffix("_3")
     for torque in scene.torques:
         kind = TORQUE_KINDS.get(torque.kind)

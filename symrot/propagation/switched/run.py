@@ -527,7 +527,7 @@ class SwitchedRun(RunState):
         return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether a function inside another one, ``mode``, has switched after it: sign, in abs(x + sign(y))."""
+        """Return whether a function in the argument of ``mode`` switched later: sign, in abs(x + sign(y))."""
         # in abs(x + sign(y)), if sign switched after abs, the argument of abs has jumped: abs may switch again
         last = len(self.order) - self.order[::-1].index(mode)
         return bool(self._inside(mode) & set(self.order[last:]))
