@@ -84,7 +84,7 @@ def test_verdict(text):
         ("v = √(10/7 g h)", "solid sphere that rolls down a slope", "recognised"),
         ("v = √(4/3 g h)", "solid cylinder that rolls down a slope", "recognised"),
         ("a = 5/7 g sin θ", "solid cylinder that rolls down a slope", "false"),
-        ("I_xy = -m a b/4", "box of sides a, b, c about a corner", "definition"),
+        ("I_xy = -m a b/4", "box of sides a, b, c about a corner", "recognised"),
         ("I_xx = m(b²+c²)/12", "box of sides a, b, c about a corner", "false"),
         ("Ω = (I_3 - I_1)/I_1 ω_3", "symmetric top with moments I_1, I_1, I_3", "recognised"),
     ],

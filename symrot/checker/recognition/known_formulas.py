@@ -177,9 +177,9 @@ def _solids() -> Iterator[Named]:
             yield f"inertia tensor of a {title} about {where}", source, matrix
             for place, axis in enumerate("xyz"):
                 yield f"moment of inertia of a {title} about {where}, {axis} axis", source, matrix[place, place]
-            for place, (i, j) in (("xy", (0, 1)), ("xz", (0, 2)), ("yz", (1, 2))):
+            for axes, (i, j) in (("xy", (0, 1)), ("xz", (0, 2)), ("yz", (1, 2))):
                 if matrix[i, j] != 0:
-                    product_name = f"product of inertia of a {title} about {where}, {place}"
+                    product_name = f"product of inertia of a {title} about {where}, {axes}"
                     yield product_name, source, matrix[i, j]
                     yield f"{product_name}, without the minus sign", source, -matrix[i, j]
 
