@@ -95,7 +95,9 @@ def _refused(text: str) -> Any:
 
 
 def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[Data, list[str]]:
-    """Check every statement of a certificate; return its content, and one sentence for each check that it passed.
+    """Check every statement of a certificate but its verdicts on object code; return its content, and sentences.
+
+    There is one sentence for each check that it passed, and for each that was not made.
 
     Parameters
     ----------

@@ -274,7 +274,7 @@ OPTIONAL_SECTIONS: dict[str, Callable[[Data, Any], bool]] = {  # section -> whet
 
 
 def with_sections(text: str, sections: Mapping[str, Any]) -> str:
-    """Return the certificate ``text`` with the optional ``sections`` added, such as ``"rounding"``."""
+    """Return the certificate ``text`` with those ``sections``, such as ``"rounding"``, that are about its C text."""
     data = json.loads(text)
     for name, is_about in OPTIONAL_SECTIONS.items():
         try:

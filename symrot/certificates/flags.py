@@ -1,7 +1,8 @@
 """The effect of compiler flags on a certificate: bits and error bounds hold, only the bounds hold, or nothing holds.
 
 A certificate is about the operations of the C text, each rounded once to nearest. A flag that lets the compiler round
-elsewhere makes the certificate void. With contraction (a*b + c rounded once) only the error bounds hold.
+elsewhere makes the certificate void. With contraction (a*b + c rounded once) only the error bounds hold, and not even
+they if a product is fused in one sum and rounded in another.
 """
 
 import re
@@ -157,7 +158,7 @@ class FlagEffect:
 
     @property
     def accepted(self) -> bool:
-        """Whether the proven error bounds hold for code that is compiled with these flags."""
+        """Whether the proven error bounds hold with these flags; with contraction, they usually do."""
         # if ``holds`` is "bounds", results may differ in bits
         return self.holds != NOTHING
 

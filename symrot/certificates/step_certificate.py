@@ -359,7 +359,7 @@ def _proof(step: str, rates: Program, method: Method, source: str, suffix: str) 
 def _degree(
     file: str, rates: Program, method: Method, places: Mapping[str, str], operations: Operations, point: int
 ) -> int:
-    """Return the largest degree of an output, as a rational function of the inputs, computed at a random point.
+    """Return a bound of the degrees of the outputs, as rational functions of the inputs, computed at a random point.
 
     CertificateError is raised if an output of the C text differs there from the step's formula.
     """

@@ -118,7 +118,7 @@ class _Functions(dict[str, Callable[..., Any]]):
 # of each tree's condition times an elementary differential of the rates. Without the defects, and with absolute values
 # everywhere, this sum is a coefficient of the series Z with Z = h f(start + Z) (the implicit Euler step).
 class _Power:
-    """A power series in the size of the step, cut off after ``len(terms)`` terms; its coefficients are intervals."""
+    """A power series in the size of the step, with ``len(terms)`` coefficients: intervals or polynomials."""
 
     terms: tuple[Any, ...]
 

@@ -72,7 +72,7 @@ class Certificate:
 
     @property
     def refuted(self) -> bool:
-        """Whether a compiler changed results although its flags must preserve every bit."""
+        """Whether code whose flags must preserve every bit was compared and is not proven to do so."""
         # False if object code was not compared in this call
         return self.objects_compared and certificates.refuted([dict(self.data)])
 
@@ -91,7 +91,7 @@ class Audit:
     Attributes
     ----------
     statements : mapping of str to tuple of str
-        A map from the path of each certificate to the statements that were checked and hold.
+        A map from the path of each certificate to the statements that hold, and to notes on what was not checked.
     flags : tuple of str
         What still holds under the compiler flags passed to the audit; empty if no flags were passed.
 
@@ -240,7 +240,8 @@ def certify(
         A kernel of the library, a scene, or a file NAME.c or NAME.cert.json exactly as symrot emits it.
     box : mapping or sequence of str
         Ranges of inputs for which rounding errors are bounded, as for :func:`bound`. All other inputs have the kernel's
-        own ranges. The errors of a scene's kernel are bounded only if ``box`` is not empty.
+        own ranges. The errors of a scene's kernel, or of a kernel of derivatives, are bounded only if ``box`` is not
+        empty.
     directory : str or Path, optional
         Folder for the kernel and its certificate; without it no file is written.
     objects : bool
@@ -304,7 +305,7 @@ def audit(
     coq: bool = False,
     progress: Progress = _silent,
 ) -> Audit:
-    """Check that certificates hold for the kernels in their folders; every statement is proven again.
+    """Check that certificates hold for the kernels in their folders: formulas, laws, C text and error bounds.
 
     Parameters
     ----------
@@ -318,7 +319,7 @@ def audit(
         Whether to compute all bounds of rounding errors again. If not, bounds that symrot has stored are used, and only
         the others are computed.
     coq : bool
-        Whether Coq must check the theorem about the kernel.
+        Whether Coq checks the theorem about the kernel; without Coq or a theorem, a statement says so.
     progress : callable
         Called with a line of text as each part of the work begins.
 
@@ -364,7 +365,8 @@ def bound(kernel: str | Path, box: Ranges = (), precision: str = "double") -> Ro
     box : mapping or sequence of str
         Ranges of inputs, in their units: ``{"theta": (-1.4, 1.4)}`` or ``["theta=-1.4:1.4"]``. A name is a component
         (``"theta"``), an index (``"angles[1]"``) or a physical constant of a scene (``"A"``). A float stands for its
-        exact binary value, a text for its decimal value. Inputs that are not named have the kernel's own ranges.
+        exact binary value, a text for its decimal value. Inputs that are not named have the kernel's own ranges; the
+        states of a scene have none, except its quaternion.
     precision : str
         ``"double"`` or ``"float"``; the kernel of a scene has ``"double"`` only.
 

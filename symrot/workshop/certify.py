@@ -83,7 +83,7 @@ def audit_file(
     path: Path, object_file: Path | None = None, rerun: bool = False, coq: bool = False,
     progress: Callable[[str], object] = lambda text: None,
 ) -> list[str]:  # fmt: skip
-    """Audit a certificate; return the statements that were checked and hold, one line each.
+    """Audit a certificate; return one line for each statement that holds, and for each that was not checked.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def audit_file(
         Whether to compute all bounds of rounding errors again. If not, bounds that symrot has stored are used, and only
         the others are computed.
     coq : bool
-        Whether Coq must check the theorem about the kernel.
+        Whether Coq checks the theorem about the kernel; without Coq or a theorem, a line says so.
 
     Raises
     ------
@@ -133,7 +133,7 @@ def audit_files(
     paths: Sequence[Path], object_file: Path | None = None, rerun: bool = False, coq: bool = False,
     progress: Callable[[str], object] = lambda text: None,
 ) -> dict[str, list[str]]:  # fmt: skip
-    """Audit certificates; return a map from each path to the statements that hold, as :func:`audit_file` does.
+    """Audit certificates; return a map from each path to the lines that :func:`audit_file` returns.
 
     Raises
     ------
@@ -302,7 +302,7 @@ def all_lines(certificates: Mapping[str, Data]) -> list[str]:
 
 
 def refuted(certificates: Iterable[Data]) -> bool:
-    """Return whether a certificate records object code that is not proven to compute the bits of the C text."""
+    """Return whether a certificate has verdicts on object code that do not prove that it computes the C text's bits."""
     # only code whose flags preserve every bit counts; without any such code the proof is missing
     return any(data.get("objects") and not object_code.holds(data["objects"]) for data in certificates)
 

@@ -196,7 +196,7 @@ def write_files(directory: Path, files: Mapping[str, str]) -> list[Path]:
 
 
 def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[Path]:
-    """Write the files of all library kernels and of all shipped scenes' kernels; return the changed paths."""
+    """Write the files of all kernels, of the library and of shipped scenes, delete others; return the changed paths."""
     files = _all_files(targets, directory, progress)
     changed = write_files(directory, files)
     for name in _printed_before(directory, targets):

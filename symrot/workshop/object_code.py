@@ -84,7 +84,7 @@ def table(sections: Mapping[str, Data | None]) -> list[str]:
 
 
 def object_lines(text: str, path: Path, where: str) -> list[str]:
-    """Return one line for each function in the object file ``path``, after comparison with the C text.
+    """Return a line for each function in the object file ``path`` that agrees with the C text, and one about batches.
 
     Raises
     ------

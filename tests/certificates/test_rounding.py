@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from symrot.certificates.readback.readback import read_kernel
-from symrot.certificates.rounding import functions, intervals
+from symrot.certificates.rounding import functions, intervals, store
 from symrot.certificates.rounding.adjoint import evaluate
 from symrot.certificates.rounding.bounds import (
     STORE,
@@ -329,6 +329,19 @@ def test_processes_find_what_one_finds(monkeypatch, tmp_path):
     kernels = [("inertia_rod", text_of("inertia_rod")), ("inertia_disk", text_of("inertia_disk"))]
     assert prepare(kernels, workers=2, budget=999) > 0
     assert prepare(kernels, workers=2, budget=999) == 0
+
+
+def test_one_process_does_not_take_the_bounds_of_an_earlier_method_from_the_table(monkeypatch, tmp_path):
+    monkeypatch.setenv("SYMROT_CACHE", str(tmp_path))
+    monkeypatch.setattr(STORE, "memory", {})
+    operations = operations_of("inertia_rod", text_of("inertia_rod"))
+    problem = library_problem(definition("inertia_rod"), operations[0])
+    tasks = [task for each in operations for task in bound_tasks(each, problem.box, problem.region, 999).values()]
+    stale = {task.key: next(iter(table()["bounds"].values())) | {"bound": "0x0.0p+0"} for task in tasks}
+    monkeypatch.setattr(store, "table", lambda: {"method": "earlier", "bounds": stale})
+    assert prepare([("inertia_rod", text_of("inertia_rod"))], workers=1, budget=999, with_table=False) == len(stale)
+    bounds = [STORE.get(key, with_table=False).bound for key in stale]
+    assert max(bounds) > 0
 
 
 # --- the table that comes with symrot, and what is printed of it ------------------------------------------------------

@@ -49,7 +49,8 @@ class CoqResult:
     axioms : tuple of str
         All axioms on which the theorems rest.
     problems : tuple of str
-        One sentence for each refused file or theorem, with the line number and Coq's message.
+        One sentence for each refused file or axiom, and for proofs that are skipped; usually with the line number and
+        Coq's message.
     seconds : float
         The time that all checks took.
     version : str

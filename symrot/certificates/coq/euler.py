@@ -36,7 +36,7 @@ _PRINTED = {
 
 
 def euler_files() -> dict[str, str]:
-    """Return a map from the name of each Coq file about Euler angles to its sequence: ``euler_zxz`` -> ``"zxz"``."""
+    """Return a map from the name of each Coq file about Euler angles to its sequence: ``euler_zxz`` -> ``"ZXZ"``."""
     return {prefix(sequence): sequence for sequence in SEQUENCES}
 
 

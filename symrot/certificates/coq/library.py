@@ -95,7 +95,7 @@ def with_required(names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def coq_texts(names: tuple[str, ...] | None = None) -> dict[str, str]:
-    """Return the Coq files ``names`` (default: all) and the files that they require, as a map from name to text."""
+    """Return the Coq files ``names`` (default: all) the files that they require, and two helper files, by name."""
     names_needed = with_required(coq_file_names() if names is None else names)
     printed = {name: coq_file(name).text for name in names_needed}
     texts = {RULES: rules_text(), **printed, ASSUMPTIONS: assumptions_text(names_needed)}

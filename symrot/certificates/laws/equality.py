@@ -220,7 +220,7 @@ class _EqualityProver:
         return then == reader.read(function.limit) and other == reader.read(function.formula)
 
     def _series(self, square: int, split: int, near: int, far: int) -> Quotient:
-        """Return the function, such as sinc(x), that a conditional ``x*x < c ? series : formula`` computes.
+        """Return the function, such as sine_gap(x), that a conditional ``x*x < c ? series : formula`` computes.
 
         The arguments are the nodes of x*x, c, the series and the formula.
         """

@@ -363,7 +363,7 @@ class LawProver(FormulaReader):
         return known
 
     def _pair(self, unit: PolyElement, angle: PolyElement) -> tuple[Quotient, Quotient]:
-        """Return (cosine, sine) of ``angle``, the base angle of ``unit``: x/2 of x; each is a variable of the ring."""
+        """Return (cosine, sine) of ``angle``, the base angle of ``unit``, such as x/2 of x; usually variables."""
         # ``unit`` is the monomial of the angle without the number, such as x
         if unit not in self.angle_functions:
             cosine, sine = self.generator(f"cos({angle})"), self.generator(f"sin({angle})")

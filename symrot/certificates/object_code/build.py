@@ -84,8 +84,9 @@ def objects_section(
     dict
         Data for JSON, the same for the same text and compilers: ``source`` (name, SHA-256), ``objects`` (one entry per
         object file: compiler, version, flags, SHA-256, and for each function its verdict, reason, cases and
-        instructions), ``missing`` (compilers that are not installed), ``accepted`` (whether every verdict is
-        "identical" or "identical up to contraction"), ``means`` (how to read the verdicts).
+        instructions), ``missing`` (compilers that are not installed), ``accepted`` (whether there are object
+        files, their flags keep the error bounds, and every verdict is "identical" or "identical up to contraction"),
+        ``means`` (how to read the verdicts).
 
     Raises
     ------

@@ -282,7 +282,7 @@ def _difference(terms: Terms, expected: int, got: int) -> str:
 
 
 def term_text(terms: Terms, index: int, depth: int = 3) -> str:
-    """Return a symbolic term as text, such as ``a*b + c``; operations nested deeper than ``depth`` are abbreviated."""
+    """Return a symbolic term as text, such as ``add(mul(a, b), c)``; operations deeper than ``depth`` become ``..``."""
     node = terms.nodes[index]
     kind = node[0]
     if kind == "in":

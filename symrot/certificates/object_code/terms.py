@@ -72,7 +72,7 @@ def swapped(outcomes: Iterable[str]) -> Outcomes:
 # Operations on single bits are exact: sign bits, numbers without sign, and masks (all bits 1 or all 0).
 # Not a law: -(a + b) = (-a) + (-b), which fails in the sign of a sum that is zero; nor any law that moves a rounding.
 class Terms:
-    """A store of symbolic terms, in which equal terms have one index; all methods take and return indices."""
+    """A store of symbolic terms, in which equal terms have one index; methods pass terms by index."""
 
     def __init__(self) -> None:
         self.nodes: list[Term] = []
@@ -249,7 +249,7 @@ class Terms:
     # --- rounded operations -------------------------------------------------------------------------------------------
 
     def _folded(self, a: int, b: int, operation: Callable[[float, float], float]) -> int | None:
-        """Return ``operation`` of two constant terms as a constant term; None if a term is no finite constant."""
+        """Return ``operation`` of two finite constant terms as a constant term; None for others or on overflow."""
         x, y = self._value(a), self._value(b)
         if x is None or y is None or not (isfinite(x) and isfinite(y)):
             return None

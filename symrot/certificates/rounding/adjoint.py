@@ -1,8 +1,8 @@
 """Bounds of the rounding error of one output on many boxes at once: the sum of local errors times derivatives.
 
 A box is one range per input. Going forward, interval arithmetic encloses the exact and the computed value of each
-operation. Going backward, it encloses the output's derivatives. Half a unit in the last place bounds each rounding
-error.
+operation. Going backward, it encloses the output's derivatives. Half a unit in the last place bounds the rounding
+error of ``+ - * / sqrt``; the error of sin, cos and atan2 is assumed to be at most one unit.
 """
 
 from collections.abc import Callable, Sequence
@@ -469,7 +469,7 @@ def evaluate(
 
 
 def _forward_pass(state: _ErrorPass, computed: _ErrorPass, node: Node) -> Array | None:
-    """Append a node's intervals to ``state.values`` and ``computed.values``; return a bound of its rounding error."""
+    """Append a node's intervals to ``state.values`` and ``computed.values``; return a bound of its error, or None."""
     # Contains the exact and the computed value. In a graph without branches, ``computed`` is the same object as
     # ``state``.
     value, error = FORWARD[node[0]](state, node, [state.values[i] for i in operand_places(node)])

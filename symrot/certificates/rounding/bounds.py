@@ -338,7 +338,7 @@ def _plain_output(bound: OutputBound, unit: float) -> dict[str, Any]:
 
 
 def _units(value: Fraction) -> str:
-    """Return a number as decimal text, rounded up to four significant digits: 2/3 -> ``0.6667``."""
+    """Return a number as decimal text, rounded up to four digits, or to four decimals below 1: 2/3 -> ``0.6667``."""
     if value == 0:
         return "0"
     exponent = len(str(int(value))) - 1 if value >= 1 else -1
@@ -484,7 +484,10 @@ def _check_precision(
 
 
 def error_at_point(task: BoundTask, at: Array) -> float:
-    """Return the error bound of a task at the single point ``at``; a bound on a box with this point is not smaller."""
+    """Return the error bound at the single point ``at``, which is at most that of a box with this point.
+
+    The result is 0 if there is no bound, and -1 if the task's region does not contain the point.
+    """
     point = np.stack([at, at])[:, :, None]
     evaluation = evaluate(
         task.graph, point, np.full((len(task.graph.conditions), 1), -1, np.int8), task.region, task.libm_ulp

@@ -64,9 +64,9 @@ def library_region(name: str, source: str) -> Section:
 
 
 def bounds_sentence(name: str, section: Section | str) -> str:
-    """Return a kernel's largest errors as a phrase such as ``on the box at most 1.2e-15 [6.1e-7] rad/s in dq``.
+    """Return a kernel's largest errors as a phrase such as ``on the box at most 1.23e-15 [6.15e-07] rad/s in dq ..``.
 
-    The brackets hold the errors of the function for floats.
+    The brackets hold the errors of the function for floats. Without bounds, the phrase is ``no bound; ..``.
     """
     # ``section`` comes from ``library_section``
     if isinstance(section, str):
@@ -81,7 +81,7 @@ def bounds_sentence(name: str, section: Section | str) -> str:
 
 
 def _result_phrase(section: Section, name: str, units: list[str]) -> str:
-    """Return the largest errors of an output array for doubles [and floats]: ``1.2e-15 [6.1e-7] rad/s in dq``."""
+    """Return the largest errors of an output array for doubles [and floats]: ``1.23e-15 [6.15e-07] rad/s in dq``."""
     double, single = (
         rounded_up(max(
             Fraction(float.fromhex(each["absolute"]))

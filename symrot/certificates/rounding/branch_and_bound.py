@@ -115,7 +115,7 @@ class _BoundSearch:
         return Evaluation(*(np.concatenate([getattr(part, name) for part in chunks]) for name in _FIELDS))
 
     def parts(self, boxes: Array, decided: NDArray[np.int8]) -> _Parts:
-        """Return the boxes that contain allowed inputs, such as unit quaternions, each with its error bound.
+        """Return the boxes that may contain allowed inputs, such as unit quaternions, each with its error bound.
 
         ``decided`` is the branch of each condition on each box.
         """
@@ -247,7 +247,7 @@ def search(
     region : Region
         Restrictions of the inputs in the box.
     budget : int
-        The number of evaluated boxes after which no further batch is split.
+        The number of evaluated boxes after which no further batch is split; a polynomial may be searched twice.
     libm_ulp : float
         Largest error of sin, cos and atan2, in units in the last place.
     target : float, optional

@@ -1,7 +1,7 @@
 """Interval arithmetic for rounding bounds: float64 arrays of shape (2, n), the lower and upper ends of n intervals.
 
-Results are rounded outward only if the operation was inexact: the upper end of 1*1 stays 1, since numbers just above 1
-have twice the rounding error. With ``+ - * / sqrt`` alone, results are the same on every machine.
+Results are not rounded outward if the operation is known to be exact: the upper end of 1*1 stays 1, since numbers just
+above 1 have twice the rounding error. With ``+ - * / sqrt`` alone, results are the same on every machine.
 """
 
 from typing import TypeAlias
@@ -79,7 +79,7 @@ def _short(a: Array) -> NDArray[np.bool_]:
 def multiply(a: Array, b: Array) -> Array:
     """Return intervals that contain all products of numbers in ``a`` and ``b``.
 
-    An end that is computed exactly is not rounded outward.
+    An end is not rounded outward if its factors have at most 26 significant bits, so that the product is exact.
     """
     products = a[:, None] * b[None]
     exact = (_short(a)[:, None] & _short(b)[None]) & (np.abs(products) > TINY)
@@ -127,7 +127,7 @@ def square_root(a: Array) -> Array:
 
 
 def binade(size: Array) -> Array:
-    """Return, for each number, the largest power of two that is at most this number; 0 for 0."""
+    """Return, for each number, the largest power of two that is at most this number; 0 below 2^-1022."""
     return (size.view(np.int64) & _EXPONENT).view(np.float64)
 
 

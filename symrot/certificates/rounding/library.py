@@ -93,7 +93,7 @@ def prepare(
     budget, libm_ulp
         As for :func:`symrot.certificates.rounding.bounds.bound_outputs`.
     progress : callable
-        Called from time to time with a line of text.
+        Called with a line of text after each bound, if several processes work.
     with_table : bool
         Whether to use the bounds in the table that comes with symrot.
 
@@ -112,7 +112,7 @@ def prepare(
     largest_first = sorted(waiting.values(), key=lambda task: (-len(task.graph.nodes) * len(task.low), task.key))
     if workers == 1 or len(waiting) < 2:
         for task in largest_first:
-            bound_task(task)
+            bound_task(task, fresh=True)  # the table may have a bound by an earlier method
         return len(waiting)
     with ProcessPoolExecutor(workers) as pool:
         for number, (task, result) in enumerate(zip(largest_first, pool.map(_search_task, largest_first), strict=True)):

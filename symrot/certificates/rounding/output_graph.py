@@ -88,7 +88,7 @@ class OutputGraph:
 
     @cached_property
     def exact(self) -> tuple[bool, ...]:
-        """For each node, whether its computed value has no rounding error."""
+        """For each node, whether its computed value certainly has no rounding error."""
         flags: list[bool] = []
         for node in self.nodes:
             kind = node[0]
@@ -99,7 +99,10 @@ class OutputGraph:
 
     @cached_property
     def choices(self) -> tuple[tuple[str, bool], ...]:
-        """The conditionals that compare rounded numbers: (condition, whether its branches are equal modulo 2 pi)."""
+        """The conditionals that compare rounded numbers, but not those that select a series near zero.
+
+        Each is a pair (condition, whether its branches are equal modulo 2 pi).
+        """
         choices = []
         for number, (relation, i, j) in enumerate(self.conditions):
             if (self.exact[i] and self.exact[j]) or relation == "<":
