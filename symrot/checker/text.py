@@ -351,11 +351,22 @@ def _on_inequality(
     left, right = chain.sides
     verdict = verdict_on_inequality(claim, sign, notation.relation((OPPOSITE[sign], left, right)))
     conditions = tuple(notation.condition(text) for text in verdict.conditions)
+    repairs = tuple(_as_inequality(repair, claim, sign, notation) for repair in verdict.repairs)
+    verdict = replace(verdict, repairs=repairs)
     echo = _text_of(reading, notation)
     return replace(
         verdict, text=source.strip(), reading=echo if _differs(echo, source) else "", context=stated.echo,
         conditions=conditions, notes=(*claim.notes, *verdict.notes),
     )  # fmt: skip
+
+
+def _as_inequality(repair: Repair, claim: Claim, sign: str, notation: Notation) -> Repair:
+    """Return a repair of the equation ``claim`` as one of the inequality with ``sign``, in the notation of the text."""
+    relation = _relation_of(repair.text)
+    if relation is None or relation[0] != "==" or claim.relation is None:
+        return repair
+    before, after = (notation.relation((sign, *sides)) for sides in (claim.relation[1:], relation[1:]))
+    return replace(repair, text=after, changed=changed_spans(before, after))
 
 
 def _differs(echo: str, source: str) -> bool:

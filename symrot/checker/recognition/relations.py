@@ -389,6 +389,9 @@ def _heavy() -> Iterator[Relation]:
         potential = load * ARM * cos(THETA)
         yield Relation("a heavy top", HEAVY, ENERGY - expand(turned) - potential, {ENERGY: "energy of"})
         nutation = A * DDTHETA - kinetic.diff(THETA) + potential.diff(THETA)
+        if load is symbols.W:
+            under_torque = A * DDTHETA - kinetic.diff(THETA) - TORQUE
+            yield Relation("nutation of a top under a torque", HEAVY, expand(under_torque), {TORQUE: "torque of"})
         yield Relation("nutation of a heavy top", HEAVY, expand(nutation), {DDTHETA: "angular acceleration at"})
         by_spin = A * DDTHETA - _by_spin(kinetic.diff(THETA)) + potential.diff(THETA)
         yield Relation("nutation of a heavy top", HEAVY, by_spin, {DDTHETA: "angular acceleration at"})
