@@ -1,5 +1,7 @@
 """The derivatives of the motions of an ensemble by initial values and constants, in SIMD lanes.
 
+Motions under torques that jump or bend are followed one by one.
+
 A column consists of the derivatives by one variable. The equations are those of
 :mod:`symrot.propagation.sensitivities.variation`. Every constant that varies in the ensemble is a parameter of them, so
 the derivatives of a motion depend on this motion alone.
@@ -17,7 +19,7 @@ from symrot.ensemble.motions import Problem
 from symrot.ensemble.numbers import Numbers
 from symrot.errors import InputError, PropagationError
 from symrot.formula.program import Program
-from symrot.planning.general_structure import constants_of
+from symrot.planning.general_structure import constants_of, switched
 from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import EPOCH
 from symrot.propagation.compiled_models import has_formulas
@@ -27,7 +29,7 @@ from symrot.propagation.sensitivities.variables import (
     difference,
     groups_of,
     read_variables,
-    require_smooth,
+    require_formulas,
 )
 from symrot.propagation.sensitivities.variation import (
     AT_ONCE,
@@ -87,6 +89,8 @@ def follow_sensitivities(problem: Problem, keys: Sequence[str]) -> tuple[Sensiti
     variables, columns = read_columns(
         scene, keys, [*varying, *([] if variation.quaternion is None else ["quaternion"])]
     )
+    if switched(scene):
+        return _follow_switched(problem, keys)
     count, samples = len(variation), problem.times.shape[-1]
     omega, quaternion, rotation = (np.full((count, samples, size, len(columns)), np.nan) for size in (3, 4, 3))
     messages = [""] * count
@@ -109,9 +113,34 @@ def follow_sensitivities(problem: Problem, keys: Sequence[str]) -> tuple[Sensiti
     return Sensitivities(names, units, groups_of(variables), omega, quaternion, rotation), tuple(messages)
 
 
+def _follow_switched(problem: Problem, keys: Sequence[str]) -> tuple[Sensitivities, tuple[str, ...]]:
+    """Return the derivatives of motions under torques that jump or bend, one by one; see :func:`follow_sensitivities`.
+
+    All derivatives of a motion are NaN if those at one of its times do not exist.
+    """
+    from symrot.propagation.sensitivities.switched import SwitchedEquations
+
+    variation = problem.variation
+    equations = SwitchedEquations(variation.scene, keys, variation.columns)
+    variables, prefix = equations.variables, f"{variation.scene.name}: sensitivities: "
+    shape = len(variation), problem.times.shape[-1]
+    omega, quaternion, rotation = (np.full((*shape, size, len(variables)), np.nan) for size in (3, 4, 3))
+    messages = [""] * len(variation)
+    for i in range(len(variation)):
+        try:
+            states, slopes = equations.follow(variation.scene_of(i), problem.times_of(i), problem.t0)
+        except PropagationError as error:
+            messages[i] = f"sensitivities: {str(error).removeprefix(prefix)}"
+            continue
+        omega[i], quaternion[i] = slopes[:, :RATES], slopes[:, RATES:]
+        rotation[i] = small_rotation(states[:, RATES:], slopes[:, RATES:])
+    names, units = tuple(variable.name for variable in variables), tuple(variable.unit for variable in variables)
+    return Sensitivities(names, units, groups_of(variables), omega, quaternion, rotation), tuple(messages)
+
+
 def read_columns(scene: Scene, keys: Sequence[str], varying: Collection[str]) -> tuple[list[Variable], list[Column]]:
     """Return the variables that ``keys`` name, such as ``"omega_2"``, and a :class:`Column` of derivatives for each."""
-    require_smooth(scene)
+    require_formulas(scene)
     variables = read_variables(scene, keys)
     columns = columns_of(scene, variables)
     # varying: names of varying constants, and omega or quaternion if the initial states vary

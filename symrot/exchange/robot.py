@@ -1,7 +1,7 @@
 """Reading of the inertials of robot files (URDF, MJCF, SDF), and the test that a body can have these values."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from fractions import Fraction
 from pathlib import Path
 from typing import NamedTuple
@@ -215,6 +215,27 @@ def _inertial(element: Element, reason: str) -> Element:
     return _one(element, "inertial", "link")
 
 
+def _require_known(element: Element, attributes: Collection[str], children: Collection[str]) -> None:
+    """Raise InputError if ``element`` has an attribute, or a child element, that its format does not define.
+
+    Passed over, it would be lost: a rotation under a name of another version, or a mass as an attribute.
+    """
+    for kind, names, known in (
+        ("attributes", element.keys(), attributes), ("elements", [child.tag for child in element], children)
+    ):  # fmt: skip
+        unknown = next((str(name) for name in names if name not in known), None)
+        if unknown is not None:
+            listed = f"{kind} among {', '.join(known)}" if known else f"no {kind}"
+            raise InputError(f"{element.tag}: expected {listed}, got {show(unknown)}")
+
+
+def _flag(text: str, place: str) -> bool:
+    """Return the truth value in an attribute of SDF, in which upper and lower case are the same."""
+    if text.lower() not in ("true", "1", "false", "0"):
+        raise InputError(f"{place}: expected true or false, got {show(text)}")
+    return text.lower() in ("true", "1")
+
+
 def _body(
     element: Element, mass: Fraction, center: tuple[Fraction, ...], tensor: Tensor, rotation: Tensor | None
 ) -> Inertial:
@@ -241,7 +262,10 @@ def _tensor(entries: Mapping[str, Fraction]) -> Tensor:
 
 def _read_urdf(element: Element, root: Element) -> Inertial:
     inertial = _inertial(element, "; the link has no mass")
-    origin = inertial.find("origin")
+    _require_known(inertial, (), ("origin", "mass", "inertia"))
+    origin = _one(inertial, "origin", "inertial") if inertial.find("origin") is not None else None
+    if origin is not None:
+        _require_known(origin, ("xyz", "rpy"), ())
     center = _numbers("0 0 0" if origin is None else origin.get("xyz", "0 0 0"), 3, "origin.xyz")
     angles = _numbers("0 0 0" if origin is None else origin.get("rpy", "0 0 0"), 3, "origin.rpy")
     mass = _numbers(_one(inertial, "mass", "inertial").get("value"), 1, "mass.value")[0]
@@ -252,12 +276,18 @@ def _read_urdf(element: Element, root: Element) -> Inertial:
 
 def _read_sdf(element: Element, root: Element) -> Inertial:
     inertial = _inertial(element, "; SDF then assumes 1 kg and 1 kg m^2, which is no measurement")
-    if inertial.get("auto", "false") not in ("false", "0"):
+    _require_known(inertial, ("auto",), ("pose", "mass", "inertia", "density", "fluid_added_mass"))
+    if _flag(inertial.get("auto", "false"), "inertial.auto"):
         raise InputError("inertial: expected a mass and a tensor, got auto, which leaves both to the simulator")
     if inertial.find("fluid_added_mass") is not None:
         raise InputError("inertial: expected the inertia of a rigid body only, got the element fluid_added_mass")
     mass = _numbers(inertial.findtext("mass", "1"), 1, "mass")[0]
+    for tag in ("pose", "mass", "inertia"):
+        if inertial.find(tag) is not None:
+            _one(inertial, tag, "inertial")
     inertia = inertial.find("inertia")
+    if inertia is not None:
+        _require_known(inertia, (), _ENTRIES)
     defaults = {key: "1" if key in ("ixx", "iyy", "izz") else "0" for key in _ENTRIES}
     entries = {
         key: _numbers(value if inertia is None else inertia.findtext(key, value), 1, f"inertia.{key}")[0]
@@ -283,7 +313,7 @@ def _pose(pose: Element | None) -> tuple[tuple[Fraction, ...], Tensor | None]:
     if form != "euler_rpy":
         raise InputError(f"pose: expected the rotation_format euler_rpy or quat_xyzw, got {show(form)}")
     values = _numbers(pose.text or "0 0 0 0 0 0", 6, "pose")
-    rotation = of_roll_pitch_yaw(values[3:], Angles(degrees=pose.get("degrees", "false") in ("true", "1")))
+    rotation = of_roll_pitch_yaw(values[3:], Angles(degrees=_flag(pose.get("degrees", "false"), "pose.degrees")))
     return values[:3], rotation if any(values[3:]) else None
 
 
@@ -313,7 +343,11 @@ def _read_mjcf(element: Element, root: Element) -> Inertial:
     sequence = settings.get("eulerseq", "xyz")
     if not re.fullmatch("[xyzXYZ]{3}", sequence):
         raise InputError(f"compiler.eulerseq: expected three axes such as 'xyz', got {show(sequence)}")
-    angles = Angles(settings.get("angle", "degree") == "degree", sequence)
+    unit = settings.get("angle", "degree")
+    if unit not in ("degree", "radian"):
+        raise InputError(f"compiler.angle: expected 'degree' or 'radian', got {show(unit)}")
+    angles = Angles(unit == "degree", sequence)
+    _require_known(inertial, ("pos", "mass", "diaginertia", "fullinertia", *ORIENTATIONS), ())
     mass = _numbers(inertial.get("mass"), 1, "inertial.mass")[0]
     center = _numbers(inertial.get("pos"), 3, "inertial.pos")
     ways = [key for key in ("diaginertia", "fullinertia") if inertial.get(key)]

@@ -45,7 +45,8 @@ def propagator(
     scene : Scene, mapping, str or Path
         A scene, the content of a scene file as a dict, the name of a shipped scene, or the path of a scene file.
     method : str
-        One of :data:`symrot.propagation.method.METHODS`, or a method of SciPy such as ``"scipy:LSODA"``.
+        One of :data:`symrot.propagation.method.METHODS` except ``constant``, or a method of SciPy such as
+        ``"scipy:LSODA"``.
     tolerance : float, optional
         Error of the trajectory to aim for, in rad for the attitude and relative to its size for the angular velocity;
         default: the tolerance of the scene.

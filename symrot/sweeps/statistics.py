@@ -46,9 +46,17 @@ def read_statistics(texts: Sequence[str]) -> tuple[Statistic, ...]:
     Raises
     ------
     InputError
-        If a statistic is unknown, a percentage is not from 0 to 100, or a number of bins is not a whole number.
+        If a statistic is unknown or occurs twice, a percentage is not from 0 to 100, or a number of bins is not a whole
+        number.
     """
-    return tuple(_read(text) for text in texts)
+    statistics = tuple(_read(text) for text in texts)
+    names = [statistic.name for statistic in statistics]
+    twice = next((name for k, name in enumerate(names) if name in names[:k]), None)
+    if twice is not None:
+        # their results have one name
+        hint = "; write all percentages in one, as percentiles(5, 50, 95)" if twice == "percentiles" else ""
+        raise InputError(f"statistics: expected each statistic once, got {twice} a second time{hint}")
+    return statistics
 
 
 def _read(text: object) -> Statistic:

@@ -162,14 +162,15 @@ def sweep(
     sampling : str
         ``"random"``, ``"latin"`` (Latin hypercube) or ``"sobol"`` for the values that are drawn.
     count : number, optional
-        Number of trajectories, a multiple of the number of grid points; default: the number of grid points.
+        Number of trajectories, a multiple of the number of grid points; needed if values are drawn, otherwise equal to
+        it.
     seed : int
         Seed of the draws. The draws of a trajectory depend only on the seed and on its index.
     outputs : str or sequence of str
         Quantities or components, such as ``"energy"`` at all sample times, ``"omega_1@end"``, ``"axis_z@2.5"`` (at
         2.5 s), ``"omega_3@max"``; also ``@start``, ``@min`` and ``@mean``.
     t : array, shape (m,), optional
-        Sample times, s; default: the sample times of the scene.
+        Sample times, s, in increasing order; default: the sample times of the scene.
     statistics : str or sequence of str
         ``"mean"`` (and standard deviation), ``"envelope"``, ``"percentiles(5, 50, 95)"``, ``"histogram(BINS)"`` of
         each output at each time, over the trajectories that have a value.
@@ -196,7 +197,7 @@ def sweep(
     -------
     Sweep
         The results. Trajectories whose values no body can have, and trajectories that stop early, have a status and a
-        message instead of outputs.
+        message; their outputs are NaN as far as they were not computed.
 
     Raises
     ------
@@ -316,23 +317,25 @@ def _job(
     design = read_design(own, content, vary, attitudes, sampling, count, seed)
     times = read_times(t, own, 1)
     _require(times.ndim == 1 and len(times) > 0, "t", "times in s, shape (m,)", t)
+    # the columns of the results are in this order, and @start and @end name its ends
+    _require(bool((np.diff(times) >= 0).all()), "t", "sample times in increasing order", t)
     _require(isinstance(method, str), "method", "the name of a method", method)
     if method not in ("auto", "exact"):
         choose_method(make_plan(own), method)  # raises an error that lists the methods
     aim = float(own.tolerance) if tolerance is None else read_tolerance(tolerance)
-    outputs = read_outputs(texts, own, np.sort(times))
+    outputs = read_outputs(texts, own, times)
     keys = variable_keys(outputs)
     if keys:
         _require_derivatives(own, content, design, keys)
-    return prepared(Job(design, own, content, np.sort(times), outputs, method, aim, tuple(keys)))
+    return prepared(Job(design, own, content, times, outputs, method, aim, tuple(keys)))
 
 
 def _require_derivatives(scene: Scene, content: Content | None, design: Design, keys: Sequence[str]) -> None:
     """Raise InputError if the motions of a sweep have no derivatives by the variables ``keys``."""
     from symrot.ensemble.sensitivities import read_columns
 
-    # None under torques with a jump or a kink, and none by a variable that sets a quantity which the sweep varies in
-    # another way: mass and radius of a body both set its moments of inertia.
+    # none by a variable that sets a quantity which the sweep varies in another way: mass and radius of a body both set
+    # its moments of inertia
     varying = ["quaternion"] if design.attitudes == "uniform" else []
     for axis in design.axes:
         path = axis.target.path

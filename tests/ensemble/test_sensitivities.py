@@ -100,12 +100,29 @@ def test_derivatives_have_labels(tops):
     assert np.array_equal(table, tops.sensitivities["weight"].rotation[..., 1].ravel())
 
 
+@needs_compiler
+def test_motions_through_switches_have_the_derivatives_of_single_motions():
+    """The third wheel starts at rest, at a kink of its torque: it has no derivative, and its message says so."""
+    scene = {
+        "schema": 1, "body": {"principal": [2, 2, 3]}, "initial": {"omega": [0, 0, 1]},
+        "span": {"t": [0, 4], "samples": 2},
+        "torque": [{"kind": "expression", "parameters": {"c": 1}, "torque": ["0", "0", "-c*sign(omega_3) + abs(omega_1)"]}],
+    }  # fmt: skip
+    omega, c = [[1, 0, 1], [1, 0, 2], [0, 0, 1]], [1.0, 0.5, 1.0]
+    ensemble = symrot.propagate_ensemble(
+        scene, omega=omega, parameters={"c": c}, t=[1, 2], sensitivities=["omega", "c"]
+    )
+    for own, start, value in zip(ensemble.sensitivities.omega[:2], omega, c, strict=False):
+        alone = symrot.propagate(scene, omega=start, parameters={"c": value}, t=[1, 2], sensitivities=["omega", "c"])
+        assert np.array_equal(own, alone.sensitivities.omega)
+    assert np.isnan(ensemble.sensitivities.omega[2]).all() and "stays at zero" in ensemble.messages[2]
+
+
 @pytest.mark.parametrize(
     ("scene", "options", "message"),
     [
         (TOP, {"sensitivities": "omega"}, "expected a list of names"),
         (TOP, {"sensitivities": ["wieght"]}, "did you mean 'weight'"),
-        ("friction_wheel", {"sensitivities": ["omega"]}, "jump or bend"),
         (
             "heavy_top_loops",
             {"sensitivities": ["gravity"], "parameters": {"weight": [1.0, 2.0, 3.0]}},

@@ -213,6 +213,13 @@ BOMB = '<!DOCTYPE r [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a
     (MJCF.format(compiler="", inertia='diaginertia="1 1 1" quat="0 0 0 0"'), "expected a quaternion that is not zero"),
     (MJCF.format(compiler="", inertia='diaginertia="1 1 1" xyaxes="1 0 0 2 0 0"'), "expected a y axis that is not parallel to the x axis"),
     (MJCF.format(compiler="", inertia='diaginertia="1 1 0"'), "expected three positive principal moments"),
+    (changed(('rpy="0 0 0"', 'quat_xyzw="0.7 0 0 0.7"')), "origin: expected attributes among xyz, rpy, got 'quat_xyzw'"),
+    (changed(('<mass value="2.5"/>', '<mass value="2.5"/><pose>1 0 0 0 0 0</pose>')), "expected elements among origin, mass, inertia, got 'pose'"),
+    (changed(('<mass value="2.5"/>', '<mass value="2.5"/><origin xyz="1 0 0"/>')), "inertial: expected one element <origin>, got 2"),
+    (SDF.format(attributes="", rotation="0 0 0").replace("<inertial>", '<inertial mass="2">'), "inertial: expected attributes among auto, got 'mass'"),
+    (SDF.format(attributes='degrees="yes"', rotation="0 0 0"), "pose.degrees: expected true or false, got 'yes'"),
+    (MJCF.format(compiler='angle="Degree"', inertia='diaginertia="1 1 1"'), "compiler.angle: expected 'degree' or 'radian', got 'Degree'"),
+    (MJCF.format(compiler="", inertia='diaginertia="1 1 1" rpy="1 0 0"'), "inertial: expected attributes among pos, mass"),
 ])  # fmt: skip
 def test_a_fault_of_a_file_is_one_sentence(tmp_path, text, sentence):
     path = robot(tmp_path, text)
@@ -220,6 +227,16 @@ def test_a_fault_of_a_file_is_one_sentence(tmp_path, text, sentence):
         symrot.link(path, "arm")
     assert sentence in str(refusal.value)
     assert str(refusal.value).startswith(f"{path}: ") and "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize("word", ["true", "True", "1"])
+def test_truth_values_of_sdf_have_any_case(tmp_path, word):
+    texts = [
+        SDF.format(attributes=f'degrees="{word}"', rotation="90 0 0"),
+        SDF.format(attributes="", rotation="1.5707963267948966 0 0"),
+    ]
+    tensors = [symrot.link(robot(tmp_path, text), "arm").inertia for text in texts]
+    assert np.abs(np.array(tensors[0], float) - np.array(tensors[1], float)).max() < 1e-15
 
 
 def test_without_a_name_a_file_has_one_link(tmp_path):

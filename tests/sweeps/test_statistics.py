@@ -104,3 +104,9 @@ def test_the_deviation_of_tiny_and_huge_values(size):
     output = Variable("x", ("time",), "J", "", "energy")
     tables = {table.name: table for table in statistics_of(Store, read_statistics(["mean"]), [output], str)}
     assert tables["x_std"].values / size == pytest.approx([np.sqrt(1.25)], rel=1e-14)
+
+
+@pytest.mark.parametrize("texts", [["percentiles(0)", "percentiles(50, 100)"], ["histogram(2)", "histogram(4)"]])
+def test_a_statistic_that_would_replace_another_is_refused(texts):
+    with pytest.raises(InputError, match="expected each statistic once"):
+        read_statistics(texts)

@@ -12,7 +12,7 @@ Source: M. A. Aizerman, F. R. Gantmakher, On the stability of periodic motions, 
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import product
@@ -119,13 +119,12 @@ class _Gradient(NamedTuple):
 class SwitchedEquations:
     """The equations of a motion under torques that switch, and of its derivatives by variables."""
 
-    def __init__(self, scene: Scene, keys: Sequence[str]) -> None:
+    def __init__(self, scene: Scene, keys: Sequence[str], varying: Collection[str] = ()) -> None:
         self.scene, self.keys, self.variables = scene, keys, read_variables(scene, keys)
         self.columns = columns_of(scene, self.variables)
         self.restartable = all(column.restartable for column in self.columns)
-        self.structure = structure_of(scene, self.columns)
-        self._moved: list[dict[Fraction, Mapping[str, Fraction]]] = [{} for _ in self.columns]
-        self._changed = [self._changed_constants(column) for column in self.columns]
+        self.structure = structure_of(scene, self.columns, varying)
+        self._changes = [self._changes_of(column) for column in self.columns]
         self._walks: list[_Walk] = []
 
     def fit(self, scene: Scene, keys: Sequence[str]) -> bool:
@@ -196,44 +195,34 @@ class SwitchedEquations:
         self._walks = [walk, *self._walks[:1]]
         return walk
 
-    def _changed_constants(self, column: Column) -> frozenset[str]:
-        """Return the names of the constants of the equations that a variable changes."""
+    def _changes_of(self, column: Column) -> Mapping[str, Fraction]:
+        """Return the derivatives of the constants of the equations by a variable, without those that are zero."""
         if not column.constants:
-            return frozenset()
-        return frozenset(difference(self.scene, column.variable, lambda other: constants_of(other, self.structure)))
+            return {}
+        return difference(self.scene, column.variable, lambda other: constants_of(other, self.structure))
 
     def depends(self, parameters: Parameters, column: int) -> list[str]:
         """Return the names of the parameters, pairs (name, formula), that depend on the variable number ``column``."""
-        return [name for name, formula in parameters if names(formula) & self._changed[column]]
+        return [name for name, formula in parameters if names(formula) & self._changes[column].keys()]
 
-    def slopes_of(self, parameters: Parameters, modes: Modes, zero: Instant) -> Rows:
+    def slopes_of(self, parameters: Parameters, constants: Mapping[str, Fraction]) -> Rows:
         """Return the derivatives of parameters by the m variables, by name, if one of them is not zero."""
         rows: dict[str, list[float]] = {}
-        more = {"pi": number.PI, EPOCH: zero.exact, **{name: Fraction(mode) for name, mode in modes.items()}}
         for k, column in enumerate(self.columns):
-            own = set(self.depends(parameters, k))
+            own, changes = set(self.depends(parameters, k)), self._changes[k]
             moving = [(name, formula) for name, formula in parameters if name in own]
             if not moving:
                 continue
 
-            def values(change: Fraction, k: int = k, moving: Any = moving) -> dict[str, Fraction]:
-                constants = {**self._constants(k, change), **more}
-                return {name: value_of(formula, constants) for name, formula in moving}
+            def values(change: Fraction, changes: Any = changes, moving: Any = moving) -> dict[str, Fraction]:
+                moved = {**constants, **{name: constants[name] + change * slope for name, slope in changes.items()}}
+                return {name: value_of(formula, moved) for name, formula in moving}
 
             variable = column.variable
             step = abs(variable.value) * STEP if variable.value else STEP
             for name, slope in slopes(values, step, variable.name).items():
                 rows.setdefault(name, [0.0] * len(self.columns))[k] = float(slope)
         return rows
-
-    def _constants(self, column: int, change: Fraction) -> Mapping[str, Fraction]:
-        """Return the exact constants of the scene in which variable number ``column`` has changed by ``change``."""
-        known = self._moved[column]
-        if change not in known:
-            moved = self.columns[column].variable.moved
-            assert moved is not None
-            known[change] = constants_of(moved(change) if change else self.scene, self.structure)
-        return known[change]
 
 
 class _Walk:
@@ -261,13 +250,16 @@ class _Walk:
         self.switchings: list[SwitchSlopes] = []
         self._rates: dict[int, tuple[Program, Parameters]] = {}
         self._slopes: dict[Any, Rows] = {}
+        self._constants = {"pi": number.PI, **constants_of(scene, equations.structure)}
         self._units = [unit_of(scene, column) for column in equations.columns]
         self.parts, self.changes = self._smooth_parts()
         self._differentiate()
 
     def covers(self, scene: Scene, begin: float, end: float) -> bool:
         """Return whether this motion starts as ``scene`` does, at ``begin``, and reaches the time ``end``, s."""
-        same = self.scene.initial == scene.initial and self.begin == begin
+        own = self.scene
+        same = own.body is scene.body and own.torques is scene.torques and own.initial == scene.initial
+        same &= self.begin == begin
         return same and self.side * (end - begin) > 0.0 and self.side * (self.end - end) >= 0.0
 
     # ---------------------------------------------------------------------------------------------- smooth intervals
@@ -341,7 +333,7 @@ class _Walk:
         yield part.stop, part.last
 
     def _rests(self, part: _Part, mode: str) -> bool:
-        """Return whether the guard of a mode is zero throughout an interval."""
+        """Return whether the guard of a mode is zero at the start, near the middle and at the end of an interval."""
         return all(self._guard(part, mode, *place).value == 0.0 for place in self._places(part))
 
     def _is_smooth_at(self, part: _Part, mode: str) -> bool:
@@ -373,15 +365,10 @@ class _Walk:
         key = kind, id(part.regime), tuple(part.modes.values()), part.zero if timed else None
         if key not in self._slopes:
             modes = {name: Fraction(mode) for name, mode in part.modes.items()}
-            constants = {
-                "pi": number.PI,
-                **constants_of(self.scene, self.equations.structure),
-                **modes,
-                EPOCH: part.zero.exact,
-            }
+            constants = {**self._constants, **modes, EPOCH: part.zero.exact}
             values = {name: [float(value_of(formula, constants))] for name, formula in parameters}
             self._slopes[key] = values
-            self._slopes[(*key, "by")] = self.equations.slopes_of(parameters, part.modes, part.zero)
+            self._slopes[(*key, "by")] = self.equations.slopes_of(parameters, constants)
         return {name: value for name, (value,) in self._slopes[key].items()}, self._slopes[(*key, "by")]
 
     def _duals(self, parameters: Parameters, part: _Part, t: float, y: Floats, kind: str) -> dict[str, Any]:
@@ -680,6 +667,6 @@ ZEROS = [0.0]
 
 
 def _alike(left: Floats, right: Floats) -> NDArray[np.bool_]:
-    """Return where two arrays of derivatives are equal up to rounding; each column of a matrix has its own scale."""
+    """Return where derivatives differ by at most 1e-9 of their size, that of the column if they form a matrix."""
     sizes = np.maximum(np.abs(left), np.abs(right))
     return np.abs(left - right) <= ALIKE * (sizes if sizes.ndim == 1 else sizes.max(axis=0))

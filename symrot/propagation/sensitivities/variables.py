@@ -13,7 +13,6 @@ from typing import Any
 from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import read, show
-from symrot.planning.general_structure import switched
 from symrot.scene.changes import path_of
 from symrot.scene.scene import Scene
 
@@ -25,7 +24,6 @@ __all__ = [
     "groups_of",
     "read_variables",
     "require_formulas",
-    "require_smooth",
     "slopes",
 ]
 
@@ -85,16 +83,6 @@ def require_formulas(scene: Scene) -> None:
     """Raise InputError if a torque of a scene is given by samples, which have no derivatives."""
     if scene.table is not None:
         raise InputError(f"{scene.name}: expected torques with formulas for sensitivities, got a torque of kind table")
-
-
-def require_smooth(scene: Scene) -> None:
-    """Raise InputError if a torque of a scene is given by samples, or by formulas that jump or bend."""
-    require_formulas(scene)
-    if switched(scene):
-        raise InputError(
-            f"{scene.name}: expected smooth torques for sensitivities, got formulas that jump or bend (abs, sign, ..), "
-            "at which the derivatives of a motion jump"
-        )
 
 
 def read_variables(scene: Scene, keys: Sequence[str]) -> list[Variable]:
