@@ -217,5 +217,5 @@ def test_switching_times_without_a_torque_of_their_own_are_refused(name):
 
 
 def test_a_method_that_cannot_be_named_is_not_proposed():
-    with pytest.raises(InputError, match="got 'constant'$"):
+    with pytest.raises(InputError, match=r"got 'constant'$"):
         symrot.propagator("t_handle", "constant")
