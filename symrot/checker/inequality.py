@@ -14,7 +14,7 @@ from sympy import Expr, Rational, Symbol, pi
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, walk
-from symrot.checker.claim_verdict import verdict_of_decision
+from symrot.checker.claim_verdict import check_claim, verdict_of_decision
 from symrot.checker.decide.decision import decide_equation
 from symrot.checker.decide.signs import is_proven_nonnegative, is_proven_positive
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
@@ -40,6 +40,9 @@ MOMENTS = (("A", "B", "C"), *((f"{letter}{index.format(1)}", f"{letter}{index.fo
 CONDITION = (
     "it is a condition on its letters, which may hold for some of their values only: nothing is claimed about it"
 )
+
+SPIN = "omega_3"
+"""The spin of a top in known formulas."""
 
 PLATE = "the body is not a plane plate"
 
@@ -78,7 +81,7 @@ def verdict_on_inequality(claim: Claim, sign: str, flipped: str) -> Verdict:
     if is_proven_positive(difference) if strict else is_proven_nonnegative(difference):
         return replace(verdict_of_decision(domain, claim.text, 0.0), verdict="true")
     if _is_condition(claim):
-        return Verdict("definition", reason=CONDITION)
+        return _on_least_spin(claim, sign, flipped) or Verdict("definition", reason=CONDITION)
     if (point := _counterexample(claim, difference, strict)) is not None:
         return Verdict("false", counterexample=point)
     return Verdict(
@@ -87,8 +90,32 @@ def verdict_on_inequality(claim: Claim, sign: str, flipped: str) -> Verdict:
     )
 
 
+def _on_least_spin(claim: Claim, sign: str, flipped: str) -> Verdict | None:
+    """Return the verdict on an inequality for the least spin of a top, such as ``I_3^2 w_3^2 >= 4 m g l I_1``.
+
+    Return None for others.
+    """
+    assert claim.relation is not None
+    verdict = check_claim(claim)
+    if verdict.verdict not in ("recognised", "doubtful") or not verdict.recognised_as:
+        return None
+    known = verdict.recognised_as[0]
+    if " least spin " not in known.name:
+        return None
+    left, right = claim.relation[1:]
+    greater, smaller = (left, right) if sign.startswith(">") else (right, left)
+    spin = known.mapping.get(SPIN, SPIN)
+    is_right = spin in _letters(greater) and spin not in _letters(smaller)
+    if verdict.verdict == "recognised" and not is_right:
+        repair, text = Repair(flipped, "sign", 1.0), "the sign of the inequality is reversed"
+        return replace(verdict, verdict="doubtful", diagnosis=Diagnosis("sign", text), repairs=(repair,))
+    return verdict if is_right else None
+
+
 def _is_condition(claim: Claim) -> bool:
-    """Return whether an inequality only restricts values, as ``omega > 2`` does: no letter is on both sides."""
+    """Return whether an inequality only restricts values, as ``omega > 2`` and ``x > y`` do, but not ``x^2 > x`` or
+    ``x^2 > 1``.
+    """
     assert claim.relation is not None
     if claim.hypotheses:
         return False

@@ -124,7 +124,7 @@ def times_of(t: ArrayLike) -> Floats:
     Raises
     ------
     InputError
-        If the times are not a sequence of finite numbers.
+        If the times are not a finite number or a sequence of finite numbers.
     """
     try:
         times = np.ascontiguousarray(t, dtype=np.float64)

@@ -118,7 +118,7 @@ def _gyrostat(scene: Scene) -> Starts:
 
 
 def torque_and_damping(scene: Scene) -> tuple[Vector, Vector]:
-    """Return two vectors of body components: the sum of a scene's constant torques, and its damping coefficients.
+    """Return two vectors: the sum of a scene's torques of constant body components, and its damping coefficients.
 
     Their units are N m and N m s.
     """

@@ -133,7 +133,7 @@ def rates_jacobian_program(
 
 
 def _variables(equations: Equations, name: str) -> tuple[Symbol, ...]:
-    """Return the symbols for which a name stands: all states for ``"y"``, three for ``"omega"``, one for ``"q0"``.
+    """Return the symbols that a name stands for: all states for ``"y"``, those of omega for ``"omega"``, or one.
 
     Raise InputError if the equations contain no such symbol.
     """

@@ -99,7 +99,7 @@ def stepped(
     rates: Program, method: Method, values: Mapping[str, Any], dt: Any,
     functions: Mapping[str, Callable[..., Any]], number: Callable[[Fraction], Any],
 ) -> list[Any]:  # fmt: skip
-    """Return the state after one step, computed with any kind of number.
+    """Return the state after one step, computed with any kind of number; then its derivatives, if ``method`` has any.
 
     Parameters
     ----------

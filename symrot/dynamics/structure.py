@@ -208,7 +208,7 @@ class Structure:
         return self.planar, self.initial_quaternion, self.constant
 
     def unreduced(self) -> "Structure":
-        """Return the structure with all components of omega_b and q as states, so that it fits every initial state."""
+        """Return the structure with all of omega_b, and q if the attitude is computed, as states, for any start."""
         return replace(self, planar=None, initial_quaternion=None, constant=MOVING)
 
     def to_json(self) -> dict[str, object]:

@@ -298,7 +298,7 @@ def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Row
 
 
 def _parts(variation: Variation, kind: Kind, rows: Rows) -> Iterator[_Part]:
-    """Yield the trajectories ``rows`` in groups that one batch can compute: two for heavy tops, otherwise one."""
+    """Yield the trajectories ``rows`` in groups that one batch can compute: one, or two for heavy tops."""
     groups = [rows]
     if kind.form and kind.form.library == "heavy_top" and variation.columns:
         height = variation.constant(f"{variation.prefix(0)}center_of_mass_{(kind.axis or 0) + 1}")

@@ -23,7 +23,7 @@ def read(source: str, where: str = "", pieces: Sequence[Token] = ()) -> Row:
         If a group, matrix or delimiter is not closed, an argument is missing, or an item has two indices or two powers;
         the message names the position.
     """
-    return _Reader(source, where, pieces or tokens(source)).row("", "end")
+    return _with_open_fractions(_Reader(source, where, pieces or tokens(source)).row("", "end"))
 
 
 class _Reader:
@@ -125,7 +125,7 @@ class _Reader:
         return Root(self.group(opening, "]") if opening.text == "[" else None, self.argument(), token.start)
 
     def delimited(self, token: Token) -> Delimited:
-        row = self.row("\\right", "right")
+        row = _with_old_fractions(self.row("\\right", "right"))
         self.place += 1
         return Delimited(token, row, self.tokens[self.place - 1], token.start)
 
@@ -155,6 +155,22 @@ def _with_old_fractions(row: Row) -> Row:
     middle = row.items[place].start
     fraction = Fraction("\\frac", Row(above, row.start, middle), Row(below, middle, row.end), middle)
     return Row((fraction,), row.start, row.end)
+
+
+def _with_open_fractions(row: Row) -> Row:
+    r"""Return a formula in which ``above \over below`` outside of braces is a fraction up to the next equals sign."""
+    if all(item.text != "\\over" for item in row.items):
+        return row
+    items: list[Node] = []
+    ends = [*(n for n, item in enumerate(row.items) if item.text in ("=", "\\\\", "&", ",")), len(row.items)]
+    first = 0
+    for end in ends:
+        side = row.items[first:end]
+        start = side[0].start if side else row.start
+        stop = row.items[end].start if end < len(row.items) else row.end
+        items += [*_with_old_fractions(Row(side, start, stop)).items, *row.items[end : end + 1]]
+        first = end + 1
+    return Row(tuple(items), row.start, row.end)
 
 
 READERS: dict[str, Callable[[_Reader, Token], Node]] = {

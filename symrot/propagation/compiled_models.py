@@ -67,7 +67,7 @@ def _version() -> str:
 
 
 def kernel_key(plan: Plan) -> str:
-    """Return the key under which the cache stores the kernel of a plan; scenes that differ only in numbers share it."""
+    """Return the key under which the cache stores the kernel of a plan; plans with equal structures share it."""
     return f"scene kernel\n{_structure_text(plan.structure)}\n{_version()}"
 
 
@@ -208,7 +208,7 @@ def _degree(node: Node) -> int:
 def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[str, float]], Deviations] | None":
     """Return a function from the rates' parameters to bounds on torque changes (``Deviations``), for SciPy's steps.
 
-    None: no torque can have a pulse that a step misses.
+    None if no torque can have a pulse that a step misses, or if the rates have no Taylor series.
     """
     if not has_formulas(plan):
         return None

@@ -193,7 +193,7 @@ class EulerMotion(Motion):
                 whole = block.states(np.array([t]))[0]
 
     def _steps(self, integration: Integration, sequence: str, end: float) -> Iterator[tuple[float, float, Floats]]:
-        """Yield groups of steps as (first time, last time, recorded steps) until ``end`` or near gimbal lock."""
+        """Yield groups of steps (first time, last time, recorded steps) until ``end`` or, if switching, gimbal lock."""
         count, broken = self._moving, None
         try:
             with closing(integration.runs(end)) as runs:

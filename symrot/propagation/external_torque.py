@@ -86,7 +86,7 @@ class TorqueSource(ABC):
 
     @abstractmethod
     def failure(self) -> BaseException | None:
-        """Return the exception that the torque raised during the last motion, or None if it raised none."""
+        """Return the error of the torque function during the last motion, or None."""
 
 
 @final
@@ -99,7 +99,7 @@ class _Function(TorqueSource):
         self.pointer = CALLBACK(self._call)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Return what pickle needs to copy the torque; raise PicklingError if pickle cannot save the function."""
+        """Return what pickle needs to copy the torque; without cloudpickle, a local function raises PicklingError."""
         if "cloudpickle" not in sys.modules:  # joblib and Dask load it; it saves functions that pickle refuses
             try:
                 pickle.dumps(self.function)
@@ -143,7 +143,7 @@ class _Function(TorqueSource):
         self.error = None
 
     def failure(self) -> BaseException | None:
-        """Return the exception that the function raised, or None."""
+        """Return the error of the function, also for a result that is not three finite numbers, or None."""
         return self.error
 
 

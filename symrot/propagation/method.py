@@ -50,12 +50,12 @@ EXTERNAL_TORQUE = Choice("dop853", "a torque without a formula has no Taylor ser
 
 
 def choose_method(plan: Plan, method: str = "auto") -> Choice:
-    """Return the method for a plan: for ``"auto"`` the first one that can follow its motion, else the named method.
+    """Return the named method or, for ``"auto"`` or if no state changes, the first one that can follow the motion.
 
     Raises
     ------
     InputError
-        If there is no such method.
+        If there is no such method, or if it cannot follow this motion.
     CompilerError
         If the method needs a compiler and no compiler is installed.
     """
@@ -81,9 +81,9 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
 
         method_name(solver)
     elif name not in METHODS or colon or name == "constant":
-        listed = ", ".join(name for name in METHODS if name != "constant")
-        message = f"method: expected one of {listed} or scipy:NAME, got {method!r}"
-        raise InputError(with_hint(message, method, METHODS))
+        known = [name for name in METHODS if name != "constant"]
+        message = f"method: expected one of {', '.join(known)} or scipy:NAME, got {method!r}"
+        raise InputError(with_hint(message, method, known))
     if not plan.states:
         return choose_method(plan)
     if name in ("taylor", "dop853") and (reason := library.missing()):

@@ -143,7 +143,7 @@ class Setup:
     def deviations(self) -> "Callable[[Mapping[str, float]], Deviations] | None":
         """Function from the parameters of the rates to bounds on torque changes (``Deviations``), for SciPy's steps.
 
-        None: no torque can have a pulse that a step misses.
+        None if no torque can have a pulse that a step misses, or if the rates have no Taylor series.
         """
         return formula_deviations(self.plan, self.kernel)
 
@@ -495,7 +495,7 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def taylor_parameters(self) -> list[float]:
-        """The parameters of the Taylor library: one double for each of the rates, two for each conserved quantity."""
+        """Values for the Taylor library: one double for a parameter of the rates, two for one of the quantities."""
         return [*self.rate_parameters, *self.setup.quantity_binding(self.plan)]
 
     @cached_property
@@ -557,7 +557,7 @@ class SciPyMotion(ShiftableMotion):
     def deviations(self, parameters: Sequence[float]) -> "Deviations | None":
         """Return bounds on torque changes (``Deviations``) for SciPy's steps.
 
-        None: no torque can have a pulse that a step misses.
+        None if no torque can have a pulse that a step misses, or if the rates have no Taylor series.
         """
         if self.setup.deviations is None:
             return None

@@ -45,7 +45,8 @@ def propagator(
     scene : Scene, mapping, str or Path
         A scene, the content of a scene file as a dict, the name of a shipped scene, or the path of a scene file.
     method : str
-        One of :data:`symrot.propagation.method.METHODS`, or a method of SciPy such as ``"scipy:LSODA"``.
+        One of :data:`symrot.propagation.method.METHODS` except ``constant``, or a method of SciPy such as
+        ``"scipy:LSODA"``.
     tolerance : float, optional
         Error of the trajectory to aim for, in rad for the attitude and relative to its size for the angular velocity;
         default: the tolerance of the scene.
@@ -111,9 +112,12 @@ def propagator(
     """
     scene = _with_values(load_scene(scene), omega, quaternion, attitude, parameters)
     aim = float(scene.tolerance) if tolerance is None else read_tolerance(tolerance)
+    if scene.table is not None and torque is not None:
+        raise InputError(f"torque: leave it out for a scene with a torque of kind table, got {number.show(torque)}")
+    if torque is None and real_array(switching_times, "switching_times", "finite times in s").size:
+        reason = "leave it out unless torque is a function or a table"
+        raise InputError(f"switching_times: {reason}, got {number.show(switching_times)}")
     if scene.table is not None:
-        if torque is not None:
-            raise InputError(f"torque: leave it out for a scene with a torque of kind table, got {number.show(torque)}")
         samples = scene.table
         torque, switching_times, torque_frame = samples[:2], samples.switching_times, samples.frame
     if sensitivities is not None:

@@ -345,8 +345,9 @@ class Trajectory(MotionSamples):
         Raises
         ------
         InputError
-            If the times are not finite, or if the torques have no derivatives: a torque without a formula, or formulas
-            that jump or bend.
+            If the times are not finite, or if a torque has no formula.
+        PropagationError
+            If the motion cannot be followed to both times, or if it has no derivatives beyond a switch of a torque.
 
         Examples
         --------
@@ -397,7 +398,7 @@ class Trajectory(MotionSamples):
     def save(self, path: str | Path, quantities: Sequence[str] | None = None) -> list[str]:
         """Write the samples with labels and events to a file; see :func:`symrot.save`.
 
-        ``quantities`` default to angular velocity, attitude and the scene's output quantities.
+        ``quantities`` default to omega, the attitude if computed, the scene's output quantities and any derivatives.
         """
         if quantities is None:
             present = ("omega", "quaternion") if self.has_attitude else ("omega",)

@@ -75,12 +75,12 @@ class Samples(ABC):
 
     @property
     def polhode(self) -> Floats:
-        """The polhode, the path of omega in the body on the energy ellipsoid: the same array as :attr:`omega`."""
+        """The polhode, the path of omega in the body: the same array as :attr:`omega`."""
         return self.omega
 
     @property
     def herpolhode(self) -> Floats:
-        """The herpolhode, the path of omega in space on the invariable plane: the same array as :attr:`omega_space`."""
+        """The herpolhode, the path of omega in space: the same array as :attr:`omega_space`."""
         return self.omega_space
 
     @cached_property
@@ -99,7 +99,8 @@ class Samples(ABC):
         Parameters
         ----------
         quantities : sequence of str, optional
-            Names among ``output.quantities`` of a scene, such as ``["omega", "energy"]``; default: those of the scene.
+            Names among ``output.quantities`` of a scene, such as ``["omega", "energy"]``; default: those of the scene
+            and any derivatives.
 
         Returns
         -------
@@ -170,7 +171,7 @@ class MotionSamples(Samples):
 
     @property
     def axis_number(self) -> int:
-        """Index, from 0, of the body axis whose direction is :attr:`axis`: the symmetry axis, or 2 if there is none."""
+        """Index, from 0, of the body axis of :attr:`axis`: the symmetry axis, or 2 if no body axis is one."""
         principal = self.scene.body.principal
         return 2 if principal.symmetry_axis is None or not principal.given_axes else int(principal.symmetry_axis)
 

@@ -92,8 +92,8 @@ class Sensitivities(Mapping[str, Sensitivity]):
     omega, quaternion, rotation : array, shape (n, 3, m), (n, 4, m), (n, 3, m)
         The derivatives, as in :class:`Sensitivity`; for an ensemble, with one more axis, the first, over the motions.
     t_events : tuple of arrays, shape (k, m)
-        For each event, the derivatives of its k times, s per unit of the variable; NaN where the formula of the event
-        touches zero.
+        For each event, the derivatives of its k times, s per unit of the variable; NaN where they do not exist, as
+        where the formula of the event touches zero.
     switchings : tuple of SwitchSlopes
         The switches of the torques up to the last sample, with the derivatives of their times.
     times : array, shape (n, m), or None

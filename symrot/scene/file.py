@@ -88,7 +88,7 @@ def read_toml(path: Path, label: str, what: str = "scene") -> dict[str, Any]:
     ------
     InputError
         If the file cannot be read, is not a regular file, is larger than 1 MB, is empty, is not UTF-8 text, or is not
-        TOML; in the last case the message names the line.
+        TOML; in the last case the message usually names the line.
     """
     try:
         content = read_input(path, LARGEST_FILE)

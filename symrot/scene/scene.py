@@ -103,7 +103,7 @@ class Scene:
         where : str
             Name of the scene; every error message begins with this name.
         table_folders : str, Path or sequence of them
-            Folders, in addition to the current folder, whose files a torque of kind table may name.
+            Folders, in addition to the current folder, whose files a torque of kind table or a mesh may name.
 
         Raises
         ------
@@ -146,7 +146,7 @@ class Scene:
     def to_dict(self) -> dict[str, Any]:
         """Return the content of the scene file or dict from which the scene was read, with all changes since then.
 
-        The result is a copy; ``Scene.from_dict`` reads it as an equal scene.
+        The result is a copy without name and path; ``Scene.from_dict`` reads it as a scene that is equal otherwise.
 
         Raises
         ------
@@ -325,7 +325,7 @@ def load_scene(source: SceneSource, *, table_folders: str | Path | Sequence[str 
         Name of a shipped scene, path of a file, or the content of a file as for :meth:`Scene.from_dict`. A scene is
         returned unchanged.
     table_folders : str, Path or sequence of them
-        Folders, in addition to the folder of the scene, whose files a torque of kind table may name.
+        Folders, in addition to the folder of the scene, whose files a torque of kind table or a mesh may name.
 
     Returns
     -------

@@ -38,7 +38,7 @@ class Torque(NamedTuple):
         Name in the table of torques.
     values : mapping
         The constants by name, in SI units. For a torque given by formulas they are its parameters, and pi if a formula
-        contains it; otherwise they are all fields of its kind in the table of torques. An attitude is a unit
+        contains pi or atan2; otherwise they are all fields of its kind in the table of torques. An attitude is a unit
         quaternion, and ``linear`` of a damping is a vector. Gravity has ``weight``, ``center_of_mass`` and a unit
         vector ``direction``.
     formulas : tuple of str

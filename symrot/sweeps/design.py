@@ -110,7 +110,8 @@ def read_design(
     sampling : str
         A name in :data:`symrot.sweeps.points.SAMPLINGS`.
     count : number, optional
-        Number of trajectories; default: the number of grid points. It is a multiple of the number of grid points.
+        Number of trajectories, a multiple of the number of grid points; needed if values are drawn, otherwise equal to
+        it.
     seed : int
         Seed of the random numbers, zero or more.
 

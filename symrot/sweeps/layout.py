@@ -103,7 +103,7 @@ class Store(Protocol):
     def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        Remove the values of the outputs if ``only_statistics``, a description of the statistics, is not empty.
+        Remove the values of inputs and outputs if ``only_statistics``, a description of the statistics, is not empty.
         """
 
 
@@ -170,7 +170,7 @@ def arrays_of(chunk: Chunk, names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
 
 
 def messages_of(chunk: Chunk) -> NDArray[Any]:
-    """Return the messages of a chunk, one text for each trajectory; the text of a computed one is empty."""
+    """Return the messages of a chunk, one text for each trajectory; the text of a complete one is empty."""
     texts = np.full(chunk.stop - chunk.start, "", dtype=object)
     for row, message in chunk.messages.items():
         texts[row] = message

@@ -39,7 +39,7 @@ class MemoryStore:
 
     @property
     def only_statistics(self) -> str:
-        """Always an empty text: this store has the values of the outputs, not only statistics."""
+        """Always an empty text: a sweep in memory is never continued."""
         return ""
 
     def pending(self) -> list[tuple[int, int]]:
@@ -67,7 +67,7 @@ class MemoryStore:
     def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        Remove the values of the outputs if ``only_statistics`` is not empty.
+        Remove the values of inputs and outputs if ``only_statistics`` is not empty.
         """
         self.tables = tables
         # its text, a description of the statistics for files, is not needed here

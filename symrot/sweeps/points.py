@@ -135,7 +135,7 @@ SAMPLINGS: dict[str, Callable[[int, Sequence[str], int, int, int], Floats]] = {
 
 
 def unit_points(sampling: str, seed: int, streams: Sequence[str], count: int, start: int, stop: int) -> Floats:
-    """Return the points ``start`` to ``stop`` of ``count`` points in the open unit cube, shape (stop - start, d).
+    """Return the points ``start`` to ``stop - 1`` of ``count`` in the open unit cube, shape (stop - start, d).
 
     Parameters
     ----------

@@ -162,7 +162,8 @@ def sweep(
     sampling : str
         ``"random"``, ``"latin"`` (Latin hypercube) or ``"sobol"`` for the values that are drawn.
     count : number, optional
-        Number of trajectories, a multiple of the number of grid points; default: the number of grid points.
+        Number of trajectories, a multiple of the number of grid points; needed if values are drawn, otherwise equal to
+        it.
     seed : int
         Seed of the draws. The draws of a trajectory depend only on the seed and on its index.
     outputs : str or sequence of str
@@ -196,7 +197,7 @@ def sweep(
     -------
     Sweep
         The results. Trajectories whose values no body can have, and trajectories that stop early, have a status and a
-        message instead of outputs.
+        message; their outputs are NaN as far as they were not computed.
 
     Raises
     ------

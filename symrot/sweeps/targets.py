@@ -144,7 +144,7 @@ def _numbers_in(content: Content) -> list[str]:
 
 
 def constants_of(path: Path, scene: Scene, content: Content) -> list[str]:
-    """Return the names of the constants of the equations that the number at ``path`` may change, such as ``A``."""
+    """Return the names of the constants of the equations that the number at ``path`` may change, such as ``I_xx``."""
     # the result depends only on the table with the number, so that it is the same for all values
     places = constant_places(scene)
     if path[0] == "initial":

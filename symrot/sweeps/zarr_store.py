@@ -148,7 +148,7 @@ class ZarrStore:
     def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        Remove the values of the outputs if ``only_statistics``, a description of the statistics, is not empty.
+        Remove the values of inputs and outputs if ``only_statistics``, a description of the statistics, is not empty.
         """
         for table in tables:
             _add(self._group, table)

@@ -161,6 +161,8 @@ def test_the_judge_accepts_a_right_verdict(claim, verdict):
 @pytest.mark.thinned(3)
 @pytest.mark.parametrize("answer", ["true", "traceback", "nowhere"])
 def test_a_wrong_engine_is_caught(monkeypatch, answer):
+    monkeypatch.setattr("tests.campaigns.checker.real_identities.MOST_POINTS", 200)
+
     def wrong(claim, repair):
         if answer == "traceback":
             raise RecursionError
@@ -197,8 +199,9 @@ def test_an_answer_that_never_comes_is_given_up(monkeypatch):
     assert all("no answer in" in sentence for sentence in found.wrong)
 
 
-def test_values_beyond_the_largest_are_values():
+def test_values_beyond_the_largest_are_values(monkeypatch):
     """The judge cannot compare exp(exp(100)), but knows that it has a value."""
+    monkeypatch.setattr("tests.campaigns.checker.real_identities.MOST_POINTS", 200)
     with pytest.raises(Large):
         value("sin(exp(exp(100)))")
     claim = "sin(exp(sinh(exp(x**4 - x + 5)))) == sin(2*exp(sinh(exp(x**4 - x + 5))) - exp(sinh(exp(x**4 - x + 5))))"

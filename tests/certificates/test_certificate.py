@@ -31,7 +31,7 @@ from symrot.workshop import certify as certificates
 from symrot.workshop.emit import emit
 from symrot.workshop.kernel_text import kernel_text
 from tests.campaigns.certificates.claims import is_weaker_or_equal, same_but_for_bounds
-from tests.campaigns.certificates.mutations import Files, corrupted_c, tampered_certificates
+from tests.campaigns.certificates.mutations import Files, corrupted_c, printed_certificate, tampered_certificates
 
 SLICE = ("quaternion_dcm", "quaternion_of_dcm", "euler_zyx_body_rates", "euler_zxz_of_quaternion", "mrp_shadow",
          "rotation_vector_body_rates", "rotation_vector_of_quaternion", "torque_gravity", "gravity_gradient_satellite",
@@ -41,9 +41,9 @@ RECHECK = Path(recheck.__file__)
 
 @pytest.fixture(scope="module")
 def kernels(tmp_path_factory):
-    """Emit some kernels into a folder and return it."""
+    """Write some kernels and their certificates into a folder."""
     directory = tmp_path_factory.mktemp("kernels")
-    return {name: Files(directory, kernel_text(name).under_test(), emit(name).certificate) for name in SLICE}
+    return {name: Files(directory, kernel_text(name).under_test(), printed_certificate(name)) for name in SLICE}
 
 
 def resealed(files, **changes):

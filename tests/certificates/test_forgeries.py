@@ -157,6 +157,7 @@ TEXTS = {  # what it is: kernel, text, what takes its place, behind which text, 
 }  # fmt: skip
 
 
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("what", TEXTS)
 def test_a_forged_c_text_is_refused(forgery, what):
     name, old, new, behind, sentence = TEXTS[what]

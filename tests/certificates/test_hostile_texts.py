@@ -15,9 +15,8 @@ from symrot.certificates.audit import audit
 from symrot.certificates.certificate import certificate_json
 from symrot.codegen.printing.math_header import math_header
 from symrot.errors import CertificateError
-from symrot.workshop.emit import emit
 from symrot.workshop.kernel_text import kernel_text
-from tests.campaigns.certificates.mutations import Files
+from tests.campaigns.certificates.mutations import Files, printed_certificate
 
 R, S, V = "euler_zyx_body_rates", "rotation_vector_of_quaternion", "rotation_vector_body_rates"
 T, Q, Z = "rigid_body_tensor", "quaternion_of_dcm", "euler_zxz_of_quaternion"
@@ -132,10 +131,10 @@ HOSTILE = {  # what it is: kernel, what is replaced in the text of it, by what
 
 @pytest.fixture(scope="module")
 def kernels(tmp_path_factory):
-    """Emit some kernels into a folder and return it."""
+    """Write some kernels and their certificates into a folder."""
     directory = tmp_path_factory.mktemp("kernels")
     return {
-        name: Files(directory, kernel_text(name).under_test(), emit(name).certificate) for name in (R, S, V, T, Q, Z)
+        name: Files(directory, kernel_text(name).under_test(), printed_certificate(name)) for name in (R, S, V, T, Q, Z)
     }
 
 

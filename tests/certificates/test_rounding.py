@@ -184,7 +184,7 @@ def rows_of(name, suffix="", points=3000, budget=BUDGET):
     return compare(operations, bounds, measure(operations, problem.box, bounds, problem.region, points), name)
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thinned(8)
 @pytest.mark.parametrize("name", SLICE)
 @pytest.mark.parametrize("suffix", ["", "f"], ids=["double", "float"])
 def test_no_error_is_larger_than_its_bound_nor_the_bound_far_from_it(name, suffix):

@@ -15,7 +15,7 @@ TRUE = (
     "(a x + b y)^2 <= (a^2 + b^2)(x^2+y^2)", r"|\sin x| \le 1",
 )  # fmt: skip
 FALSE = ("x^2 > 0", "cosh x > 1", "sin x <= x", "sin x + cos x <= 1", "x + 1/x >= 2", "pi > 22/7", "x < x", "3/x > 0")
-CONDITIONS = ("x > 0", "ω_3 ≥ (2/I₃) √(M g l I₁ cos θ)", r"\omega_3^2 > \frac{4 M g l I_1}{I_3^2}", "a < b + c")
+CONDITIONS = ("x > 0", "ω_3 ≤ (2/I₃) √(M g l I₁ cos θ)", r"v^2 > \frac{4 M g l I_1}{m I_3}", "a < b + c")
 
 
 @pytest.mark.parametrize("text", TRUE)

@@ -221,6 +221,7 @@ def test_a_constraint_of_quantities_is_not_called_false(claim):
     assert symrot.check(claim).verdict == "definition"
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(
     "claim",
     [

@@ -237,7 +237,8 @@ def test_a_difference_of_moments_is_open_without_the_plane_of_the_body():
     "L_1' = (1/I_3 - 1/I_2) L_2 L_3", "omega = sqrt(kappa/I)",
     "L = (I_1 w_1, I_1 w_2, I_3 w_3)", "a = (m_1 - m_2) g/(m_1 + m_2 + M/2)",
     "θ = -asin(R_31)", r"R = \begin{pmatrix} \cos\theta & -\sin\theta \\ \sin\theta & \cos\theta \end{pmatrix}",
-    "T = m g/(1 + m R^2/I)", "ω² = ω_0² - 2αθ", "θ = ω_0 t - ½αt²", "θ = asin(2(q_0 q_2 + q_1 q_3))",
+    "T = m g/(1 + m R^2/I)", "I_xy = 1/4 m a b", "M_x = I_t ω̇_x + (I_a − I_t) ω_y ω_z", "I_s² S² ≥ 4 m g l I",
+    "M_x = I_0(θ̈ − ψ̇² sin θ cos θ) + I ψ̇(ψ̇ cos θ + φ̇) sin θ", "ω₃ ≥ (2/I₃) √(M g l I₁ cos θ)", "ω² = ω_0² - 2αθ", "θ = ω_0 t - ½αt²", "θ = asin(2(q_0 q_2 + q_1 q_3))",
     "E = L^2/(2 I_1) + 1/2 (1/I_3 - 1/I_1) L_3^2", "I = m/6 (a^2 b^2 + b^2 c^2 + c^2 a^2)/(a^2 + b^2 + c^2)",
 ])  # fmt: skip
 def test_formulas_of_further_books_are_known(claim):
@@ -249,6 +250,12 @@ def test_a_body_that_is_symmetric_about_axis_1_is_not_accused():
     """The second I_2 may also be a misprint of I_3."""
     verdict = symrot.check("L = (J_1 w_1, J_2 w_2, J_2 w_3)")
     assert verdict.verdict == "definition" and "symmetric about axis 1" in verdict.reason
+
+
+def test_numbered_moments_are_not_those_of_a_symmetric_body():
+    """I_1 may stand for I_2, and a top may not turn more slowly than the least spin."""
+    assert symrot.check("N_1 = I_1 omega_1' + omega_2 omega_3 (I_3 - I_1)", repair=False).verdict == "definition"
+    assert symrot.check("ω₃ ≤ (2/I₃) √(M g l I₁ cos θ)").verdict == "definition"
 
 
 def test_a_pendulum_with_the_other_sign_stands_upright():

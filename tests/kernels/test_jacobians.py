@@ -57,7 +57,7 @@ def _derived(name: str) -> str:
     return BY.join([name, *(argument.name for argument in definition(name).inputs)])
 
 
-@pytest.mark.thinned(9)
+@pytest.mark.thinned(18)
 @pytest.mark.parametrize("name", [name for name in kernel_names() if name not in WITHOUT])
 def test_derivatives_are_differences_of_values(name):
     """Each derivative equals the central difference of the kernel itself, to half of 60 digits."""

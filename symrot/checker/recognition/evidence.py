@@ -16,7 +16,7 @@ from symrot.checker.context.angle_orders import are_roll_pitch_yaw
 from symrot.checker.context.context import Context
 from symrot.checker.recognition.formulas.kinematics import OF_ONE_ENTRY
 from symrot.checker.recognition.identification import plain_name, unit_of
-from symrot.checker.recognition.known_formulas import CROSS_PRODUCT
+from symrot.checker.recognition.known_formulas import CROSS_PRODUCT, SYMMETRIC_EULER
 from symrot.checker.recognition.letters import is_atom
 from symrot.checker.recognition.nearby import Near
 from symrot.checker.repair.edits import neighbours
@@ -379,7 +379,9 @@ def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> b
 
 
 def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
-    """Return whether a formula for an aircraft's rate p, q or r has other Euler angles than roll, pitch and yaw."""
+    """Return whether a formula for an aircraft's rate p, q or r has other Euler angles than roll, pitch and yaw, or is
+    for the space frame.
+    """
     sequence = re.search(r"angular velocity of (\w{3}) ", known.name)
     if named.name not in RATES_OF_AIRCRAFT or sequence is None:
         return False
@@ -410,6 +412,10 @@ def keeps_places(named: NamedFormula, known: Identification) -> bool:
     # R_12 contradicts entry 13
     entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(ENTRY, named.name)
     if entry and own and own[1] not in (entry[1], entry[1][::-1]):
+        return False
+    # with numbered moments, as I_1 in I_3 - I_1, an index may be wrong
+    transverse = known.mapping.get("A", "A")
+    if SYMMETRIC_EULER in known.name and re.fullmatch(r"\w*[1-3xyz]", transverse):
         return False
     if known.name in OF_ONE_ENTRY and not all(re.fullmatch(ENTRY, new) for new in known.mapping.values()):
         return False  # asin of a letter is any angle
@@ -473,9 +479,8 @@ def fits_context(context: Context, named: NamedFormula, known: Identification, l
 
 
 def words_of(named: NamedFormula) -> tuple[str, ...] | None:
-    """Return words in the names of all known formulas for a claim's quantity: ("product of inertia",) for I_xy.
-
-    None if the quantity's name has no usual meaning.
+    """Return words, one of which is in the name of each known formula for a claim's quantity: ("product of inertia",)
+    for I_xy. None if the quantity's name has no usual meaning.
     """
     words = next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, quantity_name(named))), None)
     if words and any(node.kind == "call" and node.value == "cross" for _, node in walk(named.formula)):

@@ -30,8 +30,8 @@ from symrot.kinematics import attitude, euler, quaternion, rotation_vector
 from symrot.kinematics.rotations import elementary_rotation, skew
 
 __all__ = [
-    "CROSS_PRODUCT", "FILE", "Known", "Named", "by_fingerprint", "derived", "ending_of", "page", "relation_key",
-    "stated",
+    "CROSS_PRODUCT", "FILE", "SYMMETRIC_EULER", "Known", "Named", "by_fingerprint", "derived", "ending_of", "page",
+    "relation_key", "stated",
 ]  # fmt: skip
 
 FILE = Path(__file__).with_name("known_formulas.toml")
@@ -40,6 +40,9 @@ CROSS_PRODUCT = "cross product v x n"
 LONGEST = 6000
 LONGEST_DERIVED = 900
 """The most letters of a formula in the file: of a formula with a name of its own, and of a side of a step."""
+
+SYMMETRIC_EULER = "by Euler's equations of a symmetric body"
+"""Part of the names of formulas in which the two transverse moments have one letter."""
 
 FRAMES = ("body", "space")
 
@@ -174,6 +177,11 @@ def _solids() -> Iterator[Named]:
             yield f"inertia tensor of a {title} about {where}", source, matrix
             for place, axis in enumerate("xyz"):
                 yield f"moment of inertia of a {title} about {where}, {axis} axis", source, matrix[place, place]
+            for axes, (i, j) in (("xy", (0, 1)), ("xz", (0, 2)), ("yz", (1, 2))):
+                if matrix[i, j] != 0:
+                    product_name = f"product of inertia of a {title} about {where}, {axes}"
+                    yield product_name, source, matrix[i, j]
+                    yield f"{product_name}, without the minus sign", source, -matrix[i, j]
 
 
 def _thin_bodies() -> Iterator[Named]:
@@ -214,6 +222,9 @@ def _mechanics() -> Iterator[Named]:
         yield f"angular momentum I omega, {axes}", "derivations/angular_momentum.md", momentum
         yield f"kinetic energy of rotation, {axes}", "derivations/kinetic_energy.md", omega.dot(momentum) / 2
     A, B, C = moments
+    symmetric = diag(A, A, C)
+    needed = symmetric * rates + omega.cross(symmetric * omega)
+    yield f"torque {SYMMETRIC_EULER}", "derivations/euler_equations.md", needed
     for number, inertia in enumerate((diag(A, B, B), diag(A, B, A), diag(A, A, C)), start=1):
         title = f"angular momentum I omega of a body that is symmetric about axis {number}"
         yield title, "derivations/angular_momentum.md", inertia * omega

@@ -21,13 +21,13 @@ WHOLE = (
 )  # fmt: skip
 """The faults that change a whole side or definition."""
 
-MOST_WHOLE = 8
+MOST_WHOLE = 14
 """The most faults of whole sides that are undone, the cheapest first."""
 
 MOST_EDITS = 3000
 """The most edits that are tried after one of them is undone."""
 
-MOST_PIECES_AFTER = 60_000
+MOST_PIECES_AFTER = 240_000
 """The most pieces of trees that may be evaluated after one of them is undone."""
 
 

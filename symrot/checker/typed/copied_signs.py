@@ -5,6 +5,7 @@ definitions after "where" are moved to the front.
 """
 
 import re
+import unicodedata
 
 __all__ = ["with_plain_signs"]
 
@@ -19,6 +20,10 @@ _WHERE = re.compile(
     r"[,;.]?\s*(?:\\(?:text|mathrm|textrm)\{\s*where:?\s*\}|(?<![A-Za-z\\])where\b:?)(?:\\[,;: ]|\\q?quad)*"
 )
 _BETWEEN = re.compile(r"\s(?:\\(?:text|mathrm|textrm)\{\s*and\s*\}|and)\s")
+_RAISED = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+")
+_FRACTION = re.compile("[½⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞]")
+"""Raised digits and fractions that are one character each, which LaTeX writes with commands."""
+
 _SUBSCRIPT = re.compile(r"_\{(\w+)\}")
 
 
@@ -31,6 +36,8 @@ def with_plain_signs(source: str) -> str:
     ('1500 rpm = 157.08 rad/s', 'sqrt(2) = 1.41')
     >>> with_plain_signs("e^{i x} = cos x + i sin x")
     'e^(i x) = cos x + i sin x'
+    >>> with_plain_signs(r"T = ½ m \dot x²")
+    'T = \\frac{1}{2} m \\dot x^{2}'
     >>> with_plain_signs(r"\bar z z = x^2 + y^2 where z = x + i y")
     'z = x + i y, \\bar z z = x^2 + y^2'
     """
@@ -38,7 +45,16 @@ def with_plain_signs(source: str) -> str:
     text = _ROUNDED.sub("=", text)
     if "\\" not in text and "$" not in text and "{" in text and (_FUNCTION.search(text) or "∫" in text):
         text = _SUBSCRIPT.sub(r"_\1", text).replace("{", "(").replace("}", ")")
+    if "\\" in text or "$" in text:
+        text = _RAISED.sub(lambda match: f"^{{{unicodedata.normalize('NFKC', match[0])}}}".replace("\u2212", "-"), text)
+        text = _FRACTION.sub(_in_latex, text)
     return _with_definitions_first(text) if "\\" in text or "{" in text else text
+
+
+def _in_latex(fraction: re.Match[str]) -> str:
+    """Return the LaTeX of a character such as ½."""
+    above, below = unicodedata.normalize("NFKC", fraction[0]).split("\u2044")
+    return rf"\frac{{{above}}}{{{below}}}"
 
 
 def _with_definitions_first(text: str) -> str:

@@ -37,7 +37,7 @@ _bound: dict[str, tuple[Any, Any]] = {}
 
 
 def parts(top: int, bottom: int, count: int) -> list[float]:
-    """Return ``count`` doubles whose sum approximates the ratio top/bottom, the largest first."""
+    """Return ``count`` doubles whose sum approximates the ratio top/bottom, the largest first; beyond 2^200, 2^200."""
     sign, top = (-1, -top) if top < 0 else (1, top)
     size = top.bit_length() - bottom.bit_length()
     shift, doubles = _BITS - size, []

@@ -2,7 +2,8 @@
 
 Each constant is a pair of doubles (hi, lo), whose sum approximates it to 31 digits. If 248 bits do not determine how to
 round it, the body is doubtful, and the caller computes the constant with fractions. The defect of a motion is |L|^2 - 2
-T I_mid (angular momentum L, kinetic energy T, middle moment of inertia I_mid).
+T I_mid (angular momentum L, kinetic energy T, middle moment of inertia I_mid), here over (largest moment times largest
+angular velocity)^2.
 """
 
 from collections.abc import Sequence
@@ -75,7 +76,7 @@ def rates_of_body(body: NDArray[np.uint64], omega: Floats) -> tuple[Floats, Floa
 
 
 def defects(moments: Floats, omega: Floats) -> tuple[Floats, Doubtful]:
-    """Return the defects |L|^2 - 2 T I_mid of n free bodies, shape (n, 2), and the indices of the doubtful bodies."""
+    """Return the scaled defects of n free bodies, shape (n, 2), and the indices of the doubtful bodies."""
     # moments, omega: principal moments, and angular velocities along the principal axes
     n = len(omega)
     exact, doubtful = np.empty((n, 8)), np.empty(n, np.uint8)

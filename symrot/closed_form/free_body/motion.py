@@ -125,7 +125,7 @@ class FreeRigidBody:
 
 
 def _differences(moments: Sequence[Number], omega: Sequence[Number]) -> list[float]:
-    """Return I2 - I3, I3 - I1, I1 - I2 and the defect of a free body as a list hi, lo, hi, lo, .."""
+    """Return I2 - I3, I3 - I1, I1 - I2 and the scaled :class:`Defect` of a free body as a list hi, lo, hi, lo, .."""
     # exactly, since differences of doubles would lose digits
     integers, shared = over_common_denominator(moments)
     return [*gaps(integers, shared), *Defect(integers)(over_common_denominator(omega)[0])]
@@ -143,7 +143,7 @@ def gaps(i: list[int], shared: int) -> list[float]:
 
 
 class Defect:
-    """The defect |L|^2 - 2 T I_mid of one free body as a function of its rates, computed exactly."""
+    """The defect |L|^2 - 2 T I_mid of a free body over (largest moment times largest rate)^2, from its rates."""
 
     def __init__(self, i: list[int]) -> None:
         middle = sorted(i)[1]
@@ -151,7 +151,7 @@ class Defect:
         self._largest = max(i)
 
     def __call__(self, w: list[int]) -> tuple[float, float]:
-        """Return the defect of the motion with the integer body rates ``w``, as a sum of two doubles."""
+        """Return the scaled defect of the motion with the integer body rates ``w``, as a sum of two doubles."""
         x, y, z = w
         one, two, three = self._one * x * x, self._two * y * y, self._three * z * z
         defect, largest = one + two + three, self._largest * max(abs(x), abs(y), abs(z))

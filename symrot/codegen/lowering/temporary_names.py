@@ -147,7 +147,7 @@ def _product_of(node: Node, products: Mapping[str, _Product]) -> _Product | None
 
 
 def _structural_name(node: Node, product: _Product | None, products: Mapping[str, _Product]) -> str | None:
-    """Return a name composed of the names in a formula: ``sin_theta``, ``A_minus_B``; None if it would be too long."""
+    """Return a name composed of the names in a formula: ``sin_theta``, ``A_minus_B``; None if it has no such name."""
     # product: the formula as a product, or None if it is not one
     if product is not None:
         return product.name()

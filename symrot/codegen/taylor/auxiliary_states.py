@@ -36,7 +36,7 @@ class _Term(NamedTuple):
 def with_companions(system: Recurrences) -> Recurrences:
     """Return a Taylor system in which functions of the attitude alone, such as R(q)^T e, are additional states.
 
-    A system without such functions is returned unchanged.
+    A system without such functions, or one that would need too many, is returned unchanged.
     """
     if not set(QUATERNION) <= set(system.states):
         return system

@@ -336,7 +336,7 @@ class _Placer:
             yield self.column(picked, "both", needed)
 
     def _shared(self, lanes: list[list[tuple[int, int, int]]]) -> int | None:
-        """Return a series that is a factor of a product (sign, u, v) in each lane; None if there is none."""
+        """Return a series that is a factor of a product (sign, u, v) in each of several lanes, or None."""
         if len(lanes) < 2:
             return None
         common = set.intersection(*({u for _, *pair in lane for u in pair} for lane in lanes))

@@ -25,7 +25,7 @@ HIGHEST = 12  # largest degree of a polynomial of t that is shifted as a whole
 
 
 def from_epoch(kernel: SceneKernel) -> SceneKernel:
-    """Return the kernel of a scene in which the time t is counted from the new constant ``epoch``, s."""
+    """Return the kernel of a scene in whose rates the time t is counted from the new constant ``epoch``, s."""
     rates, parameters = moved(kernel.rates, kernel.rate_parameters)
     # formulas of conserved quantities still contain the original time
     timeless = [

@@ -173,7 +173,7 @@ def uses_attitude(events: Iterable[Event]) -> bool:
 
 
 def timed(quantities: Program, events: Iterable[Event]) -> bool:
-    """Return whether the formula of an event depends on time directly, not only through omega and quaternion."""
+    """Return whether the value of an event needs the time t besides the states of the motion."""
     # if not, the search may count time from the start of the motion
     used = set().union(*(names(event.node) for event in events))
     return "t" in used or quantities.uses("t", tuple(f"{name} of t" for name in used))

@@ -94,7 +94,9 @@ def fitted(
     states: Callable[[Floats], Floats], edges: Floats, blocks: Sequence[int], scales: Sequence[float], depth: int = 0,
     left: list[int] | None = None, accuracy: float | Floats = 0.0,
 ) -> Piece:  # fmt: skip
-    """Return polynomials that agree with a motion, up to rounding errors, between the successive times ``edges``.
+    """Return polynomials that follow a motion between the successive times ``edges``; more edges are added if needed.
+
+    They agree with it usually up to rounding errors, at least to 1e-9.
 
     Parameters
     ----------

@@ -413,7 +413,7 @@ def follow_columns(
 def unit_of(scene: Scene, column: Column) -> float:
     """Return a power of two near the value of a column's variable, by which its derivatives are multiplied.
 
-    It is 1 for zero or a rotation.
+    For omega, it is near the largest component; for zero or a rotation, it is 1.
     """
     # a column times this number is about as large as the states, so that one error control fits both
     value = abs(float(column.variable.value))

@@ -429,7 +429,7 @@ class _Integration:
         return float(rest)
 
     def _judge_pace(self, t: float, stop: float) -> None:
-        """Raise IntegrationStopped if the rest of the motion, from t to ``stop``, would exceed the evaluation limit."""
+        """Raise IntegrationStopped if the evaluations exceed their limit, or would by far on the way to ``stop``."""
         work = self.work
         spent = work - self.mark[0]
         if spent >= PATIENCE:

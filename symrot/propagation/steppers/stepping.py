@@ -145,7 +145,7 @@ def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
 class Segment(NamedTuple):
     """Interval between switching times, from ``start`` to ``stop``, s.
 
-    Torques are evaluated at ``first`` and ``last``, just inside, instead of at the ends.
+    Torques are evaluated at ``first`` and ``last``: just inside a switching time, otherwise at the ends.
     """
 
     # first and last lie just inside a switching time, where a torque may jump
@@ -185,7 +185,7 @@ def _inside(edge: float, other: float) -> float:
 
 
 def split_at(times: Floats, t0: float) -> Iterator[NDArray[np.intp]]:
-    """Yield two arrays of indices: of the times from t0 on, and of those before, each sorted by distance from t0."""
+    """Yield the indices of the times from t0 on, then of those before, if any, each sorted by distance from t0."""
     # for the times 3, 0, 2 and t0 = 1: [2, 0], then [1]; an empty array is left out
     order = np.argsort(times, kind="stable")
     first_after = int(np.searchsorted(times[order], t0))

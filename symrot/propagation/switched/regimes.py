@@ -204,7 +204,7 @@ class Regime:
 
 
 def _distance(switch: Switch) -> Node:
-    """Return a formula that is zero where a switching function changes: x for sign(x), x - n for ``floor(x)``."""
+    """Return a formula for where a function switches: x for sign(x), at 0; x - n for floor(x), at 0 and 1."""
     # n, the present value of floor(x), is subtracted exactly, before rounding: far from t = 0 the difference has far
     # fewer digits than x. Where it is 0 or 1, x leaves the interval from n to n + 1.
     return switch.guard if switch.kind == "sign" else ("-", switch.guard, ("symbol", switch.mode))

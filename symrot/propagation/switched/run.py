@@ -282,7 +282,7 @@ class SwitchedRun(RunState):
     def _hop(
         self, regime: Regime, active: list[bool], rates: list[float], t: float, y: Floats, error: IntegrationStopped
     ) -> tuple[Piece, Callable[[Floats], Floats], Guard | None] | None:
-        """Return a short linear motion (a hop) past a time where a stepper is stuck; None if it would be inaccurate."""
+        """Return a short linear motion (a hop) past a time where a stepper is stuck; None if none is accurate."""
         # Steps shrink to zero where a torque has no derivative, though its impulse is finite: sqrt(1 - t) before a
         # switch at 1 s, sqrt(t - 1) after it. If the impulse is less than the tolerance, the states may change
         # linearly.

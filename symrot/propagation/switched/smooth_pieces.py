@@ -132,7 +132,7 @@ class SciPyPieces:
         return min(max(2.0 * likely, SHORTEST * run.span), run.span / WINDOWS)
 
     def _judge_pace(self, t: float) -> None:
-        """Raise IntegrationStopped if the motion after time t would exceed the limit of evaluations by far."""
+        """Raise IntegrationStopped if the motion exceeds the limit of evaluations, or would by far after time t."""
         from symrot.propagation.steppers.fallback import MAX_EVALUATIONS, PATIENCE
 
         run = self.run

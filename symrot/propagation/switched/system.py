@@ -102,13 +102,13 @@ class SwitchedSystem:
         return {"pi": PI, **self.plan.constants}
 
     def initial_modes(self) -> Modes:
-        """Return the values of all switching functions (sign, floor, ..) at the start, by name; sign(0) counts as 1."""
+        """Return the initial values of all switching functions, by name; sign(x) is 1 if x is zero but not constant."""
         # the motion determines later whether sign(0) becomes 1 or -1
         return dict(self._initial_modes[0])
 
     @property
     def undecided(self) -> set[str]:
-        """The names of the switching functions whose arguments depend on states and are zero at the start."""
+        """The names of sign, abs and the like, not floor, whose arguments depend on states and start at zero."""
         # whether they start with 1 or -1 follows from the motion, not from the initial state alone
         return self._initial_modes[1]
 

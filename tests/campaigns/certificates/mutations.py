@@ -28,7 +28,11 @@ from symrot.errors import CertificateError
 from tests.campaigns.certificates.claims import is_weaker_or_equal, same_but_for_bounds
 from tests.campaigns.certificates.same_bits import same_bits
 
-__all__ = ["Campaign", "Files", "corrupt_c", "corrupted_c", "main", "tamper", "tampered_certificates"]
+__all__ = [
+    "Campaign", "Files", "corrupt_c", "corrupted_c", "main", "printed_certificate", "tamper", "tampered_certificates",
+]  # fmt: skip
+
+PRINTED = Path(__file__).parents[3] / "generated" / "c"
 
 Edit = tuple[str, str]  # what was done, the text after it
 _FUNCTIONS = {"sin": "cos", "cos": "sin", "sqrt": "fabs", "fabs": "sqrt", "atan2": "copysign", "copysign": "atan2"}
@@ -226,6 +230,12 @@ def tamper(data: Data, random: Random) -> tuple[str, Data]:
         place[path[-1]] = _altered(value, random)
         if changed != data:
             return part, changed
+
+
+def printed_certificate(name: str) -> str:
+    """Return the certificate of a kernel, or of a scene's rates, as it is printed in ``generated/c``."""
+    (path,) = (path for stem in (name, f"{name}_rates") for path in PRINTED.rglob(f"{stem}.cert.json"))
+    return path.read_text(encoding="utf-8")
 
 
 class Files:
