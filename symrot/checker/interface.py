@@ -96,7 +96,7 @@ def check(
     Raises
     ------
     InputError
-        For text that cannot be read (with its position), undefined names, shapes that do not fit, and divisors that
+        For text that cannot be read (with its position), unknown functions, shapes that do not fit, and divisors that
         are zero everywhere. Text is never evaluated as Python.
 
     Notes

@@ -66,7 +66,7 @@ class Declared:
 class Chain:
     """One line of a text: formulas (sides) with relation signs between them.
 
-    There is one sign, or several equals signs (``a = b = c``).
+    There is usually one sign, or several equals signs (``a = b = c``).
 
     Attributes
     ----------
@@ -101,7 +101,7 @@ class Reading:
     lines : tuple of Chain
         The lines of the text, each as formulas with relation signs between them: ``a = b = c`` is one Chain.
     plain : bool
-        Whether the text uses notation that is not SymPy syntax.
+        Whether the text is read as people type, not as SymPy syntax.
     doubts : tuple of Doubt
         The ambiguous pieces of the text.
     notes : tuple of str

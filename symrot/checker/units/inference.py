@@ -318,7 +318,9 @@ def piece_text(node: Node) -> str:
 
 
 def number_of(node: Node) -> Fraction | None:
-    """Return the value of a tree of numbers, such as an exponent; None for any other tree."""
+    """Return the value of a tree of numbers, their sums, products and quotients, such as an exponent; None for any
+    other tree.
+    """
     if node.kind == "number":
         return Fraction(node.value)
     inner = [number_of(child) for child in node.args]
