@@ -274,7 +274,9 @@ def _completed(claim: Claim, verdict: Verdict, start: float) -> Verdict:
 
 
 def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
-    """Return ``verdict`` with the probable fault and repairs of a claim that is false or conditional."""
+    """Return ``verdict`` with the probable fault and repairs of a claim that is false or conditional, or with a remark
+    on where a true claim is defined.
+    """
     if claim.relation is None or is_large(claim.equation):
         return verdict
     if any(requirement.code == "positive_base" for requirement in decision.requires):

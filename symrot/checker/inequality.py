@@ -113,7 +113,9 @@ def _on_least_spin(claim: Claim, sign: str, flipped: str) -> Verdict | None:
 
 
 def _is_condition(claim: Claim) -> bool:
-    """Return whether an inequality only restricts values, as ``omega > 2`` does: no letter is on both sides."""
+    """Return whether an inequality only restricts values, as ``omega > 2`` and ``x > y`` do, but not ``x^2 > x`` or
+    ``x^2 > 1``.
+    """
     assert claim.relation is not None
     if claim.hypotheses:
         return False

@@ -72,7 +72,8 @@ def check(
         equations ``Eq(a, b)``, or expressions; ``a - b`` means that a - b is zero.
     units : mapping of str to str, optional
         Units by the name of a symbol, ``{"x": "m"}``. Names such as ``I1``, ``omega_1`` and ``g``, and the symbols of
-        symrot, have their usual units; the claim may imply others. Only ``.dimension`` depends on units.
+        symrot, have their usual units; the claim may imply others. An equation that is no identity may
+        be ``"false"`` instead of ``"definition"`` if its units do not fit.
     repair : bool
         Whether to diagnose a claim that is not true and to look for true formulas near it.
     where : sequence of str
@@ -95,7 +96,7 @@ def check(
     Raises
     ------
     InputError
-        For text that cannot be read (with its position), undefined names, shapes that do not fit, and divisors that
+        For text that cannot be read (with its position), unknown functions, shapes that do not fit, and divisors that
         are zero everywhere. Text is never evaluated as Python.
 
     Notes

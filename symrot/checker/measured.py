@@ -67,8 +67,8 @@ def with_units(claim: Claim, measured: Measured, decide: Callable[[Claim], Verdi
 
 
 def _right_number(claim: Claim, sides: list[Node], factors: dict[str, Node], measured: Measured) -> dict[str, Any]:
-    """Return a diagnosis and repairs that correct the whole number on the right of ``2 m = 300 cm``, a false
-    equation.
+    """Return a diagnosis and repairs that correct the whole number on the right of ``2 m = 300 cm``, a false equation;
+    none if no number is right.
     """
     # sides: with names in place of units; factors: name of a unit -> its factor to SI units
     left, right = sides
@@ -87,7 +87,7 @@ def _right_number(claim: Claim, sides: list[Node], factors: dict[str, Node], mea
 
 
 def _in_si(tree: Node, factors: dict[str, Node]) -> Node:
-    """Return a tree with the factors to SI units in place of the names of units: 1500 times 2*pi/60 for 1500 rpm."""
+    """Return a tree with the factors to SI units in place of the names of units: 1500 times pi/30 for 1500 rpm."""
     if tree.kind == "name" and tree.value in factors:
         return factors[str(tree.value)]
     return replace(tree, args=tuple(_in_si(child, factors) for child in tree.args))
@@ -143,7 +143,7 @@ def _to_digits(worked: Claim, measured: Measured, unit: str, is_right: bool) -> 
 
 def _with_number(source: str, digits: str, unit: str, right: str, is_right: bool) -> tuple[Repair, ...]:
     """Return (repair,): ``source`` with ``right`` for the number ``digits`` before ``unit``, the last one if
-    ``is_right``.
+    ``is_right``; () if it does not occur.
     """
     places = [*re.finditer(rf"(?<![\w.^]){re.escape(digits)}(?=[ *·⋅]*{re.escape(unit)})", source)]
     if not places:
@@ -162,7 +162,9 @@ def _decimal(tree: Node, source: str, pattern: str = DECIMAL) -> tuple[str, str]
 
 
 def in_degrees(claim: Claim, verdict: Verdict, decide: Callable[[Claim], Verdict]) -> Verdict:
-    """Return ``verdict`` with a remark if a claim has angles like 30 in ``sin(30)``, which may be meant in degrees."""
+    """Return ``verdict`` with a remark, or with a repair if degrees make it true, for a claim with angles like 30 in
+    ``sin(30)``.
+    """
     if claim.relation is None:
         return verdict
     sign, left, right = claim.relation

@@ -26,7 +26,9 @@ HIGHEST_DEGREE = 12
 
 
 def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:
-    """Turn "false" into "definition" for an equation of one letter with a real solution, such as ``x² = 4``."""
+    """Turn "false" into "definition" for an equation of one letter with a real solution, such as ``x² = 4``, or of two
+    letters, ``a = b``.
+    """
     if claim.relation is None or not claim.implied or claim.hypotheses or claim.define or claim.has_parts:
         return verdict
     _, left, right = claim.relation
@@ -87,9 +89,8 @@ def _values(claim: Claim, letter: Node, once: bool) -> str | None:
 
 
 def _roots(difference: Expr, symbol: Symbol, name: str) -> str | None:
-    """Return all real zeros of ``difference`` as text, ``"x == -2 and x == 2"`` for x^2 - 4; None if none are known.
-
-    ``name`` is the name of ``symbol``.
+    """Return all real zeros of ``difference`` as text, ``"x == -2 and x == 2"``, or only how many they are; None if
+    none are known. ``name`` is the name of ``symbol``.
     """
     try:
         polynomial = Poly(difference, symbol, domain="QQ")

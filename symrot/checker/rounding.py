@@ -16,7 +16,7 @@ __all__ = ["rounded_value", "with_rounding"]
 def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
     """Return the verdict "true" for a claim such as ``2/3 == 0.667``, with a correctly rounded decimal number.
 
-    Other verdicts are unchanged.
+    A wrong digit gets a repair; other verdicts are unchanged.
     """
     if verdict.verdict not in ("false", "undecided") or claim.relation is None or claim.hypotheses or claim.define:
         return verdict

@@ -82,7 +82,9 @@ def for_special_directions(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def _columns(name: str) -> Iterator[Node]:
-    """Yield two columns with the three components of a vector ``name``: as constants, and as functions of time."""
+    """Yield the columns of components that a vector ``name`` may have, v_x or v_1, as constants and as functions of
+    time.
+    """
     for axes in ("xyz", "123"):
         yield Vector(name, axes=axes).components
         yield Vector(name, timed=True, axes=axes).components

@@ -1,4 +1,4 @@
-"""The verdict on a text as people type it, by its usual interpretation (here: reading).
+"""The verdict on a text as people type it, by its likeliest interpretation (here: reading), usually the first.
 
 A note reports each other reading whose verdict differs. A chain ``a = b = c`` is decided equation by equation, and
 several lines one by one; a line that gives a name to a formula defines the name for the next lines.
@@ -118,7 +118,7 @@ def verdict_on_readings(
     readings: Sequence[Reading], notation: Callable[[Reading], Notation], source: str, assume: Sequence[str] = (),
     units: Mapping[str, str] | None = None, repair: bool = True, stated: Context = NO_CONTEXT,
 ) -> Verdict:  # fmt: skip
-    """Return the verdict on the usual interpretation of a text, with notes on those whose verdict differs.
+    """Return the verdict on the likeliest interpretation of a text, with notes on those whose verdict differs.
 
     Raises
     ------
@@ -180,7 +180,9 @@ def _is_unknown(reading: tuple[Reading, Verdict]) -> bool:
 
 
 def _beside_units(verdict: Verdict, source: str) -> Verdict:
-    """Return "definition" for a text such as ``F = m a = 6 N``, with letters and units; otherwise ``verdict``."""
+    """Return "definition" for a text with letters and a unit, ``F = m a = 6 N``, or "false" if its end,
+    ``2 kg = 3 kg``, is false; otherwise ``verdict``.
+    """
     unit = "" if verdict.recognised_as else unit_beside_letters(source)
     # an end such as 2 kg * 3 m/s^2 = 6 N is decided by itself; if it is false, the text is false
     beginning, end = numeric_end(source) if unit or verdict.verdict == "false" else ("", "")
@@ -548,7 +550,10 @@ def _has_indices(claim: Claim) -> bool:
 def _on_parts(
     lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], notation: Notation, units: Collection[str] = ()
 ) -> Verdict:
-    """Return the worst verdict on any equation of a chain or of several lines, with a note on each equation."""
+    """Return the worst verdict on the equations of a chain or of several lines, with a note on each.
+
+    It is "doubtful" for formulas of different bodies, frames or sequences.
+    """
     remaining = iter(verdicts)
     counted, notes = [], []
     total = sum(map(len, lines))
@@ -592,8 +597,8 @@ def _on_parts(
 def _with_fitting_line(
     claims: Sequence[Claim], lines: Sequence[tuple[str, Collection[str], Verdict]], notation: Notation, verdict: Verdict
 ) -> Verdict:
-    """Return the verdict on lines that contradict each other, with the one edit of a line that makes all of them
-    fit.
+    """Return the verdict on lines that contradict each other, with the edit of one line that makes all of them fit, if
+    there is one.
     """
     if len(lines) != len(claims) or len(lines) > MOST_LINES or any(claim.hypotheses for claim in claims):
         return verdict
@@ -628,7 +633,9 @@ def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], 
 
 
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
-    """Return the verdicts on a chain ``name = a = b``; that on ``name = b`` replaces a "false" on ``a = b``."""
+    """Return the verdicts on a chain ``name = a = b``; if ``a = b`` is no identity, the verdict on ``name = b`` or
+    "definition" may replace its own.
+    """
     named = named_formula(line[0]) if len(line) > 1 else None
     if named is None or line[0].relation is None or line[0].relation[1] != named.side:
         return list(verdicts)

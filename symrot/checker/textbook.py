@@ -79,7 +79,8 @@ class Finding:
     def reason(self) -> str:
         """A sentence that says why the claim is false, true only under conditions, or undecided."""
         if self.outcome == "conditional":
-            return "true if " + " or ".join(self.conditions)
+            joint = " or " if self.verdict.verdict == "conditional" else " and "
+            return "true if " + joint.join(self.conditions)
         if self.verdict.diagnosis.code != "none":
             return self.verdict.diagnosis.text
         return str(self.verdict.counterexample or self.verdict.reason)

@@ -20,8 +20,8 @@ class TimeUp(BaseException):
 
 @contextmanager
 def processor_seconds(limit: float) -> Iterator[None]:
-    """Raise TimeUp in a ``with`` block after ``limit`` seconds of computing; no limit if the system's timer is in
-    use.
+    """Raise TimeUp in a ``with`` block after ``limit`` seconds of computing; no limit in another thread, or if the
+    timer is in use.
     """
     if not _timer_is_free():  # no ITIMER_PROF, another thread, inside another limit, or in use by the program
         yield

@@ -17,7 +17,7 @@ class Diagnosis:
     Attributes
     ----------
     code : str
-        A short name of the kind of fault, such as ``"factor"``; ``"none"`` if there is no fault.
+        A short name of the kind of fault, such as ``"factor"``; ``"none"`` if no fault is known.
     text : str
         One sentence.
 
@@ -87,7 +87,7 @@ class Repair:
 
     @property
     def note(self) -> str:
-        """A text such as "[sign, entry (1, 2), if x > 0]": the fault, the wrong entry, and where the repair holds."""
+        """A text such as "[factor, entry (1, 2), if x > 0]": the fault, the wrong entry, and where the repair holds."""
         entry = f", entry {self.entry}" if self.entry else ""
         return f"[{self.code}{entry}{f', if {self.requires}' * bool(self.requires)}]"
 
@@ -179,7 +179,8 @@ class Verdict:
     verdict : str
         ``"true"``, ``"false"``, ``"conditional"`` (true under ``requires``) or ``"undecided"``. For a claim that only
         names a formula, ``I_zz == m/12*(a**2 + b**2)``: ``"recognised"``, ``"doubtful"`` (a single edit makes it a
-        formula that symrot derives) or ``"definition"`` (neither; nothing is claimed about it).
+        formula that symrot derives) or ``"definition"`` (neither; nothing is claimed about it). A claim of a file that
+        cannot be read is ``"refused"``.
     conditions : tuple of str
         Conditions under which both sides are defined, such as ``"sin(theta) != 0"``; for a conditional claim, its
         requirements come first.
@@ -194,9 +195,9 @@ class Verdict:
         The formulas of symrot to which the named formula, or its repair, is proven equal, the likeliest first; for a
         claim that is false by its context, the formula that is meant.
     reason : str
-        The reason why a claim is undecided or refused; otherwise empty.
+        The reason why a claim is undecided, refused, or only a definition; usually empty for other verdicts.
     dimension : Dimensions
-        The result of the check of units, on which ``verdict`` does not depend.
+        The result of the check of units. If they do not fit, a "definition" may become "false".
     notes : tuple of str
         Further remarks, such as the name of a matrix in the claim.
     id, where, text : str

@@ -94,8 +94,9 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
 
     odd = _shared(share, n, min(workers, max(1, n // AT_ONCE)))
     values = omega if quaternion is None else quaternion
-    ends = values[:, 0, 0] + values[:, -1, -1]  # not finite if a motion overflows; evaluated alone, it raises the error
-    return sorted({*odd, *np.flatnonzero(np.isnan(ends)).tolist()})
+    # NaN if a motion overflows at one of its times; evaluated alone, it raises the error
+    squares = np.einsum("nmk,nmk->n", values, values)
+    return sorted({*odd, *np.flatnonzero(np.isnan(squares)).tolist()})
 
 
 class _Linked(NamedTuple):

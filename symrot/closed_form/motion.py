@@ -64,14 +64,21 @@ class ExactMotion(ABC):
         attitudes = np.empty((len(times), 4)) if quaternion else None
         self._fill(times, rates, attitudes)
         samples = rates if attitudes is None else attitudes
-        if (
-            samples is not None and len(times) and isnan(samples.item(0) + samples.item(-1))
-        ):  # times are sorted, so it is enough to test the first and the last
+        if samples is not None and _has_nan(samples):
+            low, high = float(times.min()), float(times.max())
             raise InputError(
-                f"expected a motion within the range of doubles, got larger numbers at times {times.item(0)!r} to "
-                f"{times.item(-1)!r} s; use times nearer to the start, or other units"
+                f"expected a motion within the range of doubles, got larger numbers at times {low!r} to {high!r} s; "
+                "use times nearer to the start, or other units"
             )
         return rates, attitudes
+
+
+def _has_nan(samples: Floats) -> bool:
+    """Return whether an array of samples, shape (n, 3) or (n, 4), contains NaN; a sample is NaN in all components."""
+    if len(samples) <= 2:  # in a tenth of the time
+        return bool(len(samples) and isnan(samples.item(0) + samples.item(-1)))
+    # the sum of the squares of all numbers is NaN only if one of them is
+    return isnan(np.einsum("ij,ij->", samples, samples))
 
 
 class _Compiled(ExactMotion):

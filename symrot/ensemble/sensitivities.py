@@ -289,7 +289,8 @@ class _Equations:
         # the reason is an empty text for a motion that did not stop early
         problem = self.problem
         if self.in_lanes:
-            outcome = lanes.follow(self.path, p, y, problem.t0, times, TOLERANCE, workers=problem.workers)
+            clock = problem.t0 - self.epoch, times - self.epoch
+            outcome = lanes.follow(self.path, p, y, *clock, TOLERANCE, workers=problem.workers, epoch=self.epoch)
             return outcome.states, outcome.messages
         # steps under torques given by formulas are limited by bounds, which the stepper in lanes does not support
         samples, messages = np.full((len(y), times.shape[-1], y.shape[1]), np.nan), []

@@ -1,7 +1,7 @@
 """Counterexamples: exact points at which two formulas differ, with numbers that are short enough to read.
 
 With symbols, angles and unit vectors alone, the point is rational: ``cos x = 4/5, sin x = 3/5``. Otherwise the symbols
-have rational values, and 50-digit interval arithmetic proves that the sides differ.
+are rational or multiples of pi, and 50-digit interval arithmetic proves that the sides differ.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -139,7 +139,10 @@ def _difference(ring: FormulaRing, left: Expr, right: Expr) -> tuple[Callable[[d
 def closed_form_witness(
     ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
 ) -> Counterexample | None:
-    """Return a point with rational symbols at which 50-digit intervals prove ``left != right``, or None."""
+    """Return a point at which 50-digit intervals prove ``left != right``, or None.
+
+    Its symbols are rational or multiples of pi.
+    """
     places = {number: leaf for leaf, number in ring.symbols.items() if ring.leaves[leaf]}
     if any(number not in places for hypothesis in ring.hypothesis_numerators for number in _occurring(hypothesis)):
         return None

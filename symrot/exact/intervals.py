@@ -1,7 +1,7 @@
 """Intervals of 50 digits that contain closed-form real numbers, or the value of a formula at a real point.
 
 A value is returned only if the formula is proven to be a real number. Rational numbers stay exact fractions, so that
-zero is distinguished from a small number. A number beyond 2^1000 gets no interval.
+zero is distinguished from a small number. A function of a number beyond 2^1000 gets no interval.
 """
 
 from collections.abc import Mapping

@@ -27,7 +27,7 @@ Constraint = tuple[int, frozenset[int]]
 
 
 def vanishes_for_all_signs(ring: FormulaRing, numerator: PolyElement) -> bool:
-    """Return whether a numerator is zero for all signs that the expressions inside absolute values can have."""
+    """Return whether a numerator is proven zero for all signs that expressions inside absolute values can have."""
     # Sound, because at every point some signs s with |f| = s f satisfy the constraints: the sign of f where f is not
     # zero, and where f is zero the sign that makes the constraint true.
     insides = _insides(ring, numerator)

@@ -49,7 +49,7 @@ class _Boxes(NamedTuple):
 def require_boundary(surface: Surface, where: str) -> str:
     """Return a sentence about the tests that a closed surface passed.
 
-    Raise InputError if the surface crosses itself.
+    Raise InputError if a test shows that the surface crosses itself, or if it has more than 1000 shells.
     """
     # several shells are allowed: separate parts, and cavities, whose normals point into the cavity
     numbers = shells(surface)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sympy import lambdify
 
+from symrot.catalogue.inertia.standard_solids import DRAWN, EXAMPLE
 from symrot.figures.picture import Picture
 from symrot.figures.view import Floats, View
 from symrot.inertia.shapes import SHAPES
@@ -216,5 +217,5 @@ def _figure(name: str) -> Figure:
         f"{words.capitalize()} with the axes of its map",
         f"{axes[0].upper()}{axes[1:].rstrip('.')}; the red point $c$ is the centre of mass. Dimensions: {lengths}.",
         partial(draw_solid, name),
-        words.capitalize(),
+        f"The argument, for the {words}" if name == EXAMPLE else DRAWN,
     )

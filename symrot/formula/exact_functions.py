@@ -26,7 +26,7 @@ def _transcendental(name: str, *arguments: Fraction) -> Fraction:
     ValueError
         If the function has no real value, such as the logarithm of a negative number.
     OverflowError
-        If the value exceeds the range of a double.
+        If an exponential is far beyond the range of a double.
     """
     # imported only if a formula needs it
     import mpmath
@@ -65,7 +65,7 @@ def exact_value(node: Node, values: Mapping[str, Fraction]) -> Fraction | float:
     Raises
     ------
     OverflowError
-        If the value exceeds the range of a double.
+        If an exponential in it is far beyond the range of a double.
     """
     try:
         value: Fraction | float = evaluate(node, values, EXACT_FUNCTIONS)

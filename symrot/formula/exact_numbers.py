@@ -1,7 +1,7 @@
 """The exact numbers of a scene, read from text as :class:`fractions.Fraction`. Standard library only.
 
 A rational value is exact: ``"1/3"``, ``"0.6375"`` (51/80), ``1e-3``. An irrational value, as of ``sqrt``, ``pi`` and
-``sin``, is rounded once, to a relative error below 2^-300.
+``sin``, is rounded, to a relative error below 2^-300 unless digits cancel.
 """
 
 __all__ = [
@@ -385,7 +385,7 @@ def read(value: object, where: str = "", expect: str = EXPECTATION) -> Fraction:
     Returns
     -------
     Fraction
-        Exact if the value is rational, otherwise with a relative error below 2^-300.
+        Exact if the value is rational, otherwise with a relative error below 2^-300 unless digits cancel.
 
     Raises
     ------

@@ -203,7 +203,7 @@ class RateMatrix(ImmutableDenseMatrix):  # type: ignore[misc]
     inverse : ImmutableMatrix
         ``dp/dt = inverse * omega``, 1/s for omega in rad/s.
     determinant : Expr
-        The determinant of B, or of B with the gradient of the constraint as a fourth row.
+        The determinant of B or, with a constraint, of the matrix with the gradient of the constraint above B.
     singular_set : SingularSet
         Zeros of the determinant, solved for exactly.
     condition_number : Expr

@@ -15,8 +15,8 @@ __all__ = ["continuous_quaternion", "unwrap_euler"]
 
 
 def continuous_quaternion(q: Any) -> Array:
-    """Return the quaternions ``q``, shape (n, ..., 4), with signs chosen so that neighbours have positive
-    dot products.
+    """Return the quaternions ``q``, shape (n, ..., 4), with signs chosen so that no dot product of
+    neighbours is negative.
     """
     q = array_of(q, 4, what="a quaternion")
     turns_over = np.einsum("...i,...i->...", q[1:], q[:-1]) < 0

@@ -70,7 +70,8 @@ def euler_rates(angles: Any, omega: Any, sequence: str, frame: str = "body") -> 
     In the frame between the middle and the last rotation, the middle axis m and the last axis e are fixed, and the
     first axis is ``-sin(q2) w + cos(q2) e`` (proper) or ``s (cos(q2) w + sin(q2) e)`` (Tait-Bryan), with w = m x e and
     s = 1 if the three axes are in cyclic order, such as XYZ, otherwise -1.
-    At gimbal lock the first axis has no component along w; the rates are not finite and the mask is True.
+    Exactly at gimbal lock the first axis has no component along w; the rates are not finite and the mask is True. The
+    doubles nearest to pi/2 and pi are not exactly there: the mask is False, and the rates are about 1e16 times omega.
     """
     (first, middle, last), order, cross, sign = places(sequence)
     angles = array_of(angles, 3, what=f"a set of {sequence} angles")

@@ -236,7 +236,7 @@ def chart() -> Chart:
 
 @cache
 def axis_angle_chart() -> Chart:
-    """Return the chart (attitude description) of a unit axis and an angle; it is singular at zero angle."""
+    """Return the chart (attitude description) of a unit axis and an angle; it is singular at multiples of 2 pi."""
     n, alpha = symbols.axis, symbols.alpha
     return Chart(
         name="axis_angle",

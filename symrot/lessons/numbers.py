@@ -13,7 +13,7 @@ from symrot.exercises.units import unit_latex
 from symrot.lessons.lesson import Lesson, Number
 from symrot.lessons.scene_values import scene_values
 from symrot.proof.notation.printer import formula
-from symrot.proof.page import Page, Passage, Section, Step
+from symrot.proof.page import Page, Passage, Section, Step, Table
 from symrot.scene.scene import load_scene
 from symrot.symbols import UNIT
 
@@ -77,8 +77,10 @@ def _step(page: Page, number: Number) -> Step:
     for item in page.items:
         if isinstance(item, Section):
             section = item.title
-        elif isinstance(item, Step) and item.claim.startswith(number.step) and number.section in ("", section):
-            return item
+        steps = item.steps if isinstance(item, Table) else [item] if isinstance(item, Step) else []
+        for step in steps:
+            if step.claim.startswith(number.step) and number.section in ("", section):
+                return step
     raise InputError(
         f"{page.name}, {number.words!r}: expected the first words of a step of this page as `step`, got {number.step!r}"
     )

@@ -75,7 +75,7 @@ class PrintedPage(Page):
     def part(self, number: int, detail: bool = False) -> "PrintedPage":
         """Return a page with one step, counted from 1.
 
-        With ``detail``, the page shows every expression between the two sides of the step's equation.
+        With ``detail``, the page shows the expressions between the two sides of the equation that fit on a screen.
 
         Raises
         ------

@@ -81,9 +81,9 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
 
         method_name(solver)
     elif name not in METHODS or colon or name == "constant":
-        listed = ", ".join(name for name in METHODS if name != "constant")
-        message = f"method: expected one of {listed} or scipy:NAME, got {method!r}"
-        raise InputError(with_hint(message, method, METHODS))
+        known = [name for name in METHODS if name != "constant"]
+        message = f"method: expected one of {', '.join(known)} or scipy:NAME, got {method!r}"
+        raise InputError(with_hint(message, method, known))
     if not plan.states:
         return choose_method(plan)
     if name in ("taylor", "dop853") and (reason := library.missing()):

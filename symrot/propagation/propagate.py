@@ -112,9 +112,12 @@ def propagator(
     """
     scene = _with_values(load_scene(scene), omega, quaternion, attitude, parameters)
     aim = float(scene.tolerance) if tolerance is None else read_tolerance(tolerance)
+    if scene.table is not None and torque is not None:
+        raise InputError(f"torque: leave it out for a scene with a torque of kind table, got {number.show(torque)}")
+    if torque is None and real_array(switching_times, "switching_times", "finite times in s").size:
+        reason = "leave it out unless torque is a function or a table"
+        raise InputError(f"switching_times: {reason}, got {number.show(switching_times)}")
     if scene.table is not None:
-        if torque is not None:
-            raise InputError(f"torque: leave it out for a scene with a torque of kind table, got {number.show(torque)}")
         samples = scene.table
         torque, switching_times, torque_frame = samples[:2], samples.switching_times, samples.frame
     if sensitivities is not None:

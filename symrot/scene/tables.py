@@ -38,8 +38,8 @@ QUANTITIES: dict[str, tuple[str, str]] = {
     "kinetic_energy": ("J", "kinetic energy"),
     "angular_momentum_body": ("kg m^2/s", "angular momentum, body components"),
     "angular_momentum_space": ("kg m^2/s", "angular momentum, space components"),
-    "polhode": ("rad/s", "path of the angular velocity in the body, on the energy ellipsoid"),
-    "herpolhode": ("rad/s", "path of the angular velocity in space, on the invariable plane"),
+    "polhode": ("rad/s", "path of the angular velocity in the body; without torques, on the energy ellipsoid"),
+    "herpolhode": ("rad/s", "path of the angular velocity in space; without torques, on the invariable plane"),
     "axis": ("1", "symmetry axis of the body (its third axis when it has none), space components"),
 }
 """Output quantities that a scene may request: name -> (unit, meaning)."""

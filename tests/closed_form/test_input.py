@@ -44,6 +44,21 @@ def spoilt(given):
             yield from ({**given, name: bad} for bad in [*NUMBERS, [], [1]])
 
 
+@pytest.mark.parametrize("without_compiler", [False, True])
+@pytest.mark.parametrize("form", [free_body, heavy_top, gyrostat], ids=lambda form: form.__name__.rpartition(".")[2])
+def test_a_sample_beyond_the_doubles_is_refused_wherever_it_is(form, without_compiler, monkeypatch):
+    """Times may be in any order; a NaN between two samples was once returned."""
+    if without_compiler:
+        monkeypatch.setattr("symrot.closed_form.motion._bound", {})
+        monkeypatch.setattr("symrot.closed_form.motion.library.missing", lambda: "none")
+    motion = form.motion(**MOTIONS[form] | {"omega0": [1e3, 2e3, 1e4]})
+    with (
+        np.errstate(all="ignore"),
+        pytest.raises(InputError, match=r"got larger numbers at times -1\.0 to 1\.7e"),
+    ):
+        motion.evaluate([0.0, 1.7e308, -1.0])
+
+
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("form", MOTIONS, ids=lambda form: form.__name__.rpartition(".")[2])
 def test_a_motion_is_one_or_is_refused_in_a_sentence(form):

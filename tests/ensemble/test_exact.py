@@ -287,6 +287,8 @@ def test_numbers_that_leave_the_doubles_are_refused_as_for_one():
     omega[3] = [0, 1e150, 1e-3]
     with pytest.raises(InputError, match="within the range of doubles"):
         symrot.propagate_ensemble(SCENES["free"], omega=omega, t=[0.0, 1e300])
+    with pytest.raises(InputError, match="within the range of doubles"):  # times may be in any order
+        symrot.propagate_ensemble(SCENES["free"], omega=omega, t=[0.0, 1e300, 1.0])
 
 
 def test_attitudes_of_many_are_those_of_one():

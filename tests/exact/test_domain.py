@@ -1,8 +1,13 @@
 """For a true formula of which one side is defined at fewer points than the other, the verdict says so."""
 
+from math import inf
+
 import pytest
+from sympy import exp
 
 import symrot
+from symrot.exact.domain.everywhere import fails_everywhere, range_everywhere
+from symrot.exact.domain.needs import Need
 
 
 @pytest.mark.parametrize(("claim", "needs"), [
@@ -32,3 +37,12 @@ def test_sides_that_are_defined_alike_are_not_remarked(claim):
 
 def test_the_remark_is_left_out_with_the_repairs():
     assert symrot.check("x/x == 1", repair=False).diagnosis.code == "none"
+
+
+def test_a_number_too_small_for_a_bound_stops_no_decision():
+    assert symrot.check("sqrt(exp(-3000)*x) == sqrt(x)*exp(-1500)", repair=False).verdict == "true"
+
+
+def test_of_a_number_without_a_bound_the_sign_is_known():
+    assert range_everywhere(exp(-3000)) == (0, inf) and range_everywhere(-exp(-3000)) == (-inf, 0)
+    assert fails_everywhere(Need(-exp(-3000), "> 0")) and not fails_everywhere(Need(exp(-3000), "> 0"))

@@ -180,6 +180,7 @@ def ring(count):
     return revolved([(2 + 0.5 * np.cos(t), 0.5 * np.sin(t)) for t in turns], count)
 
 
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("make,levels,expected", [
     (sphere, (2, 3, 4), [2 / 5] * 3),
     (lambda n: revolved([(0, -1), (1, -1), (1, 1), (0, 1)], n), (16, 32, 64), [1 / 4 + 4 / 12, 1 / 4 + 4 / 12, 1 / 2]),

@@ -16,6 +16,8 @@ from symrot.figures.view import Plane, View
 from symrot.proof.page import Figure, Page
 from symrot.workshop import derivation_pages
 
+pytestmark = pytest.mark.first  # in the process that draws the figures for the pages of the catalogue
+
 SVG = "{http://www.w3.org/2000/svg}"
 ALL = [figure for figures in FIGURES.values() for figure in figures]
 

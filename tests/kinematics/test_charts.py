@@ -33,7 +33,9 @@ def seeded_values(chart, seed):
 
 
 @pytest.mark.thinned(2)
-@pytest.mark.parametrize("name", CHARTS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.campaign] * (name == "mrp")) for name in CHARTS]
+)
 def test_dcm_is_a_rotation_and_that_of_the_quaternion(name):
     chart = attitude.chart(name)
     assert normal_form(chart.dcm.T * chart.dcm - eye(3), chart.relations) == zeros(3)

@@ -207,3 +207,15 @@ def test_a_torque_that_cannot_be_used_is_refused(torque, words):
 def test_options_that_cannot_be_used_are_refused(more, words):
     with pytest.raises(InputError, match=words):
         symrot.propagator(scene(), torque=square_wave, **more)
+
+
+@pytest.mark.parametrize("name", ["t_handle", "thruster_pulse"])
+def test_switching_times_without_a_torque_of_their_own_are_refused(name):
+    """They were ignored: no torque jumps there, or the scene's table has its own."""
+    with pytest.raises(InputError, match="switching_times: leave it out unless torque is a function or a table"):
+        symrot.propagator(name, switching_times=[1.0])
+
+
+def test_a_method_that_cannot_be_named_is_not_proposed():
+    with pytest.raises(InputError, match=r"got 'constant'$"):
+        symrot.propagator("t_handle", "constant")

@@ -152,7 +152,7 @@ def test_an_interrupt_under_switches_keeps_every_sample_up_to_it(method):
         assert abs(kept.omega - whole[: len(kept)]).max() < 1e-5
 
 
-@pytest.mark.parametrize("method", ["scipy:LSODA", "scipy:DOP853"])
+@pytest.mark.parametrize("method", [pytest.param("scipy:LSODA", marks=pytest.mark.campaign), "scipy:DOP853"])
 def test_endlessly_many_switches_are_given_up_soon_with_the_samples_before(method):
     propagate = propagator(switching_scene(10_000_000, "0", "0", "1e-6*step(0.1 - mod(t, 1))"), method, 1e-6)
     with pytest.raises(PropagationError, match="far more than the largest allowed number") as caught:

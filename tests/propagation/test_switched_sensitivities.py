@@ -81,7 +81,8 @@ def test_derivatives_of_a_body_that_friction_holds_at_rest_from_the_start():
     ("torque", "parameters", "names", "message"),
     [
         ("sign((t - 1)**2 - p)", {"p": 0}, ["p"], "touches zero"),
-        ("where(t > a, 1, 0) - where(t > b, 3, 0)", {"a": 1, "b": 1}, ["a"], "a < t and b < t switch at once"),
+        ("where(t > a, 1, 0)*where(t > b, 1, 2)", {"a": 1, "b": 1}, ["a"], "a < t and b < t switch at once"),
+        ("-sign(omega_3 - a) - sign(omega_3 - b)", {"a": 0, "b": 0}, ["a"], "switch at once"),
         ("where(t >= a, 1, 0)", {"a": 0}, ["a"], "starts where t < a switches"),
         ("floor(omega_3) - 3", {}, ["omega_3"], "starts where floor"),
         ("abs(omega_1)", {}, ["omega_1"], "stays at zero"),
@@ -90,6 +91,13 @@ def test_derivatives_of_a_body_that_friction_holds_at_rest_from_the_start():
 def test_where_derivatives_do_not_exist_a_sentence_says_so(torque, parameters, names, message):
     with pytest.raises((PropagationError, InputError), match=message):
         symrot.propagate(scene(["0", "0", torque], parameters, (0, 0, 1)), sensitivities=names)
+
+
+@needs_compiler
+def test_functions_that_switch_at_once_without_effect_on_each_other_have_derivatives():
+    content = scene(["0", "0", "where(t > a, 1, 0) - where(t > b, 3, 0)"], {"a": 1, "b": 1}, (0, 0, 1))
+    motion = symrot.propagate(content, t=[3], sensitivities=["a", "b"])
+    assert np.allclose(motion.sensitivities.omega[0, 2], [-1 / 3, 1], rtol=1e-14, atol=0)
 
 
 @needs_compiler

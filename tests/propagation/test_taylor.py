@@ -444,7 +444,7 @@ def test_a_library_of_another_stepper_is_refused(tmp_path):
         taylor.integration(tmp_path / "none.so", [], [], 0.0, 1e-6).sample([1.0])
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(3)
 @pytest.mark.skipif(shutil.which("g++") is None, reason="needs g++")
 @pytest.mark.parametrize("plain", [[], ["-DSYMROT_PAIRS"], ["-DSYMROT_PLAIN"]])
 def test_the_text_is_cplusplus_too_and_draws_no_warning(plain, tmp_path):

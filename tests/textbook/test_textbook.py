@@ -8,7 +8,8 @@ import pytest
 
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.source.file import read_claims
-from symrot.checker.textbook import OUTCOMES, differs_by_lost_characters, finding_of
+from symrot.checker.textbook import OUTCOMES, Finding, differs_by_lost_characters, finding_of
+from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
 from symrot.report import errata
 from symrot.report.errata.entries import condition_words, entries
@@ -136,6 +137,12 @@ def test_formulas_that_hold_under_a_condition_on_an_angle_are_listed(survey):
     assert {item.verdict.verdict for item in conditional} == {"true", "conditional", "false"}
     proposed = {condition.claim for condition in conditions()}
     assert {item.claim["id"] for item in conditional if item.words} == proposed
+
+
+@pytest.mark.parametrize(("verdict", "joint"), [("true", "and"), ("false", "and"), ("conditional", "or")])
+def test_the_reason_joins_conditions_by_and_unless_one_of_them_suffices(verdict, joint):
+    item = Finding({}, Verdict(verdict), "conditional", conditions=("sin(x) != 0", "a > b"))
+    assert item.reason == f"true if sin(x) != 0 {joint} a > b"
 
 
 def test_a_condition_under_which_a_claim_is_not_proven_is_refused():

@@ -4,20 +4,24 @@ Beer & Johnston, Vector Mechanics, appendix.
 """
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
-from sympy import Add, Expr, Matrix, diag, eye, factor_terms
+from sympy import Add, Expr, Matrix, collect, degree, diag, eye, factor_terms
 
 from symrot import symbols
 from symrot.catalogue.tools.integral import Stage, iterated
 from symrot.inertia.shapes import SHAPES
 from symrot.inertia.solids import Solid, solid
-from symrot.proof.derivation import Derivation
+from symrot.proof.derivation import Derivation, Step
 
 AXES = "xyz"
 MEASURE = {"solid": "V", "surface": "S", "curve": r"\ell"}
 PRODUCTS = ((0, 1), (0, 2), (1, 2))
-LONG = 300  # characters of LaTeX
+LONG, WIDE = 300, 140  # characters of LaTeX of a reason, and of a cell of a table
+EXAMPLE = "cone"
+"""The body for which the page prints the proof in full; tables on the page have a row for each other body."""
+DRAWN = "The bodies with their axes"
+"""The section with the figures of the other bodies."""
 SPECIAL = {"tetrahedron": {"vertices": [(0, 0, 0), (symbols.a, 0, 0), (0, symbols.b, 0), (0, 0, symbols.c)]}}
 "Tetrahedron with one corner at the origin and three edges along the axes; a linear map and a shift turn it into any "
 "other tetrahedron."
@@ -36,7 +40,8 @@ def derive() -> Derivation:
             "A map from coordinates with given limits describes each uniform body of mass $m$. Its measure (volume, "
             "area or length), centre of mass and second moments are iterated integrals of the map's Jacobian, "
             "computed from the innermost integral outward. Each antiderivative is proven by differentiation. The "
-            "inertia tensor about the centre of mass follows from the second moments."
+            "inertia tensor about the centre of mass follows from the second moments. The page shows this for the "
+            "cone; the tables below give the results for the other bodies, each proven by its own integrals."
         ),
     )
     d.passage(
@@ -44,24 +49,117 @@ def derive() -> Derivation:
         "the centre of mass. Then the inertia tensor about the centre of mass is",
         ("I", r"\mathrm{tr}\,S\;\mathbf{1} - S - m \left( |c|^2\,\mathbf{1} - c\,c^{\mathsf T} \right)"),
     )
-    for name, shape in SHAPES.items():
-        if shape.position:
-            _shape(d, solid(name, **SPECIAL.get(name, {})))
+    d.section(f"The argument, for the {EXAMPLE}")
+    _argument(d, solid(EXAMPLE))
+    d.section("The other bodies")
+    _tabulate(d, [solid(name, **SPECIAL.get(name, {})) for name, shape in SHAPES.items()
+                  if shape.position and name != EXAMPLE])  # fmt: skip
+    d.section(DRAWN)
     return d
 
 
-def _shape(d: Derivation, body: Solid) -> None:
-    coordinates = [variable for variable, _, _ in body.limits]
-    letter = MEASURE[body.shape.kind]
-    d.section(body.name.replace("_", " ").capitalize())
+def _argument(d: Derivation, body: Solid) -> None:
     axes = body.shape.axes
     d.passage(
         f"{axes[0].upper()}{axes[1:].rstrip('.')}. The map, with {_limits(body)}:",
         (r"(x, y, z)^{\mathsf T}", body.position),
     )
+    _measure(d, body)
+    _moments(d, body)
+
+
+def _tabulate(d: Derivation, bodies: Sequence[Solid]) -> None:
+    """Print the maps of bodies as one table, their moments of inertia as another, and the rest as a third."""
+    maps = []
+    for body in bodies:
+        jacobian, measure = (f"${_latex(value)}$" for value in (body.jacobian, body.measure))
+        cells = _title(body), _ranges(body), f"${_latex(body.position)}$", jacobian, measure
+        maps.append((cells, _measure(d, body, f"{_title(body)}: ")))
+    d.tabulate(
+        "The table has the map of each body, its Jacobian $J$ and its measure, which is a volume, an area or a length. "
+        "$J^2$ is the determinant of the scalar products of the edges of a cell.",
+        ("Body", "Coordinates", r"$(x, y, z)^{\mathsf T}$", "$J$", "Measure"),
+        maps,
+    )
+    results = []
+    for body in bodies:
+        row = _title(body), *_moment_cells(body.inertia)
+        results.append((row, _moments(d, body, f"{_title(body)}: ")))
+    d.tabulate(
+        "The table has the moments of inertia about axes through the centre of mass. `symrot derive standard_solids "
+        "--step N --detail` prints each integral with its antiderivatives.",
+        ("Body", "$I_{xx}$", "$I_{yy}$", "$I_{zz}$"),
+        results,
+    )
+    d.tabulate(
+        "The same steps prove the centres of mass and the products of inertia. All other bodies have their centre of "
+        "mass at the origin, and their axes are principal axes.",
+        ("Body", "$c$", "$I_{xy}$", "$I_{xz}$", "$I_{yz}$"),
+        [
+            ((_title(body), _center_cell(body), *_product_cells(body.inertia)), ())
+            for body in bodies
+            if any(body.center_of_mass) or not body.inertia.is_diagonal()
+        ],
+    )
+
+
+def _title(body: Solid) -> str:
+    return body.name.replace("_", " ").capitalize()
+
+
+def _ranges(body: Solid) -> str:
+    """Return the limits of the integration coordinates of a solid as LaTeX."""
+    return _stack(rf"{_latex(low)} \le {_latex(u)} \le {_latex(high)}" for u, low, high in body.limits)
+
+
+def _stack(lines: Iterable[str]) -> str:
+    """Return formulas as one cell of a table, each below the one before; ``$0$`` if there are none."""
+    formulas = [*lines]
+    if len(formulas) < 2:
+        return f"${''.join(formulas) or '0'}$"
+    return r"$\begin{matrix}" + r"\\".join(formulas) + r"\end{matrix}$"
+
+
+def _center_cell(body: Solid) -> str:
+    return _stack(f"c_{axis} = {_latex(x)}" for axis, x in zip(AXES, body.center_of_mass, strict=True) if x != 0)
+
+
+def _moment_cells(tensor: Matrix) -> list[str]:
+    """Return the three moments of an inertia tensor as LaTeX; a moment equal to an earlier one names that one."""
+    moments = [tensor[i, i].factor() for i in range(3)]
+    cells = []
+    for i, moment in enumerate(moments):
+        first = AXES[moments.index(moment)]
+        cells.append(_stack(_terms(moment)) if first == AXES[i] else f"$= I_{{{first}{first}}}$")
+    return cells
+
+
+def _terms(moment: Expr) -> Iterator[str]:
+    """Yield a moment of inertia as LaTeX; a long one as the sum of a term without the height and a term with it."""
+    if len(_latex(moment)) <= WIDE:
+        yield _latex(moment)
+        return
+    numerator, denominator = moment.as_numer_denom()
+    powers = collect(numerator.expand(), symbols.h, evaluate=False)
+    for number, (power, factor) in enumerate(sorted(powers.items(), key=lambda item: degree(item[0], symbols.h))):
+        yield ("+ " if number else "") + _latex((power * factor / denominator).factor())
+
+
+def _product_cells(tensor: Matrix) -> list[str]:
+    return [f"${_latex(tensor[i, j].factor())}$" for i, j in PRODUCTS]
+
+
+def _claim(prefix: str, claim: str) -> str:
+    return f"{prefix}{claim[0].lower()}{claim[1:]}" if prefix else claim
+
+
+def _measure(d: Derivation, body: Solid, prefix: str = "") -> list[Step]:
+    """Add the steps for the Jacobian of a body's map and for its measure; ``prefix`` begins their claims."""
+    coordinates = [variable for variable, _, _ in body.limits]
+    letter = MEASURE[body.shape.kind]
     columns = body.position.jacobian(coordinates)
-    d.step(
-        "The Jacobian of the map is:",
+    jacobian = d.step(
+        _claim(prefix, "The Jacobian of the map is:"),
         (columns.T * columns).det(method="berkowitz"),
         body.jacobian**2,
         because="the square of the measure of a cell is the determinant of the scalar products of its edges",
@@ -71,15 +169,15 @@ def _shape(d: Derivation, body: Solid) -> None:
         r"\frac{\partial (x,y,z)}{\partial (" + ",".join(map(_latex, coordinates)) + r")} \right)",
         display=None if body.jacobian.is_number else rf"\left( {_latex(body.jacobian)} \right)^2",
     )
-    d.step(
-        "The measure of the body is:",
+    measure = d.step(
+        _claim(prefix, "The measure of the body is:"),
         _integral(body, ()),
         body.measure,
         because=_antiderivatives(body, ()),
         via=_between(body, ()),
         named=rf"{letter} = {_integral_sign(body, ())}",
     )
-    _moments(d, body, letter)
+    return [jacobian, measure]
 
 
 def _limits(body: Solid) -> str:
@@ -87,7 +185,9 @@ def _limits(body: Solid) -> str:
     return ", ".join(f"${_latex(u)}$ from ${_latex(low)}$ to ${_latex(high)}$" for u, low, high in body.limits)
 
 
-def _moments(d: Derivation, body: Solid, letter: str) -> None:
+def _moments(d: Derivation, body: Solid, prefix: str = "") -> list[Step]:
+    """Add the steps for first and second moments and for the inertia tensor; ``prefix`` begins their claims."""
+    letter, steps = MEASURE[body.shape.kind], []
     moments: Moments = {}
     products: list[tuple[int, ...]] = [(0,), (1,), (2,), (0, 0), (1, 1), (2, 2), *PRODUCTS]
     values = {step.quantity: step.value for step in body.steps}
@@ -95,44 +195,47 @@ def _moments(d: Derivation, body: Solid, letter: str) -> None:
         moments[axes] = body.density * _integral(body, axes)
     zero = [axes for axes in products if values[_quantity(axes)] == 0]
     if zero:
-        d.step(
-            "These first and second moments are zero.",
+        none = d.step(
+            _claim(prefix, "These first and second moments are zero."),
             Matrix([moments[axes] for axes in zero]),
             0,
             because="each of these integrals is zero; they are computed like the following integrals",
             named=r"\frac{m}{" + letter + r"} \int \left( " + r",\ ".join(_product(axes) for axes in zero)
             + rf" \right) d{letter}",
         )  # fmt: skip
+        steps.append(none)
     for axes in products:
         if axes not in zero and len(axes) == 1:
-            d.step(
-                f"The coordinate ${AXES[axes[0]]}$ of the centre of mass is:",
+            coordinate = d.step(
+                _claim(prefix, f"The coordinate ${AXES[axes[0]]}$ of the centre of mass is:"),
                 moments[axes] / symbols.m,
                 body.center_of_mass[axes[0]],
                 because=_antiderivatives(body, axes),
                 via=_between(body, axes),
                 named=rf"c_{AXES[axes[0]]} = \frac{{1}}{{{letter}}} {_integral_sign(body, axes)}",
             )
+            steps.append(coordinate)
         elif axes not in zero:
-            d.step(
-                f"The second moment of ${_product(axes)}$ is:",
+            second = d.step(
+                _claim(prefix, f"The second moment of ${_product(axes)}$ is:"),
                 moments[axes],
                 values[_quantity(axes)],
                 because=_antiderivatives(body, axes),
                 via=_between(body, axes),
                 named=rf"S_{{{''.join(AXES[i] for i in axes)}}} = \frac{{m}}{{{letter}}} {_integral_sign(body, axes)}",
             )
-    _tensor(d, body, moments)
+            steps.append(second)
+    return [*steps, _tensor(d, body, moments, prefix)]
 
 
-def _tensor(d: Derivation, body: Solid, moments: Moments) -> None:
+def _tensor(d: Derivation, body: Solid, moments: Moments, prefix: str) -> Step:
     second = diag(*(moments[i, i] for i in range(3)))
     for i, j in PRODUCTS:
         second[i, j] = second[j, i] = moments[i, j]
     center = Matrix([moments[i,] for i in range(3)]) / body.mass
     about_origin = second.trace() * eye(3) - second
-    d.step(
-        "The inertia tensor about the centre of mass is:",
+    return d.step(
+        _claim(prefix, "The inertia tensor about the centre of mass is:"),
         about_origin - body.mass * (center.dot(center) * eye(3) - center * center.T),
         body.inertia,
         because="a moment is the integral of the sum of two squares, a product of inertia has a minus sign, "

@@ -196,7 +196,7 @@ def is_complex(sides: Sequence[Node], letter: str) -> bool:
 
 
 def with_parts(relation: tuple[str, Node, Node], letter: str, source: str) -> tuple[str, Node, Node]:
-    """Return a complex equation with each side as a column (real part, imaginary part).
+    """Return a complex equation with each side as a column (real part, imaginary part); a name alone stays a name.
 
     ``letter`` is the imaginary unit, ``source`` the typed text, for messages.
 

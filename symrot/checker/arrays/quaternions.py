@@ -355,7 +355,9 @@ def _is_angular(node: Node) -> bool:
 
 
 def _of_one_shape(sides: Sequence[Node], shapes: Mapping[str, Shape]) -> tuple[Node, Node]:
-    """Return both sides with one shape: a scalar s becomes (s, 0, 0, 0) if the other side is a quaternion."""
+    """Return both sides with one shape: a scalar s becomes (s, 0, 0, 0) next to a quaternion, and a quaternion its
+    vector part next to a vector.
+    """
     made = []
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         own, opposite = shape_of(side, shapes), shape_of(other, shapes)

@@ -39,7 +39,7 @@ class Definitions:
     functions : frozenset of str
         Names of functions of time.
     divisors, radicands : tuple
-        The divisors in the texts of the definitions, and the formulas under even roots in these texts.
+        The divisors in the texts of the definitions, and formulas there that must not be negative, as under a root.
     bases : tuple of Expr
         Bases of powers whose exponents are not numbers.
     """
@@ -260,7 +260,7 @@ def relation_text(relation: Relation) -> str:
 
 
 def _differences(left: Any, right: Any, where: str) -> list[Expr]:
-    """Return left - right of a hypothesis that is an equation: one formula, or one for each entry of a matrix."""
+    """Return left - right of a hypothesis ``a == b`` or ``a != b``: one formula, or one for each entry of a matrix."""
     try:
         lefts, rights, _ = matched_sides(left, right)
     except ShapeMismatch:

@@ -181,8 +181,8 @@ def _has_hidden_zero(claim: Claim, left: Node, right: Node) -> bool:
 
 
 def _says_something(claim: Claim, left: Node, right: Node) -> bool:
-    """Return whether the value of both sides depends on letters; that of ``z/z`` and of ``sin(a)^2 + cos(a)^2`` does
-    not.
+    """Return whether both sides depend on letters, unlike those of ``z/z == 1``, and are not just two letters, as in
+    ``x = y``.
     """
     try:
         values = [claim.interpreter().read(side) for side in (left, right)]
@@ -245,7 +245,10 @@ def _has_own_letters(letters: Sequence[set[tuple[str, bool]]]) -> bool:
 
 
 def _depends_on_own_letters(claim: Claim) -> bool:
-    """Return whether each side depends on a letter that the other side lacks, as in ``m*a == k*x``."""
+    """Return whether each side depends on a letter that the other side lacks, as in ``m*a == k*x``.
+
+    False for ``x*cos(a) == x*cos(b)``, where b may be a misprint.
+    """
     try:
         sides = [list(map(normal_form, flatten(side)[0])) for side in (claim.equation.left, claim.equation.right)]
         left, right = map(atoms_of, sides)
@@ -297,7 +300,9 @@ def _has_own_angle(left: Node, right: Node, generic: Collection[str]) -> bool:
 
 
 def _has_open_derivative(left: Node, right: Node, known: Collection[str]) -> bool:
-    """Return whether an equation contains a derivative of a name without a definition, such as ``diff(L, q)``."""
+    """Return whether an equation contains a derivative, not by time, of a name without a definition, as in
+    ``diff(L, q)``.
+    """
     # its value is unknown, so the equation is no identity; time derivatives are treated elsewhere
     for side in (left, right):
         for _, node in walk(side):
@@ -354,8 +359,8 @@ def _quantities(tree: Node) -> set[tuple[str, bool]]:
 
 
 def solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
-    """Return the only quantity of a side, k in ``2*k^2``, and a function from the other side to a formula for k; else
-    None.
+    """Return the only quantity or the only rate of a side, k in ``2*k^2``, and a function from the other side to a
+    formula for it; else None.
     """
     steps: list[Solve] = []
     while not (_is_name(side) or _is_rate(side)):

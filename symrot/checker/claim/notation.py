@@ -153,7 +153,7 @@ END = Node("name", "")
 
 
 def _is_number_power(node: Node) -> bool:
-    """Return whether a tree is a power with a number as exponent, such as x^3."""
+    """Return whether a tree is a power with an odd digit as exponent, such as x^3."""
     # such a power needs brackets before a slash: x^3/2 might be read as x^(3/2)
     return node.kind == "power" and node.args[1].kind == "name" and str(node.args[1].value) in ("1", "3", "5", "7", "9")
 

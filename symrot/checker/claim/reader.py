@@ -66,7 +66,7 @@ class Declared:
 class Chain:
     """One line of a text: formulas (sides) with relation signs between them.
 
-    There is one sign, or several equals signs (``a = b = c``).
+    There is usually one sign, or several equals signs (``a = b = c``).
 
     Attributes
     ----------
@@ -101,7 +101,7 @@ class Reading:
     lines : tuple of Chain
         The lines of the text, each as formulas with relation signs between them: ``a = b = c`` is one Chain.
     plain : bool
-        Whether the text uses notation that is not SymPy syntax.
+        Whether the text is read as people type, not as SymPy syntax.
     doubts : tuple of Doubt
         The ambiguous pieces of the text.
     notes : tuple of str
@@ -291,8 +291,8 @@ class _Text:
     def without_shorthand(
         self, tokens: list[Token], flips: Collection[tuple[str, int]], notes: list[str], doubts: list[Doubt]
     ) -> list[Token]:
-        """Return tokens with ``cos(θ)`` for the short form ``cθ`` and ``sin(θ)`` for ``sθ``; extend ``notes`` and
-        ``doubts``.
+        """Return tokens with ``cos(θ)`` for ``cθ`` and ``sin(θ)`` for ``sθ`` if these are read as short forms; extend
+        ``notes`` and ``doubts``.
         """
         short = [form for form in shorthands(tokens) if tokens[form.place].text not in self.declared.symbols]
         if not short:
@@ -316,7 +316,10 @@ class _Text:
         return tokens
 
     def with_indices(self, tokens: list[Token], flips: Collection[tuple[str, int]], doubts: list[Doubt]) -> list[Token]:
-        """Return tokens in which ``ωp``, if it is a whole left side, is one name omega_p instead of ω times p."""
+        """Return tokens in which ``ωp``, if it is a whole left side, is usually one name omega_p, not ω times p.
+
+        So are ``ωi`` and ``ωf`` if both occur.
+        """
         padded = [None, *tokens]
         for place in range(len(tokens) - 3, -1, -1):
             before, first, second, after = padded[place], *tokens[place : place + 3]
@@ -344,9 +347,9 @@ class _Text:
         return {*FIRST_AND_LAST} <= after and not alone & {*FIRST_AND_LAST}
 
     def lines(self, tokens: Sequence[Token]) -> Iterator[list[Token]]:
-        """Yield the tokens of each line.
+        """Yield the tokens of each equation; semicolons, commas and most line breaks end one.
 
-        A line that starts or ends with an operator is joined to the line before or after it.
+        A line that starts or ends with an operator, or has no relation sign, is joined to another line.
         """
         line: list[Token] = []
         depth = 0

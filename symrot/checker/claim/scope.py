@@ -53,7 +53,7 @@ class Scope(ABC):
     divisors : list of Divisor
         Divisors in the text that may be zero; each evaluation appends its own.
     radicands : list of Expr
-        Formulas under even roots that may be negative; each evaluation appends its own.
+        Formulas that may be negative and must not, as under a root; each evaluation appends its own.
     bases : list of Expr
         Bases of powers whose exponents are not numbers; they are assumed to be positive.
     """
@@ -148,7 +148,9 @@ class Scope(ABC):
             raise self.fail(node, f"a smaller number under a root (at most {MOST_BITS_FACTORED} bits, to be factored)")
 
     def take_root(self, value: Expr, node: Node) -> None:
-        """Record ``value`` as a formula under an even root; raise InputError if it is a negative number."""
+        """Record ``value`` as a formula that must not be negative, as under a root; raise InputError if it is a
+        negative number.
+        """
         interval = enclosure(value) if value.is_number else None
         if (interval is None and value.is_negative) or (interval is not None and interval.b < 0):
             raise self.fail(node, "a number that is not negative under a root")

@@ -129,7 +129,10 @@ DIRECTIONS = {"axial moment of inertia": "z", "transverse moment of inertia": "x
 
 
 def _has_axes(name: str, axes: str) -> bool:
-    """Return whether the ``name`` of a moment of inertia of a round body has one of the ``axes``, such as "xy"."""
+    """Return whether the ``name`` of a moment of inertia has one of the ``axes``, such as "xy".
+
+    True without an axis, and for bodies that are not round.
+    """
     _, bodies = LINES["about a transverse axis through the centre"]
     axis = re.search(r", ([xyz]) axis", name)
     # only the directions of rods and round bodies are checked
@@ -179,8 +182,8 @@ def place_exists(place: str) -> bool:
 
 
 def is_at_open_place(context: Context, name: str) -> bool:
-    """Return whether a formula is for an axis through a place of a body, such as an end, and the context states no
-    place.
+    """Return whether the context says "about the pivot", which may be anywhere, and a formula is for an axis through
+    one place of a body, such as an end.
     """
     # "about the pivot" leaves it open, since a pivot may be anywhere
     places = {context.place, *(meaning.place for meaning in context.meanings)}

@@ -53,7 +53,10 @@ def has_order(sequence: str) -> bool:
 
 
 def are_roll_pitch_yaw(sequence: str, places: Mapping[str, int]) -> bool:
-    """Return whether phi, theta and psi can be roll, pitch and yaw: the angles about x, y and z."""
+    """Return whether phi, theta and psi can be roll, pitch and yaw: the angles about x, y and z.
+
+    True for ZXZ and its like.
+    """
     # ZXZ has no roll, pitch and yaw, so that the usage of these books restricts nothing
     axes = {"phi": "X", "theta": "Y", "psi": "Z"}
     return has_order(sequence) or all(

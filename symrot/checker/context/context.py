@@ -502,7 +502,7 @@ def _check_consistency(context: Context, prefix: str) -> None:
 
 
 def _check_unit(meaning: Meaning, prefix: str) -> None:
-    """Raise InputError if a name has a meaning with another unit than usual, as in "omega = mass"."""
+    """Raise InputError if a name of several letters has a meaning with an unusual unit, as in "omega = mass"."""
     for name in meaning.names:
         # the usual unit of omega is rad/s
         usual = conventional_unit(name) if len(name) > 1 else None

@@ -139,9 +139,8 @@ def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
 
 
 def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return the verdict on a claim in its context, but no "true" if a word of the context is unused.
-
-    ``verdict`` is the verdict without the context.
+    """Return the verdict on a claim in its context; if a word is unused, the context makes the claim neither "true" nor
+    "false". ``verdict`` is the verdict without the context.
     """
     # words about the body or its axis that symrot does not understand leave open what the claim means
     if obscure := claim.context.obscure:

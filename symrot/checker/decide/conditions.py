@@ -46,7 +46,8 @@ def requirements(
     sides : sequence of (Expr, Expr)
         The left and the right side of the entry to which each numerator belongs.
     entries : int
-        The number of all entries of the claim. If there is one, a condition that only repeats the claim is left out.
+        The number of all entries of the claim. If it is 1, a condition that only repeats the claim is usually left
+        out.
     """
     conditions = []
     for factor in _shared_factors(ring, numerators):
@@ -148,7 +149,9 @@ def _is_unit_norm(factor: PolyElement, variables: int) -> bool:
 def _no_products(
     ring: FormulaRing, numerators: Sequence[PolyElement], sides: Sequence[tuple[Expr, Expr]]
 ) -> list[Requirement]:
-    """Return [condition] if a claim is true where all products of inertia are zero; otherwise []."""
+    """Return [condition] if a claim is true where all products of inertia are zero, and one side of each entry has
+    none; otherwise [].
+    """
     products = [(leaf, n) for leaf, n in ring.symbols.items() if _matches(PRODUCT_OF_INERTIA, leaf)]
     if not products or not all(any(mono[n] for _, n in products) for poly in numerators for mono in poly):
         return []

@@ -72,7 +72,10 @@ def occurring(polynomials: Sequence[PolyElement]) -> set[int]:
 
 
 def distinct_factors(poly: PolyElement) -> list[PolyElement]:
-    """Return the different factors of a polynomial that is not constant, each with leading coefficient 1."""
+    """Return the different factors of a polynomial that is not constant, each with leading coefficient 1.
+
+    Of a large one, only single unknowns are split off.
+    """
     if len(poly) <= MOST_TERMS and len(occurring([poly])) <= MOST_UNKNOWNS and max(map(sum, poly)) <= LARGEST_DEGREE:
         return [factor.monic() for factor, _ in poly.factor_list()[1]]
     # a large polynomial is not factored: only unknowns that divide every term are split off

@@ -73,11 +73,11 @@ class Equation:
     hypotheses : tuple
         Equations, or expressions that are zero.
     divisors : tuple of Expr
-        Formulas that the text divides by; SymPy may have cancelled them.
+        Formulas that the text divides by, or takes logarithms of; SymPy may have cancelled them.
     nonzero : tuple of Expr
         Formulas that hypotheses state to be nonzero.
     radicands : tuple of Expr
-        Formulas of which the text takes even roots.
+        Formulas that must not be negative, such as those under roots of the text.
     bases : tuple of Expr
         Bases of powers whose exponents are not numbers; these bases are assumed to be positive.
     """
@@ -368,7 +368,9 @@ def distant_witness(case: _ClaimCase) -> None:
 
 
 def condition(case: _ClaimCase) -> Decision | None:
-    """Return "conditional" for a claim that is true under a condition that authors often omit; otherwise None."""
+    """Return "conditional" for a claim that is true under a condition that authors often omit, "undecided" if no point
+    is known where the condition fails; otherwise None.
+    """
     sides = [(case.lefts[place], case.rights[place]) for place in case.unproven]
     needed = requirements(case.ring, case.numerators, sides, len(case.lefts))
     needed = [requirement for requirement in needed if case.can_hold(requirement)]

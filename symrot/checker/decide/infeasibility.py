@@ -34,7 +34,9 @@ class _Undecided(Exception):
 
 @dataclass(frozen=True)
 class Infeasibility:
-    """The reason why no point obeys the constraints, and the polynomial that cannot vanish (None if 1 = 0 follows)."""
+    """The reason why no point obeys the constraints, and the polynomial that cannot vanish, if it is a single one, else
+    None.
+    """
 
     reason: str
     polynomial: PolyElement | None = None

@@ -128,7 +128,9 @@ class ShorterPowers:
 
 
 def shorter_powers(formulas: Sequence[Expr]) -> ShorterPowers | None:
-    """Return ``formulas`` with letters for large powers, Z for ``(a - x)**6000``; None without large powers."""
+    """Return ``formulas`` with letters for large powers, Z for ``(a - x)**6000``; None without large powers, or with
+    too many bases.
+    """
     powers = {node for formula in formulas for node in formula.atoms(Pow) if node.exp.is_Integer}
     large = {node for node in powers if abs(node.exp) * max(1, _size(node.base)) > LARGEST_EXPANDED}
     bases: dict[Expr, dict[Expr, int]] = {}

@@ -131,7 +131,9 @@ def _nonnegative_at_zero(product: Expr, factor: Expr) -> bool:
 
 
 def _with_plain_functions(formula: Expr) -> Expr:
-    """Return a formula with simplified arguments of functions: ``cos(0)`` for ``cos(sin(x)/cos(x) - tan(x))``."""
+    """Return a formula with simplified arguments of functions: ``cos(0)``, which is 1, for
+    ``cos(sin(x)/cos(x) - tan(x))``.
+    """
     try:
         return with_plain_arguments([formula])[0][0]
     except InputError:

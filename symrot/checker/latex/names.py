@@ -115,7 +115,9 @@ class NamesPart(SumsPart):
         return Node("call", "skew", (vector,))
 
     def change(self, name: str, item: tree.Node) -> Node:
-        r"""Parse a change of a quantity, such as ``\Delta t``, and return the node of the single name Delta_t."""
+        r"""Parse a change of a quantity, such as ``\Delta t``; return the node of the single name Delta_t, or of Delta
+        if a product is meant.
+        """
         follower = self.peek()
         product_or_change = f"\\{name}_{{..}} for a change, or \\cdot for a product"
         if self.flips is None:
@@ -248,7 +250,10 @@ class NamesPart(SumsPart):
         return Node("name", marked)
 
     def overlined(self, mark: tree.Accent | tree.Font) -> Node:
-        r"""Parse a name with an accent that belongs to the name, as in ``\bar I``, another symbol than ``I``."""
+        r"""Parse a name with an accent, ``\bar I``, another symbol than ``I``.
+
+        A tilde over a vector gives its skew matrix, a line over a formula the conjugate.
+        """
         if tree.alone(mark.inside).text in VECTOR_MARKS and mark.text != "\\mathcal":
             inner = self.under(mark, self.expression)
             # a tilde over a vector means its skew matrix

@@ -244,7 +244,7 @@ class SumsPart(Cursor):
 
     def raised(self, node: Node, inside: tree.Node) -> Node:
         r"""Return ``node`` with what is raised after it, ``inside``: a power, a transpose ``^T``, a conjugate ``^*``,
-        or ``^\times``.
+        degrees ``^\circ``, or ``^\times``.
         """
         mark = tree.alone(inside)
         if isinstance(mark, tree.Font) and mark.text in UPRIGHT:
@@ -346,7 +346,9 @@ class SumsPart(Cursor):
         return Node("call", "skew", (inner,))
 
     def paired(self, first: Node, sign: str) -> Node:
-        """Parse ``, B`` after A, which is ``first``, in ``[A, B]``; return A B - B A, or A B + B A by ``sign``."""
+        """Parse ``, B`` after A, which is ``first``, in ``[A, B]``; return A B - B A, or A B + B A by ``sign``; A alone
+        if no comma follows.
+        """
         if not self.at(","):
             return first
         comma = self.next()

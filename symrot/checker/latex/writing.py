@@ -153,7 +153,7 @@ def _with_marks(name: str) -> str:
 
 
 class Writer:
-    """A writer that turns trees into LaTeX, in which functions of time have no ``(t)``."""
+    """A writer that turns trees into LaTeX, in which the functions of time ``timed`` have no ``(t)``."""
 
     def __init__(self, timed: Collection[str], vectors: Mapping[str, bool]) -> None:
         self.timed, self.vectors = timed, vectors

@@ -74,7 +74,7 @@ def _total(values: Values) -> float:
 
 
 def agree(left: Any, right: Any) -> bool:
-    """Return whether two scalars or matrices are equal to nearly double precision."""
+    """Return whether two scalars or matrices have one shape and agree to about eight digits of the largest entry."""
     if shape_of(left) != shape_of(right):
         return False
     size = max(map(abs, entries_of(right)))

@@ -379,7 +379,9 @@ def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> b
 
 
 def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
-    """Return whether a formula for an aircraft's rate p, q or r has other Euler angles than roll, pitch and yaw."""
+    """Return whether a formula for an aircraft's rate p, q or r has other Euler angles than roll, pitch and yaw, or is
+    for the space frame.
+    """
     sequence = re.search(r"angular velocity of (\w{3}) ", known.name)
     if named.name not in RATES_OF_AIRCRAFT or sequence is None:
         return False
@@ -477,9 +479,8 @@ def fits_context(context: Context, named: NamedFormula, known: Identification, l
 
 
 def words_of(named: NamedFormula) -> tuple[str, ...] | None:
-    """Return words in the names of all known formulas for a claim's quantity: ("product of inertia",) for I_xy.
-
-    None if the quantity's name has no usual meaning.
+    """Return words, one of which is in the name of each known formula for a claim's quantity: ("product of inertia",)
+    for I_xy. None if the quantity's name has no usual meaning.
     """
     words = next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, quantity_name(named))), None)
     if words and any(node.kind == "call" and node.value == "cross" for _, node in walk(named.formula)):

@@ -88,7 +88,7 @@ class View:
 def identify(
     formula: Any, *, most: int = MOST, body: str = "", frame: str = "", sequence: str = ""
 ) -> list[Identification]:
-    """Return the known formulas to which a formula is equal; those with the same letters come first.
+    """Return the known formulas that a formula equals, up to letters, sign and transposition; the most similar first.
 
     Parameters
     ----------
@@ -433,15 +433,15 @@ def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, 
     """Return ``others`` in several orders, to be paired one by one with ``atoms``; the most plausible order first."""
     known = {atom: (_name(atom), unit_of(_name(atom))) for atom in (*atoms, *others)}
 
-    def differences(order: tuple[Expr, ...]) -> tuple[int, int, int]:
-        pairs = [(known[atom], known[other]) for atom, other in zip(atoms, order, strict=True)]
-        return (
-            sum(None not in (mine, own) and mine != own for (_, mine), (_, own) in pairs),  # contradicting units
-            sum(name != other for (name, _), (other, _) in pairs),
-            sum(name[0].lower() != other[0].lower() for (name, _), (other, _) in pairs),
-        )
+    def difference(atom: Expr, other: Expr) -> int:
+        (name, unit), (own, own_unit) = known[atom], known[other]
+        contradicting = None not in (unit, own_unit) and unit != own_unit
+        # a sum of these is ordered by contradicting units, then by other names, then by other first letters
+        return (contradicting << 40) + ((name != own) << 20) + (name[0].lower() != own[0].lower())
 
-    return sorted(islice(permutations(_likeliest(atoms, others, known)), MOST_TRIES), key=differences)
+    differences = [{other: difference(atom, other) for other in others} for atom in atoms]
+    orders = islice(permutations(_likeliest(atoms, others, known)), MOST_TRIES)
+    return sorted(orders, key=lambda order: sum(row[other] for row, other in zip(differences, order, strict=True)))
 
 
 def _likeliest(
@@ -488,7 +488,7 @@ def _factor(
     idle: Sequence[Expr],  # symbols in own that do not change its value
     factors: Sequence[Rational],
 ) -> Rational | None:
-    """Return the first k in ``factors`` with own = k * theirs at a random point, or None if there is none."""
+    """Return the first k in ``factors`` with own = k * theirs at a test point, or None if there is none."""
     for draw in range(MOST_DRAWS):
         point = {mine: pow(7 + 2 * draw, 40 + n * n, PRIME) for n, mine in enumerate(pairing)}
         try:

@@ -1,6 +1,7 @@
 """The letters of a formula that may have a fault: symbols, rates and angles, with random values at some points.
 
-The values obey the claim's hypotheses. A name with a definition, such as c1 for cos(alpha), has the definition's value.
+The values obey the equations among the claim's hypotheses. A name with a definition, such as c1 for cos(alpha), has
+the definition's value.
 """
 
 from collections.abc import Mapping
@@ -28,7 +29,7 @@ MANY = 9
 
 
 def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:
-    """Return the letters of a claim's formula, with random values that obey the claim's hypotheses.
+    """Return the letters of a claim's formula, with random values that obey the equations among its hypotheses.
 
     None if the formula or a letter has no value at most random points.
     """

@@ -269,7 +269,9 @@ def _on_signs_of_products(claim: Claim, named: NamedFormula, readings: Collectio
 
 
 def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if one edit makes the claim's formula or equation a known one; otherwise None."""
+    """Return the verdict "doubtful" if one edit makes the claim's formula or equation a known one, "recognised" if it
+    is one for certain signs of letters; otherwise None.
+    """
     if claim.hypotheses:
         return _near(claim, named) if _are_usable(claim) else None
     if named.solve is not None and _is_known_for_exchanged_masses(claim, named):
@@ -314,13 +316,17 @@ def _near_by_quantity(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 
 def verdict_near_relation(claim: Claim) -> Verdict | None:
-    """Return the verdict "doubtful" on a false equation if one change makes it a known relation; otherwise None."""
+    """Return the verdict, usually "doubtful", on a false equation that one change makes a known relation; None for
+    other equations.
+    """
     assert claim.relation is not None
     return None if claim.hypotheses else _near_relation(claim, *claim.relation[1:])
 
 
 def _near_relation(claim: Claim, left: Node, right: Node) -> Verdict | None:
-    """Return the verdict "doubtful" if one change makes ``left == right`` a known relation; otherwise None."""
+    """Return the verdict "doubtful" if one change makes ``left == right`` a known relation, "recognised" if it is one
+    for certain signs; otherwise None.
+    """
     if len(names_in(left) | names_in(right)) < _least_symbols_related(left, right):
         return None
     atoms = dict.fromkeys(node for side in (left, right) for _, node in walk(side) if is_atom(node))
@@ -538,7 +544,7 @@ def _with_all_terms_added(named: NamedFormula) -> Iterator[Edit]:
 
 
 def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:
-    """Yield the single edits of a formula, the cheapest first."""
+    """Yield the cheapest single edits of a formula, in the order of their costs; none of a very long formula."""
     if sum(1 for _ in walk(formula)) > MOST_NODES:
         return
     numeric = NumericFilter(claim)
@@ -549,7 +555,7 @@ def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:
 def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int) -> tuple[Identification, ...]:
     """Return the known formulas and relations that a claim with the right side ``tree`` can mean, the likeliest first.
 
-    Empty if ``tree`` has fewer than ``least_symbols`` symbols.
+    Empty for too few symbols; ``least_symbols`` is the usual minimum.
     """
     solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
     is_open = (words_of(named) is None or _is_stated(claim, named)) and least_symbols == LEAST_SYMBOLS
@@ -599,7 +605,7 @@ def _readings_of_formula(
 ) -> tuple[Identification, ...]:
     """Return the known formulas for the claim's quantity that are equal to ``formula``, the likeliest first.
 
-    Empty if ``formula`` has fewer than ``least_symbols`` symbols.
+    Usually empty if a scalar ``formula`` has fewer than ``least_symbols`` symbols.
     """
     try:
         value = claim.with_definitions(claim.interpreter().read(formula))

@@ -75,9 +75,8 @@ class Near(NamedTuple):
 
 
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
-    """Return changes of a claim's formula that may turn it into a known formula, the cheapest first.
-
-    Only known formulas with ``fits(known)`` are compared.
+    """Return changes of a claim's formula that may turn it into a known formula with ``fits(known)``, the cheapest
+    first. The code "none" means that no change is needed.
     """
     if sum(1 for _ in walk(named.formula)) > MOST_NODES:
         return []
@@ -171,7 +170,7 @@ def _known_pieces(known: Known) -> frozenset[int]:
 
 
 def _is_column(known: Known) -> bool:
-    """Return whether a known formula is a vector or matrix."""
+    """Return whether a known formula is a vector or matrix; False for the two arguments of an atan2."""
     return known.text.startswith("Matrix") and not ending_of(known.name).endswith("atan2")
 
 

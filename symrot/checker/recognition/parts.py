@@ -119,7 +119,9 @@ def values_of(node: Node, points: Sequence[Point]) -> Values | None:
 
 
 def parts(tree: Node, points: Sequence[Point], needed: Values, path: Path = (), parent: str = "") -> Iterator[Part]:
-    """Yield each part of a formula with the values it should have to give the whole formula the values ``needed``."""
+    """Yield the parts of a formula whose right values follow from ``needed``, those of the whole formula, each with
+    these values.
+    """
     values = values_of(tree, points)
     if values is None or [*map(shape_of, values)] != [*map(shape_of, needed)]:
         return
@@ -132,9 +134,8 @@ def parts(tree: Node, points: Sequence[Point], needed: Values, path: Path = (), 
 def _children(
     tree: Node, points: Sequence[Point], values: Values, needed: Values
 ) -> Iterator[tuple[Path, Node, Values | None]]:
-    """Yield (path, child, values that the child should have) for each child of a part.
-
-    The values are None if nothing determines them.
+    """Yield (path, child, values that the child should have) for each child of a part, or for the only wrong entry of a
+    matrix. The values are None if nothing determines them.
     """
     cells = matrix_entries(tree) or ({n: (n,) for n in range(len(tree.args))} if tree.kind == "list" else {})
     if cells:
@@ -385,7 +386,9 @@ def _of_function(node: Node, parent: str, values: Values, letters: Letters) -> I
 
 
 def _of_factor(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
-    """Yield a term or bracket with one more symbol or function as factor or divisor: m*a and a/m for a."""
+    """Yield a term or bracket with one more symbol or function as factor or divisor, m*a and a/m for a; also b/a for
+    a/b.
+    """
     if parent in ("product", "power", "inv") or node.kind in ("neg", "inv", "number"):
         return
     if node.kind == "product":
@@ -463,7 +466,7 @@ def rational(values: Sequence[float]) -> Fraction | None:
 
 
 def near(left: float, right: float) -> bool:
-    """Return whether two values are equal to nearly double precision."""
+    """Return whether two values agree to about nine digits."""
     return abs(left - right) <= CLOSE * (abs(left) + abs(right))
 
 

@@ -96,7 +96,9 @@ class Relation(NamedTuple):
 
 
 def solved(relation: Relation) -> Iterator[tuple[str, str, Any]]:
-    """Solve a relation for each symbol in ``relation.words``: yield (name, derivation page, formula for the symbol)."""
+    """Solve a relation for each symbol in ``relation.words``: yield (name, derivation page, formula for the symbol or
+    its square). Skip other powers.
+    """
     numerator = fraction(together(relation.difference))[0]
     for symbol, words in relation.words.items():
         coefficients = Poly(numerator, symbol).all_coeffs()
@@ -338,7 +340,9 @@ def _top() -> tuple[Matrix, Expr]:
 
 
 def _steady() -> Iterator[Relation]:
-    """Yield conditions of steady precession under a weight or torque, written with omega_3 or with psi'."""
+    """Yield conditions of steady precession under a weight or torque, with omega_3 or psi'; the least spin, the torque
+    of gravity, and fast nutation.
+    """
     _, kinetic = _top()
     along = kinetic.diff(THETA).subs(DTHETA, 0)  # A*theta'' at rest in theta, by Lagrange's equation
     for name, load in (("W", symbols.W), ("m g", MASS * G)):
@@ -413,7 +417,9 @@ def _heavy() -> Iterator[Relation]:
 
 
 def _free() -> Iterator[Relation]:
-    """Yield the relations of a free body: energy and momentum, stability, and the angles of a symmetric body."""
+    """Yield the relations of a free body: energy and momentum, stability, the angles of a symmetric body, and the unit
+    norm of a quaternion.
+    """
     momentum = diag(A, B, C) * OMEGA
     H, E = symbols.H, symbols.E
     square, energy = momentum.dot(momentum), OMEGA.dot(momentum) / 2

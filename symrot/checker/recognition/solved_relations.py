@@ -18,7 +18,9 @@ SQUARED = ", squared"
 
 
 class SolvedRelation(NamedTuple):
-    """A known relation solved for the symbol ``name``: ``known.text`` is the formula for this symbol."""
+    """A known relation solved for the symbol ``name``: ``known.text`` is the formula for this symbol, or for its square
+    if ``known.name`` says so.
+    """
 
     name: str
     known: Known

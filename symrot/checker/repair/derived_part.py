@@ -159,7 +159,7 @@ def _independent_systems(equations: Sequence[Expr], unknown: Collection[Symbol])
 
 
 def _coefficients_of_rates(differences: Sequence[Expr]) -> Iterator[Expr]:
-    """Yield the coefficients of each rate in formulas that are linear in the rates; each coefficient must vanish."""
+    """Yield the coefficients of each rate, and the rest, of formulas that are linear in the rates; each must vanish."""
     for difference in differences:
         expanded = difference.doit().expand()
         rates = sorted(expanded.atoms(Derivative), key=str)

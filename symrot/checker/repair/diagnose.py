@@ -205,7 +205,9 @@ class _Search:
         return any(map(_symbols, dict(bare))) or (len(bare) == len(sides) and bool(equation.divisors))
 
     def proven(self, candidates: Iterable[Candidate], most: int) -> list[Repair]:
-        """Return repairs from the first candidates, ``most`` at most, that the exact engine proves to be true."""
+        """Return repairs from the first candidates, ``most`` at most, that the exact engine proves to be true,
+        everywhere or in a range such as 0 <= x <= pi.
+        """
         repairs: list[Repair] = []
         attempts = 0
         bare = bool({"name", "number"} & {self.numeric.left.kind, self.numeric.right.kind})

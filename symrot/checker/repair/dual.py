@@ -129,7 +129,9 @@ def logarithm(x: Any) -> Any:
 
 
 def power(x: Any, exponent: float) -> Any:
-    """Return x to a rational power; raise UndefinedValue for a fractional power of a negative number."""
+    """Return x to a rational power; raise UndefinedValue for a negative number and a fractional exponent, or one above
+    64.
+    """
     if exponent == int(exponent) and abs(exponent) <= 64:
         whole = int(exponent)
         result: Any = 1.0

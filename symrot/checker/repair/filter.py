@@ -43,7 +43,7 @@ class Candidate(NamedTuple):
 
 
 class NumericFilter:
-    """A fast test of repairs: it evaluates the edited claim at points that obey the hypotheses.
+    """A fast test of repairs: it evaluates the edited claim at points that obey the equations among the hypotheses.
 
     After ``most_pieces`` evaluations, every test fails.
     """
@@ -263,7 +263,7 @@ def _named(trees: Sequence[Node]) -> set[tuple[str, bool]]:
 
 
 def is_nontrivial(tree: Node) -> bool:
-    """Return whether a tree is more than a number: whether it contains a symbol or a matrix."""
+    """Return whether a tree contains a name other than pi, or the call of a function such as ``sqrt`` or ``Matrix``."""
     return any(node.kind in ("name", "call") and node.value != "pi" for _, node in walk(tree))
 
 

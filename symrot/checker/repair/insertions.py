@@ -46,7 +46,10 @@ MOST_TERMS_READ, MOST_ROOTS_READ = 1000, 12
 
 
 def missing_terms(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs that add one term to each wrong entry; the term is the exact difference of the two sides there."""
+    """Yield repairs that add one term to each wrong entry, or in a bracket of the only one.
+
+    The term is the exact difference of the sides there, or that divided by a factor.
+    """
     equation = numeric.claim.equation
     (lefts, shape), (rights, other) = flatten(equation.left), flatten(equation.right)
     if shape != other:

@@ -355,9 +355,9 @@ def points(
     symbols: Sequence[str], functions: Sequence[str], definitions: Mapping[str, Node],
     hypotheses: Sequence[tuple[Node, Node]], remembered: frozenset[int], count: int = 2, most: float = 1.7,
 ) -> list[Point]:  # fmt: skip
-    """Return random test points, the same in every run, at which the hypotheses hold to double precision.
+    """Return random test points, the same in every run, at which the hypotheses hold up to errors of 1e-12.
 
-    There may be fewer than ``count`` points. Symbols have values from 0.3 to ``most``.
+    There may be fewer than ``count`` points. Symbols have values from 0.3 to ``most``, before the hypotheses move them.
     """
     # remembered: ids of the trees whose values a point stores; a point is left out if Newton's method fails
     accepted = []

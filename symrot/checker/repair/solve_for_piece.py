@@ -166,7 +166,9 @@ def _rational(values: Sequence[float], largest: int = LARGEST_RATIO) -> Fraction
 
 
 def solutions(numeric: NumericFilter) -> list[Candidate]:
-    """Return the repairs that replace one part of the claim by the value that makes it true, the nearest first."""
+    """Return the repairs that replace one part of the claim by a value with which it holds at the test points, the
+    nearest first.
+    """
     if len(numeric.points) < 2 or not (is_nontrivial(numeric.left) or is_nontrivial(numeric.right)):
         return []  # a wrong number alone does not tell which formula was meant
     vocabulary = Vocabulary(numeric)

@@ -81,7 +81,7 @@ class Cursor(ABC):
     notes : list of str
         Sentences about the way in which the formula is read.
     timed : set of str
-        Names with a prime or a dot, which are functions of time.
+        Names with a prime or a dot, or in ``dx/dt``, which are functions of time.
     differentiated : set of str
         Names in formulas after d/dt, which may be functions of time.
     """
@@ -199,7 +199,9 @@ class Cursor(ABC):
         return Node("number", Fraction(token.text), (), self.span(token.start))
 
     def starts_factor(self) -> bool:
-        """Return whether another factor, without a product sign before it, starts at the cursor."""
+        """Return whether another factor, without a product sign before it, starts at the cursor; raise InputError if it
+        is a number.
+        """
         token = self.token()
         if self.in_integral and self.is_element():
             return False

@@ -156,7 +156,10 @@ class Parser(PiecesPart):
         return Node("neg", None, (made,), self.span(start)) if negative else made
 
     def crossed(self, factors: list[Node]) -> None:
-        """Parse ``×`` and the factor b after it; put ``cross(a, b)`` in place of the last factor a in ``factors``."""
+        """Parse ``×`` and the factor b after it; put ``cross(a, b)`` in place of the last factor a in ``factors``.
+
+        Without a vector, append b to ``factors``.
+        """
         self.plain = True
         closed = self.tokens[self.index - 1].text == ")"
         sign = self.next()
@@ -176,7 +179,10 @@ class Parser(PiecesPart):
         factors[own:] = [Node("call", "cross", (left, right), self.span(left.span[0]))]
 
     def dotted(self, factors: list[Node]) -> None:
-        """Parse a dot after a vector a, and the factor b after it; put ``dot(a, b)`` in place of a in ``factors``."""
+        """Parse a dot after a vector a, and the factor b after it; put ``dot(a, b)`` in place of a in ``factors``.
+
+        If b is no vector, append it.
+        """
         self.plain = True
         self.next()
         right = self.factor()

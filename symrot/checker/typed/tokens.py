@@ -26,9 +26,9 @@ class Token(NamedTuple):
     ----------
     kind : str
         ``number``, ``name``, ``mark``, ``power`` (raised digits), ``fraction`` (such as ½), ``dots`` (over the name
-        before), ``hat``, ``tilde``, ``prime`` or ``end``.
+        before), ``hat``, ``tilde``, ``prime``, ``sum`` (Σ before a total) or ``end``.
     text : str
-        The text in ASCII: ``omega_1`` for ω₁.
+        The text, with names and digits in ASCII: ``omega_1`` for ω₁.
     start, end : int
         Its first position in the source, and the position after it.
     spaced, breaks : bool
@@ -107,7 +107,7 @@ def tokens_of(source: str, where: str = "") -> Iterator[Token]:
     Raises
     ------
     InputError
-        For a character that means nothing in a formula; the message suggests another one.
+        For a character that means nothing in a formula; the message may suggest another one.
     """
     text, places = _accents_after_letters(*_written_out(source.rstrip()))
     places.append(len(source.rstrip()))

@@ -270,7 +270,7 @@ def numeric_end(source: str) -> tuple[str, str]:
 
 
 def unit_beside_letters(source: str) -> str:
-    """Return the first number with a unit, such as "3 m/s^2", in a text with other letters; "" without one.
+    """Return the first number that surely has a unit, such as "3 m/s^2", in a text with other letters; "" without one.
 
     Examples
     --------

@@ -152,7 +152,9 @@ class UnitInference:
         return bool(self.units) or any(unit not in (None, "rad") for unit in units)
 
     def values_of(self, rows: Rows, node: Node) -> Rows:
-        """Return the dimensions of a matrix of numbers: unknown, because the author may have left out the units."""
+        """Return the dimensions of a matrix of numbers: unknown, because the author may have left out the units, unless
+        all numbers are 0 or 1.
+        """
         if _is_unit(node):
             return rows  # zeros and ones are pure numbers, but 2 may be 2 kg
         return tuple(tuple(ZERO if entry is ZERO else self.unknown() for entry in row) for row in rows)
@@ -316,7 +318,9 @@ def piece_text(node: Node) -> str:
 
 
 def number_of(node: Node) -> Fraction | None:
-    """Return the value of a tree of numbers, such as an exponent; None for any other tree."""
+    """Return the value of a tree of numbers, their sums, products and quotients, such as an exponent; None for any
+    other tree.
+    """
     if node.kind == "number":
         return Fraction(node.value)
     inner = [number_of(child) for child in node.args]

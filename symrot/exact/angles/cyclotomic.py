@@ -40,7 +40,7 @@ def order(denominator: int) -> int:
 
 
 def needs_cyclotomic_field(denominator: int) -> bool:
-    """Return whether sines and cosines of multiples of pi/denominator are written as polynomials in 2 cos(pi/N).
+    """Return whether 2 cos(pi/N) has a degree small enough to write cosines of multiples of pi/denominator by it.
 
     N is ``order(denominator)``.
     """

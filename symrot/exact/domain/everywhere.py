@@ -64,7 +64,12 @@ def _computed(node: Expr, known: dict[Expr, Range]) -> Range:
 
 def _of_number(node: Expr) -> Range:
     held = enclosure(node)
-    return REALS if held is None else (_end(held.a), _end(held.b))
+    if held is None:
+        return REALS
+    try:
+        return _end(held.a), _end(held.b)
+    except OverflowError:  # exp(-3000): only its sign is used
+        return (Fraction(0) if held.a >= 0 else -inf), (Fraction(0) if held.b <= 0 else inf)
 
 
 def _end(value: Any) -> Fraction:

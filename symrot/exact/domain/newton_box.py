@@ -48,7 +48,7 @@ class EquationSystem:
         self.slopes = [[formula.diff(name) for name in self.names.values()] for formula in self.formulas]
 
     def solved(self, start: Mapping[Expr, float]) -> dict[Expr, float] | None:
-        """Return the point to which Newton's method converges from ``start``, in doubles, or None if it diverges."""
+        """Return the point to which Newton's method converges from ``start``, in doubles; None without convergence."""
         values = {self.names[leaf]: float(start[leaf]) for leaf in self.leaves}
         for _ in range(MOST_STEPS if self.small else 0):
             try:
@@ -121,7 +121,7 @@ def _point(value: Fraction) -> Any:
 
 
 def _shortest(rows: list[Row], residuals: Row) -> Row | None:
-    """Return the shortest vector ``step`` with ``rows * step = residuals``, or None if all rows are zero."""
+    """Return the shortest ``step`` with approximately ``rows * step = residuals``, or None if all rows are zero."""
     gram = [[sum(a * b for a, b in zip(p, q, strict=True)) for q in rows] for p in rows]
     size = max(gram[n][n] for n in range(len(gram)))
     if not size:

@@ -231,7 +231,7 @@ class _Interpreter(Cursor):
         return sqrt(self.value(root.inside))
 
     def font(self, font: Font) -> Any:
-        r"""Return the value of a name that LaTeX prints in a special font: the identity matrix for ``\mathbf{1}``."""
+        r"""Return the value of a name that LaTeX prints in a special font; ``\mathbf{1}`` gives the number 1."""
         word, place = _text(font.inside), self.index
         if word == "1":
             return Integer(1)

@@ -1,6 +1,6 @@
 """One step of a derivation as a page of its own.
 
-With details, the page also shows the chain of rewritings that turns left minus right side into zero.
+With details, the page also shows expressions that lead from the left side to the right, as many as fit on a screen.
 """
 
 from sympy import MatrixBase, factor
@@ -35,7 +35,8 @@ def excerpt(whole: Page, number: int, detail: bool = False) -> Page:
     number : int
         The number of the step; the first is 1.
     detail : bool
-        Whether the new page also shows every expression between the two sides of the step's equation.
+        Whether the new page also shows the expressions between the two sides of the step's equation, as far as they
+        fit on a screen.
 
     Raises
     ------

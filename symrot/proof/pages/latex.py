@@ -33,6 +33,9 @@ PACKAGES = r"""\usepackage[T1]{fontenc}
 % a display that is wider than the page is scaled to it
 \newcommand{\fitted}[1]{\sbox{\displayed}{$\displaystyle #1$}\[\ifdim\wd\displayed>\linewidth
   \resizebox{\linewidth}{!}{\usebox{\displayed}}\else\usebox{\displayed}\fi\]}
+% a figure that is wider than a line is scaled to it
+\newcommand{\drawn}[1]{\sbox{\displayed}{\includegraphics{#1}}\centerline{\ifdim\wd\displayed>\linewidth
+  \resizebox{\linewidth}{!}{\usebox{\displayed}}\else\usebox{\displayed}\fi}}
 % a formula in a table that is wider than its share of the line is scaled to it
 \newcommand{\fittedcell}[2]{\sbox{\displayed}{$#2$}\ifdim\wd\displayed>#1\linewidth
   \sbox{\displayed}{\resizebox{#1\linewidth}{!}{\usebox{\displayed}}}\fi
@@ -129,9 +132,8 @@ def _body(page: Page) -> Iterator[str]:
 def _figure(figure: Figure) -> str:
     """Return a figure in LaTeX: the picture, and below it the caption."""
     path = figure.file.removesuffix(".svg")
-    size = r"width=0.7\linewidth,height=0.35\textheight,keepaspectratio"
     # a PDF file in ``figures``, left out if it does not exist when LaTeX runs
-    included = rf"\IfFileExists{{{path}.pdf}}{{\centerline{{\includegraphics[{size}]{{{path}.pdf}}}}}}{{}}"
+    included = rf"\IfFileExists{{{path}.pdf}}{{\drawn{{{path}.pdf}}}}{{}}"
     return f"{included}\n\n" + rf"\emph{{Figure:}} {_prose(figure.caption)}"
 
 

@@ -23,7 +23,7 @@ def equation(step: Step) -> str:
 
 
 def repetitions(page: Page) -> frozenset[int]:
-    """Return the numbers of the steps that repeat the claim and reason of an earlier step."""
+    """Return the numbers of the steps that repeat the claim and reason of an earlier step, if 6 or more share them."""
     places: dict[tuple[str, str], list[int]] = {}
     for number, step in enumerate(page.steps, page.first):
         # A page may prove one result for many sequences of angles, or many solids. Claims are compared without formulas

@@ -65,6 +65,7 @@ STEEP = 1e-7  # speed of a guard at a crossing, in units of the size of its term
 ALIKE = 1e-9  # relative difference of two derivatives that count as equal
 GRAZE = 1e-9  # error of the states, relative to their sizes, within which a guard may touch zero
 AT_SWITCH = 1e-12  # part of the time: an event this near to a switch is at the switch
+MOST_AT_ONCE = 6  # functions that may switch at one time
 Rows = Mapping[str, list[float]]
 """For parameters, by name: the derivatives by each variable."""
 
@@ -114,6 +115,14 @@ class _Gradient(NamedTuple):
     def change(self, slopes_of_states: Floats) -> Floats:
         """Return the derivatives of the formula by the variables, at fixed time, for those of the states, (7, m)."""
         return np.asarray(self.states @ slopes_of_states + self.variables)
+
+
+class _Flip(NamedTuple):
+    """The switch of one function: its new mode, the derivatives of its time by variables, of its guard by states."""
+
+    value: int
+    time: Floats
+    guard: Floats
 
 
 class SwitchedEquations:
@@ -251,6 +260,8 @@ class _Walk:
         self._rates: dict[int, tuple[Program, Parameters]] = {}
         self._slopes: dict[Any, Rows] = {}
         self._constants = {"pi": number.PI, **constants_of(scene, equations.structure)}
+        self.length = abs(end - begin)
+        self._last: tuple[_Part, Instant, dict[str, _Flip], bool] | None = None  # the last jump of the rates
         self._units = [unit_of(scene, column) for column in equations.columns]
         self.parts, self.changes = self._smooth_parts()
         self._differentiate()
@@ -338,11 +349,11 @@ class _Walk:
 
     def _is_smooth_at(self, part: _Part, mode: str) -> bool:
         """Return whether the rates and their derivatives are the same on both sides of a guard that stays at zero."""
-        twins = [twin for twin, _ in self.system.twins.get(mode, [])] or [mode]
+        twins = [twin for twin, _ in self._twins(mode)]
         for t, y in self._places(part):
             sides = []
             for sign in (1, -1):
-                changed = {**part.modes, **{twin: s * sign for twin, s in self.system.twins.get(mode, [(mode, 1)])}}
+                changed = {**part.modes, **{twin: s * sign for twin, s in self._twins(mode)}}
                 if self.by_name[mode].kind == "floor":
                     changed = {**part.modes, mode: part.modes[mode] - (sign < 0)}
                 sides.append(self._rate_slopes(replace(part, modes=changed), t, y))
@@ -447,6 +458,8 @@ class _Walk:
         changes = np.array([guard.change(by) for guard in guards])
         if not changes.any():
             return by
+        for mode in held:
+            self._require_one_surface(self._beside(part, {mode: 1}), mode, part.start, part.first)
         # A nearby start leads to the jumps at once. On the way, the rates are f + B s with modes s between -1 and 1;
         # the states change by B c, so that all guards return to zero.
         corners = {
@@ -476,7 +489,7 @@ class _Walk:
         if not change.any() or is_continuous(self.by_name[mode]):
             return
         variable = self.equations.variables[int(np.flatnonzero(change)[0])].name
-        twins = self.system.twins.get(mode, [(mode, 1)])
+        twins = self._twins(mode)
         flipped = {twin: -part.modes[twin] for twin, _ in twins}
         if self.by_name[mode].kind == "floor":
             flipped = {mode: other}
@@ -493,7 +506,8 @@ class _Walk:
         changed = [
             mode
             for mode, value in after.modes.items()
-            if mode not in before.held and mode not in after.held and value != before.modes[mode]
+            if mode not in {*before.held, *after.held, *self.system.tied(before.held), *self.system.tied(after.held)}
+            and value != before.modes[mode]
         ]
         held, released = after.held - before.held, sorted(before.held - after.held)
         if not changed and not held and not released:
@@ -506,6 +520,8 @@ class _Walk:
                 # a guard with another switching function inside jumps over zero, and follows that function
                 if self._is_zero(before, mode, guard, f):
                     causes[mode] = guard
+        for mode in sorted(held & before.regime.formulas.keys()):
+            self._require_one_surface(before, mode, before.stop, before.last)
         jumps = {mode: guard for mode, guard in causes.items() if not is_continuous(self.by_name[mode])}
         rows: dict[str, Floats] = {}
         for mode, guard in causes.items():
@@ -516,13 +532,18 @@ class _Walk:
             if grazes and mode in jumps:
                 raise self._stop(before.end, f"the argument of {self._name(mode)} reaches zero with the speed zero")
             rows[mode] = np.full(len(by.T), np.nan) if grazes else 0.0 - guard.change(by) / speed
-        if not jumps and (changed or held) and not causes and not released:
-            names_of = " and ".join(map(self._name, [*changed, *sorted(held)]))
-            raise self._stop(before.end, f"no argument is zero where {names_of} switches")
+        if not jumps and float(np.abs(later - f).max()) > STEEP * float(np.abs([f, later]).max()):
+            names_of = " and ".join(map(self._name, [*changed, *sorted(held), *released]))
+            raise self._stop(before.end, f"the torque jumps where no argument is zero in {names_of}")
         first = next(iter(jumps), None)
-        for mode in jumps:
-            if first is not None and not _alike(rows[first], rows[mode]).all():
-                raise self._stop(before.end, f"{self._name(first)} and {self._name(mode)} switch at once")
+        if first is not None:
+            flips = {mode: _Flip(after.modes[mode], rows[mode], jumps[mode].states) for mode in jumps}
+            alone = not held and set(changed) <= causes.keys()
+            change = self._at_once(before, flips, alone)
+            self._last = before, after.begin, flips, alone
+            if change is not None:
+                self._note(after.begin, rows, rows[first])
+                return np.asarray(by - change)
         if not causes:
             for mode in released:
                 value = self._held_mode(before, mode)
@@ -531,6 +552,72 @@ class _Walk:
                 rows[mode] = np.full(len(by.T), np.nan) if grazes else 0.0 - value.change(by) / speed
         self._note(after.begin, rows, rows[first] if first is not None else None)
         return by if first is None else np.asarray(by - np.outer(later - f, rows[first]))
+
+    def _twins(self, mode: str) -> list[tuple[str, int]]:
+        """Return the modes that switch together with a mode, as pairs (mode, 1 or -1)."""
+        return self.system.twins.get(mode, [(mode, 1)])
+
+    def _at_once(self, part: _Part, flips: dict[str, _Flip], alone: bool) -> Floats | None:
+        """Return the jump of the derivatives where functions switch at once at the end of an interval, shape (7, m).
+
+        None: the functions also switch at once if a variable changes, or only one switches. Otherwise each must change
+        the rates by the same amount before and after the others switch, and leave the speeds of their guards unchanged.
+
+        Parameters
+        ----------
+        part : _Part
+            The interval.
+        flips : mapping
+            The modes that switch.
+        alone : bool
+            Whether no other function switches, and none is held at zero.
+        """
+        earlier = self._last
+        between = earlier is not None and abs(part.end - earlier[1]) <= AT_SWITCH * max(abs(part.end.high), self.length)
+        if earlier is not None and between:
+            # a switch within rounding errors of this one; both must be independent of each other
+            part, flips, alone = earlier[0], {**earlier[2], **flips}, alone and earlier[3]
+        groups: list[list[str]] = []
+        for mode, flip in flips.items():
+            group = next((each for each in groups if _alike(flips[each[0]].time, flip.time).all()), None)
+            groups.append([mode]) if group is None else group.append(mode)
+        if len(groups) == 1:
+            return None
+        refusal = self._stop(part.end, f"{' and '.join(map(self._name, flips))} switch at once")
+        if not alone or len(groups) > MOST_AT_ONCE:
+            raise refusal
+        corners = {}
+        for chosen in product((False, True), repeat=len(groups)):
+            own = [mode for group, flip in zip(groups, chosen, strict=True) if flip for mode in group]
+            modes = {**part.modes, **{mode: flips[mode].value for mode in own}}
+            corner = replace(part, modes=modes, regime=self.system.regime(part.held, modes))
+            corners[chosen] = self.rates(corner, part.stop, part.last)
+        first = corners[(False,) * len(groups)]
+        jumps = np.array([corners[tuple(k == n for n in range(len(groups)))] - first for k in range(len(groups))])
+        size = ALIKE * max(float(np.abs(rates).max()) for rates in corners.values())
+        for chosen, rates in corners.items():
+            if np.abs(first + np.array(chosen, dtype=np.float64) @ jumps - rates).max() > size:
+                raise refusal
+        for k, group in enumerate(groups):
+            for mode in group:
+                speeds = np.delete(jumps, k, axis=0) @ flips[mode].guard
+                if np.abs(speeds).max() > size * float(np.abs(flips[mode].guard).max()):
+                    raise refusal
+        if between:
+            return None
+        return np.asarray(jumps.T @ np.array([flips[group[0]].time for group in groups]))
+
+    def _require_one_surface(self, part: _Part, mode: str, t: float, y: Floats) -> None:
+        """Raise PropagationError if functions that a motion holds at zero together are separated by a variable."""
+        guard = self._guard(part, mode, t, y)
+        own = np.array([guard.time, *guard.states, *guard.variables])
+        for twin, _ in self._twins(mode):
+            if twin not in part.regime.formulas:
+                continue
+            other = self._guard(part, twin, t, y)
+            row = np.array([other.time, *other.states, *other.variables])
+            if np.abs(own * (row @ own) - row * (own @ own)).max() > ALIKE * (own @ own) * np.abs(row).max():
+                raise self._stop(part.zero.after(t), f"{self._name(mode)} and {self._name(twin)} switch at once")
 
     def _is_zero(self, part: _Part, mode: str, guard: _Gradient, rates: Floats) -> bool:
         """Return whether a guard is zero at the end of an interval; for floor(x): whether x is a whole number."""

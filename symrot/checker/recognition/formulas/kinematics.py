@@ -165,7 +165,9 @@ def rotations() -> Iterator[Named]:
 
 
 def _entries() -> Iterator[Named]:
-    """Yield the matrix entries of a unit quaternion or axis, and the quaternion components from matrix entries."""
+    """Yield the matrix entries of a unit quaternion, an axis and angle, or Euler angles, and the quaternion components
+    from matrix entries.
+    """
     of_axis = _with_unit_axis(Matrix(rotation_vector.dcm_of_axis_angle()))
     for i in range(3):
         for j in range(3):
@@ -224,7 +226,9 @@ def _angles() -> Iterator[Named]:
 
 
 def _euler_angles() -> Iterator[Named]:
-    """Yield yaw, pitch and roll, the angles of ZYX, from a unit quaternion and from the entries of a matrix."""
+    """Yield yaw, pitch and roll, the angles of ZYX, and some angles of ZYZ, ZXZ and XYZ, from a unit quaternion or
+    matrix entries.
+    """
     yaw, pitch, roll = symbols.angles
     matrix = euler.dcm("ZYX")
     for name, angle, over, under in (("yaw", yaw, (1, 0), (0, 0)), ("roll", roll, (2, 1), (2, 2))):
