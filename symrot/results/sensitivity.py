@@ -91,6 +91,7 @@ class Sensitivities(Mapping[str, Sensitivity]):
         Requested name -> the numbers of its variables.
     omega, quaternion, rotation : array, shape (n, 3, m), (n, 4, m), (n, 3, m)
         The derivatives, as in :class:`Sensitivity`; for an ensemble, with one more axis, the first, over the motions.
+        NaN exactly at a switch of a torque, for variables whose derivatives jump there.
     t_events : tuple of arrays, shape (k, m)
         For each event, the derivatives of its k times, s per unit of the variable; NaN where they do not exist, as
         where the formula of the event touches zero.

@@ -77,6 +77,7 @@ def test_derivatives_of_a_body_that_friction_holds_at_rest_from_the_start():
 
 
 @needs_compiler
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(
     ("torque", "parameters", "names", "message"),
     [
@@ -91,6 +92,14 @@ def test_derivatives_of_a_body_that_friction_holds_at_rest_from_the_start():
 def test_where_derivatives_do_not_exist_a_sentence_says_so(torque, parameters, names, message):
     with pytest.raises((PropagationError, InputError), match=message):
         symrot.propagate(scene(["0", "0", torque], parameters, (0, 0, 1)), sensitivities=names)
+
+
+@needs_compiler
+def test_derivatives_by_the_limit_of_a_torque():
+    """The torque t is cut off at b = 1: omega_3 at 3 s is 1 + (b^2/2 + b (3 - b))/C."""
+    motion = symrot.propagate(scene(["0", "0", "clip(t, -b, b)"], {"b": 1}, (0, 0, 1)), t=[3], sensitivities=["b"])
+    assert np.isclose(motion.sensitivities.omega[0, 2, 0], 2 / 3, rtol=1e-14)
+    assert [each.slopes.tolist() for each in motion.sensitivities.switchings] == [[1.0]]
 
 
 @needs_compiler

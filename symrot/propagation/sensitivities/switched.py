@@ -254,7 +254,6 @@ class _Walk:
         plan = Plan(own, equations.structure, ())
         self.motion = SwitchedMotion(plan, choose_method(plan, "taylor"), TOLERANCE)
         self.system: SwitchedSystem = self.motion.system
-        self.labels = {switch.label: switch.mode for switch in self.system.switches}
         self.by_name = {switch.mode: switch for switch in self.system.switches}
         self.switchings: list[SwitchSlopes] = []
         self._rates: dict[int, tuple[Program, Parameters]] = {}
@@ -642,7 +641,8 @@ class _Walk:
         unknown = np.full(len(self.equations.columns), np.nan)
         for (t, label), how in self.changes.items():
             if t == instant.high:
-                row = rows.get(self.labels[label])
+                # clip has two modes
+                row = next((own for mode, own in rows.items() if self._name(mode) == label), None)
                 own = row if row is not None else others if others is not None else unknown
                 self.switchings.append(SwitchSlopes(t, label, how, own))
 
