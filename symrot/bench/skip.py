@@ -1,8 +1,8 @@
 """The gain of specialised kernels: cost of each motion with the most general kernel and with the scene's own kernel.
 
-The general kernel has a full inertia tensor, the attitude and every kind of torque. Both must reach the same final
-state. The table has nanoseconds per evaluation of the rates in C, and microseconds per motion; the column ``auto us``
-is the time with the method ``auto``.
+The general kernel has a full inertia tensor, the attitude and all torques that can act together. Both must reach the
+same final state. The table has nanoseconds per evaluation of the rates in C, and microseconds per motion; the column
+``auto us`` is the time with the method ``auto``.
 """
 
 import ctypes
@@ -67,7 +67,7 @@ def _nothing(kind: str) -> Torque:
 
 
 def general_plan(scene: Scene) -> Plan:
-    """Return a plan for ``scene`` without simplifications: full inertia tensor, no symmetry, every kind of torque."""
+    """Return a plan for ``scene`` with full inertia tensor, no symmetry and all torques that can act together."""
     kinds = {torque.kind for torque in scene.torques}
     left_out = ABOUT_POINT if kinds & set(ABOUT_CENTRE) else ABOUT_CENTRE
     # Kinds that the scene lacks get a zero torque.

@@ -23,6 +23,8 @@ __all__ = ["as_equation"]
 
 HIGHEST_DEGREE = 12
 """The highest degree of a polynomial whose real roots are counted."""
+MANY_TO_ONE = ("sin", "cos", "tan", "abs")
+"""Functions that have one value for several arguments."""
 
 
 def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:
@@ -45,7 +47,9 @@ def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:
     if values is None:
         return verdict
     name = notation.formula(letter)
-    return _open(verdict, f"it is an equation for {name}, and no identity: it holds for {_in(notation, values)}")
+    example = ", for example" if _may_have_others(claim, letter) else ""
+    reason = f"it is an equation for {name}, and no identity: it holds for {_in(notation, values)}{example}"
+    return _open(verdict, reason)
 
 
 def _in(notation: Notation, values: str) -> str:
@@ -60,8 +64,8 @@ def _open(verdict: Verdict, reason: str) -> Verdict:
 
 
 def _values(claim: Claim, letter: Node, once: bool) -> str | None:
-    """Return the real values of ``letter`` that solve the claim's equation, as text, ``"x == 2"``; None if not
-    known.
+    """Return the real values of ``letter`` that solve the claim's equation, or one of them, as text, ``"x == 2"``; None
+    if none is known.
     """
     left, right = claim.equation.left, claim.equation.right
     symbol = claim.interpreter().read(letter)
@@ -86,6 +90,20 @@ def _values(claim: Claim, letter: Node, once: bool) -> str | None:
     if value.is_real is not True or decide(*sides).verdict != "true":
         return None
     return f"{text(letter)} == {as_text(value)}"
+
+
+def _may_have_others(claim: Claim, letter: Node) -> bool:
+    """Return whether an equation may have more solutions than the one by inverse functions, as ``sin x = 1/2`` has."""
+    if _is_polynomial(claim, letter):
+        return False  # all its real roots are known
+    assert claim.relation is not None
+    above = [
+        node for side in claim.relation[1:] for _, node in walk(side) if letter in [part for _, part in walk(node)]
+    ]
+    return any(node.kind == "call" and node.value in MANY_TO_ONE for node in above) or any(
+        node.kind == "power" and node.args[1].kind == "number" and node.args[1].value.numerator % 2 == 0
+        for node in above
+    )
 
 
 def _roots(difference: Expr, symbol: Symbol, name: str) -> str | None:

@@ -580,7 +580,7 @@ def _parser(only: str = "") -> _Parser:
 
 
 def _check_command(arguments: Sequence[str]) -> None:
-    """Raise InputError for an unknown command; the message suggests the most similar command."""
+    """Raise InputError for an unknown command; the message lists all commands and may suggest a similar one."""
     if arguments and not arguments[0].startswith("-") and arguments[0] not in COMMANDS:
         message = f"expected a command, one of {', '.join(COMMANDS)}, got {arguments[0][:60]!r}"
         raise InputError(with_hint(message, arguments[0], COMMANDS))
@@ -589,7 +589,7 @@ def _check_command(arguments: Sequence[str]) -> None:
 def _check_unknown(command: str, unknown: Sequence[str]) -> None:
     """Raise InputError for the first of the words ``unknown``, which the command's parser did not recognise.
 
-    The message suggests the most similar option. If ``unknown`` is empty, nothing happens.
+    The message may suggest a similar option. If ``unknown`` is empty, nothing happens.
     """
     if not unknown:
         return

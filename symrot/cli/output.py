@@ -43,7 +43,8 @@ def progress(text: str) -> None:
     """
     if sys.stderr.isatty():
         try:
-            width = os.get_terminal_size(sys.stderr.fileno()).columns - 1 or len(text)
+            columns = os.get_terminal_size(sys.stderr.fileno()).columns
+            width = columns - 1 if columns > 1 else len(text)  # a terminal may not know its width: 0 columns
         except (OSError, ValueError, AttributeError):
             width = len(text)
         sys.stderr.write(f"\r\x1b[K{text[:width]}")  # cut to one line: a wrapped line could not be cleared

@@ -25,7 +25,7 @@ from symrot.planning.general_structure import general_structure, switched
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.stepping import Floats
-from symrot.scene.attitude import refuse_two
+from symrot.scene.attitude import ORTHOGONAL, refuse_two
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial
 
@@ -360,6 +360,14 @@ def _quaternions(attitude: Any) -> ArrayLike:
         return np.roll(np.atleast_2d(attitude.as_quat()), 1, axis=1)
     array = real_array(attitude, "attitude", "rotations of SciPy, or an array of shape (n, 4) or (n, 3, 3)")
     if array.shape[1:] == (3, 3):
+        # a NaN is no rotation either
+        right = abs(array @ array.swapaxes(1, 2) - np.eye(3)).max(axis=(1, 2)) <= float(ORTHOGONAL)
+        right &= (np.cross(array[:, 0], array[:, 1]) * array[:, 2]).sum(axis=1) > 0
+        if not right.all():
+            raise InputError(
+                "attitude: expected rotations, matrices with orthonormal rows, to 1e-9, and the determinant +1, got "
+                f"another matrix in trajectory {int(np.argmin(right))}"
+            )
         return dcm_to_quaternion(array)
     if array.shape[1:] != (4,):
         raise InputError(f"attitude: expected an array of shape (n, 4) or (n, 3, 3), got shape {array.shape}")

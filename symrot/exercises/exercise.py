@@ -81,7 +81,7 @@ class Question:
     latex : str
         The answer as LaTeX.
     decimal : str
-        The number with 17 digits; empty for a formula.
+        The number, rounded to a double, as text; empty for a formula.
     unit : str
         The unit of the answer; empty for a pure number.
     symbols : dict of str to str
@@ -219,7 +219,7 @@ def make(template: str, topic: str, seed: int, problem: Problem, source: Random)
     Raises
     ------
     ProofError
-        If a line of the solution does not hold.
+        If a line of the solution does not hold, or no random numbers suit the problem.
     """
     for line in problem.lines:
         _prove(template, line)
@@ -344,7 +344,10 @@ def _misused(quantity: Quantity, value: Expr) -> Iterator[tuple[str, Expr]]:
 
 
 def _number_latex(exact: Expr, unit: str) -> str:
-    """Return an answer with its unit as LaTeX: the exact number, also rounded unless it is a short decimal."""
+    """Return an answer with its unit as LaTeX: the exact number, also rounded unless it is a short decimal.
+
+    A long exact number is only rounded.
+    """
     rounded = decimal(exact)
     latex = _scientific(rounded)
     if not exact.is_Rational or Rational(rounded) != exact:

@@ -102,7 +102,7 @@ def chain(
 ) -> tuple[Line, ...]:
     """Return the lines of a solution: ``law`` gives the value ``written``; ``then`` says how it becomes ``result``.
 
-    There is only the first line if the two values are equal.
+    There is only the first line if both are the same expression.
     """
     # each line: reason, quantity, value, displayed name
     first = Line(law, left, written, name)

@@ -104,8 +104,8 @@ def exercise(topic: str | Sequence[str] = "", *, seed: int = 0, count: int = 1) 
         A topic or the name of a template, see ``symrot exercise --list``. Several of them supply one exercise each,
         in turn; an empty text stands for all topics.
     seed : int
-        Seed of the random choices. Another seed gives other numbers and begins with another template; the same seed
-        gives the same exercises on every machine.
+        Seed of the random choices. Another seed usually gives other numbers and begins with another template; the same
+        seed gives the same exercises on every machine.
     count : int
         The number of exercises. Each of several topics has as many of them as any other, or one less.
 

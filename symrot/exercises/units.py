@@ -85,6 +85,8 @@ def unit_latex(unit: str) -> str:
 def decimal(value: Any, digits: int = 4) -> str:
     """Return a number as text, rounded to ``digits`` significant digits, without an exponent unless the text gets long.
 
+    A whole number below 10^6 is not rounded.
+
     Examples
     --------
     >>> decimal(Rational(1, 3)), decimal(Integer(120000)), decimal(Rational(1, 2))

@@ -89,7 +89,10 @@ def turning(start: ArrayLike, end: ArrayLike) -> Floats:
 
 
 def cone(axis: ArrayLike, half_angle: float, length: float, view: View) -> tuple[Floats, list[Floats]]:
-    """Return the rim of a cone with its apex at the origin, and the two lines of its visible outline."""
+    """Return the rim of a cone with its apex at the origin, and the two lines of its visible outline.
+
+    There are no such lines if the line of sight lies inside the cone.
+    """
     n, radius = unit(axis), length * np.sin(half_angle)
     rim = circle(length * np.cos(half_angle) * n, n, radius)
     first, second = basis(n)

@@ -61,7 +61,7 @@ class View:
 
 @dataclass(frozen=True)
 class Plane:
-    """A view of a plane in a picture: x to the right and y upward, with two different scales."""
+    """A view of a plane in a picture: x to the right and y upward, with one scale or two."""
 
     scale: float = 100.0
     origin: tuple[float, float] = (0.0, 0.0)

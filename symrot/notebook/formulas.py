@@ -33,7 +33,10 @@ def step(one: Step) -> str:
 
 
 def solid(body: Solid) -> str:
-    """Return the mass, the centre of mass and the inertia tensor of a solid as Markdown with formulas."""
+    """Return the mass, the centre of mass and the inertia tensor of a solid as Markdown with formulas.
+
+    A mass that is a bare symbol and a centre at the origin are left out.
+    """
     lengths = ", ".join(f"{name.replace('_', ' ')} ${formula(value)}$" for name, value in _lengths(body))
     title = f"**{body.name.replace('_', ' ')}**" + (f", {lengths}" if lengths else "")
     parts = [title, equation("m", body.mass)] if not body.mass.is_Symbol else [title]

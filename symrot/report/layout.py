@@ -55,13 +55,14 @@ def duration(seconds: float) -> str:
 
 
 def emphasis(text: str, stream: TextIO) -> str:
-    """Return text, in bold if the stream is a terminal and NO_COLOR is not set (https://no-color.org)."""
+    """Return text, in bold if the stream is a terminal that shows it and NO_COLOR (https://no-color.org) is not set."""
     bold = stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
     return f"\x1b[1m{text}\x1b[0m" if bold else text
 
 
 def room(most: int = WIDTH) -> int:
-    """Return the width of printed lines in characters: the width of the terminal or ``most``, whichever is smaller.
+    """Return the width of printed lines in characters: the width of the terminal less a margin or ``most``,
+    whichever is smaller.
 
     If the output goes to a pipe or file, the width is ``most``.
     """

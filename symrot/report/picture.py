@@ -1,6 +1,6 @@
 """The style of all matplotlib figures, and functions that write figures to PDF, SVG or PNG files without a date.
 
-PNG files get a palette of few colours, which makes them small.
+PNG files of figures without shades get a palette of few colours, which makes them small.
 """
 
 from collections.abc import Callable

@@ -266,7 +266,7 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
         ``"rates"``, the angular velocity in the body; ``"attitude"``, Euler angles if the scene has a sequence, else
         the quaternion; ``"vertical"``, the angles to the vertical of a body under gravity or of a satellite under a
         gravity gradient; ``"drift"`` of the conserved quantities; ``"body"``, the path of the angular momentum or the
-        axis of rotation in the body; ``"space"``, the path of the symmetry axis in space.
+        axis of rotation in the body; ``"space"``, the path of the symmetry axis, or else of a body axis, in space.
 
     Returns
     -------
@@ -316,7 +316,7 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
 
 
 def figure(trajectory: Any, tolerance: float) -> Any:
-    """Return a matplotlib Figure with all panels of a motion on one page, drawn from the samples of ``trajectory``.
+    """Return a matplotlib Figure with the panels that suit a motion, drawn from the samples of ``trajectory``.
 
     ``tolerance``, the tolerance of the integration, is a line in the panel of the conserved quantities.
     """

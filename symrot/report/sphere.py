@@ -75,7 +75,7 @@ def _unit(vectors: Floats) -> Floats:
 
 
 def _eye(directions: Floats) -> Floats:
-    """Return axes of view for which the path of ``directions`` lies on the near side, shape (3, 3).
+    """Return axes of view for which the middle of the path ``directions`` lies on the near side, shape (3, 3).
 
     The rows are the unit vectors to the right, upward and toward the eye.
     """

@@ -22,7 +22,7 @@ OUTERMOST = 1.5  # runs with larger errors are not shown
 
 
 class Look(NamedTuple):
-    """How a method's curve is drawn in every figure: its colour, marker and dash pattern of matplotlib."""
+    """How a method's curve is drawn in every figure: its colour, marker, line width and dash pattern of matplotlib."""
 
     colour: str
     marker: str
@@ -80,7 +80,7 @@ def _names(axes: Any, ends: list[tuple[float, str, str]]) -> None:
     placed: list[float] = []
     for height in heights:
         placed.append(max(height, placed[-1] + APART) if placed else height)
-    # move names that are above the top down again, then centre groups of names on the ends of their curves
+    # move names that are above the top down again
     for number in range(len(placed) - 1, -1, -1):
         ceiling = 1.0 if number == len(placed) - 1 else placed[number + 1] - APART
         placed[number] = min(placed[number], ceiling)

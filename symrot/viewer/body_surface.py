@@ -192,7 +192,10 @@ def _about_its_center(body: Body) -> tuple[Principal, float, Point] | None:
 
 
 def _equivalent_box(body: Body) -> list[Patch]:
-    """Return the faces of the uniform box that has the same moments of inertia as a body."""
+    """Return the faces of the uniform box that has the same moments of inertia as a body.
+
+    A body without a mass gives only the proportions; very thin sides are made visible.
+    """
     central = _about_its_center(body)
     principal, mass, center = central or (body.principal, None, (0.0, 0.0, 0.0))
     moments = [float(moment) for moment in principal.moments]

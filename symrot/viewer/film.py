@@ -28,7 +28,8 @@ MOST_FLAT = 60
 LONGEST_TITLE = 60
 SIZE = 5.0  # inches at 100 dots per inch
 REACH = 1.75  # half the width of the picture, relative to the size of the body
-CLOSE = 0.2  # distance of the tips of two arrows
+LOWER = 0.6  # how far below the origin the axes x and y reach on the screen, as a height
+CLOSE = 0.35  # distance of the tips of two arrows
 TIP = 1.35  # length of the drawn axis of the body
 BODY, EDGE, AXES, OMEGA, MOMENTUM, TRAIL = "#7fa6cf", "#24364a", "#6b7684", "#d55e00", "#0060b0", "#008a63"
 VIEW = {"elev": 22.0, "azim": -52.0}
@@ -111,21 +112,25 @@ def _frames(trajectory: Trajectory, times: Floats) -> Iterator[Floats]:
     polygons = [face / size for patch in surface for face in _polygons(patch)]
     shades = [_shade(patch, place) for patch in surface for place in range(len(_polygons(patch)))]
     curves = [np.array(part) / size for patch in surface if patch.rows == 1 for part in _curves(patch)]
+    middle = _middle(np.concatenate([np.zeros((1, 3)), *polygons, *curves]), dcms, path)
     figure = Figure(figsize=(SIZE, SIZE), dpi=100)
     canvas = FigureCanvasAgg(figure)
     for number, (time, dcm, omega) in enumerate(zip(times, dcms, omegas, strict=True)):
         figure.clear()
         axes: Any = figure.add_axes((0, 0, 1, 1), projection="3d", computed_zorder=False)
-        _draw(axes, [face @ dcm.T for face in polygons], shades, path, number / max(len(times) - 1, 1))
+        _draw(axes, [face @ dcm.T for face in polygons], shades, path, number / max(len(times) - 1, 1), middle)
         for points_of_curve in curves:
             style = {"marker": "o", "linestyle": ""} if len(points_of_curve) < 2 else {"linewidth": 4}
             axes.plot(*(points_of_curve @ dcm.T).T, color=BODY, zorder=2, **style)
         rate, momentum = dcm @ omega * scales[0], dcm @ (inertia @ omega + rotor) * scales[1]
         is_close = bool(np.linalg.norm(rate - momentum) < CLOSE)  # the two labels would cover each other
-        arrows = ((rate, OMEGA, "\u03c9", 1.25 if is_close else 1.1), (momentum, MOMENTUM, "L", 1.1))
-        for vector, colour, name, place in arrows:
+        far = max(np.linalg.norm(rate), np.linalg.norm(momentum))
+        for vector, colour, name, side in ((rate, OMEGA, "\u03c9 ", "right"), (momentum, MOMENTUM, " L", "left")):
             axes.quiver(0, 0, 0, *vector, color=colour, linewidth=2, arrow_length_ratio=0.1, zorder=5)
-            axes.text(*(place * vector), name, color=colour, fontsize=13, fontstyle="italic", zorder=6)
+            # beside each other at the farther tip, if the tips are close
+            place = 1.1 * far * vector / max(np.linalg.norm(vector), 1e-300) if is_close else 1.1 * vector
+            label = {"color": colour, "fontsize": 13, "fontstyle": "italic", "zorder": 6}
+            axes.text(*place, name if is_close else name.strip(), ha=side if is_close else "center", **label)
         title = scene.title if len(scene.title) <= LONGEST_TITLE else f"{scene.title[: LONGEST_TITLE - 2]} .."
         figure.text(0.02, 0.95, title, fontsize=11, color=EDGE, parse_math=False)
         figure.text(0.02, 0.03, f"t = {time:.4g} s", fontsize=11, color=EDGE)
@@ -141,12 +146,22 @@ def _attitudes(trajectory: Trajectory, times: Floats) -> Floats:
     return quaternions
 
 
-def _draw(axes: Any, polygons: list[Floats], shades: list[float], path: Floats, part: float) -> None:
+def _middle(body: Floats, dcms: Floats, path: Floats) -> float:
+    """Return the height of the middle of the picture: above the origin if the body never comes far below it.
+
+    ``body`` are points of the body, shape (n, 3), ``dcms`` its attitudes, and ``path`` the path of its axis.
+    """
+    lowest = min(float((dcms[:, 2, :] @ body.T).min()), float(path[:, 2].min()))
+    # the axes x and y end lower on the screen than the origin
+    return max(0.0, (REACH + lowest - LOWER) / 2)
+
+
+def _draw(axes: Any, polygons: list[Floats], shades: list[float], path: Floats, part: float, middle: float) -> None:
     """Draw one frame: the body, the axes of space, and the path of the body's axis, strong up to this frame."""
     from matplotlib.colors import to_rgb
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-    axes.set(xlim=(-REACH, REACH), ylim=(-REACH, REACH), zlim=(-REACH, REACH))
+    axes.set(xlim=(-REACH, REACH), ylim=(-REACH, REACH), zlim=(middle - REACH, middle + REACH))
     axes.set_box_aspect((1, 1, 1), zoom=1.3)
     axes.view_init(**VIEW)
     axes.set_axis_off()

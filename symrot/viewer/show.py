@@ -32,7 +32,7 @@ def show(
 ) -> Path:
     """Write a motion as one offline HTML page that computes and plays it, or as a film.
 
-    Readers can change the motion in the page.
+    Readers can change the motion in the page if it is computed there.
 
     Parameters
     ----------

@@ -7,7 +7,8 @@ import symrot
 
 @pytest.mark.parametrize(("text", "values"), [
     ("x² = 4", "x = -2 and x = 2"), ("x^2 + 5x + 6 = 0", "x = -3 and x = -2"), ("x^3 = 2x - 5", "one real value only"),
-    ("sin θ = 3/5", "θ = asin(3/5)"), ("1/x = 2", "x = 1/2"), (r"\cos\theta = \frac{1}{2}", r"\theta = \frac{\pi}{3}"),
+    ("sin θ = 3/5", "θ = asin(3/5), for example"), ("1/x = 2", "x = 1/2"), ("|x| = 2", "x = 2, for example"),
+    (r"\cos\theta = \frac{1}{2}", r"\theta = \frac{\pi}{3}, for example"), ("1/x^2 = 4", "x = 1/2, for example"),
 ])  # fmt: skip
 def test_an_equation_for_a_letter_says_for_which_values_it_holds(text, values):
     verdict = symrot.check(text)

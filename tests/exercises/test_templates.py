@@ -39,6 +39,11 @@ def test_an_exercise_is_complete_and_its_own_answers_are_right(name):
             assert symrot.grade(exercise, {question.key: answer}).credit == 1, (answer, question)
 
 
+def test_the_torque_on_a_crank_does_not_mention_a_speed_that_is_not_given():
+    exercise = symrot.exercise("crank_torque")[0]
+    assert "Omega" not in exercise.statement and exercise.statement.startswith("A crank has the length $r$.")
+
+
 @pytest.mark.parametrize("name", NAMES[::20])
 def test_a_formula_has_the_unit_of_its_number(name):
     exercise = symrot.exercise(name, seed=2)[0]

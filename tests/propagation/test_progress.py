@@ -79,3 +79,11 @@ def test_a_line_of_progress_is_cut_to_the_width_of_the_terminal(monkeypatch):
     cli_output.progress("")
     first, second = terminal.text.split("\r\x1b[K")[1:]
     assert len(first) == 39 and second == ""
+
+
+def test_a_terminal_that_does_not_know_its_width_shows_the_whole_line(monkeypatch):
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setattr(os, "get_terminal_size", lambda number: os.terminal_size((0, 0)))
+    cli_output.progress("1 of 2: deriving poinsot")
+    assert terminal.text == "\r\x1b[K1 of 2: deriving poinsot"

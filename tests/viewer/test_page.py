@@ -10,6 +10,7 @@ import pytest
 import symrot
 from symrot.errors import InputError
 from symrot.scene.scene import Scene
+from symrot.viewer import film
 from symrot.viewer.body_surface import patches
 from symrot.viewer.page import page
 from tests.viewer.browser import BROWSER, Browser
@@ -176,6 +177,13 @@ def test_a_body_about_a_fixed_point_is_drawn_from_it():
     points = np.array([point for patch in patches(symrot.load_scene("heavy_top_loops").body) for point in patch.points])
     assert points[:, 2].min() == pytest.approx(0.05)
     assert points[:, 2].max() == pytest.approx(0.07)
+
+
+def test_the_picture_of_a_top_is_not_empty_below_its_tip():
+    """A body that stays above the origin moves the picture up; a free body stays in its middle."""
+    still, path = np.eye(3)[None], np.array([[0.0, 0.0, 1.0], [0.3, 0.0, 0.9]])
+    top, free = np.array([[0.0, 0.0, 0.0], [0.2, 0.0, 0.9]]), np.array([[0.0, 0.0, -0.9], [0.0, 0.0, 0.9]])
+    assert film._middle(top, still, path) > 0.5 and film._middle(free, still, np.vstack([path, -path])) < 0.1
 
 
 def test_a_film_has_the_frames_of_the_dense_motion(tmp_path):

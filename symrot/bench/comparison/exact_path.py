@@ -1,4 +1,4 @@
-"""Reference motions, computed to 40 digits by Taylor series in mpmath; for free bodies, over any number of periods.
+"""Reference motions by Taylor series with 40 digits, errors near 1e-28; for free bodies, over any number of periods.
 
 Every period P of a free body adds the same rotation: ``q(t + n P) = R^n q(t)`` with ``R = q(P) q(0)^-1``. So the series
 of one period suffice for a million. The tested closed form shares no code.
@@ -140,7 +140,7 @@ class ExactPath:
             return np.array([[float(x) for x in self.state(mpmath.mpf(float(t)))] for t in times])
 
     def period(self) -> Any:
-        """Return the period of the angular velocity of a free body, to about 35 digits.
+        """Return the period of the angular velocity of a free body, to about 29 digits.
 
         Raises
         ------

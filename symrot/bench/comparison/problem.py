@@ -48,7 +48,7 @@ class Problem:
 
     @cached_property
     def kernel(self) -> SceneKernel:
-        """The compiled functions of the scene: the rates dy/dt of the states, and the outputs such as omega."""
+        """The derived functions of the scene: the rates dy/dt of the states, and the outputs such as omega."""
         return scene_kernel(self.plan)
 
     @cached_property

@@ -1,7 +1,7 @@
 """Processor times of several runs that alternate, so that all run under the same conditions.
 
-All runs are timed once per round. A run of microseconds is repeated until the clock can resolve it; a run of seconds is
-timed in fewer rounds. The median and the least time over the rounds are recorded.
+All runs are timed once per round. A run of microseconds is repeated until the clock can resolve it; a run of 0.2 s or
+more is timed in fewer rounds. The median and the least time over the rounds are recorded.
 """
 
 import gc
@@ -26,7 +26,7 @@ class Measured:
     tolerance: float
     steps: int
     error: float
-    first: float  # seconds of the first run, whose error is recorded
+    first: float  # seconds of a call before the race
     seconds: list[float] = field(default_factory=list)
 
     @property
@@ -53,7 +53,7 @@ def seconds_of(run: Callable[[], object], repeats: int = 1) -> float:
 
 
 def rounds_for(seconds: float, rounds: int) -> int:
-    """Return in how many rounds a run is timed: ``rounds``, or at most :data:`SLOW_ROUNDS` if it takes many seconds."""
+    """Return in how many rounds a run is timed: ``rounds``, at most :data:`SLOW_ROUNDS` if it takes :data:`SLOW` s."""
     return rounds if seconds < SLOW else min(rounds, SLOW_ROUNDS)
 
 

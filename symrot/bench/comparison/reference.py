@@ -1,8 +1,8 @@
 """Reference states of a scene's motion, computed by several independent methods, and their differences.
 
 The methods are the rows of :data:`REFERENCES`. The first available reference is used, and the others are compared with
-it; a contradiction raises an error. All start from the exact numbers of the scene, and none steps over a narrow pulse
-of a torque.
+it; if none of them agrees, an error is raised. All start from the exact numbers of the scene, and none steps over a
+narrow pulse of a torque.
 """
 
 import ctypes
@@ -98,7 +98,7 @@ def reference(problem: Problem, say: Progress = lambda text: None, seconds: floa
     ------
     SymrotError
         If no reference is available (the motion ends early, or there is neither a Taylor series nor a compiler), or if
-        references contradict each other.
+        no other reference agrees with the first.
     """
     began = perf_counter()
     paths: list[tuple[str, list[State]]] = []
@@ -343,4 +343,4 @@ REFERENCES: tuple[tuple[str, Callable[[Problem, Progress, float], list[State]]],
     ("closed form", _closed_form),
     ("extrapolated midpoints in long double", _extrapolated),
 )
-"""The references, the most accurate first."""
+"""The references, the preferred first."""

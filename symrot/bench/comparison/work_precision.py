@@ -41,7 +41,7 @@ class Effort(NamedTuple):
 
     rounds: int
     longest: float  # s: after a longer run, the tighter tolerances of its contestant are skipped
-    every: int  # 1 runs all tolerances of a contestant (two per decade), 2 runs every second tolerance
+    every: int  # 1 runs all tolerances of a contestant, 2 runs every second one of more than 16
     reference: float  # s, for the computation of the reference
 
 
@@ -68,11 +68,11 @@ def study(
     methods : str, optional
         Groups of :data:`symrot.bench.comparison.contestants.CONTESTANTS`, comma-separated; default: all.
     quick : bool
-        Whether to run half the tolerances, fewer repetitions, and heyoka in its default setting only.
+        Whether to run half of many tolerances, fewer repetitions, and heyoka in its default setting only.
     say : callable
         Called with messages about the progress.
     tolerances : sequence of float, optional
-        Decreasing numbers; each method runs at those that it supports. Default: two per decade, or one if ``quick``.
+        Decreasing numbers; each method runs at those that it supports. Default: one or two per decade.
     rounds : int, optional
         Number of repetitions of each run. Default: 9, or 5 if ``quick``.
 
@@ -81,7 +81,7 @@ def study(
     InputError
         If a method is unknown, the scene has no state to integrate, or no method can take part.
     SymrotError
-        If the references contradict one another.
+        If no reference is available, or no other reference agrees with the first.
     """
     taking_part, effort = chosen(methods, quick), QUICK if quick else FULL
     if rounds is not None:

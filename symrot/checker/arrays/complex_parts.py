@@ -138,9 +138,8 @@ def substituted(tree: Node, numbers: Mapping[str, Node]) -> Node:
 
 
 def open_numbers(formulas: Sequence[Node], letter: str = "i") -> dict[str, Node]:
-    """Return ``Re_z + i*Im_z`` for each complex number z that nothing defines, as in ``|z|^2 = z z_bar``.
-
-    ``letter`` is the imaginary unit.
+    """Return ``Re_z + i*Im_z`` for each complex number z that nothing defines, as in ``|z|^2 = z z_bar``; {} if z may
+    be real. ``letter`` is the imaginary unit.
     """
     nodes = [node for tree in formulas for _, node in walk(tree)]
     names = [str(node.value) for node in nodes if node.kind == "name"]

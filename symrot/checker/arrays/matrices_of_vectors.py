@@ -107,7 +107,9 @@ def _factors(term: Node) -> Sequence[Node]:
 
 
 def _name_of(factor: Node) -> str:
-    """Return the name K for K and for K^2, and for the length of K squared, as which a reader takes K^2."""
+    """Return the name K for K and for K^2, and for the length of K squared, as which a reader takes K^2; an empty text
+    for others.
+    """
     if factor.kind == "call" and factor.value == "dot" and factor.args[0] == factor.args[1]:
         factor = factor.args[0]
     base = factor.args[0] if factor.kind == "power" else factor

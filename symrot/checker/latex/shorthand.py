@@ -63,7 +63,10 @@ def shorthands(pieces: Sequence[Token], declared: Collection[str] = ()) -> dict[
 
 
 def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int, Shorthand]:
-    """Return the short forms in a text by their positions; ``letters`` maps letters to functions, as c to cos."""
+    """Return the short forms in a text by their positions; ``letters`` maps letters to functions, as c to cos.
+
+    Empty without both a cosine and a sine.
+    """
     named: dict[int, Shorthand] = {}
     numbered: dict[int, tuple[str, str]] = {}
     for before, piece in enumerate(pieces[:-1]):

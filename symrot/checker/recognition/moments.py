@@ -48,7 +48,9 @@ def _share(added: Sequence[float], mass: Values, length: Values) -> Fraction | N
 
 
 def _shares(added: Sequence[float], mass: Values, lengths: Sequence[Values]) -> list[Fraction | None]:
-    """Return simple fractions [k, l] with ``added`` = m (k a^2 + l b^2) at all points, for the ``lengths`` a and b."""
+    """Return simple fractions [k, l] with ``added`` = m (k a^2 + l b^2) at all points, for the ``lengths`` a and b;
+    None where there is none.
+    """
     (first, second, *_), rows = [value / m for value, m in zip(added, mass, strict=True)], [
         (a * a, b * b) for a, b in zip(*lengths, strict=True)
     ]  # fmt: skip

@@ -71,7 +71,7 @@ def check_dimensions(
 
 
 def dimensions_of_formulas(left: Any, right: Any, units: Mapping[str, str] | None = None) -> Dimensions:
-    """Return whether the units of an equation between SymPy values fit together.
+    """Check whether the units of an equation between SymPy values fit together, and return the result.
 
     ``units`` are the units of symbols outside :mod:`symrot.symbols`.
     """

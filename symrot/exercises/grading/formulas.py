@@ -112,7 +112,7 @@ def _sides(answer: str, question: Question) -> tuple[str, str]:
     Raises
     ------
     InputError
-        For a text with several equations, and for names that the exercise does not have.
+        For a text with several equations or without a formula, and for typed names that the exercise does not have.
     """
     text = answer.strip().strip("$").strip()
     *names, formula = re.split(r"==?|:=", text)
@@ -147,7 +147,7 @@ def _plain(text: str) -> str:
 
 
 def _split(match: re.Match[str], known: Collection[str]) -> str:
-    """Return a known name unchanged, others as a product: ``mgl`` gives ``m*g*l``, ``/mgl^2`` gives ``/(m*g*l^2)``."""
+    """Return a name as known names: ``m1`` gives ``m_1``, ``mgl`` gives ``m*g*l``, ``/mgl^2`` gives ``/(m*g*l^2)``."""
     name, power, divided = match["name"], match["power"] or "", match["divided"] or ""
     spelled = re.sub(r"(?<=[A-Za-z])(\d)", r"_\1", name)
     for single in (name, spelled, name.replace("_", "")):

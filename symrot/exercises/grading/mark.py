@@ -17,15 +17,15 @@ class Mark:
     key : str
         The question, such as ``"1a"`` or ``"a"``.
     answer : str
-        The answer as the student wrote it.
+        The answer as the student wrote it; its first 60 letters if it is too long to be read.
     outcome : str
         ``"right"``, ``"wrong"``, ``"unread"`` (the answer cannot be read), ``"undecided"`` or ``"missing"``.
     credit : Fraction
         From 0 to 1.
     code : str
-        The kind of error; empty for a right answer.
+        The kind of error of a wrong answer; otherwise empty.
     text : str
-        One sentence for the student.
+        One sentence for the student; empty for a right answer.
 
     Examples
     --------

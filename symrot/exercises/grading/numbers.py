@@ -42,7 +42,7 @@ _FUNCTIONS: dict[str, Callable[..., float]] = {"sqrt": sqrt, "abs": abs}
 
 @dataclass(frozen=True)
 class _Number:
-    """A number typed by a student: value in SI units, unit, and significant digits (None if it is exact, as 1/3)."""
+    """A number typed by a student: value in its unit, unit, and significant digits (None if it is exact, as 1/3)."""
 
     value: float
     unit: UnitProduct | None

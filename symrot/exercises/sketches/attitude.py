@@ -132,7 +132,7 @@ def two_cameras(first: str, second: str) -> str:
 
 
 def same_axis(axis: str, *letters: str) -> str:
-    """Return an SVG drawing of a shaft, seen along its axis, that is rotated by one or more angles."""
+    """Return an SVG drawing of a shaft, seen along its axis, that is rotated by one or two angles."""
     picture, plane, angle = Picture(), Plane(90), 0.0
     turn = np.linspace(0.0, 2 * np.pi, 121)
     picture.area(plane, np.stack([np.cos(turn), np.sin(turn)], axis=1), "fill-soft")

@@ -74,7 +74,7 @@ def crank_torque(random: Random) -> Problem:
     formula = F_x * r * sin(phi) * (1 + r * cos(phi) / sqrt(L**2 - r**2 * sin(phi) ** 2))
     return Problem(
         "The torque of a piston",
-        ENGINE.replace(r" of length $r$ turns at $\Omega$", " has the length $r$")
+        ENGINE.replace(r" of length $r$ rotates at $\Omega$", " has the length $r$")
         + r" Gas pushes the piston towards the crank with the force $F_x$; masses are neglected.",
         r"The power of the force equals the power of the torque on the crank, $F_x \, (-\dot x) = \tau\dot\phi$.",
         (CRANK, ROD, ANGLE, quantity(F_x, "500 1000 2000 4000", "N", "force")),

@@ -51,7 +51,8 @@ class Entry:
     corrections : tuple of Correction
         The faulty formulas that show the error, each with its correction.
     proof : str
-        One sentence: the reference with which the formula was compared, and a point at which the two differ.
+        One or two sentences: the reference with which the formula was compared, and a point, if known, at which the
+        two differ.
     extracted : tuple of str
         The lines of the document, as they were extracted from its PDF file.
     """

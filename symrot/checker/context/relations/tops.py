@@ -1,4 +1,4 @@
-"""Claims about a symmetric top that mix spin, momenta and rates: ``p_phi = I_1 phi' sin^2 theta + S cos theta``.
+"""Claims about a symmetric top that mix spin, momenta and rates: ``p_phi = I_1 phi' sin^2 theta + I_3 s cos theta``.
 
 Momenta, spin and energies are formulas in the independent quantities: angles, their rates, moments and weight. Books
 use n and s both for the spin along the axis and for the rate of the spin angle: either is tried.
