@@ -24,6 +24,7 @@ from symrot.scene.tables import QUANTITIES, Output
 __all__ = [
     "AT_TIMES",
     "REDUCTIONS",
+    "UNAVERAGED",
     "SweepOutput",
     "evaluate",
     "read_outputs",
@@ -35,6 +36,12 @@ __all__ = [
 Floats = NDArray[np.float64]
 
 AT_TIMES = ("start", "end")
+UNAVERAGED = {
+    "euler": "angles jump by a turn, and the mean of 179 and -179 degrees is not 0",
+    "quaternion": "q and -q are one attitude",
+}
+"""Quantity -> why its components have no mean and no percentiles."""
+
 REDUCTIONS: dict[str, tuple[str, Callable[[Floats], Floats]]] = {
     "min": ("smallest value among the samples", lambda values: values.min(axis=1)),
     "max": ("largest value among the samples", lambda values: values.max(axis=1)),
@@ -139,6 +146,11 @@ def _read(text: object, scene: Scene, times: Floats) -> list[SweepOutput]:
     for key in chosen:
         quantity, k = components[key]
         unit, meaning = QUANTITIES[quantity]
+        if quantity == "euler" and reduction == "mean":
+            raise InputError(
+                f"output: expected an output other than {key + suffix}, since {UNAVERAGED[quantity]}; take the mean of "
+                "axis or dcm"
+            )
         if quantity == "euler":
             unit = "deg" if scene.output.degrees else "rad"
             meaning = f"Euler angle {k + 1} of {scene.output.sequence}, in order of application"

@@ -22,10 +22,10 @@ from symrot.sweeps.cluster import run_on_cluster
 from symrot.sweeps.design import Design, read_design
 from symrot.sweeps.layout import MESSAGE, STATUS, TIME, Header, Store, header_of
 from symrot.sweeps.memory_store import MemoryStore
-from symrot.sweeps.outputs import read_outputs, scene_for, variable_keys
+from symrot.sweeps.outputs import UNAVERAGED, SweepOutput, read_outputs, scene_for, variable_keys
 from symrot.sweeps.parquet_store import ParquetStore
 from symrot.sweeps.processes import cores, run_here
-from symrot.sweeps.statistics import read_statistics, statistics_of
+from symrot.sweeps.statistics import Statistic, read_statistics, statistics_of
 from symrot.sweeps.targets import OMEGA, Content, constants_of
 from symrot.sweeps.zarr_store import ZarrStore
 
@@ -228,6 +228,7 @@ def sweep(
     folders = [table_folders] if isinstance(table_folders, str | Path) else list(table_folders)
     texts = [outputs] if isinstance(outputs, str) else list(outputs)
     job = _job(scene, vary or {}, attitudes, sampling, count, seed, texts, t, method, tolerance, folders)
+    _require_averages(chosen, job.outputs)
     header = header_of(job, chunk)
     if target is None:
         _require_memory(header)
@@ -250,6 +251,17 @@ def sweep(
         tables = statistics_of(store, chosen, outputs_of_store, note) if chosen else []
         store.finish(tables, only_statistics)
     return _result(store, target)
+
+
+def _require_averages(statistics: Sequence[Statistic], outputs: Sequence[SweepOutput]) -> None:
+    """Raise InputError if a statistic is a mean or a percentile of numbers that have none, such as Euler angles."""
+    averages = [statistic.name for statistic in statistics if statistic.name in ("mean", "percentiles")]
+    output = next((output for output in outputs if output.quantity in UNAVERAGED), None)
+    if averages and output is not None:
+        raise InputError(
+            f"statistics: expected outputs that have a {averages[0].removesuffix('s')}, got {output.name}: "
+            f"{UNAVERAGED[output.quantity]}; take axis or dcm, or a histogram"
+        )
 
 
 def _chunks(job: Job, pending: list[tuple[int, int]], workers: int, scheduler: str | None) -> Iterator[Any]:

@@ -208,3 +208,12 @@ def test_drawn_attitudes_keep_an_angular_velocity_given_in_space():
 def test_times_in_another_order_than_that_of_the_results_are_refused():
     with pytest.raises(InputError, match="t: expected sample times in increasing order"):
         sweep(t=[1, 0.5])
+
+
+@pytest.mark.parametrize(("output", "statistic"), [
+    ("euler_ZYX_1@end", "mean"), ("q0", "percentiles(50)"), ("euler_ZYX_1@mean", "envelope"),
+])  # fmt: skip
+def test_angles_and_quaternions_have_no_mean(output, statistic):
+    """Of two tops at 174 and -174 degrees, the mean angle was 0."""
+    with pytest.raises(InputError, match=r"angles jump by a turn|q and -q are one attitude"):
+        sweep(outputs=[output], statistics=statistic)
