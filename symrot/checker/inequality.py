@@ -81,7 +81,8 @@ def verdict_on_inequality(claim: Claim, sign: str, flipped: str) -> Verdict:
     if is_proven_positive(difference) if strict else is_proven_nonnegative(difference):
         return replace(verdict_of_decision(domain, claim.text, 0.0), verdict="true")
     if _is_condition(claim):
-        return _on_least_spin(claim, sign, flipped) or Verdict("definition", reason=CONDITION)
+        on_spin = _on_least_spin(claim, sign)
+        return Verdict("definition", reason=CONDITION) if on_spin is None else on_spin
     if (point := _counterexample(claim, difference, strict)) is not None:
         return Verdict("false", counterexample=point)
     return Verdict(
@@ -90,7 +91,7 @@ def verdict_on_inequality(claim: Claim, sign: str, flipped: str) -> Verdict:
     )
 
 
-def _on_least_spin(claim: Claim, sign: str, flipped: str) -> Verdict | None:
+def _on_least_spin(claim: Claim, sign: str) -> Verdict | None:
     """Return the verdict on an inequality for the least spin of a top, such as ``I_3^2 w_3^2 >= 4 m g l I_1``.
 
     Return None for others.
@@ -106,10 +107,7 @@ def _on_least_spin(claim: Claim, sign: str, flipped: str) -> Verdict | None:
     greater, smaller = (left, right) if sign.startswith(">") else (right, left)
     spin = known.mapping.get(SPIN, SPIN)
     is_right = spin in _letters(greater) and spin not in _letters(smaller)
-    if verdict.verdict == "recognised" and not is_right:
-        repair, text = Repair(flipped, "sign", 1.0), "the sign of the inequality is reversed"
-        return replace(verdict, verdict="doubtful", diagnosis=Diagnosis("sign", text), repairs=(repair,))
-    return verdict if is_right else None
+    return verdict if is_right else None  # a top below the least spin is possible too: it falls
 
 
 def _is_condition(claim: Claim) -> bool:

@@ -1,5 +1,6 @@
 """The commands of exercises: exercise, grade."""
 
+import re
 import sys
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
@@ -11,6 +12,10 @@ from symrot.errors import InputError
 __all__ = ["COMMANDS"]
 
 FORMS = ("markdown", "latex", "html", "moodle", "json")
+FORM_OF = {".tex": "latex", ".html": "html", ".htm": "html", ".xml": "moodle", ".json": "json"}
+"""End of a file's name -> the format that it has without ``--format``; all other files are Markdown."""
+EMBEDDED = re.compile(r"!\[([^\]]*)\]\(data:[^)]*\)")
+"""A drawing in Markdown: thousands of letters that nobody can read in a terminal."""
 
 
 def _exercise(options: Namespace) -> int:
@@ -22,11 +27,13 @@ def _exercise(options: Namespace) -> int:
         for topic, names in TOPICS.items():
             say([topic, *(f"  {name}" for name in names)])
         return OK
+    form = options.format or FORM_OF.get(options.output.suffix.lower() if options.output else "", "markdown")
     text = symrot.exercise(options.topic or "", seed=options.seed, count=options.count).print(
-        options.format, not options.no_solutions
+        form, not options.no_solutions
     )
     if options.output is None:
-        sys.stdout.write(text)
+        seen = EMBEDDED.sub(r"*Figure:* \1 (drawn in a file: `-o sheet.html`)", text) if sys.stdout.isatty() else text
+        sys.stdout.write(seen)
         return OK
     from symrot.files import writing
 
@@ -75,7 +82,9 @@ def _exercise_arguments(parser: ArgumentParser) -> None:
         "--seed", type=_whole, default=0, metavar="N", help="seed of the numbers in the exercises (default: 0)"
     )
     parser.add_argument("--count", type=_whole, default=1, metavar="K", help="how many exercises (default: 1)")
-    parser.add_argument("--format", choices=FORMS, default="markdown", help="format of the sheet (default: markdown)")
+    parser.add_argument(
+        "--format", choices=FORMS, help="format of the sheet (default: by the end of FILE's name, otherwise markdown)"
+    )
     parser.add_argument(
         "-o", type=Path, metavar="FILE", dest="output", help="write to a file (default: standard output)"
     )

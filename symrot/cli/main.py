@@ -235,6 +235,10 @@ def _emit(options: Namespace) -> int:
     return OK
 
 
+PAGE_FILES = {".html": "html", ".htm": "html", ".tex": "latex", ".md": "markdown", ".pdf": "latex"}
+"""End of a file's name -> the format that somebody wants who gives this file instead of a folder."""
+
+
 def _derive(options: Namespace) -> int:
     from symrot import catalogue
     from symrot.workshop import derivation_pages
@@ -252,6 +256,12 @@ def _derive(options: Namespace) -> int:
     directory = options.directory or Path("derivations")
     if options.step is None and (options.all or options.name) and directory.exists() and not directory.is_dir():
         raise InputError(f"derive: expected -o with a folder for the pages, got the file {str(directory)!r}")
+    if options.step is not None and options.directory is not None:
+        raise InputError("derive: --step N prints one step; leave out -o DIR")
+    if form := PAGE_FILES.get(directory.suffix.lower()):
+        raise InputError(
+            f"derive: expected -o with a folder for the pages, got {str(directory)!r}; write --format {form} -o DIR"
+        )
     if options.format != "markdown" and options.all:
         if options.directory is None:
             raise InputError(f"derive: expected a folder, -o DIR, to write all pages as {options.format} into it")

@@ -247,7 +247,7 @@ class Propagator:
         if derivatives is not None and self.sensitivities is not None:
             from symrot.propagation.sensitivities.derivatives import event_slopes
 
-            slopes = event_slopes(trajectory.scene, self.sensitivities, result)
+            slopes = event_slopes(trajectory.scene, self.sensitivities, result, self.tolerance)
             trajectory.sensitivities = replace(derivatives, t_events=slopes)
         return trajectory
 

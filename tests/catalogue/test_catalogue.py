@@ -350,6 +350,8 @@ def test_one_step_on_the_command_line(form, start, capsys):
     [
         (["heavy_top", "--step", "99"], "a step from 1 to 17, got 99"),
         (["heavy_top", "--detail"], "--detail needs --step N"),
+        (["heavy_top", "-o", "page.html"], "write --format html -o DIR"),
+        (["heavy_top", "--step", "1", "-o", "pages"], "leave out -o DIR"),
         (["heavy_top", "poinsot"], "several NAMEs need a folder for their pages, -o DIR"),
         (["heavy_top", "poinsod", "-o", "no_such"], "'poinsod' (did you mean 'poinsot'?"),
         (["--step", "2"], "expected a NAME"),

@@ -82,3 +82,19 @@ def test_a_line_that_is_no_answer_is_named(capsys, tmp_path):
     answers.write_text("1a: 1\nhello\n", encoding="utf-8")
     code, _, message = run(capsys, "grade", str(sheet), str(answers))
     assert code == USAGE and "line 2" in message
+
+
+@pytest.mark.parametrize(("name", "start"), [
+    ("a.tex", "\\documentclass"), ("a.html", "<!"), ("a.xml", "<?xml"), ("a.json", "{"), ("a.md", "# Exercises"),
+])  # fmt: skip
+def test_the_end_of_a_file_name_decides_the_format(capsys, tmp_path, name, start):
+    """Markdown in a file sheet.tex would be found by LaTeX only."""
+    assert run(capsys, "exercise", "rod_about_end", "-o", str(tmp_path / name))[0] == 0
+    assert (tmp_path / name).read_text(encoding="utf-8").startswith(start)
+
+
+def test_a_terminal_shows_the_title_of_a_drawing_and_not_its_bytes(capsys, monkeypatch):
+    assert "data:image/svg" in run(capsys, "exercise", "rod_about_end")[1]
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    text = run(capsys, "exercise", "rod_about_end")[1]
+    assert "*Figure:* A rod that rotates" in text and "data:" not in text

@@ -58,6 +58,9 @@ def test_derivatives_by_dry_friction_on_one_axis():
     assert np.allclose([stops, kink, slips], [[0.2, -24, 120], [0, 0, 0], [0, 20, 0]], rtol=1e-13, atol=0)
     assert np.allclose(motion.sensitivities.t_events[0], [[0.2, -8, 40]], rtol=1e-13, atol=0)
     assert np.allclose(motion.transition(3, 7)[2], 0.0, atol=1e-13)
+    # backward, the wheel comes to rest without friction that would tell when
+    with pytest.raises(PropagationError, match="touches zero"):
+        motion.transition(16, 7)
 
 
 @needs_compiler

@@ -58,9 +58,12 @@ def variation(scene: Scene, keys: Sequence[str], times: Floats) -> Sensitivities
     )
 
 
-def event_slopes(scene: Scene, keys: Sequence[str], result: EventResult) -> tuple[Floats, ...]:
-    """Return one array for each event: derivatives of its k times by the m variables ``keys``, shape (k, m)."""
-    return _equations(scene, tuple(keys) if isinstance(keys, list) else keys).event_slopes(scene, result)
+def event_slopes(scene: Scene, keys: Sequence[str], result: EventResult, tolerance: float) -> tuple[Floats, ...]:
+    """Return one array for each event: derivatives of its k times by the m variables ``keys``, shape (k, m).
+
+    ``tolerance`` is the error of the motion of ``result``.
+    """
+    return _equations(scene, tuple(keys) if isinstance(keys, list) else keys).event_slopes(scene, result, tolerance)
 
 
 def transition_matrix(scene: Scene, start: float, stop: float) -> Floats:

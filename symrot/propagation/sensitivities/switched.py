@@ -31,9 +31,9 @@ from symrot.formula.tree import evaluate, names
 from symrot.planning.general_structure import constants_of
 from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import EPOCH, Parameters
+from symrot.propagation.array_functions import ARRAY_FUNCTIONS
 from symrot.propagation.binding import value_of
 from symrot.propagation.events.event_result import EventResult
-from symrot.propagation.events.events import ZerosNotSeparated, search
 from symrot.propagation.method import choose_method
 from symrot.propagation.sensitivities.event_times import TOUCHING, along_motion, event_time_slopes
 from symrot.propagation.sensitivities.variables import STEP, difference, read_variables, slopes
@@ -61,9 +61,12 @@ __all__ = ["SwitchedEquations"]
 
 Floats = NDArray[np.float64]
 AT_ZERO = 1e-9  # a guard nearer to zero, in units of the size of its terms, is zero at a switch
-STEEP = 1e-7  # speed of a guard at a crossing, in units of the size of its terms: a slower one grazes zero
+STEEP = 1e-5  # speed of a guard at a crossing, in units of its mean speed: a slower one grazes zero
 ALIKE = 1e-9  # relative difference of two derivatives that count as equal
-GRAZE = 1e-9  # error of the states, relative to their sizes, within which a guard may touch zero
+GRAZE = 1e-9  # smallest distance of a guard from zero, relative to the largest in an interval, that does not touch zero
+NEARBY = 0.1  # part of the largest distance, below which a smallest distance is examined
+FINE, ZOOMS = 8, 12  # points in a step of a motion, and the number of times that the points are refined
+MARGIN = 10.0  # times the tolerance: an error of an event time, as part of the length of the motion
 AT_SWITCH = 1e-12  # part of the time: an event this near to a switch is at the switch
 MOST_AT_ONCE = 6  # functions that may switch at one time
 Rows = Mapping[str, list[float]]
@@ -159,13 +162,16 @@ class SwitchedEquations:
                 states[chosen], by[chosen] = walk.sample(times[chosen])
         return states, by
 
-    def event_slopes(self, scene: Scene, result: EventResult) -> tuple[Floats, ...]:
-        """Return one array for each event: derivatives of its k times by the m variables, shape (k, m)."""
+    def event_slopes(self, scene: Scene, result: EventResult, tolerance: float) -> tuple[Floats, ...]:
+        """Return one array for each event: derivatives of its k times by the m variables, shape (k, m).
+
+        ``tolerance`` is the error of the motion of ``result``.
+        """
         begin, every = float(scene.span.start), []
         for event, kinds, times in zip(result.events, result.kinds, result.t_events, strict=True):
             rows = np.full((len(times), len(self.columns)), np.nan)
             for k, (kind, t) in enumerate(zip(kinds, times.tolist(), strict=True)):
-                sides = [self._at_start(scene)] if t == begin else self._walk(scene, begin, t).sides(t)
+                sides = [self._at_start(scene)] if t == begin else self._walk(scene, begin, t).sides(t, tolerance)
                 rows_by_side = [
                     event_time_slopes(event, [kind], np.array([t]), y[None], rate[None], by[None])[0]
                     for y, rate, by in sides
@@ -524,12 +530,13 @@ class _Walk:
         jumps = {mode: guard for mode, guard in causes.items() if not is_continuous(self.by_name[mode])}
         rows: dict[str, Floats] = {}
         for mode, guard in causes.items():
-            speed, size = guard.along(f), guard.size(f)
-            grazes = abs(speed) <= STEEP * size
+            speed, mean = guard.along(f), self._mean_speed(before, mode)
+            grazes = abs(speed) <= STEEP * max(guard.size(f), mean)
             if mode in jumps and mode not in held:
-                grazes |= guard.along(later) * speed <= 0.0 or abs(guard.along(later)) <= STEEP * guard.size(later)
+                leaving = guard.along(later)
+                grazes |= leaving * speed <= 0.0 or abs(leaving) <= STEEP * max(guard.size(later), mean)
             if grazes and mode in jumps:
-                raise self._stop(before.end, f"the argument of {self._name(mode)} reaches zero with the speed zero")
+                raise self._stop(before.end, f"the argument of {self._name(mode)} reaches zero at a speed near zero")
             rows[mode] = np.full(len(by.T), np.nan) if grazes else 0.0 - guard.change(by) / speed
         if not jumps and float(np.abs(later - f).max()) > STEEP * float(np.abs([f, later]).max()):
             names_of = " and ".join(map(self._name, [*changed, *sorted(held), *released]))
@@ -618,6 +625,13 @@ class _Walk:
             if np.abs(own * (row @ own) - row * (own @ own)).max() > ALIKE * (own @ own) * np.abs(row).max():
                 raise self._stop(part.zero.after(t), f"{self._name(mode)} and {self._name(twin)} switch at once")
 
+    def _mean_speed(self, part: _Part, mode: str) -> float:
+        """Return how fast a guard changes in an interval, on average, as a scale for its speed at the end."""
+        values = [abs(self._guard(part, mode, *place).value) for place in self._places(part)]
+        if self.by_name[mode].kind == "floor":
+            values = [min(value, abs(1.0 - value)) for value in values]
+        return max(values) / abs(part.stop - part.start)
+
     def _is_zero(self, part: _Part, mode: str, guard: _Gradient, rates: Floats) -> bool:
         """Return whether a guard is zero at the end of an interval; for floor(x): whether x is a whole number."""
         size = guard.size(rates) * abs(part.stop) + float(np.abs(guard.states) @ np.abs(part.last))
@@ -649,30 +663,47 @@ class _Walk:
     def _refuse_grazing(self, part: _Part) -> None:
         """Raise PropagationError if a guard with a jump touches zero inside an interval without a switch."""
         regime = part.regime
-        active = [
-            on and guard.mode not in part.held and not is_continuous(self.by_name[guard.mode])
-            for guard, on in zip(regime.guards, regime.active(part.modes), strict=True)
-        ]
-        if not any(active):
-            return
-        events = [event._replace(terminal=False, direction=0) for event in regime.events]
-        _, values = regime.bound(part.modes, part.zero)
-        pieces = (chunk.own_piece for chunk in part.chunks)
-        try:
-            result = search(regime.path, events, values, pieces, part.start, GRAZE)
-        except ZerosNotSeparated:
-            return
-        touched = [(zero.event, zero.t) for zero in result.zeros if zero.kind == TOUCHING] + result.doubts
-        margin = 1e-3 * abs(part.stop - part.start)
-        for event, t in touched:
-            inside = min(abs(t - part.start), abs(t - part.stop)) > margin
-            mode = regime.guards[event].mode
-            if not (active[event] and inside) or self._rests(part, mode):
+        modes = {guard.mode for guard, on in zip(regime.guards, regime.active(part.modes), strict=True) if on}
+        for mode in sorted(modes & regime.formulas.keys() - part.held):
+            if is_continuous(self.by_name[mode]) or self._rests(part, mode):
+                continue
+            t = self._touching(part, mode)
+            if t is None:
                 continue
             # a guard of time alone that no variable changes touches zero in all nearby motions
             guard = self._guard(part, mode, t, part.last)
             if guard.states.any() or guard.variables.any():
                 raise self._stop(part.zero.after(t), f"the argument of {self._name(mode)} touches zero")
+
+    def _touching(self, part: _Part, mode: str) -> float | None:
+        """Return the time, s on the clock of an interval, at which a guard touches zero in it; None if it does not."""
+        values, _ = self._bound(part.regime.parameters, part, "guards")
+        constants = {**{name: float(value) for name, value in part.modes.items()}, **values}
+        ends = self.side * np.array([chunk.stop - part.zero for chunk in part.chunks[:-1]])
+
+        def distances(times: Floats) -> Floats:
+            states, places = np.empty((len(times), len(STATES))), np.searchsorted(ends, self.side * times)
+            for place in np.unique(places).tolist():
+                states[places == place] = part.chunks[place].own_states(times[places == place])
+            inputs = {**constants, "t": times, **dict(zip(STATES, states.T, strict=True))}
+            guard = np.asarray(evaluate(part.regime.formulas[mode], inputs, ARRAY_FUNCTIONS, float)) + 0.0 * times
+            near = np.abs(guard)
+            return np.minimum(near, np.abs(1.0 - guard)) if self.by_name[mode].kind == "floor" else near
+
+        grid = np.append(np.concatenate([_points(chunk.own_piece.edges) for chunk in part.chunks]), part.stop)
+        row = distances(grid)
+        largest = float(row.max())
+        least = (row[1:-1] <= row[:-2]) & (row[1:-1] <= row[2:]) & (row[1:-1] <= NEARBY * largest)
+        for place in (np.flatnonzero(least) + 1).tolist():
+            low, high = float(grid[place - 1]), float(grid[place + 1])
+            for _ in range(ZOOMS):
+                times = np.linspace(low, high, 2 * FINE + 1)
+                near = distances(times)
+                k = min(max(int(near.argmin()), 1), 2 * FINE - 1)
+                low, high = float(times[k - 1]), float(times[k + 1])
+            if near.min() <= GRAZE * largest:
+                return 0.5 * (low + high)
+        return None
 
     def _integrate(self, part: _Part, times: Floats) -> tuple[Floats, Floats]:
         """Return states and derivatives, (n, 7) and (n, 7, m), at times of an interval, s after its ``zero``."""
@@ -734,11 +765,15 @@ class _Walk:
             count = last
         return states, by
 
-    def sides(self, t: float) -> list[tuple[Floats, Floats, Floats]]:
-        """Return state, rates and derivatives at a time, s: one triple, or two at a switch, before and after it."""
+    def sides(self, t: float, tolerance: float) -> list[tuple[Floats, Floats, Floats]]:
+        """Return state, rates and derivatives at a time, s: one triple, or two at a switch, before and after it.
+
+        A time is at a switch if it is nearer to it than the errors of a motion with the given tolerance.
+        """
         for place, part in enumerate(self.parts[:-1]):
             following = self.parts[place + 1]
-            if abs(t - part.end.high) <= AT_SWITCH * max(abs(t), abs(part.stop - part.start)):
+            near = max(AT_SWITCH * max(abs(t), self.length), MARGIN * tolerance * self.length)
+            if abs(t - part.end.high) <= near:
                 return [
                     (part.last, self.rates(part, part.stop, part.last), part.after),
                     (following.first, self.rates(following, following.start, following.first), following.before),
@@ -751,6 +786,12 @@ class _Walk:
 
 DUALS = dual_functions(FLOAT_FUNCTIONS)
 ZEROS = [0.0]
+
+
+def _points(edges: Floats) -> Floats:
+    """Return times in the steps of a motion, :data:`FINE` in each step, without the end of the last one."""
+    inside = np.linspace(0.0, 1.0, FINE, endpoint=False)
+    return np.asarray(edges[:-1, None] + np.diff(edges)[:, None] * inside).ravel()
 
 
 def _alike(left: Floats, right: Floats) -> NDArray[np.bool_]:

@@ -277,8 +277,11 @@ class SmoothEquations:
         results = [part.follow(scene, times, begin, epoch) for part in parts]
         return results[0][0], np.concatenate([slopes for _, slopes in results], axis=2)
 
-    def event_slopes(self, scene: Scene, result: EventResult) -> tuple[Floats, ...]:
-        """Return one array for each event: derivatives of its k times by the m variables, shape (k, m)."""
+    def event_slopes(self, scene: Scene, result: EventResult, tolerance: float) -> tuple[Floats, ...]:
+        """Return one array for each event: derivatives of its k times by the m variables, shape (k, m).
+
+        ``tolerance``, the error of the motion of ``result``, matters only for torques that switch.
+        """
         slopes = []
         for event, kinds, times in zip(result.events, result.kinds, result.t_events, strict=True):
             states, by = self.follow(scene, times)
