@@ -19,13 +19,16 @@ from symrot.cli.main import main
 from symrot.conventions import SEQUENCES
 from symrot.errors import InputError
 from symrot.exact import is_zero
+from symrot.lessons.other_names import OTHER_NAMES
 from symrot.lessons.page import APPENDIX
 from symrot.lessons.table import LESSONS
 from symrot.proof.derivation import Derivation, ProofError
 from symrot.proof.page import Page, Step, Table
 from symrot.proof.pages import latex_book, latex_document
+from symrot.proof.pages.book import search_script
 from symrot.proof.pages.math_font import characters
 from symrot.workshop import derivation_pages
+from tests.proof.book_search import NODE, pages_of
 
 pytestmark = pytest.mark.first  # all pages are derived once, for these tests and for those of lessons
 
@@ -388,3 +391,21 @@ def test_progress_is_shown_while_pages_are_written(form, tmp_path):
 def test_the_catalogue_is_named_without_sympy():
     program = "import sys, symrot.catalogue as c; c.names(); sys.exit('sympy' in sys.modules)"
     subprocess.run([sys.executable, "-c", program], check=True)
+
+
+QUERIES = {  # what students type -> the page that answers
+    "gimbal lock": "euler_singularities", "parallel axis": "parallel_axis", "Euler angles rates": "euler_body_rates",
+    "intermediate axis": "intermediate_axis", "sleeping top": "sleeping_top", "Steiner": "parallel_axis",
+    "moment of inertia of a cone": "standard_solids", "tennis racket theorem": "intermediate_axis",
+    "wobble of the Earth": "symmetric_top", "quaternion multiplication": "quaternion_rates", "polhode": "poinsot",
+    "rotation matrix": "rotation_matrices", "principal axes": "tensor_rotation", "bicycle wheel": "gyroscopic_wheel",
+    "center of percussion": "impulse_and_momentum", "rolling without slipping": "rolling", "nutation": "heavy_top",
+}  # fmt: skip
+
+
+@pytest.mark.skipif(NODE is None, reason="needs Node.js")
+def test_the_search_of_the_book_answers_what_students_type(printed):
+    """``printed`` has derived all pages in this process."""
+    pages = [derivation_pages.printed_page(name) for name in catalogue.names()]
+    lists = pages_of(search_script(pages, OTHER_NAMES), *QUERIES)
+    assert {query: names[0] for query, names in zip(QUERIES, lists, strict=True)} == QUERIES

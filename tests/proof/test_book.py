@@ -2,8 +2,6 @@
 
 import json
 import re
-import shutil
-import subprocess
 from base64 import b64decode
 
 import pytest
@@ -13,8 +11,7 @@ from symrot.lessons.table import LESSONS
 from symrot.proof.page import Figure, Page, Passage, Section, Step
 from symrot.proof.pages import book, html_document
 from symrot.proof.pages.math_font import content
-
-NODE = shutil.which("node")
+from tests.proof.book_search import NODE, pages_of
 
 
 class Drawing:
@@ -89,36 +86,21 @@ def test_the_font_is_beside_the_book_and_inside_a_single_page(texts):
     assert b64decode(data) == content() and content()[:4] == b"wOF2"
 
 
-SEARCHED = """
-const nothing = () => ({ items: [], append(...parts) { this.parts = parts; }, addEventListener() {},
-  replaceChildren(...items) { this.items = items; } });
-const typed = nothing(), results = nothing();
-const document = { querySelector: () => typed, createElement: nothing,
-  getElementById: (id) => id === "results" ? results : nothing() };
-const location = { search: "?q=" + encodeURIComponent(process.argv[2]) };
-"""
-
-
-def pages_first_to_last(query):
-    """Return the names of the pages that the search of the book lists for a query, the best page first."""
+def pages_first_to_last(*queries):
     rates = Page("rates", "Rates of Euler angles", "", "At gimbal lock they diverge. Gimbal lock has a page.")
     lock = Page("singularities", "Where Euler angles lock", "", "Two of the axes coincide.")
     motion = Page("motion", "The motion of a body", "", "About the intermediate axis of the body it flips.")
     names = {"singularities": "gimbal lock, loss of a degree of freedom", "motion": "Poinsot's motion"}
-    script = book("All", "Of it.", {"": [rates, lock, motion]}, names)["search.js"]
-    show = 'console.log(JSON.stringify(results.items.map((item) => item.parts[0].href.split(".")[0])));'
-    done = subprocess.run([NODE, "-", query], input=SEARCHED + script + show,
-                          capture_output=True, text=True, check=True)  # fmt: skip
-    return list(dict.fromkeys(json.loads(done.stdout)))
+    return pages_of(book("All", "Of it.", {"": [rates, lock, motion]}, names)["search.js"], *queries)
 
 
 @pytest.mark.skipif(NODE is None, reason="needs Node.js")
 def test_the_search_lists_the_page_about_the_subject_first():
-    assert pages_first_to_last("gimbal lock") == ["singularities", "rates"]
-    assert pages_first_to_last("the rates of an Euler angle")[0] == "rates"
-    assert pages_first_to_last("intermediate axes, bodies") == ["motion"]
-    assert pages_first_to_last("Poinsot") == ["motion"]
-    assert pages_first_to_last("penguin") == pages_first_to_last("") == []
+    lock, rates, axes, other, *none = pages_first_to_last(
+        "gimbal lock", "the rates of an Euler angle", "intermediate axes, bodies", "Poinsot", "penguin", ""
+    )
+    assert lock == ["singularities", "rates"] and rates[0] == "rates"
+    assert axes == other == ["motion"] and none == [[], []]
 
 
 def test_other_names_belong_to_pages():

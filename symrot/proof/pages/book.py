@@ -12,7 +12,7 @@ from symrot.proof.page import Figure, Page, Passage, Section, Step, Table
 from symrot.proof.pages.html import document, html_document, prose
 from symrot.proof.pages.math_font import FILE, face
 
-__all__ = ["CONTENTS", "SEARCH", "book"]
+__all__ = ["CONTENTS", "SEARCH", "book", "search_script"]
 
 CONTENTS, SEARCH = "index.html", "search.js"
 
@@ -127,7 +127,7 @@ def book(
     ['index.html', 'search.js', 'spin.html']
     """
     pages = [page for members in chapters.values() for page in members]
-    texts = {CONTENTS: _contents(title, about, chapters), SEARCH: _search(pages, other_names or {})}
+    texts = {CONTENTS: _contents(title, about, chapters), SEARCH: search_script(pages, other_names or {})}
     for place, page in enumerate(pages):
         before, after = pages[place - 1] if place else None, pages[place + 1] if place + 1 < len(pages) else None
         turning = _turning(before, after)
@@ -203,7 +203,8 @@ def _plain(text: str) -> str:
     return unescape(re.sub(r"<[^>]*>", "", prose(text)))
 
 
-def _search(pages: Sequence[Page], other_names: Mapping[str, str]) -> str:
+def search_script(pages: Sequence[Page], other_names: Mapping[str, str]) -> str:
+    """Return the script that searches pages in a browser; ``other_names`` are explained at :func:`book`."""
     entries = [
         [f"{page.name}.html{place}", _plain(title), _plain(text)]
         for page in pages
