@@ -16,7 +16,7 @@ from symrot.exchange.volume_moments import Exponents, VolumeMoments, approximate
 from symrot.formula.exact_numbers import read, show
 from symrot.formula.polynomial import constant, generator
 from symrot.formula.tree import parse
-from symrot.inertia.integration import density_polynomial
+from symrot.inertia.integration import density_polynomial, require_not_negative
 from symrot.inertia.principal import principal_axes, require_admissible
 from symrot.inertia.tensor import inertia_of_second_moments
 
@@ -155,6 +155,10 @@ def polyhedron(surface: Surface, name: str, where: str, mass: Any, density: Any,
             f"{where}: density: expected a density with a positive mass, got {show(density)} with a mass of "
             f"{float(body.mass[0]):.6g} kg"
         )
+    if density is not None and polynomial[0] != "number":
+        corners = (surface.vertices * float(unit)).tolist()
+        points = (dict(zip("xyz", corner, strict=True)) for corner in corners)
+        require_not_negative(polynomial, points, density, f"{where}: ")
     assert result is not None
     total, center, tensor, error = result
     require_admissible(principal_axes(tensor, where), where)

@@ -4,10 +4,11 @@ A map gives the position for coordinates such as radius and angle. Integrands ar
 and sines, so every integral is exact (powers, and Wallis' recursion): a polynomial in the dimensions and pi.
 """
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from functools import cache
-from itertools import combinations
+from itertools import combinations, product
 from typing import Any, NamedTuple
 
 from symrot.errors import InputError
@@ -27,7 +28,7 @@ from symrot.inertia.shapes import Coordinate, Shape, scalar_names, scalars
 
 __all__ = [
     "LARGEST_DEGREE", "Domain", "Moments", "density_polynomial", "domain", "exact_moments", "integrate", "moments",
-    "moments_per_measure",
+    "moments_per_measure", "require_not_negative",
 ]  # fmt: skip
 
 LARGEST_DEGREE = 12
@@ -219,6 +220,36 @@ def moments_per_measure(region: Domain, density: Polynomial | None = None) -> tu
     return measure, moments(region._replace(jacobian=share), density)
 
 
+def require_not_negative(
+    density: Node, points: Iterable[Mapping[str, float]], source: object, prefix: str = ""
+) -> None:
+    """Raise InputError if a density is negative at one of some points of a body, given by x, y, z and other names."""
+    values = [(float(evaluate(density, {"pi": math.pi, **point}, None, float)), point) for point in points]
+    least, place = min(values, key=lambda each: each[0])
+    # a density that is zero at a point may be negative there by rounding errors
+    if least < -1e-9 * max(abs(value) for value, _ in values):
+        x, y, z = (place[axis] for axis in "xyz")
+        raise InputError(
+            f"{prefix}density: expected a density that is negative nowhere in the body, got {show(source)} with "
+            f"{least:.6g} at x = {x:.6g}, y = {y:.6g}, z = {z:.6g} m"
+        )
+
+
+def _samples(shape: Shape, numbers: Mapping[str, Fraction]) -> Iterator[dict[str, float]]:
+    """Yield points of a shape with the given dimensions: x, y and z in m, with the dimensions."""
+    known = {"pi": math.pi} | {name: float(value) for name, value in numbers.items()}
+    functions = {"cos": math.cos, "sin": math.sin}
+
+    def value(text: str, symbols: Mapping[str, float]) -> float:
+        return float(evaluate(parse(text), symbols, functions, float))
+
+    limits = [(value(c.lower, known), value(c.upper, known)) for c in shape.coordinates]
+    for shares in product((0.0, 0.25, 0.5, 0.75, 1.0), repeat=len(limits)):
+        own = [low + share * (high - low) for share, (low, high) in zip(shares, limits, strict=True)]
+        symbols = known | {c.name: number for c, number in zip(shape.coordinates, own, strict=True)}
+        yield known | {axis: value(text, symbols) for axis, text in zip("xyz", shape.position, strict=True)}
+
+
 def exact_moments(
     shape: Shape, dimensions: Mapping[str, Any], density: Node, source: object, where: str = ""
 ) -> Moments:
@@ -235,6 +266,8 @@ def exact_moments(
     values |= {name: constant(value) for name, value in numbers.items()}
     # pi is correct to 2^-320; source is the density as the user wrote it, for errors
     integrals = moments(region, density_polynomial(density, values | {"pi": constant(PI)}, source, where))
+    if integrals.zeroth.value(_PI) > 0:  # otherwise the caller refuses the mass
+        require_not_negative(density, _samples(shape, numbers), source, f"{where}: " if where else "")
     return Moments(
         integrals.zeroth.value(_PI),
         tuple(entry.value(_PI) for entry in integrals.first),

@@ -274,3 +274,8 @@ def test_bodies_placed_and_meshes_placed_agree():
     surface = box((1, 2, 3))
     turned = Surface(surface.vertices @ np.array(matrix, dtype=float).T + [4, 5, 6], surface.triangles)
     assert body(turned, mass=2).properties == place(body(surface, mass=2).properties, (4, 5, 6), matrix)
+
+
+def test_a_density_that_is_negative_at_a_corner_is_refused():
+    with pytest.raises(InputError, match=r"part: density: expected a density that is negative nowhere in the body"):
+        body(box(), density="x - 1/10")
