@@ -93,6 +93,9 @@ _SCALAR: dict[str, Callable[[Any], Any]] = {
 def _over(above: Any, below: Any) -> Any:
     if not isinstance(below, int) and 0 in below:
         raise ZeroDivisionError
+    if isinstance(above, int) and isinstance(below, int):
+        # as a float, 1/3 would not be in the interval of any value computed from it
+        return above // below if above % below == 0 else iv.mpf(above) / below
     return above / below
 
 

@@ -294,3 +294,10 @@ def test_an_audit_says_whether_bounds_were_computed_again(certified):
     (path,) = folder.glob("*.cert.json")
     statements = symrot.audit(path, rerun_bounds=True).statements[str(path)]
     assert "bounds of rounding and truncation were computed again and agree" in statements
+
+
+def test_a_quotient_of_whole_numbers_is_enclosed():
+    """As a double, 1/3 was a number outside every enclosure of 1/3."""
+    assert truncation._over(0, 3) == 0 and truncation._over(6, 3) == 2
+    third = truncation._over(1, 3)
+    assert third.a < third.b and 1 in 3 * third
