@@ -39,7 +39,7 @@ class Samples(ABC):
     def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
         """Return the time and the quantities ``quantities`` with their labels, for tables.
 
-        The default (None) is the output quantities of the scene.
+        By default (None), the output quantities of the scene, and the derivatives if there are any.
         """
 
     @property
@@ -183,7 +183,7 @@ class MotionSamples(Samples):
     def _labelled(self, quantities: Sequence[str] | None = None) -> list[Labelled]:
         """Return the time and the quantities ``quantities`` with their labels, for tables.
 
-        The default (None) is the output quantities of the scene.
+        By default (None), the output quantities of the scene, and the derivatives if there are any.
         """
         return labelled(self, quantities)
 

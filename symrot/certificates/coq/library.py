@@ -20,7 +20,6 @@ __all__ = [
     "coq_file_names",
     "coq_section",
     "coq_texts",
-    "with_required",
 ]
 
 RULES = "rotation"
@@ -85,18 +84,9 @@ def assumptions_text(names: tuple[str, ...]) -> str:
     ]) + "\n"  # fmt: skip
 
 
-def with_required(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return ``names`` and the names of the Coq files that they require, each after the files that it requires."""
-    files_needed = set(names)
-    for name in names:
-        # rotation.v is left out: every file requires it
-        files_needed |= set(coq_file(name).requires) - {RULES}
-    return tuple(name for name in coq_file_names() if name in files_needed)
-
-
 def coq_texts(names: tuple[str, ...] | None = None) -> dict[str, str]:
-    """Return the Coq files ``names`` (default: all) the files that they require, and two helper files, by name."""
-    names_needed = with_required(coq_file_names() if names is None else names)
+    """Return the Coq files ``names`` (default: all), ``rotation.v``, which they need, and two more files, by name."""
+    names_needed = tuple(name for name in coq_file_names() if names is None or name in names)
     printed = {name: coq_file(name).text for name in names_needed}
     texts = {RULES: rules_text(), **printed, ASSUMPTIONS: assumptions_text(names_needed)}
     # _CoqProject lists all files for the build tool coq_makefile

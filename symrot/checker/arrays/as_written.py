@@ -71,7 +71,7 @@ def inverse_of(side: Node, source: str) -> Node | None:
 
 
 def with_inverses(sides: Sequence[Node], source: str) -> list[Node]:
-    """Return the sides with ``q**(-1)`` in place of ``conjugate(q)/dot(q, q)`` if ``source`` writes it as a power."""
+    """Return the sides, with ``q**(-1)`` for a side that is conjugate(q)/dot(q, q) if ``source`` writes a power."""
     inner = [inverse_of(side, source) for side in sides]
     minus = negated(number(1))
     return [side if q is None else Node("power", None, (q, minus)) for side, q in zip(sides, inner, strict=True)]

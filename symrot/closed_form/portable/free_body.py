@@ -194,9 +194,10 @@ class PortableFreeBody:
             quaternion[:] = (x / np.sqrt(2.0 * p0 * (re * re + im * im))[:, None]) @ self.attitude.T
 
     def _sums(self, t: Floats) -> tuple[Any, Any, Floats]:
-        """Return (cn, sn, dn), each times its amplitude, (re, im) and the phase in half revolutions, at the times t.
+        """Return (cn, sn, dn), each times its amplitude, (re, im), and a phase in half revolutions, at the times t.
 
-        re and im are the real and the imaginary part of a theta series.
+        re and im are the parts of a theta series. The phase is what theta functions need, less whole half revolutions;
+        0 in the regimes without theta functions.
         """
         # cn, sn and dn give the angular velocity; re, im and the phase the attitude
         if self.regime == "circular":
