@@ -33,6 +33,7 @@ def failures(module):
     return tuple(doctest.testmod(module, optionflags=FLAGS))
 
 
+@pytest.mark.usefixtures("quick_compiler")
 @pytest.mark.parametrize("name", WITH_EXAMPLES)
 def test_the_examples_of_a_module_run(name):
     failed, tried = failures(importlib.import_module(name))

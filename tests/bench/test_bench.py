@@ -135,6 +135,7 @@ def test_two_fixed_step_references_do_not_agree_on_having_missed_a_pulse():
     assert 1 / spin[3] - 1 / spin[1] == pytest.approx((end - begin) / 30, rel=1e-12)  # d(1/omega)/dt is k/C
 
 
+@pytest.mark.campaign
 def test_the_path_of_the_stability_study_does_not_step_over_a_pulse():
     motion = propagator(scene(torque=[PULSE], **AT_REST), "taylor")._motion
     assert ExactPath(motion.plan, motion.kernel).states(np.array([1.9, 5.0]))[:, 2] == pytest.approx(
@@ -212,6 +213,7 @@ def test_the_kernel_for_scipy_is_the_emitted_one():
     )  # math and NumPy differ in last bits
 
 
+@pytest.mark.campaign
 def test_every_method_reaches_the_reference(found):
     least = {}
     for run in found["runs"]:

@@ -12,6 +12,8 @@ from symrot.formula.tree import FUNCTIONS, SWITCHING, parse
 from symrot.scene.scene import Scene
 from tests.needs import needs_compiler
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
+
 
 def read(formula, **parameters):
     torque = {"kind": "expression", "torque": ["0", "0", formula], "parameters": parameters}

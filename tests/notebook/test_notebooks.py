@@ -6,6 +6,8 @@ import pytest
 
 from tests.notebook import cells
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
+
 NAMES = [path.stem for path in cells.paths()]
 
 

@@ -9,6 +9,8 @@ import symrot
 from symrot.notebook.fragments import Markup, table
 from symrot.notebook.show import RENDERERS
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
+
 VALUES = {
     "Trajectory": lambda: symrot.propagate("t_handle", t=[0.0, 1.0]),
     "Scene": lambda: symrot.load_scene("heavy_top_loops"),

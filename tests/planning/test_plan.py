@@ -9,6 +9,8 @@ from symrot.planning.rules import RULES
 from symrot.scene.file import names_with_kernels
 from symrot.scene.scene import Scene, load_scene
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
+
 FREE = {"principal": [1, 2, 3]}
 TOP = {"principal": [2, 2, 1], "about": "fixed_point"}
 

@@ -481,6 +481,7 @@ def test_a_text_without_invariants_needs_no_optimizer_to_link(tmp_path):
 # ------------------------------------------------------------------------------------------------ benchmark
 
 
+@pytest.mark.campaign
 def test_the_benchmark_runs_and_ranks():
     runs = bench.measure("heavy symmetric", rounds=1, scale=0.02)
     assert {"taylor", "dop853"} <= {run.name for run in runs}

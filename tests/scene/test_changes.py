@@ -18,6 +18,8 @@ from symrot.scene.content import toml_text
 from symrot.scene.file import SHIPPED
 from symrot.scene.settings import settings
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
+
 NAMES = [name for name, _, _ in symrot.shipped_scenes()]
 TOP = symrot.load_scene("heavy_top_loops")
 PRISM = symrot.load_scene("tumbling_prism")
