@@ -224,6 +224,7 @@ def test_every_method_reaches_the_reference(found):
     assert least["SciPy DOP853"] < 1e-11
 
 
+@pytest.mark.campaign
 def test_tighter_tolerances_give_less_error(found):
     errors = [run["error"] for run in found["runs"] if run["method"] == "SciPy DOP853"]
     assert errors[-1] < 1e-6 * errors[0]
@@ -385,6 +386,7 @@ def test_a_file_that_is_no_study_is_refused(tmp_path, content, said):
 # --- what specialisation saves ----------------------------------------------------------------------------------------
 
 
+@pytest.mark.campaign
 def test_the_general_kernel_follows_the_same_motions(monkeypatch):
     """The final states agree, although the general kernel has a full tensor and all torques, some of which are zero."""
     whole = skip.rungs()

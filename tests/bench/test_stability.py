@@ -33,6 +33,7 @@ def track():
     return growth.Track(plate(), revolutions * 2 * math.pi / size, periodic=True), revolutions
 
 
+@pytest.mark.campaign
 def test_the_truth_is_that_of_elliptic_integrals_a_million_turns_later():
     times = np.array([0.0, 3.3, 1e7])
     motion = propagator(plate(), "taylor", 1e-15)._motion
@@ -128,6 +129,7 @@ def test_a_body_grows_along_tangents_by_the_law_and_keeps_along_secants():
     assert fine["tangent, rescaled"].strain > 1e-3  # each point is back at its distance, the shape is not
 
 
+@pytest.mark.campaign
 def test_the_report_of_a_scene(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(stability, "STEPS", (0.1,))
     monkeypatch.setattr(stability, "PASSES", ("1/10", 0))

@@ -151,6 +151,7 @@ def test_a_rate_between_two_pushes_is_held():
     assert motion(np.array([0.5, 1.0, 4.0]))[0].tolist() == [1.5, 2, 2]
 
 
+@pytest.mark.campaign
 def test_soft_friction_is_an_inverse_hyperbolic_sine():
     motion = arcs.soft_friction(3.0, 2.0, 0.5, 0.0, 4.0)
     rate, angle = motion(np.array([0.0, 1.0, 10.0]))

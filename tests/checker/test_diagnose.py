@@ -198,6 +198,7 @@ def test_a_point_knows_what_has_no_value(formula):
         Point({"x": 0.5}, {}, {}).value(read_expression(formula))
 
 
+@pytest.mark.campaign
 def test_hostile_claims_stay_within_the_budget():
     wide = " + ".join(f"x{n}*sin(y{n})" for n in range(150))
     assert symrot.check(f"({wide})**2 == 1").verdict in ("false", "undecided")

@@ -192,6 +192,7 @@ GENUINE = {"sahakian-top-energy", "brown-force-sum"}
 """Read with I for 1 in a numerator; and force set equal to momentum. Both are false in these readings."""
 
 
+@pytest.mark.campaign
 def test_no_true_claim_of_the_documents_has_units_that_do_not_fit():
     from symrot.checker.units.check import check_dimensions
 

@@ -354,6 +354,7 @@ def test_the_printed_closed_forms_are_the_derived_ones():
     assert CLOSED_FORMS.read_text(encoding="utf-8") == closed_forms_text()
 
 
+@pytest.mark.campaign
 def test_printing_does_not_depend_on_the_hash_seed():
     """The printing command prints the same bytes in a fresh process."""
     command = [sys.executable, "-m", "symrot.inertia.solids"]

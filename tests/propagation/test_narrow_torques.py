@@ -225,6 +225,7 @@ def test_an_ensemble_meets_the_pulse(method):
     assert np.abs(ensemble.omega[:, 2, 2] - np.array(starts)[:, 2] - sqrt(pi)).max() < ALLOWED * 1e-10 * 1.8
 
 
+@pytest.mark.shipped_flags  # compiled quickly, it computes for a minute
 @pytest.mark.thinned(2)
 @pytest.mark.parametrize("method", ("taylor", "dop853"))
 @pytest.mark.parametrize("torque", ["exp(t**3)", "exp(exp(t))", "cosh(100*t)", "1/(t-1/3)**3"])

@@ -186,15 +186,17 @@ def test_the_picture_of_a_top_is_not_empty_below_its_tip():
     assert film._middle(top, still, path) > 0.5 and film._middle(free, still, np.vstack([path, -path])) < 0.1
 
 
-def test_a_film_has_the_frames_of_the_dense_motion(tmp_path):
+@pytest.mark.parametrize("films", [1, pytest.param(2, marks=pytest.mark.campaign)])
+def test_a_film_has_the_frames_of_the_dense_motion(films, tmp_path):
     """A scene with five samples gives as many frames as any other, and two films are the same bytes."""
     pytest.importorskip("matplotlib")
     from PIL import Image
 
     scene = scene_of({"shape": "box", "a": 1, "b": 2, "c": 3, "mass": 1}, span={"t": [0, 0.2], "samples": 5})
-    first, second = (symrot.show(scene, tmp_path / f"{name}.gif") for name in "ab")
+    first = symrot.show(scene, tmp_path / "a.gif")
     assert Image.open(first).n_frames == 40
-    assert first.read_bytes() == second.read_bytes()
+    if films == 2:
+        assert first.read_bytes() == symrot.show(scene, tmp_path / "b.gif").read_bytes()
 
 
 def test_a_missing_encoder_is_named(tmp_path, monkeypatch):
