@@ -218,7 +218,7 @@ class Arithmetic:
 
 
 class AnyFunctions(Arithmetic):
-    """An arithmetic of exact fractions, in which functions (such as sin) and choices have random values."""
+    """An arithmetic of exact fractions: functions have random values, and choices are means with random weights."""
 
     def __init__(self):
         super().__init__()
@@ -453,7 +453,7 @@ class Reader:
         return self.advance()
 
     def expression(self):
-        """Read a sum, or a C conditional such as ``a > b ? x : y``; return its node. Conditionals are not nested."""
+        """Read a sum, or a C conditional such as ``a < b ? x : y``; return its node. Conditionals are not nested."""
         a = self.sum()
         if self.token.text not in COMPARISONS:
             return a
@@ -1479,7 +1479,7 @@ def check_banner(data, text):
 
 
 def has_choices(data):
-    """Return whether formulas or laws contain conditionals; a random point tests only one branch of each."""
+    """Return whether formulas or laws contain conditionals, Abs or copysign; a point tests only one branch of each."""
     return bool(re.search(r"select_|Abs|copysign|\?", json.dumps([data["spec"], data["laws"]])))
 
 
