@@ -127,14 +127,25 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
         angle = (leaf - factor.as_expr(*ring.generators) / number).expand()
         if isinstance(leaf, atan2):
             return _principal_direction(ring, leaf, angle)
-        function, least, most = _PRINCIPAL[type(leaf)]
-        with suppress(InputError):  # an angle that cannot be read proves nothing
-            other = FormulaRing([function(angle), leaf.args[0]], ring.hypotheses, ring.domain)
-            further = proof(other, other.difference(function(angle), leaf.args[0]).numerator)
-            if further is not None:
-                ends = (angle - least, most - angle)
-                inside, edge = (ends, ()) if isinstance(leaf, atan) else ((), ends)
-                return PrincipalValueProof(edge, inside, (other, *further))
+        result = _principal_angle(ring, leaf, angle)
+        if result is not None:
+            return result
+    return None
+
+
+def _principal_angle(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
+    """Return a proof that the inverse function ``leaf``, such as asin(S), is ``angle`` if that is in its range.
+
+    None if the function of the angle, such as sin(angle), is not proven to be S.
+    """
+    function, least, most = _PRINCIPAL[type(leaf)]
+    with suppress(InputError):  # an angle that cannot be read proves nothing
+        other = FormulaRing([function(angle), leaf.args[0]], ring.hypotheses, ring.domain)
+        further = proof(other, other.difference(function(angle), leaf.args[0]).numerator)
+        if further is not None:
+            ends = (angle - least, most - angle)
+            inside, edge = (ends, ()) if isinstance(leaf, atan) else ((), ends)
+            return PrincipalValueProof(edge, inside, (other, *further))
     return None
 
 
@@ -176,14 +187,7 @@ def _principal_sum(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr
     # the leaf with the longest argument is the inverse function of the sum of the others
     for leaf, own in sorted(leaves, key=lambda pair: -pair[0].count_ops())[:1]:
         angle = sum((-Rational(multiple / own) * other for other, multiple in terms if other is not leaf), Integer(0))
-        function, least, most = _PRINCIPAL[type(leaf)]
-        with suppress(InputError):  # an angle that cannot be read proves nothing
-            other_ring = FormulaRing([function(angle), leaf.args[0]], ring.hypotheses, ring.domain)
-            further = proof(other_ring, other_ring.difference(function(angle), leaf.args[0]).numerator)
-            if further is not None:
-                ends = (angle - least, most - angle)
-                inside, edge = (ends, ()) if isinstance(leaf, atan) else ((), ends)
-                return PrincipalValueProof(edge, inside, (other_ring, *further))
+        return _principal_angle(ring, leaf, angle)
     return None
 
 
