@@ -53,14 +53,14 @@ class Enclosed:
         a, b, size = np.abs(self.high), np.abs(other.high), np.abs(high)
         error = a * other.error + b * self.error + self.error * other.error + self._lost(other) * size
         zero = (a == 0) & (self.error == 0) | (b == 0) & (other.error == 0)
-        return _made(high, low, np.where(zero, 0.0, error), np.where(zero, 0.0, np.where(size == 0, np.inf, size)))
+        return _made_of_factors(high, low, error, zero)
 
     def __truediv__(self, other: "Enclosed") -> "Enclosed":
         high, low = dd.divide((self.high, self.low), (other.high, other.low))
         size, least = np.abs(high), np.abs(other.high) * (1 - ERROR) - other.error
         zero = (self.high == 0) & (self.error == 0) & (least > 0)
         error = np.where(least > 0, (self.error + size * other.error) / least + ERROR * size, np.inf)
-        return _made(high, low, np.where(zero, 0.0, error), np.where(zero, 0.0, np.where(size == 0, np.inf, size)))
+        return _made_of_factors(high, low, error, zero)
 
     def __pow__(self, exponent: int) -> "Enclosed":
         one = exact(Fraction(1), len(self.high))
@@ -75,6 +75,12 @@ def _made(high: Floats, low: Floats, error: Floats, size: Floats) -> Enclosed:
     # size: of the largest operand or result; outside these limits, error terms are not exact
     safe = (size == 0) | (size > LEAST) & (size < MOST)
     return Enclosed(high, low, np.where(safe, error, np.inf))
+
+
+def _made_of_factors(high: Floats, low: Floats, error: Floats, zero: NDArray[np.bool_]) -> Enclosed:
+    """Return a product or quotient; where ``zero`` is true, it is exactly 0, and a 0 elsewhere is an underflow."""
+    size = np.abs(high)
+    return _made(high, low, np.where(zero, 0.0, error), np.where(zero, 0.0, np.where(size == 0, np.inf, size)))
 
 
 def exact(value: Fraction | Floats, count: int = 1) -> Enclosed:

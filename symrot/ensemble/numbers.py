@@ -4,8 +4,9 @@ A parameter, such as ``(B - C)/A``, is a formula in the constants of the scene. 
 evaluated once.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 
@@ -57,9 +58,7 @@ class Numbers:
 
         ``epoch`` is the scene's time, s, at which the time t of the kernel is 0.
         """
-        scene = Plan(self._variation.scene, self._plan.structure, ()).constants
-        known = {"pi": number.PI, EPOCH: Fraction(epoch), **scene}
-        fixed = {name: value for name, value in known.items() if name not in self._columns}
+        fixed = self._fixed(epoch)
         values = np.empty((len(self._chosen), len(parameters)))
         for k, (_, node) in enumerate(parameters):
             if node[0] == "symbol" and node[1] in self._columns:
@@ -91,12 +90,7 @@ class Numbers:
         InputError
             If a parameter of a trajectory does not depend smoothly on the variable.
         """
-        scene = {
-            "pi": number.PI,
-            EPOCH: Fraction(epoch),
-            **Plan(self._variation.scene, self._plan.structure, ()).constants,
-        }
-        fixed = {name: value for name, value in scene.items() if name not in self._columns}
+        fixed = self._fixed(epoch)
         result: dict[str, Floats] = {}
         for name, node in parameters:
             used = names(node)
@@ -107,16 +101,19 @@ class Numbers:
                 result[name] = np.full(len(self._chosen), float(moved[node[1]]))
                 continue
             if not own:
-                slope = _slope(node, fixed, moved, variable)
+                slope = _slope(node, fixed, moved, variable, {})
                 if slope:
                     result[name] = np.full(len(self._chosen), float(slope))
                 continue
-            table = np.stack([self._columns[key] for key in own], axis=1)
-            rows, places = np.unique(table, axis=0, return_inverse=True)
-            constants = [fixed | dict(zip(own, map(Fraction, row), strict=True)) for row in rows.tolist()]
-            values = np.array([float(_slope(node, each, moved, variable)) for each in constants])
-            result[name] = values[places.ravel()]
+            slope_of = partial(_slope, node, fixed, moved, variable)
+            result[name] = _in_fractions(slope_of, {key: self._columns[key] for key in own})
         return result
+
+    def _fixed(self, epoch: float) -> dict[str, Fraction]:
+        """Return pi, the epoch, s, and the constants that do not vary, by name."""
+        scene = Plan(self._variation.scene, self._plan.structure, ()).constants
+        known = {"pi": number.PI, EPOCH: Fraction(epoch), **scene}
+        return {name: value for name, value in known.items() if name not in self._columns}
 
     def _each(self, node: Node, used: set[str]) -> Floats:
         """Return the values of the formula ``node``, which contains the names ``used``, rounded once."""
@@ -129,25 +126,29 @@ class Numbers:
         except KeyError:  # a function, which has no enclosure
             values, certain = np.empty(len(self._chosen)), np.zeros(len(self._chosen), dtype=bool)
         if not certain.all():
-            values[~certain] = _in_fractions(node, {name: column[~certain] for name, column in columns.items()})
+            uncertain = {name: column[~certain] for name, column in columns.items()}
+            values[~certain] = _in_fractions(partial(value_of, node), uncertain)
         return values
 
 
-def _in_fractions(node: Node, columns: Mapping[str, Floats]) -> Floats:
-    """Return the values of the formula ``node`` in exact arithmetic; ``columns`` are the values of its symbols."""
+def _in_fractions(function: Callable[[dict[str, Fraction]], Fraction], columns: Mapping[str, Floats]) -> Floats:
+    """Return the values of ``function``, each rounded, for the constants in each row of ``columns``, as fractions."""
     table = np.stack(list(columns.values()), axis=1)
     # evaluated once for trajectories with equal constants
     rows, places = np.unique(table, axis=0, return_inverse=True)
     constants = [dict(zip(columns, map(Fraction, row), strict=True)) for row in rows.tolist()]
-    values: Floats = np.array([float(value_of(node, each)) for each in constants])[places.ravel()]
+    values: Floats = np.array([float(function(each)) for each in constants])[places.ravel()]
     return values
 
 
-def _slope(node: Node, constants: Mapping[str, Fraction], moved: Mapping[str, Fraction], variable: str) -> Fraction:
+def _slope(
+    node: Node, fixed: Mapping[str, Fraction], moved: Mapping[str, Fraction], variable: str, own: Mapping[str, Fraction]
+) -> Fraction:
     """Return the derivative of the formula ``node`` by a variable; ``moved`` are the derivatives of the constants.
 
     ``A*B`` with A = 2, B = 3 and ``moved = {"A": 1}`` gives 3.
     """
+    constants = {**fixed, **own}  # own: those of one trajectory
     ratios = [abs(constants[name] / slope) for name, slope in moved.items() if slope and name in constants]
     size = min((ratio for ratio in ratios if ratio), default=Fraction(1))
 
