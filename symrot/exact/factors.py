@@ -10,6 +10,9 @@ import sympy
 from sympy import Expr, Integer, Mul, Pow, Rational, exp, preorder_traversal, sympify
 from sympy.polys.rings import PolyElement, sring
 
+from symrot.exact.operations import spend
+from symrot.exact.size import pieces
+
 __all__ = ["factor_list", "factored", "is_dear"]
 
 HIGHEST_DEGREE = 20
@@ -27,6 +30,7 @@ MOST_BITS = 1000
 
 def factor_list(poly: PolyElement) -> tuple[Any, list[tuple[PolyElement, int]]]:
     """Return (number, [(factor, power), ..]) for a polynomial; a factor that would take too long stays whole."""
+    spend(len(poly) * (20 + 30 * sum(poly.degrees())))
     if poly.is_ground or not _is_dear(poly):
         constant, pairs = poly.factor_list()
         return constant, [(factor, int(power)) for factor, power in pairs]
@@ -75,6 +79,7 @@ def factored(formula: Expr) -> Expr:
     >>> factored(x**2 - y**2), factored(x**30 - x**29*y)
     ((x - y)*(x + y), x**30 - x**29*y)
     """
+    spend(100 + 20 * pieces([formula]))
     if is_dear(formula):
         return formula
     if len(formula.free_symbols) > MOST_UNKNOWNS and formula.is_polynomial():
