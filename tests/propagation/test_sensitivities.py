@@ -346,7 +346,9 @@ def at_zero(formula, variable="c", **more):
 
 
 @needs_compiler
-@pytest.mark.parametrize("formula", ["abs(c)", "sqrt(c**2)*(1 + t)", "sqrt(1 - cos(c))", "sqrt(c**2 + d**2*omega_3**2)"])
+@pytest.mark.parametrize(
+    "formula", ["abs(c)", "sqrt(c**2)*(1 + t)", "sqrt(1 - cos(c))", "sqrt(c**2 + d**2*omega_3**2)"]
+)
 def test_a_constant_with_a_kink_at_the_value_of_a_variable_is_refused(formula):
     """The central difference of abs(c) at zero is zero, whatever the step."""
     with pytest.raises(symrot.SymrotError):
