@@ -50,8 +50,8 @@ def certify_step(
     printed = step_text(scene, step, order)
     if not isinstance(printed, StepText):
         raise InputError(
-            f"step: expected rk4, taylor or dop853 for {scene}, got exact: its exact step has elliptic functions, no "
-            "certificate, unlike that of a symmetric body without outer torque; --step taylor --order 16 is near exact"
+            f"step: expected rk4, taylor or dop853 for {scene}, got exact: with elliptic functions, an exact step has a test "
+            "and no certificate; the step taylor of order 16 is close to it"
         )
     progress("proving ..")
     text = printed.certificate()
