@@ -50,8 +50,8 @@ def certify_step(
     printed = step_text(scene, step, order)
     if not isinstance(printed, StepText):
         raise InputError(
-            f"step: expected rk4, taylor or dop853 for {scene}, got exact: with elliptic functions, an exact step has a test "
-            "and no certificate; the step taylor of order 16 is close to it"
+            f"step: expected rk4, taylor or dop853 for {scene}, got exact: with elliptic functions, an exact step has "
+            "a test and no certificate; the step taylor of order 16 is close to it"
         )
     progress("proving ..")
     text = printed.certificate()
