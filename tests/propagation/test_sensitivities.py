@@ -335,3 +335,26 @@ def test_a_transition_needs_formulas_and_finite_times():
 def test_the_command_line_refuses_an_unknown_variable(capsys):
     assert main(["run", "t_handle", "--sensitivities", "wieght"]) == 2
     assert "sensitivities: wieght" in capsys.readouterr().err
+
+
+def at_zero(formula, variable="c", **more):
+    content = {
+        "schema": 1, "body": {"principal": [2, 3, 4]}, "initial": {"omega": [0, 0, 1]}, "span": {"t": [0, 1]},
+        "torque": [{"kind": "expression", "parameters": {"c": 0, **more}, "torque": [formula, "0", "0"]}],
+    }  # fmt: skip
+    return symrot.propagate(content, t=[1], sensitivities=[variable]).sensitivities[variable].omega[-1, 0]
+
+
+@needs_compiler
+@pytest.mark.parametrize(
+    "formula", ["abs(c)", "sqrt(c**2)*(1 + t)", "sqrt(1 - cos(c))", "sqrt(c**2 + d**2*omega_3**2)"]
+)
+def test_a_constant_with_a_kink_at_the_value_of_a_variable_is_refused(formula):
+    """The central difference of abs(c) at zero is zero, whatever the step."""
+    with pytest.raises(symrot.SymrotError):
+        at_zero(formula, d=0)
+
+
+@needs_compiler
+def test_a_constant_that_vanishes_to_a_higher_order_has_the_derivative_zero():
+    assert at_zero("c*abs(c) + c**3*(1 + t)") == 0.0
