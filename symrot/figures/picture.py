@@ -62,7 +62,7 @@ def _narrow(width: float) -> str:
     sizes = zip((" text", " text.word", " tspan"), (15, 13, 11), strict=True)
     rules = "".join(f".sf.sf{width:.0f}{name}{{font-size:{_number(factor * size)}px}}" for name, size in sizes)
     # in an image the rule sees the width of the image; in a page, the width of the page
-    return f".sf{{overflow:visible}}@media (max-width:{_number(0.8 * width + 40)}px){{{rules}}}"
+    return f".sf{{overflow:visible}}@media (max-width:{_number(0.8 * width + 62)}px){{{rules}}}"
 
 
 class Picture:
