@@ -11,7 +11,7 @@ from dataclasses import replace
 from itertools import combinations, islice
 from typing import Any
 
-from sympy import Function, Matrix, Mul, Pow, Rational, Symbol, acos, asin, atan2
+from sympy import Function, Matrix, Mul, Pow, Rational, Symbol, acos, asin, atan, atan2, fraction
 
 from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.claim.claims import Claim
@@ -399,6 +399,8 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     for near in nearby:
         if near.tree in tried or len(repairs) == MOST_REPAIRS or len(tried) == MOST_PROOFS:
             continue
+        if near.code == "two_faults" and not repairs:
+            continue  # two signs alone are no evidence of a fault
         tried.add(near.tree)
         if not is_evident(claim, named, near) or (shifted and is_of_body(near.code, near.known.name)):
             continue
@@ -619,7 +621,8 @@ def _readings_of_formula(
     if not is_matrix(value) and len(value.atoms(Function, Symbol) - {time}) < fewest:
         return ()
     letters = {*letters_of(formula)}
-    searched, ending = _without_function(value)
+    is_tangent = named.side.kind == "call" and named.side.value == "tan"
+    searched, ending = _without_function(value, is_tangent)
 
     def fits(known: Identification) -> bool:
         return (
@@ -639,10 +642,11 @@ def _readings_of_formula(
     return tuple(likeliest[:MOST_READINGS])
 
 
-def _without_function(value: Any) -> tuple[Any, str]:
+def _without_function(value: Any, of_tangent: bool = False) -> tuple[Any, str]:
     """Return a value without its outer root or inverse function, and words for that function.
 
     ``acos(u)`` gives (u, ", acos"), ``sqrt(u)`` gives (u, ", squared"); another u gives (u, "").
+    ``of_tangent``: ``atan(a/b)``, the solution of ``tan(x) = a/b``, gives (a and b, ", atan2").
     """
     if is_matrix(value):
         return value, ""
@@ -650,6 +654,8 @@ def _without_function(value: Any) -> tuple[Any, str]:
     if any(power.exp == Rational(1, 2) for power in Mul.make_args(value) if power.is_Pow):
         return value**2, SQUARED
     factor, function = value.as_coeff_Mul()
+    if of_tangent and isinstance(function, atan) and factor == 1:
+        return Matrix(fraction(function.args[0])), ", atan2"
     if not isinstance(function, acos | asin | atan2):
         return value, ""
     if factor < 0 and isinstance(function, asin):

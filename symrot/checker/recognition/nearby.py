@@ -281,7 +281,8 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
     if not trees:
         return []
     absent = next((name for name, other in renaming.items() if other is None), None)
-    name, is_similar = absent_name(absent, renaming) if absent is not None else ("", False)
+    unused = [text_of(atom) for atom in letters.atoms if text_of(atom) not in renaming.values()]
+    name, is_similar = absent_name(absent, renaming, unused) if absent is not None else ("", False)
     lacking = _lacking_letter(absent, name, letters) if absent is not None else None
     if lacking in letters.atoms:
         return []

@@ -201,12 +201,15 @@ def is_fitting(known: str, own: str, is_angle: bool) -> bool:
     return agree_in_unit(known, own)
 
 
-def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]:
-    """Return a name for the symbol ``known`` that a claim lacks, and whether a series gives it: w_3 after w_1, w_2."""
+def absent_name(known: str, renaming: dict[str, str | None], unused: Collection[str] = ()) -> tuple[str, bool]:
+    """Return a name for the symbol ``known`` that a claim lacks, and whether a series gives it: w_3 after w_1, w_2.
+
+    ``unused`` are the claim's letters that are no other symbol of the known formula: I_1 gives I_3 for C.
+    """
     for mine, other in renaming.items():
         if other is not None and (numbered := _numbered_angle(known, mine, plain_name(other))):
             return numbered, True
-        if known in ORDER and mine in ORDER and plain_name(other or "") == mine:
+        if known in ORDER and mine.removeprefix("d") in ORDER and plain_name(other or "") == mine:
             return known, True
     if (of_product := _absent_of_product(known, renaming)) is not None:
         return of_product, True
@@ -221,7 +224,17 @@ def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]
             continue
         own, new = axes_of(mine), axes_of(name)
         if axis and own == new:
-            letters = "0xyz" if index[0].isalpha() else "0123"
-            new_index = "".join(letters[place] for place in sorted(axis))
-            return name[: index.start()] + new_index * (len(index[0]) if len(axis) == 1 else 1) + mark, True
+            return name[: index.start()] + _index_like(index[0], axis) + mark, True
+    for other in unused:
+        name, mark = _without_mark(plain_name(other))
+        index = INDEX.search(name)
+        if index is not None and len(axis) == 1 and len(axes_of(name)) == 1 and is_fitting(known, other, False):
+            return name[: index.start()] + _index_like(index[0], axis) + mark, True
     return USUAL.get(known, known), False
+
+
+def _index_like(index: str, axes: Collection[int]) -> str:
+    """Return the index for the axes, written as ``index`` is: "z" or "zz" for axis 3 beside "x" or "xx"."""
+    letters = "0xyz" if index[0].isalpha() else "0123"
+    made = "".join(letters[place] for place in sorted(axes))
+    return made * (len(index) if len(axes) == 1 else 1)
