@@ -108,7 +108,8 @@ def _exchanges(formula: Node, letters: Letters) -> Iterator[Edit]:
     """Yield edits that exchange two similar letters of a scalar formula, such as I_1 and I_3."""
     names = [name for name in letters.names if name != str(LACKING.value)]
     for first, second in combinations(names, 2):
-        if second in neighbours(first, names):
+        is_indexed = "_" in first and first.partition("_")[0] == second.partition("_")[0]
+        if is_indexed or second in neighbours(first, names):
             tree = with_names(formula, {first: second, second: first})
             yield Edit("wrong_symbol", COST["wrong_symbol"] + COST["names_exchanged"], (), tree)
 

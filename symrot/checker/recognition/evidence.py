@@ -97,7 +97,7 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"(V|U)_?eff", ("effective potential",)),
     (r"W", ("work", "potential", "energy")),
     (r"V|U|E_?p|PE", ("potential", "work")),
-    (r"d[LHh](_?([xyzOGCPAB0-3]|cm))?", ("rate of the angular momentum",)),
+    (r"d[LHhM](_?([xyzOGCPAB0-3]|cm))?", ("rate of the angular momentum",)),
     (r"[Hh](_?([xyzOGCPAB0-3]|cm))?", ("angular momentum",)),
     (r"L(_?([xyzOGCPAB0-3]|cm))?", ("angular momentum", "Lagrangian", "torque")),
     (r"p_?(phi|theta|psi|varphi)|P_?(phi|theta|psi)", ("momentum of",)),
@@ -208,7 +208,8 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     count += is_steady(near.known.name) and TIME in [node for _, node in walk(named.formula)]  # t is a letter of it
     is_new = not quantities_in(near.tree) <= quantities_in(named.formula)
     is_special = near.is_symmetric and not OF_ANGLES.search(near.known.name)
-    if is_new and near.code == "wrong_symbol" and _is_component_of_parameters(named, near):
+    is_component = _is_component_of_parameters(named, near) or _is_angle_of_entries(named, near)
+    if is_new and near.code == "wrong_symbol" and is_component:
         return True
     if is_new and (
         max(quantities, near.array_letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_special
@@ -247,7 +248,7 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
         return True
     if _is_stated(claim, named, near) or _is_component_of_quaternion(named, near) or _is_entry_of_matrix(named, near):
         return True
-    if _is_component_of_parameters(named, near):
+    if is_component:
         return True
     if near.code == "sign_of_term" and _is_of_stated_flat_body(claim, near):
         return True
@@ -337,6 +338,13 @@ def _is_entry_of_matrix(named: NamedFormula, near: Near) -> bool:
     own, entry = re.fullmatch(ENTRY, named.name), re.match(r"entry ([1-3]{2}) of the rotation matrix", near.known.name)
     is_same = own is not None and entry is not None and own[1] in (entry[1], entry[1][::-1])
     return is_same and has_terms(named.formula)
+
+
+def _is_angle_of_entries(named: NamedFormula, near: Near) -> bool:
+    """Return whether a claim gives an angle by three or more entries of a matrix, and ``near`` is such an angle."""
+    letters = names_in(named.formula)
+    is_of_entries = len(letters) >= LEAST_SYMBOLS_EDITED and all(re.fullmatch(ENTRY, letter) for letter in letters)
+    return is_of_entries and re.search(r"angle .*of a rotation matrix", near.known.name) is not None
 
 
 def _is_component_of_parameters(named: NamedFormula, near: Near) -> bool:

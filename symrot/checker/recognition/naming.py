@@ -49,6 +49,7 @@ from symrot.checker.recognition.evidence import (
 )
 from symrot.checker.recognition.identification import identified, known_value
 from symrot.checker.recognition.known_formulas import ending_of
+from symrot.checker.recognition.lengths import by_lengths
 from symrot.checker.recognition.letters import is_atom
 from symrot.checker.recognition.nearby import Near, near_formulas
 from symrot.checker.recognition.quantity_variants import is_evident_by_quantity, quantity_variants, without_inverse
@@ -144,6 +145,8 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
         recognised = Verdict("recognised", recognised_as=readings, notes=_on_signs_of_products(claim, named, readings))
         return recognised if usual is None else usual
     nearest = _nearest(claim, named) if repair else None
+    if nearest is None:
+        nearest = by_lengths(named, lambda changed: verdict_on_name(claim, changed, repair))
     if nearest is not None:
         return nearest
     own, others = names_in(named.side), names_in(named.formula)

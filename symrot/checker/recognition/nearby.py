@@ -442,6 +442,10 @@ def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters)
         return None
     if ending_of(known.name) == SQUARED and named.side == Node("power", None, (_quantity(named), number(2))):
         return target
+    if (named.side.value, ending_of(known.name)) in (("cos", ", acos"), ("sin", ", asin")) and is_atom(
+        named.side.args[0]
+    ):
+        return target
     try:
         # the root for a known square, the angle for a known cosine
         target = tuple(map(function, target))

@@ -29,6 +29,9 @@ ORDER = {"phi": "1", "theta": "2", "psi": "3"}
 RATES = {"omega_1": "p", "omega_2": "q", "omega_3": "r"}
 """Component of an angular velocity -> the letter of an aircraft's rate."""
 
+MATRIX_ENTRY = re.compile("R_[1-3]{2}")
+"""An entry of a rotation matrix in known formulas."""
+
 USUAL = {"c_3": "l", "mu": "m", "omega_3": "omega", "domega_3": "alpha"}
 """Name in known formulas -> the name that books use where it is the only quantity of its kind."""
 
@@ -215,6 +218,8 @@ def absent_name(known: str, renaming: dict[str, str | None], unused: Collection[
         return of_product, True
     if known in RATES and any(renaming.get(mine) == letter for mine, letter in RATES.items()):
         return RATES[known], True
+    if (entry := _absent_entry(known, renaming)) is not None:
+        return entry, True
     axis = axes_of(known)
     unit = UNIT_OF_NAME.get(known)
     for mine, other in renaming.items():
@@ -231,6 +236,17 @@ def absent_name(known: str, renaming: dict[str, str | None], unused: Collection[
         if index is not None and len(axis) == 1 and len(axes_of(name)) == 1 and is_fitting(known, other, False):
             return name[: index.start()] + _index_like(index[0], axis) + mark, True
     return USUAL.get(known, known), False
+
+
+def _absent_entry(known: str, renaming: dict[str, str | None]) -> str | None:
+    """Return a name for the entry ``known`` of a rotation matrix: r_21 for R_21 if R_11 is r_11.
+
+    None without entries in the claim, or if they have other indices.
+    """
+    pairs = [(mine, other) for mine, other in renaming.items() if other is not None and MATRIX_ENTRY.fullmatch(mine)]
+    if MATRIX_ENTRY.fullmatch(known) is None or not pairs or any(mine[-2:] != other[-2:] for mine, other in pairs):
+        return None
+    return pairs[0][1][:-2] + known[-2:]
 
 
 def _index_like(index: str, axes: Collection[int]) -> str:
