@@ -10,7 +10,13 @@ from time import perf_counter
 
 from symrot.checker.claim.claims import Claim, relation_text
 from symrot.checker.claim.differentiation import as_functions, is_rule
-from symrot.checker.claim.named_formula import NamedFormula, named_formula, open_formula, related_formula
+from symrot.checker.claim.named_formula import (
+    NamedFormula,
+    claims_identity,
+    named_formula,
+    open_formula,
+    related_formula,
+)
 from symrot.checker.claim.values import decide_value
 from symrot.checker.decide.decision import decide_equation, for_positive_bases, is_large
 from symrot.checker.decide.ranges import condition_texts
@@ -25,6 +31,7 @@ __all__ = ["MOST_SECONDS", "check_claim", "check_readings", "is_unfinished", "un
 
 MOST_SECONDS = 20
 """The most processor time for one claim. The slowest claim of the campaigns that is decided needs 10 s."""
+FOR_ALL_VALUES = "== claims that both sides are equal for all values; as a relation between its letters, write one ="
 WITH_HYPOTHESES = "it is no formula that symrot derives, but the hypotheses, which are not used, may make it one"
 
 
@@ -66,6 +73,8 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
             if other_verdict is None and is_false and verdict.dimension.status != "inconsistent":
                 named = _on_determinant(claim, repair) or _on_name(claim, repair, related_formula)
                 named = named or _on_relation(claim) or _on_expanded(claim, repair)
+                if named and named[1].verdict == "definition" and claims_identity(claim):
+                    named, verdict = None, replace(verdict, notes=(*verdict.notes, FOR_ALL_VALUES))
                 decision, verdict = named or (decision, verdict)
             # a diagnosis of faults only if no other interpretation makes the claim true
             if other_verdict is None and repair and decision is not None:

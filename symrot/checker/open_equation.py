@@ -31,7 +31,9 @@ def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:
     """Turn "false" into "definition" for an equation of one letter with a real solution, such as ``x² = 4``, or of two
     letters, ``a = b``.
     """
-    if claim.relation is None or not claim.implied or claim.hypotheses or claim.define or claim.has_parts:
+    if claim.relation is None or claim.has_double_equals or not claim.implied:
+        return verdict
+    if claim.hypotheses or claim.define or claim.has_parts:
         return verdict
     _, left, right = claim.relation
     # an equation of two letters, a = b

@@ -70,8 +70,11 @@ class Dual:
         return raised
 
 
-def dual_functions(functions: Mapping[str, Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
+def dual_functions(functions: Mapping[str, Callable[..., Any]], least_root: Any = 0) -> dict[str, Callable[..., Any]]:
     """Return functions of dual numbers, by name; ``functions`` are the same functions for plain numbers.
+
+    ``least_root`` is added to the divisor of the derivative of a root: a tiny number makes that of sqrt(x**2) zero, not
+    undefined, at x = 0.
 
     Raises
     ------
@@ -80,7 +83,7 @@ def dual_functions(functions: Mapping[str, Callable[..., Any]]) -> dict[str, Cal
     """
     f = functions
     rules: dict[str, Callable[[Any, Any], Any]] = {  # derivative at x of the function with the value y
-        "sqrt": lambda x, y: 1 / (2 * y),
+        "sqrt": lambda x, y: 1 / (2 * y + least_root),
         "sin": lambda x, y: f["cos"](x),
         "cos": lambda x, y: -f["sin"](x),
         "tan": lambda x, y: 1 + y * y,

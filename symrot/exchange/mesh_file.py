@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from symrot.errors import InputError
+from symrot.exchange.obj_file import read_plain_obj, refers_backwards
 from symrot.exchange.surface import Surface, merge
 from symrot.files.reading import read_input
 from symrot.formula.exact_numbers import show
@@ -41,13 +42,6 @@ def read_surface(path: Path, where: str) -> Surface:
     if suffix not in SUFFIXES:
         raise InputError(f"{where}: expected a mesh file ({', '.join(SUFFIXES)}), got {show(path.name)}")
     try:
-        import trimesh
-    except ImportError:
-        raise InputError(
-            f"{where}: expected trimesh, which reads meshes, but it is not installed; install it with "
-            "pip install 'symrot[mesh]'"
-        ) from None
-    try:
         content = read_input(path, LARGEST_FILE)
     except OSError as reason:
         limit = f"{LARGEST_FILE // 1_000_000} MB"
@@ -55,7 +49,17 @@ def read_surface(path: Path, where: str) -> Surface:
             f"{where}: expected a readable mesh file of at most {limit}, got {reason.strerror or reason}"
         ) from None
     try:
-        mesh = _load(trimesh, content, suffix[1:])
+        mesh = read_plain_obj(content) if suffix == ".obj" else None
+        if mesh is None and suffix == ".obj" and refers_backwards(content):
+            # trimesh counts them from the end of the file
+            raise InputError(
+                f"{where}: expected positive numbers of vertices in an OBJ file whose lines differ in form, got a line "
+                "such as f -3 -2 -1; save the mesh again with positive numbers or with triangles alone"
+            )
+        if mesh is None:
+            mesh = _load(_trimesh(where), content, suffix[1:])
+    except InputError:
+        raise
     except MemoryError:
         raise InputError(f"{where}: expected a mesh that fits in memory, got a larger one") from None
     except ImportError:  # a reader of trimesh looks for the encoding of a file that is no text
@@ -67,6 +71,18 @@ def read_surface(path: Path, where: str) -> Surface:
         fault = " ".join(str(reason).split())[:80] or type(reason).__name__
         raise InputError(f"{where}: expected a mesh in the format {suffix[1:].upper()}, got a fault: {fault}") from None
     return _checked(mesh, where)
+
+
+def _trimesh(where: str) -> Any:
+    """Return the module trimesh; raise InputError if it is not installed."""
+    try:
+        import trimesh
+    except ImportError:
+        raise InputError(
+            f"{where}: expected trimesh, which reads meshes, but it is not installed; install it with "
+            "pip install 'symrot[mesh]'"
+        ) from None
+    return trimesh
 
 
 def _load(trimesh: Any, content: bytes, kind: str) -> tuple[Any, Any]:

@@ -191,7 +191,7 @@ def sweep(
     progress : callable, optional
         Called with the number of complete trajectories and the number of all.
     note : callable, optional
-        Called with a text about each stage after the last chunk.
+        Called with warnings about the scene, and with a text about each stage after the last chunk.
 
     Returns
     -------
@@ -238,6 +238,8 @@ def sweep(
         _require_same(store.only_statistics, only_statistics, target)
         store.finish([], only_statistics)  # removes values that a process that was stopped left
     else:
+        for warning in job.scene.body.warnings:
+            note(f"warning: {warning}")
         pending = store.pending()
         done = header.count - sum(stop - start for start, stop in pending)
         if progress is not None:

@@ -22,6 +22,7 @@ def test_two_letters_are_a_condition():
 
 @pytest.mark.parametrize("text", [
     "2x = 3x", "(x + 1)^2 = x^2 + 1", "3x + 2 = 5x", "x² = -1", "cos θ = 2", "√x = -3", "sin^2 x - cos^2 x = 1", "x**2 == 4",
+    "x² == 4",
 ])  # fmt: skip
 def test_a_wrong_identity_and_an_equation_without_a_solution_are_false(text):
     assert symrot.check(text, repair=False).verdict == "false"
@@ -31,3 +32,38 @@ def test_a_derivative_that_is_a_hidden_zero_is_no_condition():
     """``diff(x, t) == 0`` states that x is constant, but nobody writes this zero as ``2*y - y - y``."""
     assert symrot.check("diff(sin(x(t)), t) == 0", repair=False).verdict == "definition"
     assert symrot.check("diff(sin(x(t)), t) == 2*y - y - y", repair=False).verdict == "false"
+
+
+LAWS = (
+    "m*a {} k*x", "m*v**2/2 {} m*g*h", "tan(a)*x {} tan(c)*z/(z + y - y)*x", "m*a {} m*g - T",
+    "diff(Rz(phi(t)), t) {} skew(0, 0, x)*Rz(phi(t))", "sin(theta(t))*diff(phi(t), t) {} x*y",
+)  # fmt: skip
+"""Equations whose sides name no quantity, without the equals sign."""
+
+
+@pytest.mark.parametrize("text", LAWS)
+def test_a_double_equals_sign_claims_an_identity_and_a_single_one_relates_quantities(text):
+    claimed = symrot.check(text.format("=="), repair=False)
+    assert claimed.verdict == "false" and claimed.counterexample
+    assert any(note.startswith("== claims that both sides are equal for all values") for note in claimed.notes)
+    related = symrot.check(text.format("="), repair=False)
+    assert (related.verdict, related.counterexample) == ("definition", None)
+
+
+@pytest.mark.parametrize("text", [
+    "m*a == F", "L**2 == m*x*y", "2*E1 == m*a", "cos(theta) == x/y", "diff(x(t), t, 2) == -k*x(t)/m",
+    "m*diff(x(t), t, 2) + k*x(t) == 0", "(m + M)*x(t).diff(t, 2) == -k*x(t)", "diff(x(t)**2, t) == 0",
+    "Matrix([a_x, a_y]) == Matrix([m*b, m*c])",
+])  # fmt: skip
+def test_a_side_with_one_quantity_names_it_and_a_rate_makes_an_equation_of_motion_with_both_signs(text):
+    assert symrot.check(text, repair=False).verdict == "definition"
+    assert symrot.check(text.replace("==", "="), repair=False).verdict == "definition"
+
+
+def test_a_law_that_symrot_derives_is_recognised_with_both_signs():
+    law = "lambda_1*Omega**2*cos(theta) - lambda_3*w_3*Omega + M*g*R {} 0"
+    assert [symrot.check(law.format(sign)).verdict for sign in ("=", "==")] == ["recognised", "recognised"]
+
+
+def test_a_built_in_rotation_is_no_matrix_of_unknown_entries():
+    assert not any("any 3 x 3 matrix" in note for note in symrot.check(LAWS[4].format("=="), repair=False).notes)

@@ -10,6 +10,7 @@ import pytest
 import symrot
 from symrot.cli.main import main
 from symrot.errors import InputError
+from symrot.exchange.obj_file import read_plain_obj
 from tests.exchange.polyhedra import box, rotated, sphere
 
 trimesh = pytest.importorskip("trimesh")
@@ -93,6 +94,44 @@ def test_files_that_an_obj_refers_to_are_not_opened(tmp_path):
     path = tmp_path / "x.obj"
     path.write_text("mtllib /dev/zero\nusemtl a\n" + OBJ)
     assert symrot.mesh(path, mass=1).volume == Fraction(1, 6)
+
+
+@pytest.mark.parametrize("lines", [
+    ("f 1 3 2", "f 1 2 4", "f 1 4 3", "f 2 3 4"),
+    ("f 1/1 3/2 2/3", "f 1/9 2/1 4/1", "f 1/1 4/1 3/1", "f 2/1 3/1 4/1"),
+    ("f 1//1 3//2 2//3", "f 1//9 2//1 4//1", "f 1//1 4//1 3//1", "f 2//1 3//1 4//1"),
+    ("f 1/1/1 3/2/2 2/3/7", "f 1/9/1 2/1/1 4/1/1", "f 1/1/1 4/1/1 3/1/1", "f 2/1/1 3/1/1 4/1/1"),
+    ("f -4 -2 -3", "f -4 -3 -1", "s 1", "f -4 -1 -2", "f -3 -2 -1"),
+])  # fmt: skip
+@pytest.mark.parametrize("newline", ["\n", "\r\n"])
+def test_the_common_forms_of_obj_lines_are_read(lines, newline):
+    text = newline.join(["# a comment", "mtllib x.mtl", "", "vn 0 0 1", *OBJ.splitlines()[:4], "vt 0 0", "g a", *lines])
+    vertices, triangles = read_plain_obj(text.encode())
+    assert vertices.tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    assert triangles.tolist() == [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+
+
+@pytest.mark.parametrize("old,new", [
+    ("v 1 0 0", "v  1 0 0"), ("v 1 0 0", "v 1 0 0 1 1 1"), ("v 1 0 0", "v 1\t0 0"), ("v 1 0 0", "v 1 0"), ("v 1 0", "v 1,5"),
+    ("f 1 3 2", "f 1 3 \\\n2"), ("f 1 3 2", "f 1/2 3/1 2/1"), ("f 1 3 2", "f 1 3 2 # face"), ("f 1 3 2", "f 1 3 2 4"),
+    ("f 1 3 2", "f 1 3 2.5"), ("f 1 3 2", "f 1 3 f2"), ("f 1 3 2", "curv 1 2\nf 1 3 2"), ("f 1 3 2", "l 1 3\nf 1 3 2"),
+    ("f 1 3 2\nf 1 2 4", "f 1 3 \nf 1 2 4"), (OBJ, ""), (OBJ[OBJ.index("f"):], ""), ("\n", "\r"),
+])  # fmt: skip
+def test_other_forms_of_obj_lines_are_left_to_trimesh(old, new):
+    assert read_plain_obj(OBJ.encode()) is not None
+    assert old in OBJ and read_plain_obj(OBJ.replace(old, new).encode()) is None
+
+
+def test_negative_numbers_of_an_obj_file_count_from_their_own_line(tmp_path):
+    """trimesh counts them from the end of the file: the first body would be the second once more."""
+    second = OBJ.replace("v 0 0 1", "v 0 0 3").replace("v ", "v 5").splitlines()[:4]
+    backwards = ["f -4 -2 -3", "f -4 -3 -1", "f -4 -1 -2", "f -3 -2 -1"]
+    path = tmp_path / "two.obj"
+    path.write_text("\n".join([*OBJ.splitlines()[:4], *backwards, *second, *backwards]))
+    assert symrot.mesh(path, density=6).mass == 1 + 3
+    path.write_text("\n".join([*OBJ.splitlines()[:4], *backwards, "f -4 -4 -4 -4", *second, *backwards]))
+    with pytest.raises(InputError, match=r"expected positive numbers of vertices in an OBJ file whose lines differ"):
+        symrot.mesh(path, density=6)
 
 
 @pytest.mark.parametrize("options,sentence", [

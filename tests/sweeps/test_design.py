@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy import stats
+import scipy
 
 from symrot.errors import InputError
 from symrot.scene.scene import Scene
@@ -45,8 +45,8 @@ def test_draws_depend_on_the_index_alone(start, stop):
 
 def test_draws_have_their_distribution():
     values = design({"omega_1": "normal(2, 0.1)", "weight": "loguniform(1, 9)"}, count=4000).draws(0, 4000).values
-    assert stats.kstest(values[:, 0], stats.norm(2, 0.1).cdf).pvalue > 1e-3
-    assert stats.kstest(values[:, 1], stats.loguniform(1, 9).cdf).pvalue > 1e-3
+    assert scipy.stats.kstest(values[:, 0], scipy.stats.norm(2, 0.1).cdf).pvalue > 1e-3
+    assert scipy.stats.kstest(values[:, 1], scipy.stats.loguniform(1, 9).cdf).pvalue > 1e-3
 
 
 @pytest.mark.parametrize(

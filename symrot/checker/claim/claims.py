@@ -3,6 +3,7 @@
 The search for the fault of a false claim edits the trees.
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -26,6 +27,7 @@ __all__ = ["SIDES", "Claim", "Definitions", "assumed_names", "relation_text"]
 
 
 SIDES = ("left", "right")
+SINGLE_EQUALS = re.compile(r"(?<![=<>!])=(?!=)")
 
 
 @dataclass(frozen=True)
@@ -106,6 +108,11 @@ class Claim:
     editable: tuple[str, ...] = SIDES
     has_parts: bool = False
     context: Context = NO_CONTEXT
+
+    @property
+    def has_double_equals(self) -> bool:
+        """Whether the claim is a text with ``==``, as in code; a file of claims has no other sign for equality."""
+        return self.implied and SINGLE_EQUALS.search(self.sources.get("claim", "=")) is None
 
     @property
     def without_context(self) -> "Claim":

@@ -19,7 +19,8 @@ from symrot.exact.decision import flatten
 from symrot.exact.ring.ratio import TooLarge
 
 __all__ = [
-    "NamedFormula", "Solve", "is_name_or_rate", "named_formula", "open_formula", "related_formula", "solution",
+    "NamedFormula", "Solve", "claims_identity", "is_name_or_rate", "named_formula", "open_formula", "related_formula",
+    "solution",
 ]  # fmt: skip
 
 Solve = Callable[[Node], Node]
@@ -168,6 +169,29 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     )
     # m*a = m*g - T relates several quantities: its sides stand for a quantity and its formula
     return NamedFormula(text(left), left, right, solve=None) if is_open else None
+
+
+def claims_identity(claim: Claim) -> bool:
+    """Return whether a claim says that both sides are equal for all values of its letters, as ``m*a == k*x`` does.
+
+    With one ``=`` the same text relates four quantities.
+    """
+    if claim.relation is None or not claim.has_double_equals:
+        return False
+    sides = claim.relation[1:]
+    for side, other in (sides, sides[::-1]):
+        own = _quantities(side)
+        # 2*k**2 and cos(theta) name k and theta; m*a names nothing
+        if len(own) == 1 and not own & _quantities(other) and solution(side) is not None:
+            return False
+        if _is_list_of_names(side):
+            return False
+        if other == number(0) and _is_open_rate(side, other):
+            return False  # diff(x**2, t) == 0 says that x is constant
+    if _has_open_derivative(*sides, _known(claim)):
+        return False
+    motion = _with_highest_rate(*sides)
+    return motion is None or any(node.kind == "call" for _, node in walk(motion[1]))
 
 
 def _has_hidden_zero(claim: Claim, left: Node, right: Node) -> bool:
@@ -424,6 +448,15 @@ def _without_common_factors(left: Node, right: Node) -> tuple[Node, Node]:
 
 def _equation_of_motion(left: Node, right: Node) -> NamedFormula | None:
     """Return x'' and its formula ``-k*x/m`` for a linear differential equation ``m*x'' + k*x = 0``; or None."""
+    if (parts := _with_highest_rate(left, right)) is None:
+        return None
+    rate, coefficient, rest = parts
+    formula = product([rest, Node("inv", None, (coefficient,))])
+    return NamedFormula(str(rate.args[0].value), rate, formula, True)
+
+
+def _with_highest_rate(left: Node, right: Node) -> tuple[Node, Node, Node] | None:
+    """Return (x'', m, -k*x) for ``m*x'' + k*x = 0``: the highest derivative, its coefficient and the rest; or None."""
     terms = [*_terms(left), *map(negated, _terms(right))]
     derivatives = {node for term in terms for _, node in walk(term) if is_derivative(node)}
     order = max((len(node.args) for node in derivatives), default=0)
@@ -449,8 +482,7 @@ def _equation_of_motion(left: Node, right: Node) -> NamedFormula | None:
             return None
     if not any(_quantities(term) for term in rest):
         return None
-    formula = product([sum_of(rest), Node("inv", None, (sum_of(coefficients),))])
-    return NamedFormula(str(rate.args[0].value), rate, formula, True)
+    return rate, sum_of(coefficients), sum_of(rest)
 
 
 def _terms(tree: Node) -> list[Node]:

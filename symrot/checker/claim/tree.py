@@ -18,7 +18,7 @@ list                                members, of ``[..]`` or ``(a, b)``
 =========  =======================  ==================================
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
@@ -26,6 +26,7 @@ from typing import Any
 __all__ = [
     "TIME",
     "Node",
+    "derivative",
     "is_derivative",
     "negated",
     "number",
@@ -50,6 +51,7 @@ class Node:
     span: tuple[int, int] = field(default=(0, 0), compare=False)
 
 
+MOST_DERIVATIVES = 8
 TIME = Node("name", "t")
 """The name t, by which the derivatives ``diff(omega_1, t)`` are taken."""
 
@@ -57,6 +59,21 @@ TIME = Node("name", "t")
 def is_derivative(node: Node) -> bool:
     """Return whether the root of a tree is a derivative: ``diff(omega_1, t)``."""
     return node.kind == "call" and node.value == "diff"
+
+
+def derivative(args: Sequence[Node], span: tuple[int, int] = (0, 0)) -> Node:
+    """Return the derivative ``diff(x, t, t)`` for the arguments x, t, 2 of SymPy's ``diff``, also as ``(t, 2)``."""
+    inner, *others = args
+    variables: list[Node] = []
+    for other in others:
+        pair = other.args if other.kind == "list" and len(other.args) == 2 else (other,)
+        for argument in pair:
+            is_count = argument.kind == "number" and argument.value.denominator == 1 and variables
+            if is_count and 1 <= argument.value <= MOST_DERIVATIVES:
+                variables += [variables[-1]] * (int(argument.value) - 1)
+            else:
+                variables.append(argument)
+    return Node("call", "diff", (inner, *variables), span)
 
 
 def number(value: int | Fraction) -> Node:

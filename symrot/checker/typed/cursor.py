@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
-from symrot.checker.claim.tree import Node
+from symrot.checker.claim.tree import Node, derivative
 from symrot.checker.typed.defined_functions import DEFINED
 from symrot.checker.typed.tokens import Token
 from symrot.checker.typed.words import ALIASES, ENGLISH
@@ -184,8 +184,7 @@ class Cursor(ABC):
         if function in DEFINED and function not in self.vocabulary.functions and len(arguments) == 1:
             return DEFINED[function](arguments[0])
         if function == "diff":  # SymPy writes Derivative(x(t), (t, 2))
-            pairs = [a.args if a.kind == "list" and len(a.args) == 2 else (a,) for a in arguments[1:]]
-            arguments = [arguments[0], *(variable for pair in pairs for variable in pair)]
+            return derivative(arguments, self.span(token.start))
         return Node("call", function, tuple(arguments), self.span(token.start))
 
     def numeral(self, token: Token) -> Node:

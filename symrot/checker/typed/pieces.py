@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 from symrot.checker.arrays.index_notation import component_of_cross
 from symrot.checker.arrays.quaternions import CONJUGATE
 from symrot.checker.claim.functions import BUILT_IN
-from symrot.checker.claim.tree import TIME, Node, is_derivative, number, product
+from symrot.checker.claim.tree import TIME, Node, derivative, is_derivative, number, product
 from symrot.checker.typed.cursor import ADDING, DEEPEST_NESTING, MASS
 from symrot.checker.typed.densities import over_mass
 from symrot.checker.typed.open_functions import OpenFunctionsPart
@@ -155,6 +155,8 @@ class PiecesPart(OpenFunctionsPart):
             return Node("call", "sqrt", (squares,), self.span(start))
         if name == "transpose":
             return Node("transpose", None, (node,), self.span(start))
+        if name == "diff":
+            return derivative((node, *arguments), self.span(start))
         return Node("call", name, (node, *arguments), self.span(start))
 
     def rate(self, node: Node, mark: Token, start: int) -> Node:

@@ -106,7 +106,9 @@ def claim_of_relation(
     if unit is not None:
         relation = with_parts(relation, str(unit.value), source)
         notes = [*notes, f"{unit.value} is the imaginary unit, and real and imaginary parts are compared"]
-    moving_matrices = {name: timed for name, timed in rate_matrices(relation).items() if name not in dict(define)}
+    moving_matrices = {
+        name: timed for name, timed in rate_matrices(relation).items() if name not in (*dict(define), *BUILT_IN)
+    }
     sign, left, right = relation
     relation = sign, without_time(left, moving_matrices), without_time(right, moving_matrices)
     vectors = [vector for vector in vectors if vector.name not in bold_unit_matrices(relation[1:])]

@@ -1,0 +1,212 @@
+"""The jumps of derivatives at the switches of a torque.
+
+A switching function (sign, abs, ..) has a *guard* g(t, x, p), its argument, and a *mode*, the number that replaces it
+in formulas. Where g becomes zero, the rates change from f- to f+, and the derivatives S of the states x by a variable v
+jump. The time of the switch changes by ``dt/dv = -(g_x S- + g_p dp/dv)/(g_t + g_x f-)``, and ::
+
+    S+ = S- - (f+ - f-) dt/dv
+
+(saltation matrix). It holds if the motion crosses the zero with a speed other than zero, and also if the guard is
+*held* at zero from then on; f+ are then the rates of the sliding motion. At a kink and at the end of sliding, f+ = f-.
+Source: M. A. Aizerman, F. R. Gantmakher, On the stability of periodic motions, J. Appl. Math. Mech. 22 (1958) 1065.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.propagation.sensitivities.guards import ALIKE, AT_ZERO, Gradient, Guards, alike
+from symrot.propagation.sensitivities.intervals import Interval
+from symrot.propagation.sensitivities.sliding import require_one_surface, rests
+from symrot.propagation.switched.instant import Instant
+from symrot.results.sensitivity import SwitchSlopes
+
+__all__ = ["AT_SWITCH", "Crossings", "jumps_at_end"]
+
+Floats = NDArray[np.float64]
+STEEP = 1e-5  # speed of a guard at a crossing, in units of its mean speed: a slower one grazes zero
+AT_SWITCH = 1e-12  # part of the time: an event this near to a switch is at the switch
+MOST_AT_ONCE = 6  # functions that may switch at one time
+
+
+class Flip(NamedTuple):
+    """The switch of one function: its new mode, the derivatives of its time by variables, of its guard by states."""
+
+    value: int
+    time: Floats
+    guard: Floats
+
+
+class Crossings:
+    """The switches of a motion, in their order, with the derivatives after each.
+
+    Parameters
+    ----------
+    guards : Guards
+        The guards and rates.
+    changes : mapping
+        How each function switches, by time, s, and function.
+    length : float
+        The length of the motion, s.
+
+    Attributes
+    ----------
+    switchings : list
+        The switches so far, with the derivatives of their times.
+    """
+
+    def __init__(self, guards: Guards, changes: Mapping[tuple[float, str], str], length: float) -> None:
+        self.guards, self._changes, self.length = guards, changes, length
+        self.switchings: list[SwitchSlopes] = []
+        self._last: tuple[Interval, Instant, dict[str, Flip], bool] | None = None  # the last jump of the rates
+
+    def across(self, before: Interval, after: Interval, by: Floats) -> Floats:
+        """Return the derivatives after a switch between two intervals, and note those of the time of the switch."""
+        guards = self.guards
+        changed = [
+            mode
+            for mode, value in after.modes.items()
+            if mode
+            not in {*before.held, *after.held, *guards.system.tied(before.held), *guards.system.tied(after.held)}
+            and value != before.modes[mode]
+        ]
+        held, released = after.held - before.held, sorted(before.held - after.held)
+        if not changed and not held and not released:
+            return by
+        f, later = guards.rates(before, before.stop, before.last), guards.rates(after, after.start, before.last)
+        causes: dict[str, Gradient] = {}
+        for mode in [*changed, *sorted(held)]:
+            if mode in before.regime.formulas:
+                guard = guards.guard(before, mode, before.stop, before.last)
+                # a guard with another switching function inside jumps over zero, and follows that function
+                if _is_zero(guards, before, mode, guard, f):
+                    causes[mode] = guard
+        for mode in sorted(held & before.regime.formulas.keys()):
+            require_one_surface(guards, before, mode, before.stop, before.last)
+        jumps = {mode: guard for mode, guard in causes.items() if not guards.is_continuous(mode)}
+        rows: dict[str, Floats] = {}
+        for mode, guard in causes.items():
+            speed, mean = guard.along(f), _mean_speed(guards, before, mode)
+            grazes = abs(speed) <= STEEP * max(guard.size(f), mean)
+            if mode in jumps and mode not in held:
+                leaving = guard.along(later)
+                grazes |= leaving * speed <= 0.0 or abs(leaving) <= STEEP * max(guard.size(later), mean)
+            if grazes and mode in jumps:
+                raise guards.refusal(
+                    before.end, f"the argument of {guards.name(mode)} reaches zero at a speed near zero"
+                )
+            rows[mode] = np.full(len(by.T), np.nan) if grazes else 0.0 - guard.change(by) / speed
+        if not jumps and float(np.abs(later - f).max()) > STEEP * float(np.abs([f, later]).max()):
+            names_of = " and ".join(map(guards.name, [*changed, *sorted(held), *released]))
+            raise guards.refusal(before.end, f"the torque jumps where no argument is zero in {names_of}")
+        first = next(iter(jumps), None)
+        if first is not None:
+            flips = {mode: Flip(after.modes[mode], rows[mode], jumps[mode].states) for mode in jumps}
+            alone = not held and set(changed) <= causes.keys()
+            change = self._at_once(before, flips, alone)
+            self._last = before, after.begin, flips, alone
+            if change is not None:
+                self._note(after.begin, rows, rows[first])
+                return np.asarray(by - change)
+        if not causes:
+            for mode in released:
+                value = guards.held_mode(before, mode)
+                speed = value.along(f)
+                grazes = abs(speed) <= STEEP * value.size(f)
+                rows[mode] = np.full(len(by.T), np.nan) if grazes else 0.0 - value.change(by) / speed
+        self._note(after.begin, rows, rows[first] if first is not None else None)
+        return by if first is None else np.asarray(by - np.outer(later - f, rows[first]))
+
+    def _at_once(self, interval: Interval, flips: dict[str, Flip], alone: bool) -> Floats | None:
+        """Return the jump of the derivatives where functions switch at once at the end of an interval, shape (7, m).
+
+        None: the functions also switch at once if a variable changes, or only one switches. Otherwise each must change
+        the rates by the same amount before and after the others switch, and leave the speeds of their guards unchanged.
+
+        Parameters
+        ----------
+        interval : Interval
+            The interval.
+        flips : mapping
+            The modes that switch.
+        alone : bool
+            Whether no other function switches, and none is held at zero.
+        """
+        guards, earlier = self.guards, self._last
+        between = earlier is not None and abs(interval.end - earlier[1]) <= AT_SWITCH * max(
+            abs(interval.end.high), self.length
+        )
+        if earlier is not None and between:
+            # a switch within rounding errors of this one; both must be independent of each other
+            interval, flips, alone = earlier[0], {**earlier[2], **flips}, alone and earlier[3]
+        groups: list[list[str]] = []
+        for mode, flip in flips.items():
+            group = next((each for each in groups if alike(flips[each[0]].time, flip.time).all()), None)
+            groups.append([mode]) if group is None else group.append(mode)
+        if len(groups) == 1:
+            return None
+        refusal = guards.refusal(interval.end, f"{' and '.join(map(guards.name, flips))} switch at once")
+        if not alone or len(groups) > MOST_AT_ONCE:
+            raise refusal
+        corners = {}
+        for chosen in product((False, True), repeat=len(groups)):
+            own = [mode for group, flip in zip(groups, chosen, strict=True) if flip for mode in group]
+            modes = {**interval.modes, **{mode: flips[mode].value for mode in own}}
+            corner = replace(interval, modes=modes, regime=guards.system.regime(interval.held, modes))
+            corners[chosen] = guards.rates(corner, interval.stop, interval.last)
+        first = corners[(False,) * len(groups)]
+        jumps = np.array([corners[tuple(k == n for n in range(len(groups)))] - first for k in range(len(groups))])
+        size = ALIKE * max(float(np.abs(rates).max()) for rates in corners.values())
+        for chosen, rates in corners.items():
+            if np.abs(first + np.array(chosen, dtype=np.float64) @ jumps - rates).max() > size:
+                raise refusal
+        for k, group in enumerate(groups):
+            for mode in group:
+                speeds = np.delete(jumps, k, axis=0) @ flips[mode].guard
+                if np.abs(speeds).max() > size * float(np.abs(flips[mode].guard).max()):
+                    raise refusal
+        if between:
+            return None
+        return np.asarray(jumps.T @ np.array([flips[group[0]].time for group in groups]))
+
+    def _note(self, instant: Instant, rows: Mapping[str, Floats], others: Floats | None) -> None:
+        """Add the functions that switch at an instant, with the derivatives of the time, to :attr:`switchings`."""
+        unknown = np.full(len(self.guards.parameter_slopes.columns), np.nan)
+        for (t, label), how in self._changes.items():
+            if t == instant.high:
+                # clip has two modes
+                row = next((own for mode, own in rows.items() if self.guards.name(mode) == label), None)
+                own = row if row is not None else others if others is not None else unknown
+                self.switchings.append(SwitchSlopes(t, label, how, own))
+
+
+def jumps_at_end(guards: Guards, interval: Interval) -> NDArray[np.bool_]:
+    """Return for each variable whether the derivatives by it may jump exactly at the end of the motion."""
+    jumps = np.zeros(len(guards.parameter_slopes.columns), dtype=np.bool_)
+    f = guards.rates(interval, interval.stop, interval.last)
+    for guard, on in zip(interval.regime.guards, interval.regime.active(interval.modes), strict=True):
+        mode = guard.mode
+        if on and mode in interval.regime.formulas and mode not in interval.held and not guards.is_continuous(mode):
+            gradient = guards.guard(interval, mode, interval.stop, interval.last)
+            if _is_zero(guards, interval, mode, gradient, f) and not rests(guards, interval, mode):
+                jumps |= gradient.change(interval.after) != 0.0
+    return jumps
+
+
+def _mean_speed(guards: Guards, interval: Interval, mode: str) -> float:
+    """Return how fast a guard changes in an interval, on average, as a scale for its speed at the end."""
+    values = [abs(guards.guard(interval, mode, *place).value) for place in interval.places()]
+    if guards.is_floor(mode):
+        values = [min(value, abs(1.0 - value)) for value in values]
+    return max(values) / abs(interval.stop - interval.start)
+
+
+def _is_zero(guards: Guards, interval: Interval, mode: str, guard: Gradient, rates: Floats) -> bool:
+    """Return whether a guard is zero at the end of an interval; for floor(x): whether x is a whole number."""
+    size = guard.size(rates) * abs(interval.stop) + float(np.abs(guard.states) @ np.abs(interval.last))
+    distances = (0.0, 1.0) if guards.is_floor(mode) else (0.0,)
+    return min(abs(guard.value - zero) for zero in distances) <= AT_ZERO * size

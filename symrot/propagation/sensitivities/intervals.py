@@ -1,0 +1,81 @@
+"""The smooth intervals of a motion under torques that jump or bend, from one switch to the next."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.propagation.switched.instant import Instant
+from symrot.propagation.switched.motion import SwitchedMotion
+from symrot.propagation.switched.regimes import Modes, Regime
+from symrot.propagation.switched.run import Chunk, SwitchedRun
+
+__all__ = ["Interval", "smooth_intervals"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(eq=False)
+class Interval:
+    """A smooth interval of a motion; ``start`` and ``stop`` are s after the instant ``zero``."""
+
+    regime: Regime
+    modes: Modes
+    held: frozenset[str]
+    zero: Instant
+    start: float
+    stop: float
+    first: Floats  # the states at the start and at the end
+    last: Floats
+    chunks: list[Chunk] = field(default_factory=list)
+    before: Floats = field(default_factory=lambda: np.empty(0))  # derivatives at the start and at the end, (7, m)
+    after: Floats = field(default_factory=lambda: np.empty(0))
+    resting: list[str] = field(default_factory=list)  # modes whose guards stay at zero though they are not held
+
+    @property
+    def begin(self) -> Instant:
+        return self.zero.after(self.start)
+
+    @property
+    def end(self) -> Instant:
+        return self.zero.after(self.stop)
+
+    def places(self) -> Iterator[tuple[float, Floats]]:
+        """Yield a time, s after ``zero``, and the states at the start, near the middle and at the end."""
+        middle = self.chunks[len(self.chunks) // 2]
+        t = 0.5 * ((middle.start - self.zero) + (middle.stop - self.zero))
+        yield self.start, self.first
+        yield t, middle.own_states(np.array([t]))[0]
+        yield self.stop, self.last
+
+
+def smooth_intervals(motion: SwitchedMotion, end: float) -> tuple[list[Interval], dict[tuple[float, str], str]]:
+    """Return the smooth intervals of a motion to the time ``end``, s, and its switches.
+
+    The switches map a time, s, and a function to a word such as ``"passed"``.
+
+    Raises
+    ------
+    IntegrationStopped
+        If the motion cannot be followed to the end.
+    """
+    intervals: list[Interval] = []
+    run = SwitchedRun(motion, motion.system, end)
+
+    def add(chunk: Chunk) -> None:
+        start, stop = chunk.start - chunk.zero, chunk.stop - chunk.zero
+        if stop == start:
+            return
+        last = chunk.own_states(np.array([stop]))[0]
+        current = intervals[-1] if intervals else None
+        if current and current.zero == chunk.zero and current.modes == run.modes and current.held == run.held:
+            current.stop, current.last = stop, last
+            current.chunks.append(chunk)
+            return
+        first = chunk.own_states(np.array([start]))[0]
+        regime = motion.system.regime(run.held, run.modes)
+        intervals.append(Interval(regime, dict(run.modes), run.held, chunk.zero, start, stop, first, last, [chunk]))
+
+    run.follow(add)
+    return intervals, run.changes

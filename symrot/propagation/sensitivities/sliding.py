@@ -1,0 +1,91 @@
+"""Guards that stay at zero: those that a sliding motion holds there, and those that rest at zero by chance."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symrot.errors import InputError
+from symrot.propagation.sensitivities.guards import ALIKE, Guards
+from symrot.propagation.sensitivities.intervals import Interval
+
+__all__ = ["beside", "hold_at_rest", "refuse_resting", "require_one_surface", "rests"]
+
+Floats = NDArray[np.float64]
+
+
+def beside(guards: Guards, interval: Interval, signs: Mapping[str, int]) -> Interval:
+    """Return an interval's motion beside guards that are held at zero, on the sides that ``signs`` tells."""
+    twins = guards.system.twins
+    modes = {**interval.modes, **{twin: own * sign for mode, sign in signs.items() for twin, own in twins[mode]}}
+    held = interval.held - frozenset(signs)
+    return replace(interval, regime=guards.system.regime(held, modes), modes=modes, held=held)
+
+
+def hold_at_rest(guards: Guards, interval: Interval) -> None:
+    """Hold the guards that stay at zero in an interval; list in ``resting`` those that cannot be held."""
+    resting = [mode for mode in interval.regime.formulas if mode not in interval.held and rests(guards, interval, mode)]
+    for mode in resting:
+        # the square of the argument times its sign, for example, has a derivative at zero
+        if _is_smooth_at(guards, interval, mode):
+            continue
+        held = interval.held | {guards.system.twins[mode][0][0]} if guards.is_sign(mode) else interval.held
+        if interval.modes[mode] == 0 and held != interval.held:
+            own = interval.regime, interval.held
+            try:
+                interval.regime, interval.held = guards.system.regime(held, interval.modes), held
+                determined = bool(np.isfinite(guards.rates(interval, interval.start, interval.first)).all())
+            except (InputError, ArithmeticError):
+                determined = False
+            if determined:
+                continue
+            interval.regime, interval.held = own
+        interval.resting.append(mode)
+
+
+def refuse_resting(
+    guards: Guards, interval: Interval, integrate: Callable[[Interval, Floats], tuple[Floats, Floats]]
+) -> None:
+    """Raise PropagationError if a variable moves a guard that stays at zero, where a jump or kink is.
+
+    ``integrate`` returns states and derivatives in an interval at times.
+    """
+    for mode in interval.resting:
+        places = list(interval.places())
+        _, every = integrate(interval, np.array([t for t, _ in places]))
+        if any(guards.guard(interval, mode, *place).change(by).any() for place, by in zip(places, every, strict=True)):
+            raise guards.refusal(interval.begin, f"the argument of {guards.name(mode)} stays at zero")
+
+
+def rests(guards: Guards, interval: Interval, mode: str) -> bool:
+    """Return whether the guard of a mode is zero at the start, near the middle and at the end of an interval."""
+    return all(guards.guard(interval, mode, *place).value == 0.0 for place in interval.places())
+
+
+def _is_smooth_at(guards: Guards, interval: Interval, mode: str) -> bool:
+    """Return whether the rates and their derivatives are the same on both sides of a guard that stays at zero."""
+    twins = [twin for twin, _ in guards.twins(mode)]
+    for t, y in interval.places():
+        sides = []
+        for sign in (1, -1):
+            changed = {**interval.modes, **{twin: s * sign for twin, s in guards.twins(mode)}}
+            if guards.is_floor(mode):
+                changed = {**interval.modes, mode: interval.modes[mode] - (sign < 0)}
+            sides.append(guards.rate_slopes(replace(interval, modes=changed), t, y))
+        if not np.array_equal(sides[0], sides[1]):
+            return False
+    return bool(twins)
+
+
+def require_one_surface(guards: Guards, interval: Interval, mode: str, t: float, y: Floats) -> None:
+    """Raise PropagationError if functions that a motion holds at zero together are separated by a variable."""
+    guard = guards.guard(interval, mode, t, y)
+    own = np.array([guard.time, *guard.states, *guard.variables])
+    for twin, _ in guards.twins(mode):
+        if twin not in interval.regime.formulas:
+            continue
+        other = guards.guard(interval, twin, t, y)
+        row = np.array([other.time, *other.states, *other.variables])
+        if np.abs(own * (row @ own) - row * (own @ own)).max() > ALIKE * (own @ own) * np.abs(row).max():
+            raise guards.refusal(interval.zero.after(t), f"{guards.name(mode)} and {guards.name(twin)} switch at once")
