@@ -49,10 +49,14 @@ from symrot.checker.recognition.evidence import (
 )
 from symrot.checker.recognition.identification import identified, known_value
 from symrot.checker.recognition.known_formulas import ending_of
-from symrot.checker.recognition.lengths import by_lengths
 from symrot.checker.recognition.letters import is_atom
 from symrot.checker.recognition.nearby import Near, near_formulas
-from symrot.checker.recognition.quantity_variants import is_evident_by_quantity, quantity_variants, without_inverse
+from symrot.checker.recognition.quantity_variants import (
+    by_lengths,
+    is_evident_by_quantity,
+    quantity_variants,
+    without_inverse,
+)  # fmt: skip
 from symrot.checker.recognition.relations import terms_expanded, without_common_powers
 from symrot.checker.recognition.solved_relations import put_back, solved_claims
 from symrot.checker.repair.edits import COST, FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, single_edits
