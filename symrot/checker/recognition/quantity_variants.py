@@ -93,7 +93,7 @@ def is_evident_by_quantity(claim: Claim, named: NamedFormula, changed: QuantityV
     return len(letters) >= LEAST_SYMBOLS_EDITED + (0 if is_stated else 1)
 
 
-# -- lengths of vectors -------------------------------------------------------------------------------------------------
+# -- lengths of vectors ------------------------------------------------------------------------------------------------
 
 
 def by_lengths(named: NamedFormula, judge: Callable[[NamedFormula], Verdict]) -> Verdict | None:
