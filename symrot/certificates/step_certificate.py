@@ -4,24 +4,26 @@ The formula, the method applied to the derived rates, is too long to expand. So 
 random points, exactly, as residues: integers modulo a prime. Functions such as sin are random functions there.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from hashlib import sha256
-from struct import pack, unpack
-from typing import Any
 
 from symrot.certificates.certificate import Data, certificate_json
+from symrot.certificates.exact_motion import motion_section, require_limits
 from symrot.certificates.readback.intended_constants import intended_value
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.readback.readback import read_batch, read_kernel
+from symrot.certificates.residues import POINTS, RANDOM, Residue, digest_number, exact, probability
 from symrot.certificates.rounding.bounds import rounding_section
 from symrot.certificates.rounding.scenes import ANY
 from symrot.certificates.truncation import DEFECT, truncation_bounds
+from symrot.codegen.steady_rotations import STATES
 from symrot.codegen.steps import (
     SIZE,
     Method,
     RungeKutta,
+    SteadyRotations,
     WithDerivatives,
     step_signature,
     stepped,
@@ -30,10 +32,9 @@ from symrot.codegen.steps import (
 from symrot.errors import CertificateError, InputError
 from symrot.formula.exact_numbers import PI
 from symrot.formula.program import Argument, Program, Signature
-from symrot.formula.tree import FUNCTIONS, Node, parse, text
+from symrot.formula.tree import Node, parse, text
 
 __all__ = [
-    "PRIME",
     "SCHEMA",
     "StepUnderTest",
     "bounds_of_step",
@@ -41,17 +42,17 @@ __all__ = [
     "is_step",
     "rates_of",
     "step_certificate",
+    "trusted",
     "with_bounds",
 ]
 
 SCHEMA = "symrot.step/2"
-PRIME = 2**127 - 1
-POINTS = 4
 TYPES = {"": "double", "f": "float"}
 TRUSTED = {
     "rates": "the formulas of the rates, which the certificate of the scene's own kernel proves",
     "C text": "that the compiler gives C its meaning: real numbers are rounded as IEEE 754 says, to nearest",
 }
+WHOLE_STATE = {"rates": "the formulas of the rates, which symrot derives from Euler's equations for the whole state"}
 NOT_STATED = {"not stated": "errors of rounding and truncation"}
 EVALUATIONS = 32
 """Boxes that the search for a bound of rounding errors evaluates per output; more hardly lower the bound of a step."""
@@ -70,90 +71,8 @@ class StepUnderTest:
     files: Mapping[str, str]
 
 
-# Two rational functions of degree d that differ agree at a random point with a probability of at most 2 d/PRIME. The
-# points follow from the hash of the C text, so that the certificate is the same everywhere. The certificate states the
-# rates, so that it can be audited without the scene. For a box of states and step sizes it may also bound the errors of
-# one step: rounding (rounding/) and truncation (truncation.py).
-@dataclass(frozen=True)
-class _Residue:
-    """The value, modulo PRIME, of a rational function at a random point, with a bound of the function's degree."""
-
-    value: int
-    # the larger, the more probable it is that two different functions agree at the point
-    degree: int = 0
-
-    @staticmethod
-    def of(number: Any) -> "_Residue":
-        if isinstance(number, _Residue):
-            return number
-        exact = Fraction(number)
-        return _Residue(exact.numerator * pow(exact.denominator, -1, PRIME) % PRIME)
-
-    def __add__(self, other: Any) -> "_Residue":
-        right = _Residue.of(other)
-        return _Residue((self.value + right.value) % PRIME, self.degree + right.degree)
-
-    __radd__ = __add__
-
-    def __neg__(self) -> "_Residue":
-        return _Residue(-self.value % PRIME, self.degree)
-
-    def __sub__(self, other: Any) -> "_Residue":
-        return self + -_Residue.of(other)
-
-    def __rsub__(self, other: Any) -> "_Residue":
-        return _Residue.of(other) + -self
-
-    def __mul__(self, other: Any) -> "_Residue":
-        right = _Residue.of(other)
-        return _Residue(self.value * right.value % PRIME, self.degree + right.degree)
-
-    __rmul__ = __mul__
-
-    def __truediv__(self, other: Any) -> "_Residue":
-        right = _Residue.of(other)
-        if not right.value:
-            raise CertificateError("expected a point at which no divisor is zero, got a point with a zero divisor")
-        return self * _Residue(pow(right.value, -1, PRIME), right.degree)
-
-    def __rtruediv__(self, other: Any) -> "_Residue":
-        return _Residue.of(other) / self
-
-    def __pow__(self, exponent: int) -> "_Residue":
-        result = _Residue(1)
-        for _ in range(abs(exponent)):
-            result = result * self
-        return result if exponent >= 0 else 1 / result
-
-
-def _digest_number(*parts: object) -> int:
-    return int.from_bytes(sha256(repr(parts).encode()).digest(), "big") % PRIME
-
-
-def _function(name: str) -> Callable[..., _Residue]:
-    """Return a random function of residues (numbers modulo PRIME) that stands for a function such as sine."""
-    # the value depends on name and arguments alone, so that equal calls have equal values
-    return lambda *arguments: _Residue(_digest_number(name, *(_Residue.of(each).value for each in arguments)), 1)
-
-
-_RANDOM = {name: _function(name) for name in (*FUNCTIONS, "copysign")}
-
-
-def _exact(precision: str) -> Callable[[Fraction], _Residue]:
-    """Return a function that converts a rounded constant of the C text to a residue, its value modulo PRIME."""
-
-    def residue(value: Fraction) -> _Residue:
-        rounded = float(value) if precision == "binary64" else float(unpack("f", pack("f", float(value)))[0])
-        try:
-            constant = intended_value(Fraction(rounded), precision)
-        except CertificateError:
-            return _Residue.of(Fraction(rounded))
-        # the value of the simple fraction that rounds to the constant, such as 1/3, if there is one
-        return _Residue.of(Fraction(rounded) if constant.times_pi else constant.fraction)
-
-    return residue
-
-
+# The certificate states the rates, so that it can be audited without the scene. For a box of states and step sizes it
+# may also bound the errors of one step: rounding (rounding/) and truncation (truncation.py).
 def step_certificate(step: StepUnderTest) -> str:
     """Return the text of the certificate of a step.
 
@@ -169,18 +88,28 @@ def step_certificate(step: StepUnderTest) -> str:
             "title": step.title,
             "regenerate": step.command,
             "method": step.method.formula,
-            "step": {"method": step.method.name, "order": step.method.order} | _derivatives(step.method),
+            "step": _step_section(step.method),
             "rates": _rates_section(step.rates, step.values),
             "files": {path: sha256(text.encode()).hexdigest() for path, text in step.files.items()},
             "formula": formula_section(step.name, step.rates, step.method, step.files[f"{step.name}.c"]),
-            "trusted": TRUSTED | NOT_STATED,
+            "trusted": trusted(step.method.name, has_bounds=False),
         }
     )
 
 
-def _derivatives(method: Method) -> Data:
-    """Return the names of the inputs by which a step's formula is differentiated; empty without derivatives."""
-    return {"jacobian": list(method.by)} if isinstance(method, WithDerivatives) else {}
+def trusted(method: str, has_bounds: bool) -> Data:
+    """Return the section ``trusted`` of a step's certificate: what it assumes, and which errors it does not state."""
+    # the scene's own kernel leaves out constant states, which an exact step has
+    assumptions = TRUSTED | (WHOLE_STATE if method == SteadyRotations.name else {})
+    return assumptions if has_bounds else assumptions | NOT_STATED
+
+
+def _step_section(method: Method) -> Data:
+    """Return the name of a step's method and what distinguishes it from others of this name, such as its order."""
+    if isinstance(method, SteadyRotations):
+        return {"method": method.name, "axis": None if method.axis is None else method.axis + 1}
+    by = {"jacobian": list(method.by)} if isinstance(method, WithDerivatives) else {}
+    return {"method": method.name, "order": method.order} | by
 
 
 def is_step(data: object) -> bool:
@@ -191,7 +120,7 @@ def is_step(data: object) -> bool:
 def with_bounds(data: Data, bounds: Data) -> Data:
     """Return the certificate ``data`` of a step with one more section: ``bounds`` of the errors of one step."""
     bare = {key: value for key, value in data.items() if key not in ("bounds", "trusted", "seal")}
-    return bare | {"bounds": bounds, "trusted": TRUSTED}
+    return bare | {"bounds": bounds, "trusted": trusted(data["step"]["method"], has_bounds=True)}
 
 
 def _rates_section(rates: Program, values: Sequence[float]) -> Data:
@@ -340,6 +269,13 @@ def formula_section(name: str, rates: Program, method: Method, source: str) -> D
     CertificateError
         If a C function computes another formula.
     """
+    if isinstance(method, SteadyRotations):
+        states = [state for state, *_ in rates.signature.argument("y").components]
+        slopes = [slope for slope, _ in rates.outputs]
+        if states != list(STATES) or slopes != [f"d{state}" for state in STATES]:
+            raise CertificateError(
+                f"{name}: expected the rates of {', '.join(STATES)} for an exact step, got those of {', '.join(states)}"
+            )
     return {f"symrot_{name}{suffix}": _proof(name, rates, method, source, suffix) for suffix in TYPES}
 
 
@@ -348,12 +284,13 @@ def _proof(step: str, rates: Program, method: Method, source: str, suffix: str) 
     one = read_kernel(source, name, file)
     if one.digest() != read_batch(source, f"{name}_batch", file).digest():
         raise CertificateError(f"{file}: expected {name} and {name}_batch to perform the same operations, got others")
+    require_limits(file, one)
     places = _symbols_by_place(step_signature(rates, step))
     degrees = [_degree(file, rates, method, places, one, point) for point in range(POINTS)]
-    wrong = Fraction(2 * max(degrees), PRIME) ** POINTS
-    power = wrong.denominator.bit_length() - wrong.numerator.bit_length() - 1
+    # the formula of a closed form must be the motion too
+    motion = {"motion": motion_section(file, rates, places, one)} if isinstance(method, SteadyRotations) else {}
     return {"type": TYPES[suffix], "operations": one.counts(), "digest": one.digest(), "points": POINTS,
-            "wrong_with_probability_below": f"2^-{power}"}  # fmt: skip
+            "wrong_with_probability_below": probability(max(degrees))} | motion  # fmt: skip
 
 
 def _degree(
@@ -363,13 +300,13 @@ def _degree(
 
     CertificateError is raised if an output of the C text differs there from the step's formula.
     """
-    values = {symbol: _Residue(_digest_number(operations.digest(), point, symbol), 1) for symbol in places.values()}
-    number = _exact(operations.precision)
-    computed = operations.evaluate({place: values[symbol] for place, symbol in places.items()}, _RANDOM, number)
-    exact = stepped(rates, method, values, values[SIZE], _RANDOM, number)
-    for (place, ours), formula in zip(computed.items(), exact, strict=True):
-        if ours.value != _Residue.of(formula).value:
+    values = {symbol: Residue(digest_number(operations.digest(), point, symbol), 1) for symbol in places.values()}
+    number = exact(operations.precision)
+    computed = operations.evaluate({place: values[symbol] for place, symbol in places.items()}, RANDOM, number)
+    formulas = stepped(rates, method, values, values[SIZE], RANDOM, number)
+    for (place, ours), formula in zip(computed.items(), formulas, strict=True):
+        if ours.value != Residue.of(formula).value:
             raise CertificateError(f"{file}: expected {place} to be the {method.formula}, got another formula")
     # the probability of a wrong proof follows from the degree as a rational function
-    degrees: list[int] = [each.degree for each in (*computed.values(), *map(_Residue.of, exact))]
+    degrees: list[int] = [each.degree for each in (*computed.values(), *map(Residue.of, formulas))]
     return max(degrees)

@@ -17,7 +17,7 @@ from typing import Any
 from mpmath import iv
 
 from symrot.certificates.packed_polynomials import PackedPolynomial, variables
-from symrot.codegen.steps import SIZE, Method, RungeKutta, TaylorSeries, WithDerivatives, stepped
+from symrot.codegen.steps import SIZE, Method, RungeKutta, SteadyRotations, TaylorSeries, WithDerivatives, stepped
 from symrot.codegen.taylor.coefficients import coefficients
 from symrot.codegen.taylor.recurrences import recurrences
 from symrot.errors import CertificateError, InputError
@@ -312,6 +312,8 @@ def require_order(method: Method) -> tuple[Fraction, ...]:
     Source: Hairer, Norsett, Wanner, Solving ODEs I, 2nd ed., theorem II.2.13.
     """
     method = method.plain if isinstance(method, WithDerivatives) else method
+    if isinstance(method, SteadyRotations):
+        return ()
     if isinstance(method, TaylorSeries):
         return (Fraction(0),) * method.order
     most = DEFECT if method.rounded else Fraction(0)
@@ -360,6 +362,8 @@ def truncation_bounds(rates: Program, method: Method, box: Box) -> dict[str, flo
     CertificateError
         If the method does not have its order.
     """
+    if isinstance(method, SteadyRotations):  # the certificate proves that the formula is the motion
+        return {name: 0.0 for name, *_ in rates.signature.argument("y").components}
     defects = require_order(method)
     if any(defects):
         _require_polynomial(rates)
@@ -408,10 +412,11 @@ def _gains(problem: "_Problem", box: Box, whole: list[float]) -> dict[str, float
     return gains
 
 
+_Truncated = RungeKutta | TaylorSeries | WithDerivatives
 Terms = list[tuple[Fraction, tuple[tuple[str, int], ...]]]  # of a polynomial: coefficient, exponents of its variables
 
 
-def _problem(rates: Program, method: Method, states: Sequence[str], box: Box) -> "_Problem":
+def _problem(rates: Program, method: _Truncated, states: Sequence[str], box: Box) -> "_Problem":
     """Return the data from which bounds of a step's truncation on boxes are computed."""
     # polynomial rates are expanded once, which makes their bounds tighter
     orders = range(method.order + 1, min(method.order + 1 + EXACT_ORDERS, HIGHEST))
@@ -492,7 +497,7 @@ class _Problem:
     """The rates, the method and the states of a step whose truncation is bounded."""
 
     rates: Program
-    method: Method
+    method: _Truncated
     states: Sequence[str]
     # first coefficients of the difference between motion and method, for each order and state; none without polynomials
     leading: tuple[list[Terms], ...]

@@ -141,8 +141,8 @@ def _certify_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--box", metavar="NAME=LOW:HIGH", action="append", default=[],
                         help="range of an input for the bounds of rounding errors, or of a physical constant of a "
                         "scene; may be repeated")  # fmt: skip
-    parser.add_argument("--step", metavar="METHOD", help="certify one time step of a scene: rk4, taylor or dop853; "
-                        "with --box for its states and dt, bound rounding and truncation")  # fmt: skip
+    parser.add_argument("--step", metavar="METHOD", help="certify one time step of a scene: rk4, taylor, dop853 or "
+                        "exact; with --box for its states and dt, bound rounding and truncation")  # fmt: skip
     parser.add_argument(
         "--order", type=int, metavar="N", help="order of the Taylor series with --step taylor, 1 to 16 (default: 8)"
     )

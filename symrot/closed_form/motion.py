@@ -57,7 +57,8 @@ class ExactMotion(ABC):
         Raises
         ------
         InputError
-            If a time is not finite, or if a product of a rate and a time exceeds the range of doubles.
+            If a time is not finite, if a product of a rate and a time exceeds the range of doubles, or if a motion with
+            theta functions makes more than 7e16 revolutions: rates of 31 digits do not give its phase.
         """
         times = times_of(t)
         rates = np.empty((len(times), 3)) if omega else None
@@ -67,8 +68,8 @@ class ExactMotion(ABC):
         if samples is not None and _has_nan(samples):
             low, high = float(times.min()), float(times.max())
             raise InputError(
-                f"expected a motion within the range of doubles, got larger numbers at times {low!r} to {high!r} s; "
-                "use times nearer to the start, or other units"
+                "expected a motion within the range of doubles and within 7e16 revolutions, got larger numbers at "
+                f"times {low!r} to {high!r} s; use times nearer to the start, or other units"
             )
         return rates, attitudes
 

@@ -1,4 +1,4 @@
-"""One time step of fixed size as a straight-line program: Runge-Kutta methods and Taylor series.
+"""One time step of fixed size as a straight-line program: Runge-Kutta methods, Taylor series, closed forms.
 
 A step takes t, the state x, the parameters p and dt, and returns the state at t + dt. It has no loop, heap or branch of
 its own, so its time is bounded. The method is evaluated with numbers that record their operations; the record is the
@@ -13,6 +13,7 @@ from typing import Any
 
 from symrot.codegen.duals import Dual, dual_functions
 from symrot.codegen.recording import Recorder
+from symrot.codegen.steady_rotations import SteadyRotations
 from symrot.codegen.taylor.coefficients import coefficients
 from symrot.codegen.taylor.recurrences import recurrences
 from symrot.errors import InputError
@@ -21,8 +22,8 @@ from symrot.formula.tree import FUNCTIONS
 from symrot.kernels.jacobian import jacobian_argument
 
 __all__ = [
-    "RK4", "SIZE", "Method", "RungeKutta", "TaylorSeries", "WithDerivatives", "derivative_inputs", "step_program",
-    "step_signature", "stepped", "without_factors",
+    "RK4", "SIZE", "Method", "RungeKutta", "SteadyRotations", "TaylorSeries", "WithDerivatives", "derivative_inputs",
+    "step_program", "step_signature", "stepped", "without_factors",
 ]  # fmt: skip
 
 STATE, SIZE, NEXT = "x", "dt", "next"
@@ -86,7 +87,7 @@ class WithDerivatives:
         return f"{self.plain.formula}, and its derivatives by {', '.join(self.by)}"
 
 
-Method = RungeKutta | TaylorSeries | WithDerivatives
+Method = RungeKutta | TaylorSeries | SteadyRotations | WithDerivatives
 _HALF = Fraction(1, 2)
 RK4 = RungeKutta(
     "rk4", 4, (Fraction(0), _HALF, _HALF, Fraction(1)), ({}, {0: _HALF}, {1: _HALF}, {2: Fraction(1)}),
@@ -123,6 +124,8 @@ def stepped(
         results = stepped(rates, *plain, lambda value: Dual(number(value), {}))
         slopes_of = [(result, name) for group in groups for result in results for name in group]
         return [result.value for result in results] + [result.slopes.get(name, zero) for result, name in slopes_of]
+    if isinstance(method, SteadyRotations):
+        return method.after(rates, values, dt, functions, number)
     if isinstance(method, TaylorSeries):
         series = coefficients(recurrences(rates), method.order, values, functions, number)
         return [_polynomial(each, dt) for each in series]
@@ -232,7 +235,7 @@ def step_program(rates: Program, method: Method, name: str) -> Program:
     signature = step_signature(rates, name, method.by if isinstance(method, WithDerivatives) else ())
     recorder = Recorder()
     inputs = {each: recorder.symbol(each) for a in signature.arguments if a.role == "in" for each, *_ in a.components}
-    functions = {each: recorder.function(each) for each in FUNCTIONS}
+    functions = {each: recorder.function(each) for each in (*FUNCTIONS, "sinc")}
     outputs = stepped(rates, method, inputs, inputs[SIZE], functions, recorder.constant)
     results = [each for a in signature.arguments if a.role == "out" for each, *_ in a.components]
     return recorder.program(signature, dict(zip(results, outputs, strict=True)))

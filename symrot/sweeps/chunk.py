@@ -194,7 +194,8 @@ def _propagate(
             job.scene, **inputs.of(rows), t=samples, method=job.method, tolerance=job.tolerance,
             sensitivities=job.sensitivities or None,
         )  # fmt: skip
-        values = evaluate(job.outputs, ensemble, job.times, samples)
+        with np.errstate(over="ignore", invalid="ignore"):
+            values = evaluate(job.outputs, ensemble, job.times, samples)
     except (InputError, PropagationError, ArithmeticError) as error:
         if len(rows) == 1:
             messages[int(rows[0])] = _alone(error)
@@ -208,6 +209,15 @@ def _propagate(
     for place in np.flatnonzero(ensemble.status).tolist():
         # a trajectory that stopped early
         messages[int(rows[place])] = ensemble.messages[place]
+    for name, value in values.items():
+        for row in rows[np.isinf(value).reshape(len(rows), -1).any(axis=1)].tolist():
+            # an infinity is not a value: all outputs of this trajectory are missing
+            for column in outputs.values():
+                column[row] = np.nan
+            status[row], messages[row] = (
+                IMPOSSIBLE,
+                f"{name}: expected a value within the range of doubles, got infinity",
+            )
 
 
 def prepared(job: Job) -> Job:

@@ -179,12 +179,22 @@ def _histogram(blocks: Blocks, survey: _Survey, bins: int) -> tuple[NDArray[np.i
     counts, edges = np.zeros((bins, size), dtype=np.int64), np.full((bins + 1, size), np.nan)
     for k in np.flatnonzero(survey.number):
         # equal intervals of the range of the column
-        edges[:, k] = np.histogram_bin_edges([survey.low[k], survey.high[k]], bins)
+        edges[:, k] = _edges(survey.low[k], survey.high[k], bins)
     for block in blocks():
         for k in np.flatnonzero(survey.number):
             column = block[:, k]
             counts[:, k] += np.histogram(column[~np.isnan(column)], edges[:, k])[0]
     return counts, edges
+
+
+def _edges(low: float, high: float, bins: int) -> Floats:
+    """Return the edges of ``bins`` equal intervals of the range from ``low`` to ``high``, as numpy.histogram does."""
+    try:
+        return np.histogram_bin_edges([low, high], bins)
+    except ValueError:
+        # too few doubles lie between both: a range wide enough for different edges
+        margin = 2 * bins * float(np.spacing(max(abs(low), abs(high))))
+        return np.histogram_bin_edges([low - margin, high + margin], bins)
 
 
 # --- percentiles ------------------------------------------------------------------------------------------------------

@@ -250,9 +250,9 @@ def certify(
         Whether to compute bounds of rounding errors now; if not, the certificate of a library kernel contains the
         bounds that come with symrot.
     step : str, optional
-        ``"rk4"``, ``"taylor"`` or ``"dop853"``: certify one time step of a scene instead of its rates, as
+        ``"rk4"``, ``"taylor"``, ``"dop853"`` or ``"exact"``: certify one time step of a scene instead of its rates, as
         :func:`symrot.emit` prints it. With a ``box`` of the states and of ``dt``, rounding and truncation of one step
-        are bounded, except for ``"dop853"``.
+        are bounded.
     order : int, optional
         Order of the step ``"taylor"``, 1 to 16 (default 8).
     progress : callable

@@ -1,6 +1,7 @@
 """The texts of one time step of a scene: C with test vectors, NumPy, JavaScript, JAX, and a certificate."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -17,20 +18,24 @@ from symrot.codegen.steps import (
     RK4,
     Method,
     RungeKutta,
+    SteadyRotations,
     TaylorSeries,
     WithDerivatives,
     derivative_inputs,
     step_program,
     stepped,
 )
+from symrot.dynamics.structure import MOVING
 from symrot.errors import CertificateError, InputError
+from symrot.formula.exact_numbers import equal
 from symrot.formula.program import Program
 from symrot.formula.tree import FUNCTIONS
 from symrot.kernels.jacobian import jacobian_name
 from symrot.kernels.library import is_kernel
+from symrot.planning.plan import make_plan
 from symrot.propagation.steppers.tableau import NODES, STAGE_WEIGHTS, WEIGHTS
 from symrot.scene.scene import Scene, SceneSource, load_scene
-from symrot.workshop.kernel_text import Bounds, KernelText, SceneText
+from symrot.workshop.kernel_text import Bounds, KernelText, SceneText, scene_kernel_name
 from symrot.workshop.steps.files import StepFiles, constant_table
 
 __all__ = ["ORDER", "STEPS", "StepText", "step_method", "step_text"]
@@ -104,9 +109,36 @@ def _exact(scene: Scene, order: int | None, jacobian: Sequence[str]) -> KernelTe
     if order is not None or jacobian:
         option = "order" if order is not None else "jacobian"
         raise InputError(f"{option}: expected no value for the step 'exact', got {order or ', '.join(jacobian)}")
+    if (method := _steady_rotations(scene)) is not None:
+        return StepText(scene, method)
     from symrot.workshop.steps.exact import ExactStepText
 
     return ExactStepText(scene)
+
+
+class _WholeState(SceneText):
+    """The rates of a scene whose state has all components of omega and of the quaternion, including constant ones."""
+
+    def __init__(self, scene: Scene) -> None:
+        plan = make_plan(scene)
+        whole = replace(plan.structure, attitude=True, planar=None, initial_quaternion=None, constant=MOVING)
+        self.plan, self.scene, self.jacobian = replace(plan, structure=whole), plan.scene, ()
+        self.name = scene_kernel_name(self.scene.name)
+
+
+def _steady_rotations(scene: Scene) -> SteadyRotations | None:
+    """Return the closed form of a scene's motion if it is a product of steady rotations, otherwise None."""
+    kinds, principal = [torque.kind for torque in scene.torques], scene.body.principal
+    if not principal.given_axes or kinds not in ([], ["rotor"]):
+        return None
+    moments = [scene.body.inertia[i][i] for i in range(3)]
+    if not kinds and equal(moments[0], moments[1]) and equal(moments[1], moments[2]):
+        return SteadyRotations(None)
+    rotor = scene.torques[0].vector("angular_momentum") if kinds else (Fraction(0),) * 3
+    for axis in range(3):
+        if equal(moments[axis - 2], moments[axis - 1]) and not rotor[axis - 2] and not rotor[axis - 1]:
+            return SteadyRotations(axis)
+    return None
 
 
 class StepText(StepFiles):
@@ -121,7 +153,8 @@ class StepText(StepFiles):
     """
 
     def __init__(self, scene: Scene, method: Method) -> None:
-        self.rates, self.method = SceneText(scene), method
+        self.rates = _WholeState(scene) if isinstance(method, SteadyRotations) else SceneText(scene)
+        self.method = method
         self.name = f"{self.rates.name.removesuffix('_rates')}_{method.name}_step"
         if isinstance(method, WithDerivatives):
             self.name = jacobian_name(self.name, method.by)
@@ -138,7 +171,7 @@ class StepText(StepFiles):
             raise InputError(f"{self.rates.scene.name}: {reason}") from None
 
     def _description(self, target: str) -> Description:
-        scene, order = self.rates.scene, ""
+        scene, order, exact = self.rates.scene, "", isinstance(self.method, SteadyRotations)
         plain, jacobian, slopes = self.method, "", ""
         if isinstance(plain, WithDerivatives):
             jacobian, slopes = f" --jacobian {','.join(plain.by)}", "; with its derivatives, row by row"
@@ -149,16 +182,31 @@ class StepText(StepFiles):
             ("Method", self.method.formula),
             *((("Parameters", "those of the scene are in {kernel}_parameters.h"),) if self._parameter_names else ()),
             ("Test", "{kernel}_test.c compares the functions with values of 40 digits"),
-            ("Certificate", "{kernel}.cert.json: the text computes the formula of the method"),
+            (
+                "Certificate",
+                f"{{kernel}}.cert.json: the text computes the {'motion' if exact else 'formula of the method'}",
+            ),
+            *((("Errors", "rounding alone; it grows with the angle |omega| dt"),) if exact else ()),
             ("Assumes", "IEEE 754 arithmetic, rounding to nearest; next does not overlap x"),
         )
         return Description(
             title=f"one time step of the scene {scene.name!r} ({scene.title}): next is the state at t + dt{slopes}",
-            domain="all states of finite size; the norm of a quaternion drifts with the error of the method",
-            derivation="derivations/euler_equations.md, derivations/quaternion_rates.md",
+            domain=f"all states of finite size; the norm of a quaternion drifts with the {self._drift}",
+            derivation=self._derivation,
             command=f"symrot emit {scene.name} --step {self.method.name}{order}{jacobian} --target {target}",
             contract=contract if target == "c" else contract[:1],
         )  # fmt: skip
+
+    @property
+    def _drift(self) -> str:
+        return "rounding errors" if isinstance(self.method, SteadyRotations) else "error of the method"
+
+    @property
+    def _derivation(self) -> str:
+        """The pages that derive the formulas of the step."""
+        if isinstance(self.method, SteadyRotations):
+            return f"derivations/{'spherical_body' if self.method.axis is None else 'symmetric_gyrostat'}.md"
+        return "derivations/euler_equations.md, derivations/quaternion_rates.md"
 
     @cached_property
     def _source_and_header(self) -> tuple[str, str]:
@@ -210,7 +258,7 @@ class StepText(StepFiles):
 
         states = [name for name, *_ in self._rates_program.signature.argument("y").components]
         parameters = dict(self._parameters)
-        functions = {name: abs if name == "abs" else getattr(mpmath, name) for name in FUNCTIONS}
+        functions = {name: abs if name == "abs" else getattr(mpmath, name) for name in (*FUNCTIONS, "sinc")}
         vectors = []
         with mpmath.workdps(DIGITS):
             for place, size in enumerate(SIZES):

@@ -60,6 +60,21 @@ def test_a_sample_beyond_the_doubles_is_refused_wherever_it_is(form, without_com
 
 
 @pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("without_compiler", [False, True])
+@pytest.mark.parametrize("form", [free_body, heavy_top, gyrostat], ids=lambda form: form.__name__.rpartition(".")[2])
+def test_a_motion_of_too_many_revolutions_is_refused(form, without_compiler, monkeypatch):
+    """Rates of 31 digits do not give a phase of 1e25 revolutions; a wrong attitude was once returned."""
+    if without_compiler:
+        monkeypatch.setattr("symrot.closed_form.motion._bound", {})
+        monkeypatch.setattr("symrot.closed_form.motion.library.missing", lambda: "none")
+    motion = form.motion(**MOTIONS[form])
+    assert np.isfinite(motion.evaluate([1e15])[1]).all()
+    for time in (1e25, -1e40, 1e90):
+        with pytest.raises(InputError, match="within 7e16 revolutions"):
+            motion.evaluate([0.0, time])
+
+
+@pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("form", MOTIONS, ids=lambda form: form.__name__.rpartition(".")[2])
 def test_a_motion_is_one_or_is_refused_in_a_sentence(form):
     for given in spoilt(MOTIONS[form]):

@@ -125,3 +125,22 @@ def test_a_kink_at_rest_has_derivatives_if_both_sides_agree():
     motion = symrot.propagate(content, sensitivities=["omega_3", "omega_1"])
     assert np.isfinite(motion.sensitivities.omega).all()
     assert np.isclose(np.linalg.norm(motion.sensitivities["omega_1"].omega[-1]), 1.0)
+
+
+@needs_compiler
+@pytest.mark.parametrize(
+    ("formula", "value", "label"),
+    [
+        ("sign(c)", 0, "sign(c)"),
+        ("min(c, 1)*omega_3", 1, "min(c, 1)"),
+        ("floor(c)", 2, "floor(c)"),
+        ("where(c > 0, 1, 2)", 0, "0 < c"),
+        ("abs(c)*abs(omega_3)", 0, "their constant"),
+        ("abs(c*omega_3)", 0, "abs(c*omega_3)"),
+    ],
+)
+def test_a_variable_at_the_jump_or_kink_of_a_function_of_constants_is_refused(formula, value, label):
+    """Each of these had the derivative 0 or 1, that of one side or the mean of both."""
+    with pytest.raises((InputError, PropagationError)) as error:
+        symrot.propagate(scene([formula, "0", "0"], {"c": value}, (0, 0, 1)), sensitivities=["c"])
+    assert label in str(error.value)

@@ -70,6 +70,25 @@ def test_histograms_are_those_of_numpy(tables):
         assert np.array_equal(tables["x_edges"].values[:, k], edges)
 
 
+@pytest.mark.parametrize("values", [[1e20, 1e20], [2.0**53], [1.0, 1 + 2**-52], [-1e300, -1e300, math.nan]])
+def test_a_range_with_few_doubles_has_a_histogram(values):
+    """NumPy refuses to divide it; the sweep was then lost with a traceback."""
+
+    class Store:
+        class header:
+            count, times = len(values), np.arange(1)
+
+        @staticmethod
+        def read(name, start, stop):
+            return np.array(values)[:, None]
+
+    output = Variable("x", ("time",), "J", "", "energy")
+    tables = {table.name: table for table in statistics_of(Store, read_statistics(["histogram(7)"]), [output], str)}
+    edges, here = tables["x_edges"].values[:, 0], [x for x in values if not math.isnan(x)]
+    assert (np.diff(edges) > 0).all() and edges[0] <= min(here) <= max(here) <= edges[-1]
+    assert tables["x_histogram"].values.sum() == len(here)
+
+
 def test_units_and_meanings_go_with_the_statistics(tables):
     assert tables["x_mean"].attributes == {"units": "m", "long_name": "place: mean"}
     assert "units" not in tables["x_number"].attributes

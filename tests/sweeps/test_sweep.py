@@ -109,6 +109,16 @@ def test_a_trajectory_without_a_body_keeps_its_row_and_its_reason(vary, reason):
         assert np.array_equal(data.omega_1[1], alone.omega_1[0])
 
 
+@pytest.mark.filterwarnings("error")
+def test_a_trajectory_whose_output_overflows_has_no_value():
+    """An infinite energy made percentiles NaN and lost the sweep in a histogram."""
+    options = {"outputs": ["energy@end", "omega_3@end"], "statistics": ["mean", "histogram(2)"]}
+    result = symrot.sweep("damped_disk", {"omega_3": [1e160, 1.0]}, workers=1, **options)
+    assert result.array("status").tolist() == [-2, 0] and np.isnan(result.array("omega_3@end")[0])
+    assert result.reasons == [(0, "energy@end: expected a value within the range of doubles, got infinity")]
+    assert result.array("energy@end_number") == 1
+
+
 def test_zeros_and_equal_moments_in_other_rows_change_no_bit():
     """The equations of a row are chosen by its own constants, also where a chunk holds rows of other kinds."""
     vary = {"linear_3": [0.0, 0.1], "I_xy": [0.0, 0.05], "I_xx": [1.0, 1.1]}

@@ -1,15 +1,22 @@
-"""Exact steps in C: equal to propagation, in chains of steps, for any axes, and refusals."""
+"""Exact steps in C: equal to propagation, in chains of steps, for any axes; their certificates, forgeries, refusals."""
 
 import ctypes
+import json
 import subprocess
+from dataclasses import replace
 
+import mpmath
 import numpy as np
 import pytest
 
 import symrot
+from symrot.certificates.certificate import certificate_json, seal
+from symrot.certificates.step_certificate import formula_section
 from symrot.cli.main import main
+from symrot.codegen.steps import SteadyRotations, stepped
 from symrot.errors import CertificateError, InputError
-from symrot.workshop.steps.exact import ExactStepText
+from symrot.formula.tree import FUNCTIONS, parse
+from symrot.workshop.step_text import StepText, step_text
 from tests.needs import needs_compiler
 
 START = {"omega": ["1/2", "1/3", 2], "attitude": {"quaternion": [3, 1, 2, 1]}}
@@ -22,6 +29,12 @@ GYROSTAT = {
     "body": {"principal": [2, 3, 2]},
     "torque": [{"kind": "rotor", "angular_momentum": [0, -4, 0]}],
 }
+SYMMETRIC = {"body": {"principal": [1, 2, 2]}}
+SPHERE = {"body": {"principal": [2, 2, 2]}}
+# the rotor alone rotates omega
+SPHERE_WITH_ROTOR = {**SPHERE, "torque": [{"kind": "rotor", "angular_momentum": [0, 0, 3]}]}
+PLANAR = {"body": {"principal": [2, 2, 3]}, "initial": {"omega": [0, 0, 2]}}
+BOX = {"omega_1": (-1, 1), "omega_2": (-1, 1), "omega_3": (-1, 1), "dt": (0, "1/10")}
 
 
 def scene_of(content):
@@ -29,40 +42,49 @@ def scene_of(content):
 
 
 @needs_compiler
-@pytest.mark.parametrize("content", [FREE, TOP, GYROSTAT], ids=["free", "top", "gyrostat"])
+@pytest.mark.parametrize("content", [FREE, TOP, GYROSTAT, SPHERE], ids=["free", "top", "gyrostat", "sphere"])
 def test_an_exact_step_is_the_motion(content, tmp_path):
     """To a few units of rounding, after a step of any size; twenty steps agree to their accumulated rounding."""
     scene = scene_of(content)
-    text = ExactStepText(scene)
+    text = step_text(scene, "exact")
     for name, content_of_file in text.c_files().items():
         (tmp_path / name).write_text(content_of_file)
     cc = ["cc", "-std=c99", "-Og", "-ffp-contract=off", "-Wall", "-Wextra", "-Werror", "-fPIC"]
     subprocess.run([*cc, "-shared", f"{text.name}.c", "-lm", "-o", "step.so"], cwd=tmp_path, check=True)
     assert "malloc" not in text.c()[0]
-    step = getattr(ctypes.CDLL(str(tmp_path / "step.so")), f"symrot_{text.name}")
+    compiled = getattr(ctypes.CDLL(str(tmp_path / "step.so")), f"symrot_{text.name}")
     numbers = np.ctypeslib.ndpointer(np.float64)
-    step.argtypes = [ctypes.c_double, numbers, numbers, ctypes.c_double, numbers]
-    p = np.array([float(value) for _, _, value in text.form.parameters])
+    p = np.array([value for _, value in text._parameters])
+    compiled.argtypes = [ctypes.c_double, numbers, *[numbers] * bool(p.size), ctypes.c_double, numbers]
+    elliptic = not isinstance(text, StepText)
+    compiled.restype = ctypes.c_int if elliptic else None
+
+    def step(x, dt, after):
+        return compiled(0.0, x, *[p] * bool(p.size), dt, after)
+
     start = np.array([float(x) for x in (*scene.initial.omega_b, *scene.initial.quaternion)])
     for dt in (0.01, -2.0, 1000.0):
         after = np.empty(7)
-        assert step(0.0, start, p, dt, after) == 0
+        assert step(start, dt, after) == (0 if elliptic else None)
         motion = symrot.propagate(scene, t=[dt], omega=start[:3], quaternion=start[3:])
         expected = np.concatenate([motion.omega[0], motion.quaternion[0]])
         rounding = 4e-15 + 2.0**-52 * abs(dt) * 3  # a rounding of the start or of p, times the time
         assert np.abs(after - expected).max() <= rounding * np.abs(start).max()
     state = start.copy()
     for _ in range(20):
-        assert step(0.0, state, p, 0.05, state) == 0
+        before = state.copy()  # the inputs of a certified step do not overlap its outputs
+        step(before, 0.05, state)
     motion = symrot.propagate(scene, t=[1.0])
     assert np.abs(state - [*motion.omega[0], *motion.quaternion[0]]).max() < 1e-13
     state[0] = np.nan
-    assert step(0.0, state, p, 0.1, after) == 1 and np.isnan(after).all()
+    assert step(state, 0.1, after) == (1 if elliptic else None)
+    assert np.isnan(after).all() if elliptic else np.isnan(after).any()
 
 
 @needs_compiler
-def test_the_emitted_test_passes(tmp_path):
-    assert main(["emit", "tumbling_prism", "--step", "exact", "-o", str(tmp_path)]) == 0
+@pytest.mark.parametrize("scene", ["tumbling_prism", "axisymmetric_satellite"])
+def test_the_emitted_test_passes(scene, tmp_path):
+    assert main(["emit", scene, "--step", "exact", "-o", str(tmp_path)]) == 0
     files = sorted(path.name for path in tmp_path.glob("*.c"))
     subprocess.run(
         ["cc", "-std=c99", "-O0", "-ffp-contract=off", *files, "-lm", "-o", "check"], cwd=tmp_path, check=True
@@ -70,11 +92,165 @@ def test_the_emitted_test_passes(tmp_path):
     assert b"agrees" in subprocess.run([tmp_path / "check"], capture_output=True, check=True).stdout
 
 
-def test_exact_steps_have_no_certificate(capsys):
+def test_exact_steps_with_elliptic_functions_have_no_certificate(capsys):
     assert main(["certify", "tumbling_prism", "--step", "exact"]) == 2
-    assert "exact steps have a test and no certificate" in capsys.readouterr().err
+    assert "with elliptic functions, an exact step has a test" in capsys.readouterr().err
     with pytest.raises(CertificateError, match="only a test"):
         _ = symrot.emit("tumbling_prism", step="exact").certificate
+
+
+@pytest.mark.parametrize(
+    ("content", "axis"), [(SYMMETRIC, 1), (GYROSTAT, 2), (SPHERE_WITH_ROTOR, 3), (PLANAR, 3), (SPHERE, None)]
+)
+def test_the_certificate_proves_that_the_step_is_the_motion(content, axis):
+    """In double and in float: with a start x, the step of size 0 is x, and the derivative by dt is the rates."""
+    data = json.loads(step_text(scene_of(content), "exact").certificate())
+    assert data["step"] == {"method": "exact", "axis": axis}
+    proofs = [function["motion"] for function in data["formula"].values()]
+    assert len(proofs) == 2 and all(
+        "the derivative by dt" in p["law"] or "its derivative by dt" in p["law"] for p in proofs
+    )
+    assert all(int(p["wrong_with_probability_below"].removeprefix("2^-")) > 400 for p in proofs)
+
+
+@pytest.fixture(scope="module")
+def certified(tmp_path_factory):
+    """Return the folder and the certificate of an exact step, with bounds."""
+    folder = tmp_path_factory.mktemp("exact")
+    return folder, symrot.certify("axisymmetric_satellite", BOX, directory=folder, step="exact")
+
+
+def test_the_bound_of_rounding_contains_the_errors_of_one_step(certified):
+    """Against 50 digits, at random states of the box; there is no truncation."""
+    _, certificate = certified
+    bounds = certificate.data["bounds"]
+    assert set(bounds["truncation"].values()) == {(0.0).hex()} and "truncation  none" in str(certificate)
+    (precision,) = bounds["rounding"]["precisions"]
+    most = np.array([float.fromhex(output["absolute"]) for output in precision["outputs"]])
+    text, room = step_text("axisymmetric_satellite", "exact"), {}
+    exec(text.numpy, room)
+    p, draw, worst = np.array(text.rates.inputs.parameters), np.random.default_rng(2), np.zeros(7)
+    functions = {name: abs if name == "abs" else getattr(mpmath, name) for name in (*FUNCTIONS, "sinc")}
+    names = [name for name, *_ in text._rates_program.signature.argument("y").components]
+    with mpmath.workdps(50):
+        for _ in range(60):
+            q = draw.normal(size=4)
+            x, dt = np.array([*draw.uniform(-1, 1, 3), *q / np.linalg.norm(q)]), draw.uniform(0.05, 0.1)
+            values = dict(zip(names, map(mpmath.mpf, x), strict=True)) | {"t": mpmath.mpf(0)}
+            values |= dict(zip(text._parameter_names, map(mpmath.mpf, p), strict=True))
+            exact = stepped(
+                text._rates_program, text.method, values, mpmath.mpf(dt), functions,
+                lambda value: mpmath.mpf(value.numerator) / value.denominator,
+            )  # fmt: skip
+            computed = room[text.name](0.0, x, p, dt)
+            worst = np.maximum(worst, [abs(float(mpmath.mpf(a) - b)) for a, b in zip(computed, exact, strict=True)])
+    assert (worst <= most).all()
+    assert most.max() < 5 * worst.max()
+
+
+def test_the_audit_repeats_all_proofs(certified):
+    folder, certificate = certified
+    assert certificate.proofs == ("C text", "rounding", "truncation")
+    (path,) = folder.glob("*.cert.json")
+    statements = symrot.audit(path).statements[str(path)]
+    assert "the C text is the motion itself, not an approximation: it solves the equations of the rates" in statements
+    assert any("those that symrot derives for the scene axisymmetric_satellite" in line for line in statements)
+    assert "bounds of rounding and truncation are those that symrot computes" in statements
+
+
+def _half_rounding(data):
+    output = data["bounds"]["rounding"]["precisions"][0]["outputs"][3]
+    output["absolute"] = (float.fromhex(output["absolute"]) / 2).hex()
+
+
+def _less_truncation(data):
+    data["bounds"]["truncation"]["q0"] = (-1.0).hex()
+
+
+def _faster_rates(data):
+    data["rates"]["formulas"][0][1] = "2*" + data["rates"]["formulas"][0][1]
+
+
+def _coupled_rates(data):
+    data["rates"]["formulas"][2][1] = "omega_1*omega_2"
+
+
+def _other_states(data):
+    data["rates"]["states"][0][0] = "omega_4"
+
+
+def _other_axis(data):
+    data["step"]["axis"] = 1
+    data["method"] = SteadyRotations(0).formula
+
+
+def _no_axis(data):
+    data["step"]["axis"] = True
+
+
+def _other_chance(data):
+    next(iter(data["formula"].values()))["motion"]["wrong_with_probability_below"] = "2^-900"
+
+
+def _less_trust(data):
+    del data["trusted"]["rates"]
+
+
+@pytest.mark.parametrize(("change", "message"), [
+    (_half_rounding, "expected"), (_less_truncation, "expected the bounds that symrot computes"),
+    (_faster_rates, "expected next|its rate"), (_coupled_rates, "omega_3 by dt to be its rate"),
+    (_other_states, "in the form|exact step, got those of omega_4|as symrot prints"),
+    (_other_axis, "got another formula"), (_no_axis, "symmetry axis"),
+    (_other_chance, "to be the proof"), (_less_trust, "the section 'trusted'"),
+])  # fmt: skip
+def test_forged_certificates_are_refused(certified, tmp_path, change, message):
+    source, certificate = certified
+    for path in source.iterdir():
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    data = json.loads(json.dumps(certificate.data))
+    change(data)
+    data["seal"] = seal(data)
+    path = tmp_path / f"{data['kernel']}.cert.json"
+    path.write_text(certificate_json(data), encoding="utf-8")
+    with pytest.raises(CertificateError, match=message):
+        symrot.audit(path)
+
+
+def test_a_wrong_closed_form_is_refused(monkeypatch):
+    """A text that computes a wrong closed form is not the motion, in either sense of rotation."""
+    original = SteadyRotations.after
+
+    def backward(self, rates, values, dt, functions, number):
+        return original(self, rates, values, -dt, functions, number)
+
+    monkeypatch.setattr(SteadyRotations, "after", backward)
+    with pytest.raises(CertificateError, match="by dt to be its rate"):
+        step_text(scene_of(SYMMETRIC), "exact").certificate()
+
+
+def test_a_closed_form_of_other_rates_is_refused():
+    """With damping, the step of the free body is no longer the motion."""
+    text = step_text(scene_of(SPHERE), "exact")
+    (first, _), *others = text._rates_program.outputs
+    damped = replace(text._rates_program, outputs=((first, parse("-omega_1")), *others))
+    with pytest.raises(CertificateError, match="the derivative of omega_1 by dt to be its rate"):
+        formula_section(text.name, damped, text.method, text.c()[0])
+
+
+@pytest.mark.parametrize(("scene", "step", "edits"), [
+    ("axisymmetric_satellite", "exact", {"x == 0.0 ? 1.0": "x == 0.0 ? 2.0"}),
+    ("axisymmetric_satellite", "exact", {"x == 0.0 ?": "x == 0.5 ?"}),
+    ("tumbling_prism", "rk4", {"next[0] = ": "next[0] = omega_1 == 3 ? 7 : ", "next[k] = ": "next[k] = omega_1 == 3 ? 7 : "}),
+])  # fmt: skip
+def test_a_value_at_a_single_point_is_no_way_around_the_proof(scene, step, edits):
+    """Random points meet only one branch of a case."""
+    text = step_text(scene, step)
+    double, head, single = text.c()[0].partition(f"void symrot_{text.name}f(")
+    for old, new in edits.items():
+        assert old in double
+        double = double.replace(old, new.replace("3", "3.0").replace("7", "7.0"))
+    with pytest.raises(CertificateError, match="expected no case except"):
+        formula_section(text.name, text._rates_program, text.method, f"{double}{head}{single}")
 
 
 @pytest.mark.parametrize(
@@ -91,3 +267,10 @@ def test_exact_steps_have_no_certificate(capsys):
 def test_what_has_no_exact_step_is_refused(scene, options, message):
     with pytest.raises(InputError, match=message):
         symrot.emit(scene, step="exact", **options)
+
+
+@pytest.mark.parametrize("target", ["numpy", "js", "jax"])
+def test_steps_of_symmetric_bodies_exist_in_every_language(target):
+    assert (
+        "axisymmetric_satellite_exact_step" in symrot.emit("axisymmetric_satellite", step="exact", target=target).source
+    )

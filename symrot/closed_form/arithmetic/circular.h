@@ -33,10 +33,13 @@ ALWAYS_INLINE phase phase_of(const double v[4])
     return p;
 }
 
+/* Rates of 31 digits give the phase of a motion to 1e-13 revolutions within this number of revolutions, 7e16. */
+#define MOST_REVOLUTIONS 0x1p+56
+
 /*
  * Return start + rate*t + more modulo 1/`parts` of a revolution, between -1/2 and 1/2 part. `taken` receives the number
- * of parts subtracted, -7 to 7 if `parts` is 4. The error is one rounding of the result for any number of revolutions.
- * |start| <= 1/2, |more| <= 1/8.
+ * of parts subtracted, -7 to 7 if `parts` is 4. The error is one rounding of the result, and of rate*t at 31 digits.
+ * The result is NaN beyond MOST_REVOLUTIONS. |start| <= 1/2, |more| <= 1/8.
  */
 ALWAYS_INLINE double phase_rest(const phase *p, double t, double parts, double more, double *taken)
 {
@@ -45,7 +48,8 @@ ALWAYS_INLINE double phase_rest(const phase *p, double t, double parts, double m
     small = (small - rint(small)) + p->start[1] + more;
     const dd sum = two_sum(turns - rint(turns), p->start[0]);
     *taken = rint(parts*(sum.hi + small));
-    return (sum.hi - *taken*(1.0/parts)) + (sum.lo + small);
+    const double rest = (sum.hi - *taken*(1.0/parts)) + (sum.lo + small);
+    return fabs(turns) <= MOST_REVOLUTIONS ? rest : NAN;
 }
 
 /* start + rate*t, rounded once, for a phase that is not periodic. */

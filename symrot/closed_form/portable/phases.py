@@ -19,6 +19,7 @@ __all__ = [
 DIGITS = 120  # digits of the constants, enough to remain accurate after any cancellation
 TERMS = 8  # terms of a series
 LARGEST = 80.0  # argument of a hyperbolic function above which the results are constant to rounding
+MOST_REVOLUTIONS = 2.0**56  # as in circular.h: pairs of doubles give a phase to 1e-13 revolutions within this number
 
 
 def number(high: float, low: float) -> Any:
@@ -59,7 +60,7 @@ class Phase(NamedTuple):
     def rest(self, t: Floats, parts: int, more: Floats | float = 0.0) -> tuple[Floats, Floats]:
         """Return the phase plus ``more``, in revolutions modulo 1/``parts``, and the number of parts removed.
 
-        If ``parts`` is 4, a phase of 0.3 gives 0.05 and 1.
+        If ``parts`` is 4, a phase of 0.3 gives 0.05 and 1. Beyond MOST_REVOLUTIONS it gives NaN and 0.
         """
         product, error = two_product(t, self.rate[0])
         small = error + t * self.rate[1]
@@ -67,7 +68,9 @@ class Phase(NamedTuple):
         high, low = two_sum(product - np.rint(product), self.start[0])
         # correct modulo parts, that is, up to whole revolutions
         steps = np.rint(parts * (high + small))
-        return (high - steps / parts) + (low + small), steps
+        rest = (high - steps / parts) + (low + small)
+        known = np.abs(product) <= MOST_REVOLUTIONS
+        return np.where(known, rest, np.nan), np.where(known, steps, 0.0)
 
     def whole(self, t: Floats) -> Floats:
         """Return the phase at the times ``t``, in revolutions, not reduced modulo 1."""

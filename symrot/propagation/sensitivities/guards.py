@@ -15,14 +15,14 @@ from symrot.errors import PropagationError
 from symrot.formula import exact_numbers as number
 from symrot.formula.float_functions import FLOAT_FUNCTIONS
 from symrot.formula.program import Program
-from symrot.formula.switches import STATES
+from symrot.formula.switches import STATES, chosen, hold
 from symrot.formula.tree import evaluate, names
 from symrot.planning.general_structure import constants_of
 from symrot.planning.scene_kernel import EPOCH, Parameters
 from symrot.propagation.binding import value_of
 from symrot.propagation.sensitivities.intervals import Interval
+from symrot.propagation.sensitivities.libraries import rates_of
 from symrot.propagation.sensitivities.parameter_slopes import ParameterSlopes, Rows
-from symrot.propagation.sensitivities.variation import rates_of
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.system import SwitchedSystem, is_continuous
 from symrot.scene.scene import Scene
@@ -77,6 +77,17 @@ class Guards:
         self._rates: dict[int, tuple[Program, Parameters]] = {}
         self._slopes: dict[Any, Rows] = {}
         self._constants = {"pi": number.PI, **constants_of(scene, parameter_slopes.structure)}
+        self._require_settled()
+
+    def _require_settled(self) -> None:
+        """Raise InputError if a variable moves the argument of a function that never switches to a jump or kink."""
+        modes = self.system.initial_modes()
+        constants = {**self._constants, **{name: Fraction(mode) for name, mode in modes.items()}}
+        for switch in self.system.switches:
+            if switch.mode not in self.system.settled or not hold(switch.where, modes):
+                continue
+            ends = [modes[switch.mode]] if switch.kind == "floor" else [0]
+            self.parameter_slopes.require_constant(chosen(switch.guard, modes), constants, ends, switch.label)
 
     # ------------------------------------------------------------------------------------------------- functions
 

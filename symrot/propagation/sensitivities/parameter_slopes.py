@@ -5,11 +5,12 @@ from fractions import Fraction
 from typing import Any
 
 from symrot.dynamics.structure import Structure
-from symrot.formula.tree import names
+from symrot.errors import InputError
+from symrot.formula.tree import Node, names
 from symrot.planning.general_structure import constants_of
 from symrot.planning.scene_kernel import Parameters
 from symrot.propagation.binding import value_of
-from symrot.propagation.sensitivities.variables import STEP, difference, slopes
+from symrot.propagation.sensitivities.variables import difference, slopes
 from symrot.propagation.sensitivities.variation import Column
 from symrot.scene.scene import Scene
 
@@ -27,7 +28,7 @@ class ParameterSlopes:
         self._changes = [self._changes_of(column) for column in self.columns]
 
     def _changes_of(self, column: Column) -> Mapping[str, Fraction]:
-        """Return the derivatives of the constants of the equations by a variable, without those that are zero."""
+        """Return the derivatives by a variable of those constants of the equations that depend on it."""
         if not column.constants:
             return {}
         return difference(self.scene, column.variable, lambda other: constants_of(other, self.structure))
@@ -37,7 +38,7 @@ class ParameterSlopes:
         return [name for name, formula in parameters if names(formula) & self._changes[column].keys()]
 
     def slopes_of(self, parameters: Parameters, constants: Mapping[str, Fraction]) -> Rows:
-        """Return the derivatives of parameters by the m variables, by name, if one of them is not zero."""
+        """Return the derivatives of parameters by the m variables, by name, if they depend on one of them."""
         rows: dict[str, list[float]] = {}
         for k, column in enumerate(self.columns):
             own, changes = set(self.depends(parameters, k)), self._changes[k]
@@ -49,8 +50,25 @@ class ParameterSlopes:
                 moved = {**constants, **{name: constants[name] + change * slope for name, slope in changes.items()}}
                 return {name: value_of(formula, moved) for name, formula in moving}
 
-            variable = column.variable
-            step = abs(variable.value) * STEP if variable.value else STEP
-            for name, slope in slopes(values, step, variable.name).items():
+            for name, slope in slopes(values, column.variable.step, column.variable.name).items():
                 rows.setdefault(name, [0.0] * len(self.columns))[k] = float(slope)
         return rows
+
+    def require_constant(
+        self, formula: Node, constants: Mapping[str, Fraction], ends: Sequence[int], label: str
+    ) -> None:
+        """Raise InputError if a formula without states has one of the values ``ends``, and a variable changes it.
+
+        ``label`` is the function with a jump or kink there, such as ``"sign(c - 1)"``.
+        """
+        value = value_of(formula, constants)
+        if value not in ends:
+            return
+        for column, changes in zip(self.columns, self._changes, strict=True):
+            for step in (column.variable.step, -column.variable.step):
+                moved = {name: constants[name] + step * slope for name, slope in changes.items()}
+                if value_of(formula, {**constants, **moved}) != value:
+                    raise InputError(
+                        f"sensitivities: expected {column.variable.name} with a value at which the equations have a "
+                        f"derivative, but {label} has a kink or a jump there; change the value slightly"
+                    )

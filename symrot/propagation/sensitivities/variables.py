@@ -35,6 +35,9 @@ NO_VARIABLES = ("t", "samples", "tolerance", "quantities", "sequence", "degrees"
 NO_TABLES = ("schema", "title", "source", "span", "output", "accuracy")
 STEP = Fraction(1, 1 << 80)
 AGREEMENT = Fraction(1, 1 << 60)
+FALL = Fraction(9, 10)  # largest ratio of quotients of one and two steps whose limit is zero
+BEND = Fraction(21, 10)  # second differences of two steps and of one: 4 where a number is smooth, 2 at a kink
+ROUNDED = Fraction(1, 1 << 150)  # a smaller second difference, in units of the number, may be a rounding error
 UNITS = {**dict.fromkeys(RATES, "rad/s"), **dict.fromkeys(TENSOR, "kg m^2"), "mass": "kg", "density": "kg/m^3"}
 ANGLES = ("angle", "angles")
 LENGTHS = (
@@ -77,6 +80,11 @@ class Variable:
     value: Fraction
     moved: Callable[[Fraction], Scene] | None
     axis: int = 0
+
+    @property
+    def step(self) -> Fraction:
+        """A small change of the variable, for difference quotients of exact numbers."""
+        return abs(self.value) * STEP if self.value else STEP
 
 
 def require_formulas(scene: Scene) -> None:
@@ -185,7 +193,7 @@ Numbers = Mapping[str, Fraction]
 
 
 def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numbers]) -> dict[str, Fraction]:
-    """Return the nonzero derivatives, by one variable, of the exact numbers that ``numbers`` returns for a scene.
+    """Return the derivatives, by one variable, of those exact numbers of a scene that depend on it.
 
     For the mass of a unit sphere and its moments of inertia: ``{"I_xx": Fraction(2, 5), ..}``.
 
@@ -209,48 +217,86 @@ def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numb
     def values(change: Fraction) -> Numbers:
         return numbers(moved(change) if change else scene)
 
-    return slopes(values, abs(variable.value) * STEP if variable.value else STEP, variable.name)
+    return slopes(values, variable.step, variable.name)
 
 
 def slopes(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> dict[str, Fraction]:
-    """Return the nonzero derivatives of numbers by a change of a variable.
+    """Return the derivatives of numbers by a change of a variable, without the numbers that do not depend on it.
 
     ``values`` takes this change: if it returns {"A": (3 + change)^2}, the result is {"A": 6}.
 
     Raises
     ------
     InputError
-        If a number has a kink or a jump at the variable's present value: derivatives over one and two steps differ.
+        If a number has a kink or a jump at the variable's present value.
     """
-    # changes by 0, and by one or two steps to either side
-    first, second = (_quotient(values, size, name) for size in (step, 2 * step))
-    for each, slope in first.items():
-        if abs(slope - second[each]) > AGREEMENT * max(abs(slope), abs(second[each])):
+    differences = _Differences(values, step, name)
+    result = {}
+    for each, center in differences.at(0).items():
+        if all(differences.at(place)[each] == center for place in differences.near):
+            continue
+        slope = differences.slope(each)
+        if slope is None:
             raise InputError(
                 f"sensitivities: expected {name} with a value at which the equations have a derivative, but their "
                 f"constant {each} has a kink or a jump there; change the value slightly"
             )
-    return {each: slope for each, slope in first.items() if slope}
+        result[each] = slope
+    return result
 
 
-def _quotient(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> dict[str, Fraction]:
-    """Return difference quotients of second order: central or, where the scene is not valid on one side, one-sided."""
-    schemes: tuple[dict[int, Fraction], ...] = (
-        # central, then to the right and to the left, for example where the mass would become negative
+class _Differences:
+    """Difference quotients of numbers by a change of a variable, for steps of several sizes."""
+
+    # weights of second order at places in steps: central, then to the right and to the left, for example where the mass
+    # would become negative
+    SCHEMES: tuple[dict[int, Fraction], ...] = (
         {-1: Fraction(-1, 2), 1: Fraction(1, 2)},
         {0: Fraction(-3, 2), 1: Fraction(2), 2: Fraction(-1, 2)},
         {0: Fraction(3, 2), -1: Fraction(-2), -2: Fraction(1, 2)},
     )
-    refusal: InputError | None = None
-    for weights in schemes:
-        try:
-            points = {place: values(place * step) for place in weights}
-        except InputError as reason:
-            refusal = refusal or reason
-            continue
-        names = next(iter(points.values()))
-        return {
-            each: sum((weight * points[place][each] for place, weight in weights.items()), Fraction(0)) / step
-            for each in names
-        }
-    raise InputError(f"sensitivities: expected a scene that stays valid if {name} changes, got {refusal}")
+
+    def __init__(self, values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> None:
+        self._values, self._step, self._points = values, step, dict[int, Numbers]()
+        self.at(0)
+        refusal: InputError | None = None
+        for weights in self.SCHEMES:
+            try:
+                for place in weights:
+                    self.at(place)
+                    self.at(2 * place)
+            except InputError as reason:
+                refusal = refusal or reason
+                continue
+            self._weights, self.near = weights, tuple(weights)
+            return
+        raise InputError(f"sensitivities: expected a scene that stays valid if {name} changes, got {refusal}")
+
+    def at(self, place: int) -> Numbers:
+        """Return the numbers if the variable changes by ``place`` steps."""
+        if place not in self._points:
+            self._points[place] = self._values(place * self._step)
+        return self._points[place]
+
+    def slope(self, each: str) -> Fraction | None:
+        """Return the derivative of a number, or None if it has none."""
+        first, second = self._quotient(each, 1), self._quotient(each, 2)
+        if self._bends(each):
+            return None
+        if abs(first - second) <= AGREEMENT * max(abs(first), abs(second)):
+            return first
+        # quotients that decrease with the step, as of x^3 or x*abs(x) at zero, have the limit zero
+        third = self._quotient(each, 4)
+        return Fraction(0) if abs(first) <= FALL * abs(second) and abs(second) <= FALL * abs(third) else None
+
+    def _quotient(self, each: str, size: int) -> Fraction:
+        total = sum((weight * self.at(size * place)[each] for place, weight in self._weights.items()), Fraction(0))
+        return total / (size * self._step)
+
+    def _bends(self, each: str) -> bool:
+        """Return whether the derivatives on both sides differ: the sum of a kink grows as the step, not its square."""
+        if self._weights is not self.SCHEMES[0]:
+            return False
+        center = self.at(0)[each]
+        near, far = (abs(self.at(-size)[each] - 2 * center + self.at(size)[each]) for size in (1, 2))
+        return near > ROUNDED * max(abs(center), abs(self.at(1)[each])) and far <= BEND * near

@@ -13,16 +13,15 @@ from symrot.certificates.readback.header import check_header
 from symrot.certificates.readback.readback import read_kernel
 from symrot.certificates.rounding.bounds import check_section
 from symrot.certificates.step_certificate import (
-    NOT_STATED,
     SCHEMA,
-    TRUSTED,
     bounds_of_step,
     formula_section,
     is_step,
     rates_of,
+    trusted,
 )
 from symrot.codegen.printing.parameters_header import parameters_file, parameters_header
-from symrot.codegen.steps import Method, WithDerivatives
+from symrot.codegen.steps import Method, SteadyRotations, WithDerivatives
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
 from symrot.scene.file import shipped_names
@@ -77,7 +76,8 @@ def audit_step(
                                f"got that of {name[:60]}")  # fmt: skip
     if data["seal"] != seal(data) or path.read_text(encoding="utf-8") != certificate_json(data):
         raise CertificateError(f"{path}: expected a certificate as symrot prints it, got one that was edited")
-    if data["trusted"] != (TRUSTED if "bounds" in data else TRUSTED | NOT_STATED):
+    method = _method(path, data)
+    if data["trusted"] != trusted(method.name, "bounds" in data):
         raise CertificateError(
             f"{path}: expected the section 'trusted' (the assumptions) as symrot prints it, got another; emit the step "
             "again"
@@ -92,7 +92,7 @@ def audit_step(
     source = texts[f"{name}.c"]
     check_header(texts[f"{name}.h"], source, name)
     # files, C text and bounds are compared with the rates that the certificate states
-    method, rates = _method(path, data), rates_of(data)
+    rates = rates_of(data)
     progress("proving ..")
     if formula_section(name, rates, method, source) != data["formula"]:
         raise CertificateError(
@@ -103,6 +103,8 @@ def audit_step(
         f"{name}: {len(texts)} hashes agree; the C text of symrot_{name} and symrot_{name}f, and of their batch "
         f"functions, computes the {method.formula}"
     ]
+    if isinstance(method, SteadyRotations):
+        report.append("the C text is the motion itself, not an approximation: it solves the equations of the rates")
     # for a shipped scene these must be the rates that symrot derives
     report.append(_of_scene(path, data, method))
     if "bounds" in data:
@@ -139,11 +141,20 @@ def _files(path: Path, name: str, data: Data) -> dict[str, str]:
 
 def _method(path: Path, data: Data) -> Method:
     step = data["step"]
+    if isinstance(step, dict) and step.get("method") == SteadyRotations.name:
+        axis = step.get("axis")
+        if set(step) != {"method", "axis"} or axis not in (None, 1, 2, 3) or isinstance(axis, bool | float):
+            raise CertificateError(f"{path}: expected the symmetry axis (1, 2, 3 or null) of an exact step, got {step}")
+        exact = SteadyRotations(None if axis is None else axis - 1)
+        if data["method"] != exact.formula:
+            raise CertificateError(f"{path}: expected the method {exact.formula!r}, got {data['method']!r}")
+        return exact
     try:
         jacobian = tuple(step.get("jacobian", ()))
         method = step_method(step["method"], step["order"] if step["method"] == "taylor" else None, jacobian)
     except (InputError, KeyError, TypeError) as reason:
         raise CertificateError(f"{path}: expected a method that symrot knows: {reason}") from None
+    assert not isinstance(method, SteadyRotations)
     if step["order"] != method.order or data["method"] != method.formula:
         raise CertificateError(f"{path}: expected the order {method.order} of {method.name}, got {step['order']}")
     return method
@@ -163,7 +174,9 @@ def _of_scene(path: Path, data: Data, method: Method) -> str:
             "the rates of the motion were not compared with a scene, because symrot has no scene of the name in the "
             "certificate"
         )
-    order = method.order if method.name == "taylor" and method.order != ORDER else None
+    order = None
+    if not isinstance(method, SteadyRotations) and method.name == "taylor" and method.order != ORDER:
+        order = method.order
     jacobian = method.by if isinstance(method, WithDerivatives) else ()
     own = json.loads(step_text(scene, method.name, order, jacobian).certificate())
     for section in SECTIONS:

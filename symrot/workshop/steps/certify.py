@@ -49,7 +49,10 @@ def certify_step(
     """
     printed = step_text(scene, step, order)
     if not isinstance(printed, StepText):
-        raise InputError("step: expected rk4, taylor or dop853, got exact: exact steps have a test and no certificate")
+        raise InputError(
+            f"step: expected rk4, taylor or dop853 for {scene}, got exact: with elliptic functions, an exact step has "
+            "a test and no certificate; the step taylor of order 16 is close to it"
+        )
     progress("proving ..")
     text = printed.certificate()
     if ranges:
@@ -95,6 +98,9 @@ def lines(data: Data) -> list[str]:
                 f"random points; otherwise with a probability below {function['wrong_with_probability_below']})",
             )
         )
+        if "motion" in function:
+            chance = function["motion"]["wrong_with_probability_below"]
+            rows.append(("motion", f"{name} solves the equations of the rates exactly (otherwise below {chance})"))
     if "bounds" in data:
         rows += _bound_rows(data["bounds"], [name for name, _ in data["rates"]["states"]])
     else:
@@ -111,6 +117,8 @@ def _bound_rows(bounds: Mapping[str, Any], states: Sequence[str]) -> list[tuple[
     truncation = {state: float.fromhex(value) for state, value in bounds["truncation"].items()}
     return [
         (label, f"at most {_up(errors[worst])} in one step on the box, in double precision ({worst})")
+        if errors[worst]
+        else (label, "none")
         for label, errors in (("rounding", rounding), ("truncation", truncation))
         for worst in (max(errors, key=errors.__getitem__),)
     ]

@@ -1,4 +1,4 @@
-"""One time step of a motion in closed form as C99: the state after any dt, without truncation, heap or loop over time.
+"""One time step of a motion in elliptic functions as C99: the state after any dt, without heap or loop over time.
 
 The text has the C files by which symrot itself propagates the motion. Every call computes the constants of the motion
 from the state, in numbers of 31 digits; the cost does not depend on dt.
@@ -27,8 +27,8 @@ SHARES = (Fraction(1, 16), Fraction(-3, 2), Fraction(5))  # sizes of the test ve
 Motions = Callable[[Sequence[Fraction], Sequence[Fraction]], Any]
 
 
-# The parameters p are those of the closed form: moments of inertia, pull (weight times the distance of the centre of
-# mass, in N m), momentum of a rotor.
+# The parameters p are those of the closed form: moments of inertia, and pull (weight times the distance of the centre
+# of mass, in N m).
 class _Form(NamedTuple):
     """The parts of a step's C text that differ between closed forms, such as the free body and the heavy top."""
 
@@ -111,24 +111,8 @@ def _heavy_top(scene: Scene, derivation: str) -> _Form:
     )  # fmt: skip
 
 
-def _gyrostat(scene: Scene, derivation: str) -> _Form:
-    from symrot.closed_form.gyrostat.motion import Gyrostat, motion
-
-    momentum, moments = scene.torques[0].vector("angular_momentum"), _moments(scene)
-    named = Gyrostat(moments, momentum).named
-    axis, rounded = named[2], [_rounded(x) for x in moments]
-    rotor = [_rounded(x) for x in momentum]
-    return _Form(
-        "gyrostat", "symmetric gyrostat", derivation,
-        (("A", "kg m^2, moment across the rotor", moments[axis - 1]), ("C", "kg m^2, moment about it", moments[axis]),
-         ("h", "kg m^2/s, angular momentum of the rotor relative to the body", momentum[axis])),
-        (_table("axes", [*map(float, named), 0.0]),), ("moments", "moments + 4", "rates", "attitude", "axes"),
-        (named[0], named[1], named[2]), lambda omega, q: motion(rounded, rotor, omega, q),
-    )  # fmt: skip
-
-
 _FORMS: Mapping[str, Callable[[Scene, str], _Form]] = {
-    "free_body": _free_body, "heavy_top": _heavy_top, "gyrostat": _gyrostat,
+    "free_body": _free_body, "heavy_top": _heavy_top,
 }  # fmt: skip
 
 
@@ -179,9 +163,11 @@ class ExactStepText(StepFiles):
         return self._other("jax")
 
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
-        """Raise CertificateError: an exact step has no certificate."""
-        raise CertificateError(f"{self.name}: expected a kernel or a step rk4, taylor or dop853; exact steps have no "
-                               "certificate, only a test")  # fmt: skip
+        """Raise CertificateError: an exact step with elliptic functions has no certificate."""
+        raise CertificateError(
+            f"{self.name}: expected a kernel or a step with a certificate, got an exact step with elliptic functions, "
+            "which has only a test; use the step 'taylor'"
+        )
 
     def _declaration(self, real: Real) -> str:
         count, c = len(self.form.parameters), real.type

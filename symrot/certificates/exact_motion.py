@@ -1,0 +1,154 @@
+"""The proof that the C text of an exact step is the motion: it solves the differential equations of the rates.
+
+With the C text read as exact formulas F(x, dt), two equations are proven: F(x, 0) = x, and dF/d(dt) is the rates at F.
+Their only solution is the motion. Both are compared at random points, modulo a prime, where a square root is a root of
+its argument, and sine and cosine of an angle are a point of the unit circle.
+"""
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from itertools import count
+from typing import Any
+
+from symrot.certificates.readback.operations import Operations
+from symrot.certificates.residues import POINTS, PRIME, Residue, digest_number, exact, probability
+from symrot.codegen.duals import Dual, dual_functions
+from symrot.codegen.steps import SIZE
+from symrot.errors import CertificateError
+from symrot.formula.program import Program
+
+__all__ = ["motion_section", "require_limits"]
+
+LAW = "for dt = 0 the step is the identity, and its derivative by dt is the rates at its result"
+# a point with the roots that it needs, of a formula with one root: at most 8 degree/PRIME
+FACTOR = 8
+
+
+class _NoRootError(ArithmeticError):
+    """A number modulo the prime that is no square."""
+
+
+def require_limits(file: str, operations: Operations) -> None:
+    """Raise CertificateError if a C function has a case other than ``x == 0 ? 1 : sin(x)/x``.
+
+    A random point meets only one branch of a case.
+    """
+    nodes = operations.nodes
+    for node in nodes:
+        if node[0] != "select":
+            continue
+        relation, x, zero, limit, quotient = node[1:]
+        limits = relation == "==" and nodes[zero] == ("const", Fraction(0)) and nodes[limit] == ("const", Fraction(1))
+        sine = nodes[nodes[quotient][1]] if limits and nodes[quotient][0] == "div" else None
+        if sine != ("call", "sin", (x,)) or nodes[quotient][2] != x:
+            raise CertificateError(f"{file}: expected no case except x == 0 ? 1 : sin(x)/x in a step, got another")
+
+
+def motion_section(file: str, rates: Program, places: Mapping[str, str], operations: Operations) -> dict[str, Any]:
+    """Return the section ``motion`` about a C function: the law that holds, and the probability that it fails.
+
+    Parameters
+    ----------
+    file : str
+        Name of the C file, for messages.
+    rates : Program
+        The right-hand side ``dy = f(t, y, p)``.
+    places : mapping
+        The symbol of each input of the C function, such as ``"omega_1"`` for ``"x[0]"``.
+    operations : Operations
+        The C function.
+
+    Raises
+    ------
+    CertificateError
+        If the C function is not the motion.
+    """
+    degrees = [_degree(file, rates, places, operations, point) for point in range(POINTS)]
+    return {"law": LAW, "points": POINTS, "wrong_with_probability_below": probability(max(degrees), FACTOR)}
+
+
+def _degree(file: str, rates: Program, places: Mapping[str, str], operations: Operations, point: int) -> int:
+    """Return a bound of the degree of the equations at a random point; raise CertificateError if one is violated."""
+    for attempt in count():
+        values = {
+            symbol: Residue(digest_number(operations.digest(), "motion", point, attempt, symbol), 1)
+            for symbol in places.values()
+        }
+        try:
+            return _compared(file, rates, places, operations, values)
+        except _NoRootError:  # of a random number, one of two is a square
+            continue
+    raise AssertionError
+
+
+def _compared(
+    file: str, rates: Program, places: Mapping[str, str], operations: Operations, values: Mapping[str, Residue]
+) -> int:
+    states = [name for name, *_ in rates.signature.argument("y").components]
+    number = exact(operations.precision)
+    start = _step(operations, places, dict(values) | {SIZE: Residue(0)})
+    for name, result in zip(states, start, strict=True):
+        if result.value.value != values[name].value:
+            raise CertificateError(f"{file}: expected {name} to be unchanged by a step of size 0, got another value")
+    after = _step(operations, places, values)
+    there = dict(values) | {name: result.value for name, result in zip(states, after, strict=True)}
+    slopes = rates.evaluate(there, _FUNCTIONS, number).values()
+    degree = 0
+    for name, result, slope in zip(states, after, slopes, strict=True):
+        change, rate = Residue.of(result.slopes.get(SIZE, 0)), Residue.of(slope)
+        if change.value != rate.value:
+            raise CertificateError(
+                f"{file}: expected the derivative of {name} by dt to be its rate, got another formula"
+            )
+        degree = max(degree, change.degree + rate.degree)
+    return degree
+
+
+def _step(operations: Operations, places: Mapping[str, str], values: Mapping[str, Residue]) -> list[Dual]:
+    """Return the state after a step with its derivatives by dt, at one point."""
+    number = exact(operations.precision)
+    inputs = {
+        place: Dual(values[symbol], {SIZE: Residue(1)} if symbol == SIZE else {}) for place, symbol in places.items()
+    }
+    functions: dict[str, Callable[..., Any]] = dual_functions(_FUNCTIONS)
+    functions["select"] = lambda relation, x, zero, limit, quotient: quotient if x.value.value else limit
+    functions["div"] = lambda a, b: a / b if b.value.value else None  # sin(x)/x at x = 0, which no case selects
+    try:
+        results: list[Dual] = list(
+            operations.evaluate(inputs, functions, lambda value: Dual(number(value), {})).values()
+        )
+        if None not in results:
+            return results
+    except (AttributeError, TypeError):  # of an operation with None
+        pass
+    raise CertificateError(f"{operations.name}: expected a step of size 0 without a division by 0, got one")
+
+
+def _root(x: Any) -> Residue:
+    square = Residue.of(x)
+    root = pow(square.value, (PRIME + 1) // 4, PRIME)
+    if root * root % PRIME != square.value:
+        raise _NoRootError
+    return Residue(root, square.degree)
+
+
+def _circle(x: Any) -> tuple[Residue, Residue]:
+    """Return cosine and sine of an angle: 1 and 0 for the angle 0, otherwise a random point of the unit circle."""
+    angle = Residue.of(x)
+    if not angle.value:
+        return Residue(1), Residue(0)
+    u = Residue(digest_number("circle", angle.value), 1)
+    below = 1 + u * u
+    return (1 - u * u) / below, 2 * u / below
+
+
+def _unknown(name: str) -> Callable[..., Any]:
+    def refuse(*arguments: Any) -> Any:
+        raise CertificateError(f"expected an exact step without the function {name}")
+
+    return refuse
+
+
+_FUNCTIONS: dict[str, Callable[..., Any]] = {
+    name: _unknown(name) for name in ("tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
+} | {"sqrt": _root, "sin": lambda x: _circle(x)[1], "cos": lambda x: _circle(x)[0]}
