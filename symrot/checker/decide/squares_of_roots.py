@@ -17,7 +17,7 @@ def is_square_of_roots(formula: Expr, nonnegative: Collection[Expr]) -> bool:
     """
     # sqrt(A + B*sqrt(C)) = sqrt((A + D)/2) + sqrt((A - D)/2) with D^2 = A^2 - B^2 C
     expanded = expand(formula)
-    roots = sorted(expanded.atoms(Pow) - {p for p in expanded.atoms(Pow) if p.exp != Rational(1, 2)}, key=str)
+    roots = _roots(expanded)
     if not roots or len(expanded.args) > MOST_TERMS or len(roots) > 2:
         return False
     whole = prod(roots)
@@ -30,10 +30,15 @@ def is_square_of_roots(formula: Expr, nonnegative: Collection[Expr]) -> bool:
         squared = _root_of_square(expand(rest**2 - slope**2 * inside))
     except PolynomialError:
         return False
-    halves = (rest + squared, rest - squared) if squared is not None else ()
-    return bool(halves) and all(
-        _is_nonnegative(expand(half), [*nonnegative, *(r.base for r in roots)]) for half in halves
-    )
+    if squared is None:
+        return False
+    # formulas with roots prove nothing here: they might rely on this one
+    known = [base for base in (*nonnegative, *(root.base for root in roots)) if not _roots(base)]
+    return all(_is_nonnegative(expand(half), known) for half in (rest + squared, rest - squared))
+
+
+def _roots(formula: Expr) -> list[Expr]:
+    return sorted((power for power in formula.atoms(Pow) if power.exp == Rational(1, 2)), key=str)
 
 
 def _root_of_square(formula: Expr) -> Expr | None:
