@@ -3,7 +3,10 @@
 from collections.abc import Collection
 from math import prod
 
-from sympy import Expr, Poly, PolynomialError, Pow, Rational, expand, factor_list
+from sympy import Expr, Poly, Pow, Rational, expand, factor_list
+from sympy.polys.polyerrors import BasePolynomialError
+
+from symrot.exact.factors import is_dear
 
 __all__ = ["is_square_of_roots"]
 
@@ -18,7 +21,7 @@ def is_square_of_roots(formula: Expr, nonnegative: Collection[Expr]) -> bool:
     # sqrt(A + B*sqrt(C)) = sqrt((A + D)/2) + sqrt((A - D)/2) with D^2 = A^2 - B^2 C
     expanded = expand(formula)
     roots = _roots(expanded)
-    if not roots or len(expanded.args) > MOST_TERMS or len(roots) > 2:
+    if not roots or len(expanded.args) > MOST_TERMS or len(roots) > 2 or is_dear(expanded):
         return False
     whole = prod(roots)
     slope = expanded.coeff(whole) if len(roots) == 1 else expand(expanded.coeff(roots[0]).coeff(roots[1]))
@@ -28,7 +31,7 @@ def is_square_of_roots(formula: Expr, nonnegative: Collection[Expr]) -> bool:
         if rest.has(*roots) or slope.has(*roots) or Poly(rest).total_degree() > LARGEST_DEGREE:
             return False
         squared = _root_of_square(expand(rest**2 - slope**2 * inside))
-    except PolynomialError:
+    except BasePolynomialError:  # no polynomial, or a number
         return False
     if squared is None:
         return False
