@@ -225,22 +225,8 @@ class _Table(TorqueSource):
 
 def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floats, list[float]]:
     """Return the splines of a table as one array for C, and the times, s, at which a spline's derivative jumps."""
-    from scipy.interpolate import CubicSpline
-
-    # a separate spline between any two consecutive switching times
-    cuts = [0]
-    for switch in switching:
-        inside = np.flatnonzero(t == switch)
-        if len(inside) == 2:
-            cuts.append(int(inside[1]))
-    cuts.append(len(t))
     edges, coefficients, knots = [], [], [float(t[-1])]
-    for low, high in pairwise(cuts):
-        if high - low < 2:
-            raise InputError(
-                f"torque: expected two samples or more between switching times, got only one, at {t[low]} s"
-            )
-        spline = CubicSpline(t[low:high], values[low:high])
+    for spline in table_splines(t, values, switching):
         _check_overshoot(spline, float(np.abs(values).max()))
         edges.append(spline.x[:-1])
         knots += [float(spline.x[0]), *_bends(spline)]
@@ -248,6 +234,28 @@ def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floa
     count = sum(map(len, edges))
     # the layout that the C function symrot_table_torque reads
     return np.concatenate([[float(count)], *edges, t[-1:], *(part.ravel() for part in coefficients)]), knots
+
+
+def table_splines(t: Floats, values: Floats, switching: Sequence[float]) -> list[Any]:
+    """Return the cubic splines (SciPy) of a table, one between any two consecutive switching times, s.
+
+    ``t``: times of the samples, shape (n,); ``values``: the samples, shape (n, m).
+    """
+    from scipy.interpolate import CubicSpline
+
+    cuts, splines = [0], []
+    for switch in switching:
+        inside = np.flatnonzero(t == switch)
+        if len(inside) == 2:
+            cuts.append(int(inside[1]))
+    cuts.append(len(t))
+    for low, high in pairwise(cuts):
+        if high - low < 2:
+            raise InputError(
+                f"torque: expected two samples or more between switching times, got only one, at {t[low]} s"
+            )
+        splines.append(CubicSpline(t[low:high], values[low:high]))
+    return splines
 
 
 def _check_overshoot(spline: Any, largest: float) -> None:
@@ -417,7 +425,7 @@ class ExternallyDrivenPropagator(Propagator):
 
     def __init__(
         self, scene: Scene, tolerance: float, torque: Any, switching_times: ArrayLike = (), frame: str = "body",
-        max_step: float = math.inf,
+        max_step: float = math.inf, sensitivities: Sequence[str] | None = None,
     ) -> None:  # fmt: skip
         switching = real_array(switching_times, "switching_times", "finite times in s", ndmin=1).ravel()
         if not np.isfinite(switching).all():
@@ -427,7 +435,7 @@ class ExternallyDrivenPropagator(Propagator):
         self._switching = tuple(sorted(set(switching.tolist())))
         self._max_step = max_step
         self._source, self._in_space = _torque_source(torque, self._switching), frame == "space"
-        super().__init__(scene, "dop853", tolerance)
+        super().__init__(scene, "dop853", tolerance, sensitivities)
 
     def _planned(self, initial: Initial | None = None) -> Plan:
         return make_plan(self.scene, initial, external_torque=True)
