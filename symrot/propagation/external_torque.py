@@ -13,7 +13,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar, final
 
@@ -32,6 +31,7 @@ from symrot.propagation.propagator import Propagator
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers import dop853
 from symrot.propagation.steppers.stepping import MAX_STEPS, Integration, Recording, Stats
+from symrot.propagation.table_splines import table_splines
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial
 
@@ -234,28 +234,6 @@ def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floa
     count = sum(map(len, edges))
     # the layout that the C function symrot_table_torque reads
     return np.concatenate([[float(count)], *edges, t[-1:], *(part.ravel() for part in coefficients)]), knots
-
-
-def table_splines(t: Floats, values: Floats, switching: Sequence[float]) -> list[Any]:
-    """Return the cubic splines (SciPy) of a table, one between any two consecutive switching times, s.
-
-    ``t``: times of the samples, shape (n,); ``values``: the samples, shape (n, m).
-    """
-    from scipy.interpolate import CubicSpline
-
-    cuts, splines = [0], []
-    for switch in switching:
-        inside = np.flatnonzero(t == switch)
-        if len(inside) == 2:
-            cuts.append(int(inside[1]))
-    cuts.append(len(t))
-    for low, high in pairwise(cuts):
-        if high - low < 2:
-            raise InputError(
-                f"torque: expected two samples or more between switching times, got only one, at {t[low]} s"
-            )
-        splines.append(CubicSpline(t[low:high], values[low:high]))
-    return splines
 
 
 def _check_overshoot(spline: Any, largest: float) -> None:

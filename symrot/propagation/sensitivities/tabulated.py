@@ -24,7 +24,6 @@ from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import EPOCH
 from symrot.propagation.binding import value_of
 from symrot.propagation.events.event_result import EventResult
-from symrot.propagation.external_torque import table_splines
 from symrot.propagation.sensitivities.event_times import event_time_slopes
 from symrot.propagation.sensitivities.libraries import MotionLibrary, rates_of
 from symrot.propagation.sensitivities.parameter_slopes import ParameterSlopes, Rows
@@ -38,6 +37,7 @@ from symrot.propagation.sensitivities.variation import (
     unit_of,
 )
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
+from symrot.propagation.table_splines import table_splines
 from symrot.results.sensitivity import SwitchSlopes
 from symrot.scene.changes import path_of
 from symrot.scene.samples import Table
