@@ -8,6 +8,7 @@ import sys
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import suppress
+from importlib import import_module
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -47,6 +48,32 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     from xdist.scheduler import WorkStealingScheduling
 
     return WorkStealingScheduling(config, log)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection(session: pytest.Session) -> Iterator[None]:
+    """Collect without the garbage collector; begin at another module in each process.
+
+    In a new clone pytest compiles each module with its assertions rewritten. Processes that all begin at the first
+    module would each compile all of them.
+    """
+    gc.disable()
+    process = getattr(session.config, "workerinput", None)
+    if process is not None:
+        import_test_modules(session.config.args, int(process["workerid"].removeprefix("gw")), process["workercount"])
+    result = yield
+    gc.enable()
+    return result
+
+
+def import_test_modules(folders: list[str], process: int, processes: int) -> None:
+    """Import the test modules of ``folders``, in an order that begins at the share of ``process``."""
+    root = Path(__file__).parents[1]
+    modules = sorted(path for folder in folders for path in Path(folder).rglob("test_*.py"))
+    begin = len(modules) * process // processes
+    for path in modules[begin:] + modules[:begin]:
+        with suppress(Exception, pytest.skip.Exception):  # pytest reports it when it collects the module
+            import_module(".".join(path.resolve().relative_to(root).with_suffix("").parts))
 
 
 @pytest.hookimpl(tryfirst=True)

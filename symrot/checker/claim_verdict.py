@@ -197,6 +197,9 @@ def _near_relation(claim: Claim, verdict: Verdict) -> Verdict:
     from symrot.checker.recognition.naming import verdict_near_relation
 
     nearest = verdict_near_relation(claim)
+    if nearest is None and verdict.dimension.status == "inconsistent":  # then even a short formula has a fault
+        named = _on_name(claim, True, related_formula)
+        nearest = named[1] if named and named[1].repairs else None
     return verdict if nearest is None else replace(verdict, diagnosis=nearest.diagnosis, repairs=nearest.repairs)
 
 

@@ -135,7 +135,7 @@ class Trajectory(MotionSamples):
         self._motion, self._parts, self._propagator = motion, states, propagator
         self.plan, self.tolerance, self.has_external_torque = motion.plan, motion.tolerance, motion.has_external_torque
         self.t, self.method, self.stats, self.message = t, method, stats, message
-        self.status, self.warnings = 0, motion.setup.warnings
+        self.status, self.warnings = 0, (*motion.plan.scene.warnings, *motion.setup.warnings)
         self.t_events, self.y_events, self.event_kinds, self.events = None, None, None, None
         self.sensitivities: Sensitivities | None = None
         if events is not None:

@@ -60,6 +60,8 @@ class Sweep:
         Number of trajectories that stopped early, and number of trajectories whose values no body or motion can have.
     reasons : list of (int, str)
         The first trajectories that stopped or were impossible: their indices and the reasons.
+    warnings : tuple of str
+        Warnings about the scene, such as a hole that may reach out of the body.
 
     Examples
     --------
@@ -75,6 +77,7 @@ class Sweep:
     impossible: int
     reasons: list[tuple[int, str]]
     _store: Any
+    warnings: tuple[str, ...] = ()
 
     def array(self, name: str) -> NDArray[Any]:
         """Return one array of the results; all its values are loaded into memory.
@@ -183,7 +186,7 @@ def sweep(
     workers : int, optional
         Number of processes on this machine; default: the number of cores.
     scheduler : str, optional
-        Address of a Dask scheduler, such as ``"tcp://host:8786"``, whose workers compute instead.
+        Address of a Dask scheduler, such as ``"tcp://host:8786"``, whose workers compute instead of processes here.
     chunk : int, optional
         Number of trajectories in a chunk; it does not change the results.
     table_folders
@@ -221,6 +224,7 @@ def sweep(
     _require(keep in KEEP, "keep", f"one of {', '.join(KEEP)}", keep)
     _require(keep == "all" or bool(chosen), "keep", "statistics to compute, with keep = 'statistics'", statistics)
     target = None if path is None else _target(path, keep)
+    _require(workers is None or scheduler is None, "workers", "no number of processes here with a scheduler", workers)
     number = cores() if workers is None else workers
     _whole(number, "workers", MOST_WORKERS)
     if chunk is not None:
@@ -250,7 +254,7 @@ def sweep(
         outputs_of_store = [each for each in header.variables if each.name in {one.name for one in job.outputs}]
         tables = statistics_of(store, chosen, outputs_of_store, note) if chosen else []
         store.finish(tables, only_statistics)
-    return _result(store, target)
+    return _result(store, target, job.scene.warnings)
 
 
 def _require_averages(statistics: Sequence[Statistic], outputs: Sequence[SweepOutput]) -> None:
@@ -374,7 +378,7 @@ def _content(scene: Scene) -> Content | None:
         return None
 
 
-def _result(store: Store, path: Path | None) -> Sweep:
+def _result(store: Store, path: Path | None, warnings: tuple[str, ...]) -> Sweep:
     stopped, impossible, reasons = 0, 0, list[tuple[int, str]]()
     count = store.header.count
     for start in range(0, count, BLOCK):
@@ -382,4 +386,4 @@ def _result(store: Store, path: Path | None) -> Sweep:
         stopped, impossible = stopped + int((status == STOPPED).sum()), impossible + int((status == IMPOSSIBLE).sum())
         for row in np.flatnonzero(status)[: SHOWN_REASONS - len(reasons)].tolist():
             reasons.append((start + row, str(store.read(MESSAGE, start + row, start + row + 1)[0])))
-    return Sweep(path, count, stopped, impossible, reasons, store)
+    return Sweep(path, count, stopped, impossible, reasons, store, warnings)

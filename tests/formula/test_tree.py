@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 import pytest
-from hypothesis import example, given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from symrot.errors import InputError
@@ -25,6 +25,7 @@ TREES = st.recursive(
 
 
 @example(("neg", ("**", ("**", ("number", Fraction(0)), 0), 0)))
+@settings(deadline=None)
 @given(TREES)
 def test_printing_and_reading_are_inverse(tree):
     """No bracket is lost or unnecessary, so the order of evaluation stays the same."""

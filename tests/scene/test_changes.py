@@ -7,9 +7,9 @@ from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 
+import hypothesis
 import numpy as np
 import pytest
-from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
@@ -33,7 +33,8 @@ def test_the_toml_text_of_a_scene_reads_as_an_equal_scene(name):
     assert replace(again, name=name, path=scene.path) == scene
 
 
-@given(st.floats(1e-90, 1e90) | st.floats(-1e90, -1e-90) | st.just(0.0))
+@hypothesis.settings(deadline=None)
+@hypothesis.given(st.floats(1e-90, 1e90) | st.floats(-1e90, -1e-90) | st.just(0.0))
 def test_toml_text_keeps_the_exact_value_of_a_float(x):
     assert Fraction(tomllib.loads(toml_text({"x": x}), parse_float=Decimal)["x"]) == Fraction(x)
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy import stats
+import scipy
 
 from symrot.errors import InputError
 from symrot.scene.scene import Scene
@@ -45,8 +45,8 @@ def test_draws_depend_on_the_index_alone(start, stop):
 
 def test_draws_have_their_distribution():
     values = design({"omega_1": "normal(2, 0.1)", "weight": "loguniform(1, 9)"}, count=4000).draws(0, 4000).values
-    assert stats.kstest(values[:, 0], stats.norm(2, 0.1).cdf).pvalue > 1e-3
-    assert stats.kstest(values[:, 1], stats.loguniform(1, 9).cdf).pvalue > 1e-3
+    assert scipy.stats.kstest(values[:, 0], scipy.stats.norm(2, 0.1).cdf).pvalue > 1e-3
+    assert scipy.stats.kstest(values[:, 1], scipy.stats.loguniform(1, 9).cdf).pvalue > 1e-3
 
 
 @pytest.mark.parametrize(
@@ -64,6 +64,7 @@ def test_draws_have_their_distribution():
         ({"omega_1": "normal(0, 1)"}, {"count": 0}, "count: expected a whole number"),
         ({"omega_1": "normal(0, 1)"}, {"count": 2, "seed": -1}, "seed: expected a whole number"),
         ({"omega_1": "normal(0, 1)"}, {"count": 2, "sampling": "sobl"}, "did you mean 'sobol'?"),
+        ({"omega_1": [1, 2]}, {"sampling": "latin"}, "sampling: leave it out unless values are drawn"),
         ({"omega_1": "normal(0, 1)"}, {"count": 2, "attitudes": "unifrom"}, "did you mean 'uniform'?"),
         ({}, {"count": 2}, "at least one value that varies"),
         ({"omega_1": "values(1)", "initial.omega[0]": "values(1)"}, {}, "either by name or by path"),

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy import stats
+import scipy
 from scipy.spatial.transform import Rotation
 
 from symrot.sweeps.points import SAMPLINGS, permuted, unit_points
@@ -25,7 +25,7 @@ def test_parts_have_the_bits_of_the_whole(sampling, part):
 def test_points_are_uniform_and_independent(sampling):
     points = unit_points(sampling, 3, NAMES, 4096, 0, 4096)
     assert ((points > 0) & (points < 1)).all()
-    assert all(stats.kstest(column, "uniform").pvalue > 1e-3 for column in points.T)
+    assert all(scipy.stats.kstest(column, "uniform").pvalue > 1e-3 for column in points.T)
     # the correlation of n independent pairs has the standard deviation 1/sqrt(n) = 1/64
     assert abs(np.corrcoef(points.T) - np.eye(3)).max() < 5 / 64
 
@@ -62,7 +62,7 @@ def test_a_feistel_network_is_a_permutation(count):
 
 def test_sobol_points_are_those_of_scipy():
     points = unit_points("sobol", 7, NAMES, 64, 0, 64)
-    reference = stats.qmc.Sobol(3, seed=7).random(64)
+    reference = scipy.stats.qmc.Sobol(3, seed=7).random(64)
     assert np.array_equal(points, reference + 2.0**-31)  # the middles of the cells
 
 
@@ -72,5 +72,5 @@ def test_rotations_are_uniform():
     assert np.abs((quaternions**2).sum(axis=1) - 1).max() < 1e-15
     vectors = Rotation.from_quat(quaternions[:, [1, 2, 3, 0]]).as_rotvec()
     angles = np.linalg.norm(vectors, axis=1)
-    assert stats.kstest(angles, lambda a: (a - np.sin(a)) / np.pi).pvalue > 1e-3
-    assert stats.kstest(vectors[:, 2] / angles, stats.uniform(-1, 2).cdf).pvalue > 1e-3
+    assert scipy.stats.kstest(angles, lambda a: (a - np.sin(a)) / np.pi).pvalue > 1e-3
+    assert scipy.stats.kstest(vectors[:, 2] / angles, scipy.stats.uniform(-1, 2).cdf).pvalue > 1e-3

@@ -224,6 +224,11 @@ def test_a_dask_cluster_gives_the_same_bits(whole):
     xarray.testing.assert_identical(result.to_xarray(), whole)
 
 
+def test_processes_here_beside_a_scheduler_are_refused():
+    with pytest.raises(InputError, match="workers: expected no number of processes here with a scheduler, got 2"):
+        sweep(scheduler="tcp://127.0.0.1:9", workers=2)
+
+
 def test_a_scheduler_that_does_not_answer_is_one_sentence(monkeypatch):
     pytest.importorskip("distributed")
     from symrot.sweeps import cluster

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from symrot.planning.general_structure import switched
 from symrot.propagation.events.event_result import EventResult
+from symrot.propagation.sensitivities.libraries import RATES
 from symrot.propagation.sensitivities.switched import SwitchedEquations
 from symrot.propagation.sensitivities.variables import groups_of, require_formulas
-from symrot.propagation.sensitivities.variation import RATES, SmoothEquations, small_rotation
+from symrot.propagation.sensitivities.variation import SmoothEquations, small_rotation
 from symrot.results.sensitivity import Sensitivities
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial

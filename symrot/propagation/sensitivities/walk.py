@@ -15,11 +15,12 @@ from symrot.propagation.method import choose_method
 from symrot.propagation.sensitivities.crossings import AT_SWITCH, Crossings, jumps_at_end
 from symrot.propagation.sensitivities.guards import Guards, alike
 from symrot.propagation.sensitivities.intervals import Interval, smooth_intervals
+from symrot.propagation.sensitivities.libraries import TOLERANCE, MotionLibrary
 from symrot.propagation.sensitivities.parameter_slopes import ParameterSlopes
 from symrot.propagation.sensitivities.sliding import hold_at_rest, refuse_resting
 from symrot.propagation.sensitivities.starts import from_start
 from symrot.propagation.sensitivities.touching import refuse_touching
-from symrot.propagation.sensitivities.variation import AT_ONCE, TOLERANCE, follow_columns, motion_library, unit_of
+from symrot.propagation.sensitivities.variation import AT_ONCE, follow_columns, unit_of
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.switched.motion import SwitchedMotion
 from symrot.results.sensitivity import SwitchSlopes
@@ -98,14 +99,14 @@ class Walk:
         for first in range(0, len(columns), AT_ONCE):
             places = range(first, min(first + AT_ONCE, len(columns)))
             depends = [self.parameter_slopes.depends(parameters, k) for k in places]
-            path = motion_library(interval.regime.plan, program, depends)
+            library = MotionLibrary(interval.regime.plan, program, depends)
             slopes_of = [[rows.get(name, ZEROS)[k if name in rows else 0] for name in own]
                          for k, own in zip(places, depends, strict=True)]  # fmt: skip
             starts = [interval.before[:, k].tolist() for k in places]
             units = [self._unit(k, interval.before[:, k]) for k in places]
             numbers = [values[name] for name, _ in parameters]
             states, derivatives, units = follow_columns(
-                path,
+                library,
                 numbers,
                 slopes_of,
                 interval.first.tolist(),

@@ -37,6 +37,7 @@ HOP_BITS = 10  # a hop over a switch is at most 2 to this power units in the las
 LEAST_TURN = 1e-3  # rad over the whole span: errors of slower rotations are relative to this rate
 AWAY = range(50, 400, 10)  # a hop away from a switch is the span divided by 2 to this power
 NEARBY, MOST_ULPS = 1e-6, 64.0  # part of the time since the last switch; units in the last place of a located time
+RISE_BITS = 40  # a guard is followed from 2 to this negative power of a piece on, to see whether it rises
 PERTURBATION, PARALLEL = 1e-6, 1e-6  # of time and states, for slopes; relative difference of parallel slopes
 ERRORS = 100.0  # largest error of a motion, in tolerances
 SHORT = 1e-9  # part of the span: distance beyond an instant without rates at which formulas are evaluated
@@ -177,7 +178,7 @@ class SwitchedRun(RunState):
             for piece, states in source.pieces():
                 first, last = self._negative(regime, active, values, piece)
                 first = [guard for guard in first if guard.mode not in self.released or guard in last]
-                first = [guard for guard in first if not self._is_rounding(regime, guard)]
+                first = [guard for guard in first if not self._is_rounding(regime, guard, piece, states)]
                 if passed[-1] == start and (first or self._settle(regime, active, piece, states)):
                     violated.extend(first)
                     return
@@ -377,14 +378,37 @@ class SwitchedRun(RunState):
             later, step = instant.after(step), 8.0 * step
         return instant
 
-    def _is_rounding(self, regime: Regime, guard: Guard) -> bool:
-        """Return whether a guard is negative, just after its function has switched, only by rounding of the time."""
-        if guard.mode in self.held or guard.mode not in regime.of_time or not self.flipped.get(guard.mode):
+    def _is_rounding(
+        self, regime: Regime, guard: Guard, piece: Piece, states: Callable[[Floats], Floats]
+    ) -> bool:  # fmt: skip
+        """Return whether a guard is negative at the start of ``piece`` only because of rounding."""
+        # the guard is zero there, because its function has just switched
+        if guard.mode in self.held or not self.flipped.get(guard.mode):
             return False
-        # the function then must not switch again; a guard that depends on time alone can be computed a little later
-        later = self.t + self.side * MOST_ULPS * math.ulp(self.zero.high)
-        values = {**regime.values(self.modes, self.zero), "t": later}
-        return float(evaluate(parse(guard.formula), values, FLOAT_FUNCTIONS, float)) > 0.0
+        # the function then must not switch again
+        if guard.mode in regime.of_time:
+            # a guard that depends on time alone can be computed a little later
+            later = self.t + self.side * MOST_ULPS * math.ulp(self.zero.high)
+            values = {**regime.values(self.modes, self.zero), "t": later}
+            return float(evaluate(parse(guard.formula), values, FLOAT_FUNCTIONS, float)) > 0.0
+        return not self._jumped(guard.mode) and self._rises(regime, guard, piece, states)
+
+    def _rises(self, regime: Regime, guard: Guard, piece: Piece, states: Callable[[Floats], Floats]) -> bool:
+        """Return whether the guard is at most zero at the start of ``piece`` and rises until it is positive."""
+        # The state was located where the guard is zero, to the rounding errors of a longer piece: it may be slightly
+        # negative still. Values at doubled distances tell rising from falling, which is a switch back or sliding.
+        formula, start, end = parse(guard.formula), float(piece.edges[0]), float(piece.edges[-1])
+        times = np.concatenate([[start], start + (end - start) * np.ldexp(1.0, range(-RISE_BITS, 1))])
+        before = -math.inf
+        for t, y in zip(times.tolist(), states(times), strict=True):
+            try:
+                value = float(evaluate(formula, self._values(regime, (t, y)), FLOAT_FUNCTIONS, float))
+            except (ArithmeticError, ValueError, IntegrationStopped):
+                return False
+            if not before <= value <= 0.0:
+                return value > 0.0 and before > -math.inf
+            before = value
+        return False
 
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
