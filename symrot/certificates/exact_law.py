@@ -121,8 +121,8 @@ def _exp(x: Any) -> Any:
     return _Slope(value, value * x.slope)
 
 
-def _sincos_quarters(rest: Any, taken: Any, sine: Place, cosine: Place) -> None:
-    """Store sine and cosine of ``rest + taken/4`` revolutions; ``taken`` is a whole number."""
+def _sincos_quarters(rest: Any, quarters: Any, sine: Place, cosine: Place) -> None:
+    """Store sine and cosine of ``rest + quarters/4`` revolutions; ``quarters`` is a whole number."""
     turns = _slope(rest)
     pi = _number(PI)
     x = 2 * pi * turns.value
@@ -131,7 +131,7 @@ def _sincos_quarters(rest: Any, taken: Any, sine: Place, cosine: Place) -> None:
         c += term if n % 2 else 0
         s += 0 if n % 2 else term
         term = term * x / n * (1 if n % 2 else -1)
-    for _ in range(int(_slope(taken).value) % 4):
+    for _ in range(int(_slope(quarters).value) % 4):
         s, c = c, -s
     factor = 2 * pi * turns.slope
     sine[0][sine[1]] = _Slope(s, c * factor)

@@ -178,18 +178,18 @@ class Machine:
         return self._text in _BASIC or self._text in _QUALIFIERS or self._text in self.structs
 
     def _base(self) -> _Type:
-        found: _Type | None = None
+        base: _Type | None = None
         while True:
             if self._text in _QUALIFIERS:
                 self.index += 1
-            elif found is None and self._text in _BASIC:
-                found = _BASIC[self._name()]
-            elif found is None and self._text in self.structs:
-                found = _Type("struct", self._name())
-            elif found is None:
+            elif base is None and self._text in _BASIC:
+                base = _BASIC[self._name()]
+            elif base is None and self._text in self.structs:
+                base = _Type("struct", self._name())
+            elif base is None:
                 raise self._fail("a type")
             else:
-                return found
+                return base
 
     def _declarator(self, base: _Type) -> tuple[str, _Type]:
         while self._take("*"):
@@ -582,12 +582,12 @@ class Machine:
 
             return _Value(_Type("pointer", left.type.of), moved)
         if mark in ("==", "!="):
-            wanted = mark == "=="
+            equal = mark == "=="
 
             def compared(f: Frame) -> int:
                 x, y = a(f) or None, b(f) or None
                 same = x is y if x is None or y is None else x[0] is y[0] and x[1] == y[1]
-                return int(same == wanted)
+                return int(same == equal)
 
             return _Value(INT, compared)
         raise self._fail("a pointer and a whole number")

@@ -120,14 +120,14 @@ def _arguments(tokens: list[Token], start: int) -> tuple[list[list[Token]], int]
 
 
 def _substituted(macro: _Macro, arguments: list[list[Token]]) -> list[Token]:
-    given = dict(zip(macro.parameters or [], arguments, strict=True))
+    replacements = dict(zip(macro.parameters or [], arguments, strict=True))
     result: list[Token] = []
     paste = False
     for token in macro.body:
         if token.text == "##":
             paste = True
             continue
-        parts = given.get(token.text, [token])
+        parts = replacements.get(token.text, [token])
         if paste and result:
             last = result.pop()
             parts = [Token("name", last.text + parts[0].text, last.line), *parts[1:]]
