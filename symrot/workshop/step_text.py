@@ -13,6 +13,7 @@ from symrot.codegen.printing.jax_source import jax_source
 from symrot.codegen.printing.js_source import js_source
 from symrot.codegen.printing.numpy_source import numpy_source
 from symrot.codegen.printing.parameters_header import parameters_file
+from symrot.codegen.scene_kernels import corner_note
 from symrot.codegen.steps import (
     RK4,
     Method,
@@ -177,9 +178,12 @@ class StepText(StepFiles):
             *((("Errors", "rounding alone; it grows with the angle |omega| dt"),) if exact else ()),
             ("Assumes", "IEEE 754 arithmetic, rounding to nearest; next does not overlap x"),
         )
+        note = ""
+        if isinstance(self.method, WithDerivatives) or isinstance(plain, TaylorSeries):
+            note = corner_note(self._program, "the results")
         return Description(
             title=f"one time step of the scene {scene.name!r} ({scene.title}): next is the state at t + dt{slopes}",
-            domain=f"all states of finite size; the norm of a quaternion drifts with the {self._drift}",
+            domain=f"all states of finite size{note}; the norm of a quaternion drifts with the {self._drift}",
             derivation=self._derivation,
             command=f"symrot emit {scene.name} --step {self.method.name}{order}{jacobian} --target {target}",
             contract=contract if target == "c" else contract[:1],
