@@ -19,7 +19,7 @@ from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.source.lines import claims_of_reading
 from symrot.checker.claim.source.text import ON_PAULI, claim_of_relation, functions_of_time
 from symrot.checker.claim.tree import TIME, Node, number, walk, with_names
-from symrot.checker.claim_verdict import MOST_SECONDS, check_claim, is_unfinished
+from symrot.checker.claim_verdict import check_claim, is_unfinished
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
 from symrot.checker.inequality import OPPOSITE, is_inequality, verdict_on_inequality
 from symrot.checker.marks import changed_entry, changed_spans
@@ -161,10 +161,7 @@ def verdict_on_readings(
         if other.verdict != verdict.verdict:
             notes.append(_on_reading(usual, reading, other, notation(reading)))
     if late:
-        notes.append(
-            f"other readings were not decided, since one needs more than {MOST_SECONDS} s of processor time; "
-            "a faster machine may decide them"
-        )
+        notes.append("other readings of the text were not decided, since one needs more than the budget for a claim")
     seconds = sum(other.seconds for _, other in verdicts)
     return _beside_units(replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds), source)
 
