@@ -13,7 +13,8 @@ from symrot.errors import InputError, nearest
 from symrot.formula.exact_numbers import show
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.method import choose_method
-from symrot.propagation.sensitivities.variation import rates_of, structure_of
+from symrot.propagation.sensitivities.libraries import rates_of
+from symrot.propagation.sensitivities.variation import structure_of
 from symrot.propagation.steppers.taylor import refusal
 from symrot.scene.scene import Scene, SceneSource, load_scene
 from symrot.scene.tables import read_tolerance
