@@ -160,18 +160,18 @@ def propagator(
         )
     from symrot.propagation.external_torque import ExternallyDrivenPropagator
 
-    return ExternallyDrivenPropagator(scene, aim, torque, switching_times, torque_frame, _longest_step(max_step))
+    longest = _longest_step(max_step)
+    return ExternallyDrivenPropagator(scene, aim, torque, switching_times, torque_frame, longest, sensitivities)
 
 
 def _refuse_sensitivities(scene: Scene, torque: Any, state: str) -> None:
-    """Raise InputError for motions without derivatives: Euler angles as state, or a torque without formulas."""
+    """Raise InputError for motions without derivatives: Euler angles as state, or the argument ``torque``."""
     if state != "quaternion":
         raise InputError(f"sensitivities: expected state='quaternion', got {state!r}; Euler angles have none")
-    if torque is not None:
-        raise InputError("sensitivities: expected torques with formulas, got a torque that is a function or a table")
-    from symrot.propagation.sensitivities.variables import require_formulas
-
-    require_formulas(scene)
+    if torque is not None and scene.table is None:
+        raise InputError(
+            "sensitivities: expected torques of the scene, formulas or a table of samples, got the argument torque"
+        )
 
 
 def _with_values(
