@@ -400,3 +400,11 @@ def test_a_motion_that_stays_at_a_corner_of_its_torque_has_no_derivatives(formul
     content = damped([0, 0, 1], {"kind": "expression", "torque": [formula, "0", "0"]}, stop=1)
     with pytest.raises(symrot.PropagationError, match="stays at zero"):
         symrot.propagate(content, t=[1], sensitivities=["omega"])
+
+
+@needs_compiler
+def test_an_event_whose_formula_has_no_derivative_at_its_zero_has_none():
+    """A root at zero divided by zero here."""
+    content = {**damped([0, 0, 1]), "torque": [{"kind": "constant_body", "torque": [1, 0, 0]}]}
+    motion = symrot.propagate(content, t=[1], sensitivities=["omega_1"], events=["sqrt(omega_1**2 + omega_2**2)"])
+    assert len(motion.t_events[0]) == 1 and np.isnan(motion.sensitivities.t_events[0]).all()

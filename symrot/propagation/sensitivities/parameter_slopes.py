@@ -1,8 +1,9 @@
 """The derivatives of the parameters of a motion's equations by variables, such as those of ``weight/A`` by a mass."""
 
 from collections.abc import Mapping, Sequence
+from copy import copy
 from fractions import Fraction
-from typing import Any
+from typing import Any, Self
 
 from symrot.dynamics.structure import Structure
 from symrot.errors import InputError
@@ -26,6 +27,12 @@ class ParameterSlopes:
     def __init__(self, scene: Scene, columns: Sequence[Column], structure: Structure) -> None:
         self.scene, self.columns, self.structure = scene, columns, structure
         self._changes = [self._changes_of(column) for column in self.columns]
+
+    def with_changes(self, changes: Sequence[Mapping[str, Fraction]]) -> Self:
+        """Return a copy in which the constants change as given, for each variable: their derivatives by name."""
+        other = copy(self)
+        other._changes = [{**own, **more} for own, more in zip(self._changes, changes, strict=True)]
+        return other
 
     def _changes_of(self, column: Column) -> Mapping[str, Fraction]:
         """Return the derivatives by a variable of those constants of the equations that depend on it."""

@@ -41,6 +41,7 @@ __all__ = [
     "Column",
     "SmoothEquations",
     "columns_of",
+    "fitting_unit",
     "follow_columns",
     "rotation_slopes",
     "small_rotation",
@@ -323,6 +324,12 @@ def unit_of(scene: Scene, column: Column) -> float:
         # the largest component of omega, for each component
         value = max(abs(float(rate)) for rate in scene.initial.omega_b)
     return ldexp(1.0, frexp(value)[1]) if value and column.variable.moved is not None else 1.0
+
+
+def fitting_unit(unit: float, by: Floats) -> float:
+    """Return ``unit`` or, if derivatives ``by`` times it are large, a smaller power of two."""
+    largest = float(np.abs(by).max())
+    return ldexp(1.0, 1 - frexp(largest)[1]) if largest * unit > 2.0 else unit
 
 
 def small_rotation(q: Floats, slopes: Floats) -> Floats:

@@ -1,6 +1,5 @@
 """A motion through the switches of its torques, with its derivatives at any time."""
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
@@ -20,7 +19,7 @@ from symrot.propagation.sensitivities.parameter_slopes import ParameterSlopes
 from symrot.propagation.sensitivities.sliding import hold_at_rest, refuse_resting
 from symrot.propagation.sensitivities.starts import from_start
 from symrot.propagation.sensitivities.touching import refuse_touching
-from symrot.propagation.sensitivities.variation import AT_ONCE, follow_columns, unit_of
+from symrot.propagation.sensitivities.variation import AT_ONCE, fitting_unit, follow_columns, unit_of
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.switched.motion import SwitchedMotion
 from symrot.results.sensitivity import SwitchSlopes
@@ -103,7 +102,7 @@ class Walk:
             slopes_of = [[rows.get(name, ZEROS)[k if name in rows else 0] for name in own]
                          for k, own in zip(places, depends, strict=True)]  # fmt: skip
             starts = [interval.before[:, k].tolist() for k in places]
-            units = [self._unit(k, interval.before[:, k]) for k in places]
+            units = [fitting_unit(self._units[k], interval.before[:, k]) for k in places]
             numbers = [values[name] for name, _ in parameters]
             states, derivatives, units = follow_columns(
                 library,
@@ -120,13 +119,6 @@ class Walk:
                 self._units[k] = unit
             results.append((states, derivatives))
         return results[0][0], np.concatenate([derivatives for _, derivatives in results], axis=2)
-
-    def _unit(self, column: int, by: Floats) -> float:
-        """Return the power of two by which a column of derivatives is multiplied while it is integrated."""
-        largest = float(np.abs(by).max())
-        if largest * self._units[column] > 2.0:
-            return math.ldexp(1.0, 1 - math.frexp(largest)[1])
-        return self._units[column]
 
     def _label(self, interval: Interval) -> Callable[[PropagationError], PropagationError]:
         def named(error: PropagationError) -> PropagationError:
