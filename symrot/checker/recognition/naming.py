@@ -567,7 +567,7 @@ def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int)
     Empty for too few symbols; ``least_symbols`` is the usual minimum.
     """
     solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
-    is_open = (words_of(named) is None or _is_stated(claim, named)) and least_symbols == LEAST_SYMBOLS
+    is_open = _is_stated(claim, named) or (words_of(named) is None and least_symbols == LEAST_SYMBOLS)
     least = LEAST_SYMBOLS if is_open else _least_symbols_related(named.side, tree)
     return solved or _readings_of_relation(claim, named, tree, least)
 
