@@ -144,3 +144,11 @@ def test_a_variable_at_the_jump_or_kink_of_a_function_of_constants_is_refused(fo
     with pytest.raises((InputError, PropagationError)) as error:
         symrot.propagate(scene([formula, "0", "0"], {"c": value}, (0, 0, 1)), sensitivities=["c"])
     assert label in str(error.value)
+
+
+@needs_compiler
+def test_a_square_wave_can_be_differentiated_by_its_frequency():
+    """At each switch b*t is a multiple of pi; the jump of the whole turns in it was refused as a jump of a constant."""
+    motion = symrot.propagate(scene(["0", "0", "sign(sin(b*t))"], {"b": 2}, (0, 0, 1)), t=[2], sensitivities=["b"])
+    # 3 (omega_3 - 1) is pi/b - (2 - pi/b)
+    assert abs(motion.sensitivities["b"].omega[0, 2] + 2 * np.pi / 4 / 3) < 1e-14
