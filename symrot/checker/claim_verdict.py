@@ -74,7 +74,8 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
             named = _on_name(claim, repair, named_formula) or _on_rule(claim)
             named = named or (None if claims_identity(claim) else _on_name(claim, repair, open_formula))
             decision, verdict = named or _decide(claim)
-            other_verdict = None if verdict or decision is None else _of_another_reading(claim)
+            is_settled = decision is None or verdict.holds
+            other_verdict = None if is_settled else _of_another_reading(claim)
             is_false = decision is not None and decision.verdict == "false"
             if other_verdict is None and is_false and verdict.dimension.status != "inconsistent":
                 named = _on_determinant(claim, repair) or _on_name(claim, repair, related_formula)
@@ -141,7 +142,7 @@ def _of_another_reading(claim: Claim) -> Verdict | None:
         source = relation_text(relation)
         other = claim.with_relation(relation, alternatives=(), sources={**claim.sources, "claim": source})
         _, verdict = _decide(other)
-        if verdict:
+        if verdict.holds:
             return verdict
     return None
 
@@ -324,7 +325,7 @@ def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
         return replace(verdict, diagnosis=Diagnosis("positive_base", text))
     if decision.verdict not in ("false", "conditional"):
         # a true claim: a remark if only one side is defined everywhere
-        return replace(verdict, diagnosis=_domain(claim)) if verdict and verdict.conditions else verdict
+        return replace(verdict, diagnosis=_domain(claim)) if verdict.holds and verdict.conditions else verdict
     from symrot.checker.recognition.identification import named_parts
     from symrot.checker.repair.diagnose import diagnose
 
