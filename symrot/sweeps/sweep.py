@@ -334,6 +334,10 @@ def _job(
     ``texts`` are the outputs, ``folders`` the table folders.
     """
     own = scene_for(load_scene(scene, table_folders=folders), texts)
+    if own.table is not None:
+        raise InputError(
+            f"{own.name}: expected torques that are formulas, got a torque of kind table, which no sweep has"
+        )
     content = _content(own)
     _require(isinstance(vary, Mapping), "vary", "a dict of laws by name", vary)
     design = read_design(own, content, vary, attitudes, sampling, count, seed)
