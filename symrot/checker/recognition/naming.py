@@ -7,7 +7,7 @@ derives. The verdict is "recognised" if the right side equals one, "doubtful" if
 
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from itertools import combinations, islice
 from typing import Any
 
@@ -15,7 +15,7 @@ from sympy import Function, Matrix, Mul, Pow, Rational, Symbol, acos, asin, atan
 
 from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.interpreter import time
+from symrot.checker.claim.interpreter import Interpreter, time
 from symrot.checker.claim.named_formula import NamedFormula, solution
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
@@ -496,10 +496,12 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
     if len(quantities_in(named.formula)) < LEAST_SYMBOLS_EDITED + (not has_terms(named.formula)) and not is_of_trace:
         return None
     least = LEAST_SYMBOLS if named.solve is None and _is_stated(claim, named) else LEAST_SYMBOLS_EDITED
+    own = claim.interpreter()
+    interpreter = _Remembering(own.values, own.functions, own.implied)
     for edit in (*_edits(claim, named.formula), *_with_all_terms_added(named)):
         if names_in(edit.tree) < letters or edit.code == "extra_term":  # the formula may be a more general one
             continue
-        all_readings = _readings(claim, named, edit.tree, least)
+        all_readings = _readings(claim, named, edit.tree, least, interpreter)
         readings = tuple(known for known in all_readings if not any(body in known.name for body in RARE))
         is_growth = re.fullmatch("lambda|sigma|s", named.name) is not None
         is_open = edit.code in ("sign_of_term", "overall_sign") and (is_growth or not has_terms(named.formula))
@@ -513,6 +515,18 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
         if not any(strangeness):
             break
     return nearest and nearest[1]
+
+
+@dataclass
+class _Remembering(Interpreter):
+    """An interpreter that reads each part of a formula once, also where edits of the formula share it."""
+
+    known: dict[int, tuple[Node, Any]] = field(default_factory=dict)  # by id; the node is kept, so the id stays its own
+
+    def evaluate(self, node: Node) -> Any:
+        if id(node) not in self.known:
+            self.known[id(node)] = node, super().evaluate(node)
+        return self.known[id(node)][1]
 
 
 def recognised_edits(
@@ -561,15 +575,20 @@ def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:
     yield from islice(sorted(edits, key=lambda edit: edit.cost), MOST_EDITS)
 
 
-def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int) -> tuple[Identification, ...]:
+def _readings(
+    claim: Claim, named: NamedFormula, tree: Node, least_symbols: int, interpreter: Interpreter | None = None
+) -> tuple[Identification, ...]:
     """Return the known formulas and relations that a claim with the right side ``tree`` can mean, the likeliest first.
 
-    Empty for too few symbols; ``least_symbols`` is the usual minimum.
+    Empty for too few symbols; ``least_symbols`` is the usual minimum. ``interpreter`` is by default that of the claim.
     """
-    solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
+    interpreter = claim.interpreter() if interpreter is None else interpreter
+    solved: tuple[Identification, ...] = ()
+    if named.solve is not None:
+        solved = _readings_of_formula(claim, named, named.solve(tree), least_symbols, interpreter)
     is_open = _is_stated(claim, named) or (words_of(named) is None and least_symbols == LEAST_SYMBOLS)
     least = LEAST_SYMBOLS if is_open else _least_symbols_related(named.side, tree)
-    return solved or _readings_of_relation(claim, named, tree, least)
+    return solved or _readings_of_relation(claim, named, tree, least, interpreter)
 
 
 def _is_stated(claim: Claim, named: NamedFormula) -> bool:
@@ -579,7 +598,7 @@ def _is_stated(claim: Claim, named: NamedFormula) -> bool:
 
 
 def _readings_of_relation(
-    claim: Claim, named: NamedFormula, tree: Node, least_symbols: int
+    claim: Claim, named: NamedFormula, tree: Node, least_symbols: int, interpreter: Interpreter | None = None
 ) -> tuple[Identification, ...]:
     """Return the known relations that are equivalent to the equation ``named.side == tree``.
 
@@ -587,7 +606,7 @@ def _readings_of_relation(
     """
     difference = sum_of([named.side, negated(tree)])
     try:
-        value = claim.with_definitions(claim.interpreter().read(difference))
+        value = claim.with_definitions((interpreter or claim.interpreter()).read(difference))
     except InputError:
         return ()
     if is_matrix(value) or len(value.atoms(Function, Symbol) - {time}) < least_symbols:
@@ -610,14 +629,14 @@ def _has_root_of_sum(value: Any) -> bool:
 
 
 def _readings_of_formula(
-    claim: Claim, named: NamedFormula, formula: Node, least_symbols: int
+    claim: Claim, named: NamedFormula, formula: Node, least_symbols: int, interpreter: Interpreter | None = None
 ) -> tuple[Identification, ...]:
     """Return the known formulas for the claim's quantity that are equal to ``formula``, the likeliest first.
 
     Usually empty if a scalar ``formula`` has fewer than ``least_symbols`` symbols.
     """
     try:
-        value = claim.with_definitions(claim.interpreter().read(formula))
+        value = claim.with_definitions((interpreter or claim.interpreter()).read(formula))
     except InputError:
         return ()
     if is_matrix(value) and value.shape == (1, 1):
