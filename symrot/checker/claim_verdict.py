@@ -8,7 +8,8 @@ from contextlib import contextmanager
 from dataclasses import replace
 from time import perf_counter
 
-from symrot.checker import aircraft_rates, inverse_factor
+from symrot.checker import inverse_factor
+from symrot.checker.aircraft_names import with_usual_letters
 from symrot.checker.claim.claims import Claim, relation_text
 from symrot.checker.claim.differentiation import as_functions, is_rule
 from symrot.checker.claim.named_formula import (
@@ -159,10 +160,10 @@ def _on_name(
     if claim.context.body is not None and (axis := claim.context.body.symmetry_axis):
         result = _on_name(with_axis_z(claim), repair, formula_of)
         return result and (None, replace(in_claim(result[1], axis), text=claim.text))
-    if (other := aircraft_rates.with_small_letters(claim)) is not None:
-        result = _on_name(other, repair, formula_of)
+    if (renamed := with_usual_letters(claim)) is not None:
+        result = _on_name(renamed.claim, repair, formula_of)
         if result and result[1].verdict in ("recognised", "doubtful"):
-            return None, replace(aircraft_rates.in_claim(result[1]), text=claim.text)
+            return None, replace(renamed.in_claim(result[1]), text=claim.text)
     if (product := inverse_factor.multiplied(claim)) is not None:
         result = _on_name(product[0], repair, related_formula)
         if result and result[1].verdict in ("recognised", "doubtful"):

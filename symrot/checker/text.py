@@ -147,7 +147,8 @@ def verdict_on_readings(
     if refusal is not None and not of_usual and all(other.verdict == "false" for _, other in verdicts):
         raise refusal  # an unusual reading alone must not make a claim false
     known = ("recognised", "true") if stated else ("recognised",)
-    first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict in known), 0)
+    likely = [other.verdict in known and not _renames_a_rate(other) for _, other in verdicts]
+    first = likely.index(True) if any(likely) else 0
     if _is_unknown(verdicts[0]) and not first:
         wrong = [other.verdict == "doubtful" or _is_false_by_context(other, stated) for _, other in verdicts]
         first = wrong.index(True) if any(wrong) else 0
@@ -169,6 +170,14 @@ def verdict_on_readings(
 def _is_false_by_context(verdict: Verdict, stated: Context) -> bool:
     """Return whether a claim is false only because its context ``stated`` gives its quantity another formula."""
     return bool(stated) and verdict.verdict == "false" and bool(verdict.recognised_as)
+
+
+def _renames_a_rate(verdict: Verdict) -> bool:
+    """Return whether a claim is recognised only with a name such as psi_prime for the rate of another angle, dphi."""
+    return all(
+        any(own.startswith("d") and other.endswith("_prime") for own, other in known.mapping.items())
+        for known in verdict.recognised_as
+    ) and bool(verdict.recognised_as)
 
 
 def _is_unknown(reading: tuple[Reading, Verdict]) -> bool:

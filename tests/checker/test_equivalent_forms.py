@@ -24,3 +24,15 @@ def test_capital_letters_are_the_rates_of_roll_pitch_and_yaw_beside_euler_angles
     assert result.verdict == verdict
     assert "P, Q and R are read as the rates of roll, pitch and yaw, p, q and r" in result.notes
     assert all(set("PQR") & set(repair.text) for repair in result.repairs)
+
+
+@pytest.mark.parametrize("text", ["yaw = atan2(R21, R11)", "pitch = -asin(R31)"])
+def test_the_words_roll_pitch_and_yaw_are_the_usual_angles(text):
+    verdict = symrot.check(text)
+    assert verdict.verdict == "recognised"
+    assert "roll, pitch and yaw are read as the angles phi, theta and psi" in verdict.notes
+
+
+def test_a_prime_that_would_name_the_rate_of_another_angle_does_not_hide_a_wrong_sign():
+    assert symrot.check("p = φ' + ψ' sin θ").verdict == "doubtful"
+    assert symrot.check("p = φ' - ψ' sin θ", repair=False).verdict == "recognised"
