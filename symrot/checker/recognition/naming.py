@@ -16,7 +16,7 @@ from sympy import Function, Matrix, Mul, Pow, Rational, Symbol, acos, asin, atan
 from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.interpreter import Interpreter, time
-from symrot.checker.claim.named_formula import NamedFormula, solution
+from symrot.checker.claim.named_formula import NamedFormula, related_formula, solution
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, is_derivative, negated, number, product, sum_of, text, walk, with_names
@@ -137,7 +137,7 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
         For a side that cannot be read.
     """
     _ = claim.equation  # refuses a side that cannot be read
-    if (mapped := _by_matrix(claim, named, repair)) is not None:
+    if (mapped := _by_matrix(claim, named, repair) or _by_inverse(claim, named, repair)) is not None:
         return mapped
     readings = _readings(claim, named, named.formula, LEAST_SYMBOLS)
     readings = readings or _with_other_products(claim, named, named.formula) or _slowing_down(claim, named)
@@ -210,6 +210,40 @@ def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | Non
         side = product([read_relation(edited.text)[2], factors[1]])
         repairs.append(replace(edited, text=f"{text(named.side)} == {text(side)}"))
     return replace(verdict, repairs=tuple(repairs))
+
+
+def _by_inverse(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | None:
+    """Return the verdict on ``w' = J^-1*(M - ..)``, for a matrix J, by that on ``J*w' = M - ..``.
+
+    None for claims of another form, and if that verdict is "definition".
+    """
+    if named.formula.kind != "product" or len(named.formula.args) != 2:
+        return None
+    first, rest = named.formula.args
+    base = _inverted(first)
+    if base is None or base.value not in dict(claim.define):
+        return None
+    left = product([base, named.side])
+    moved = claim.with_relation(("==", left, rest))
+    other = related_formula(moved)
+    verdict = None if other is None else verdict_on_name(moved, other, repair)
+    if other is None or verdict is None or verdict.verdict == "definition":
+        return None
+    repairs = []
+    for edited in verdict.repairs:
+        sides = put_back(left, rest, other, read_relation(edited.text)[2])
+        if sides is not None and sides[0] == left:
+            edited = replace(edited, text=f"{text(named.side)} == {text(product([first, sides[1]]))}")
+        repairs.append(edited)
+    return replace(verdict, repairs=tuple(repairs))
+
+
+def _inverted(node: Node) -> Node | None:
+    """Return the name J for the trees of 1/J and ``J^-1``; None for other trees."""
+    if node.kind == "inv" and node.args[0].kind == "name":
+        return node.args[0]
+    is_power = node.kind == "power" and node.args[0].kind == "name"
+    return node.args[0] if is_power and node.args[1] in (number(-1), negated(number(1))) else None
 
 
 def verdict_on_relation(claim: Claim) -> Verdict | None:
