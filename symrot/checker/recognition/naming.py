@@ -440,8 +440,8 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     for near in nearby:
         if near.tree in tried or len(repairs) == MOST_REPAIRS or len(tried) == MOST_PROOFS:
             continue
-        if near.code == "two_faults" and not repairs:
-            continue  # two signs alone are no evidence of a fault
+        if near.code == "two_faults" and not _is_of_usual_frame(near, [known for _, known in repairs.values()]):
+            continue  # two wrong signs alone are no evidence of a fault
         tried.add(near.tree)
         if not is_evident(claim, named, near) or (shifted and is_of_body(near.code, near.known.name)):
             continue
@@ -456,6 +456,12 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     (_, readings), *_ = repairs.values()
     notes = (UPRIGHT,) if any(is_inverted(named, near) for near in nearby if near.tree in repairs) else ()
     return _doubtful(tuple(repair for repair, _ in repairs.values()), readings, notes)
+
+
+def _is_of_usual_frame(near: Near, others: Sequence[Sequence[Identification]]) -> bool:
+    """Return whether ``near`` is for the body frame, and the known formulas ``others`` are for the space frame."""
+    in_space = [all("space frame" in known.name for known in readings) for readings in others]
+    return bool(in_space) and all(in_space) and "body frame" in near.known.name
 
 
 def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identification, ...]:
