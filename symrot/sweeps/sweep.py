@@ -13,7 +13,8 @@ from symrot.errors import InputError, nearest
 from symrot.formula.exact_numbers import show
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.method import choose_method
-from symrot.propagation.sensitivities.variation import rates_of, structure_of
+from symrot.propagation.sensitivities.libraries import rates_of
+from symrot.propagation.sensitivities.variation import structure_of
 from symrot.propagation.steppers.taylor import refusal
 from symrot.scene.scene import Scene, SceneSource, load_scene
 from symrot.scene.tables import read_tolerance
@@ -333,6 +334,10 @@ def _job(
     ``texts`` are the outputs, ``folders`` the table folders.
     """
     own = scene_for(load_scene(scene, table_folders=folders), texts)
+    if own.table is not None:
+        raise InputError(
+            f"{own.name}: expected torques that are formulas, got a torque of kind table, which no sweep has"
+        )
     content = _content(own)
     _require(isinstance(vary, Mapping), "vary", "a dict of laws by name", vary)
     design = read_design(own, content, vary, attitudes, sampling, count, seed)
