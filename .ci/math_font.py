@@ -32,6 +32,8 @@ SIGNS = (
     "\u239e\u239f\u23a0\u23a1\u23a2\u23a3\u23a4\u23a5\u23a6\u23a7\u23a8\u23a9\u23aa\u23ab"
     "\u23ac\u23ad\u23b7\u2061"
 )
+ASCENT, DESCENT = 750, 250  # of a line of text, thousandths of the size
+EXTENDER = 1  # the flag of a part of a tall bracket that is repeated
 
 
 def main(source: str) -> None:
@@ -45,6 +47,17 @@ def main(source: str) -> None:
     subsetter.subset(font)
     for number in (1, 4, 6):
         font["name"].setName(NAME if number != 6 else NAME.replace(" ", "-"), number, 3, 1, 0x409)
+    # the original's line is as high as its tallest bracket, 3.1 em, and Firefox makes each row of a matrix so high
+    header, metrics = font["hhea"], font["OS/2"]
+    header.ascent = metrics.sTypoAscender = metrics.usWinAscent = ASCENT
+    header.descent = metrics.sTypoDescender = -DESCENT
+    metrics.usWinDescent = DESCENT
+    header.lineGap = metrics.sTypoLineGap = 0
+    # an extender overlaps itself; the original's bars are said not to, and Chromium then does not stretch them
+    for glyph in font["MATH"].table.MathVariants.VertGlyphConstruction:
+        for part in glyph.GlyphAssembly.PartRecords if glyph.GlyphAssembly else ():
+            if part.PartFlags & EXTENDER and not part.EndConnectorLength:
+                part.EndConnectorLength = part.StartConnectorLength
     font["CFF "].cff.fontNames[0] = NAME.replace(" ", "-")
     font.flavor = "woff2"
     font.save(FOLDER / "math.woff2", reorderTables=True)

@@ -8,6 +8,8 @@ from contextlib import contextmanager
 from dataclasses import replace
 from time import perf_counter
 
+from symrot.checker import inverse_factor
+from symrot.checker.aircraft_names import with_usual_letters
 from symrot.checker.claim.claims import Claim, relation_text
 from symrot.checker.claim.differentiation import as_functions, is_rule
 from symrot.checker.claim.named_formula import (
@@ -26,11 +28,14 @@ from symrot.checker.units.check import check_dimensions
 from symrot.checker.verdict import Diagnosis, Verdict
 from symrot.errors import InputError
 from symrot.exact.decision import Decision
+from symrot.exact.operations import MOST_OPERATIONS, OutOfOperations, one_claim
 
-__all__ = ["MOST_SECONDS", "check_claim", "check_readings", "is_unfinished", "unfinished", "verdict_of_decision"]
+__all__ = ["check_claim", "check_readings", "is_unfinished", "unfinished", "verdict_of_decision", "within_limits"]
 
-MOST_SECONDS = 20
-"""The most processor time for one claim. The slowest claim of the campaigns that is decided needs 10 s."""
+Limit = OutOfOperations | TimeUp
+
+MOST_SECONDS = 60
+"""The most processor time for one claim, a last resort: MOST_OPERATIONS take some ten seconds, except inside SymPy."""
 FOR_ALL_VALUES = "== claims that both sides are equal for all values; as a relation between its letters, write one ="
 WITH_HYPOTHESES = "it is no formula that symrot derives, but the hypotheses, which are not used, may make it one"
 
@@ -64,7 +69,7 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
     start = perf_counter()
     verdict: Verdict | None = None
     try:
-        with processor_seconds(MOST_SECONDS):
+        with within_limits():
             named = _on_name(claim, repair, named_formula) or _on_rule(claim)
             named = named or _on_name(claim, repair, open_formula)
             decision, verdict = named or _decide(claim)
@@ -82,37 +87,51 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
             is_open = is_false and claim.implied and not (named and _was_near_relation(claim))
             if other_verdict is None and repair and is_open and not verdict.repairs:
                 verdict = _near_relation(claim, verdict)
-    except TimeUp:
+    except (OutOfOperations, TimeUp) as limit:
         other_verdict = None
         if verdict is None:
-            late = verdict_of_decision(unfinished(), claim.text, start)
+            late = verdict_of_decision(unfinished(limit), claim.text, start)
             verdict = replace(late, id=claim.id, where=claim.where)
         else:
-            verdict = replace(verdict, notes=(*verdict.notes, _ended()))
+            verdict = replace(verdict, notes=(*verdict.notes, _ended(limit)))
     if other_verdict is not None:
         return verdict, other_verdict
     return replace(verdict, seconds=perf_counter() - start), None
 
 
+@contextmanager
+def within_limits() -> Iterator[None]:
+    """Return a context with the budget for one claim; it raises OutOfOperations or TimeUp beyond it."""
+    with one_claim(MOST_OPERATIONS), processor_seconds(MOST_SECONDS):
+        yield
+
+
 def is_unfinished(verdict: Verdict) -> bool:
-    """Return whether the processor time for a claim ended before it was decided, or before all repairs were tried."""
-    return verdict.reason == unfinished().reason or _ended() in verdict.notes
+    """Return whether the budget for a claim ended before it was decided, or before all repairs were tried."""
+    limits: tuple[Limit, ...] = OutOfOperations(), TimeUp()
+    return any(verdict.reason == unfinished(limit).reason or _ended(limit) in verdict.notes for limit in limits)
 
 
-def _ended() -> str:
+def _ended(limit: Limit) -> str:
+    if isinstance(limit, OutOfOperations):
+        return f"the search for other readings and for repairs was stopped after {_operations()}"
     return (
         f"the search for other readings and for repairs was stopped after {MOST_SECONDS} s of processor time; "
         "a faster machine may get further"
     )
 
 
-def unfinished() -> Decision:
-    """Return the decision "undecided" for a claim that would need more processor time than the limit allows."""
-    reason = (
-        f"SymPy needs more than {MOST_SECONDS} s of processor time; "
-        "a faster machine may decide it, and so may a letter in place of an inner function"
-    )
+def unfinished(limit: Limit) -> Decision:
+    """Return the decision "undecided" for a claim that needs more operations or processor time than its budget has."""
+    advice = "a letter in place of an inner function may help"
+    if isinstance(limit, OutOfOperations):
+        return Decision("undecided", reason=f"it needs more than {_operations()}; {advice}")
+    reason = f"SymPy needs more than {MOST_SECONDS} s of processor time; a faster machine may decide it, and {advice}"
     return Decision("undecided", reason=reason)
+
+
+def _operations() -> str:
+    return f"{MOST_OPERATIONS:,} operations".replace(",", " ")
 
 
 def _of_another_reading(claim: Claim) -> Verdict | None:
@@ -141,6 +160,14 @@ def _on_name(
     if claim.context.body is not None and (axis := claim.context.body.symmetry_axis):
         result = _on_name(with_axis_z(claim), repair, formula_of)
         return result and (None, replace(in_claim(result[1], axis), text=claim.text))
+    if (renamed := with_usual_letters(claim)) is not None:
+        result = _on_name(renamed.claim, repair, formula_of)
+        if result and result[1].verdict in ("recognised", "doubtful"):
+            return None, replace(renamed.in_claim(result[1]), text=claim.text)
+    if (product := inverse_factor.multiplied(claim)) is not None:
+        result = _on_name(product[0], repair, related_formula)
+        if result and result[1].verdict in ("recognised", "doubtful"):
+            return None, replace(inverse_factor.in_claim(result[1], product[1]), text=claim.text)
     named = formula_of(claim) if claim.relation is not None else None
     if named is None:
         return None
@@ -197,6 +224,9 @@ def _near_relation(claim: Claim, verdict: Verdict) -> Verdict:
     from symrot.checker.recognition.naming import verdict_near_relation
 
     nearest = verdict_near_relation(claim)
+    if nearest is None and verdict.dimension.status == "inconsistent":  # then even a short formula has a fault
+        named = _on_name(claim, True, related_formula)
+        nearest = named[1] if named and named[1].repairs else None
     return verdict if nearest is None else replace(verdict, diagnosis=nearest.diagnosis, repairs=nearest.repairs)
 
 

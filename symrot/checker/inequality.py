@@ -14,13 +14,15 @@ from sympy import Expr, Rational, Symbol, pi
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, walk
-from symrot.checker.claim_verdict import check_claim, verdict_of_decision
+from symrot.checker.claim_verdict import check_claim, unfinished, verdict_of_decision, within_limits
 from symrot.checker.decide.decision import decide_equation
 from symrot.checker.decide.signs import is_proven_nonnegative, is_proven_positive
+from symrot.checker.time_limit import TimeUp
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.errors import InputError
 from symrot.exact.evidence import Counterexample
 from symrot.exact.intervals import enclosure
+from symrot.exact.operations import OutOfOperations
 
 __all__ = ["OPPOSITE", "is_inequality", "verdict_on_inequality"]
 
@@ -64,6 +66,14 @@ def verdict_on_inequality(claim: Claim, sign: str, flipped: str) -> Verdict:
     InputError
         For sides that are not real numbers.
     """
+    try:
+        with within_limits():
+            return _verdict(claim, sign, flipped)
+    except (OutOfOperations, TimeUp) as limit:
+        return verdict_of_decision(unfinished(limit), claim.text, 0.0)
+
+
+def _verdict(claim: Claim, sign: str, flipped: str) -> Verdict:
     assert claim.relation is not None
     equation = claim.equation
     for side in (equation.left, equation.right):

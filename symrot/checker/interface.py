@@ -9,17 +9,19 @@ from typing import Any
 from symrot.checker.claim.size import MOST_NESTED, nesting
 from symrot.checker.claim.source.file import Refusal, read_entries
 from symrot.checker.claim.source.text import functions_of_time, is_latex
-from symrot.checker.claim_verdict import MOST_SECONDS, check_claim, check_readings, unfinished, verdict_of_decision
+from symrot.checker.claim_verdict import check_claim, check_readings, unfinished, verdict_of_decision, within_limits
 from symrot.checker.context.context import Context, read_context
 from symrot.checker.decide.decision import Equation, decide_equation
+from symrot.checker.frame_rates import verdict_on_rates, without_marks
 from symrot.checker.text import verdict_on_readings, verdict_on_text
-from symrot.checker.time_limit import TimeUp, processor_seconds
+from symrot.checker.time_limit import TimeUp
 from symrot.checker.typed.copied_signs import with_plain_signs
 from symrot.checker.units.check import dimensions_of_formulas
 from symrot.checker.units.conversion import measured_text, numbers_of_latex
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
 from symrot.exact.decision import flatten
+from symrot.exact.operations import OutOfOperations
 from symrot.exact.printing import as_text
 
 __all__ = ["RefusedClaims", "check", "check_claim", "check_file", "check_readings", "verdicts_of_file"]
@@ -128,6 +130,9 @@ def _checked(
         if isinstance(assume, str) or not all(isinstance(hypothesis, str) for hypothesis in assume):
             raise InputError("assume: expected a list of texts like 'a == b', since the claim is a text")
         typed = _without_backticks(left).lstrip()  # places in the text count from its first character
+        if not assume and not stated and (of_frames := verdict_on_rates(typed)) is not None:
+            return of_frames
+        typed, of_mark = without_marks(typed)
         left = with_plain_signs(typed)
         if is_latex(left) and measured_text(left) is None:
             left = numbers_of_latex(left).lstrip() or left
@@ -135,6 +140,8 @@ def _checked(
             verdict = _on_latex(left, assume, units, repair, stated)
         else:
             verdict = verdict_on_text(left, assume, units, repair, stated)
+        if of_mark:
+            verdict = replace(verdict, notes=(of_mark, *verdict.notes))
         if left == typed:
             return verdict
         return replace(verdict, text=typed.strip(), notes=(f"it is read as {left.strip()}", *verdict.notes))
@@ -148,10 +155,10 @@ def _checked(
                 raise InputError(f"expected at most {MOST_NESTED} functions and roots inside each other")
     start = perf_counter()
     try:
-        with processor_seconds(MOST_SECONDS):
+        with within_limits():
             decision = decide_equation(Equation(left, right, tuple(assume)))
-    except TimeUp:
-        decision = unfinished()
+    except (OutOfOperations, TimeUp) as limit:
+        decision = unfinished(limit)
     verdict = verdict_of_decision(decision, f"{as_text(left)} == {as_text(right)}", start)
     return replace(verdict, dimension=dimensions_of_formulas(left, right, units))
 

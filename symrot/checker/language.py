@@ -15,9 +15,9 @@ people type it. SymPy syntax, with ** and ==, has one meaning and keeps it. A te
 verdict on the usual one, and a note on the other one if its verdict differs."""
 
 BUDGET = """\
-Budget per claim: 20 000 characters and 1 000 000 products of terms; a claim beyond it is refused, or undecided for this
-reason. The budget is counted, so that all machines give the same verdict; only a claim for which SymPy needs more than
-20 s of processor time is undecided because of its time. docs/checkers.md has examples."""
+Budget per claim: 20 000 characters, 1 000 000 products of terms and 2 000 000 operations; a claim beyond it is refused,
+or undecided for this reason. The budget is counted, so that all machines give the same verdict. As a last resort, a
+claim for which SymPy needs more than 60 s of processor time is undecided. docs/checkers.md has examples."""
 
 WIDTH = 100
 

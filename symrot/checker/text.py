@@ -19,7 +19,7 @@ from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.source.lines import claims_of_reading
 from symrot.checker.claim.source.text import ON_PAULI, claim_of_relation, functions_of_time
 from symrot.checker.claim.tree import TIME, Node, number, walk, with_names
-from symrot.checker.claim_verdict import MOST_SECONDS, check_claim, is_unfinished
+from symrot.checker.claim_verdict import check_claim, is_unfinished
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
 from symrot.checker.inequality import OPPOSITE, is_inequality, verdict_on_inequality
 from symrot.checker.marks import changed_entry, changed_spans
@@ -147,7 +147,8 @@ def verdict_on_readings(
     if refusal is not None and not of_usual and all(other.verdict == "false" for _, other in verdicts):
         raise refusal  # an unusual reading alone must not make a claim false
     known = ("recognised", "true") if stated else ("recognised",)
-    first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict in known), 0)
+    likely = [other.verdict in known and not _renames_a_rate(other) for _, other in verdicts]
+    first = likely.index(True) if any(likely) else 0
     if _is_unknown(verdicts[0]) and not first:
         wrong = [other.verdict == "doubtful" or _is_false_by_context(other, stated) for _, other in verdicts]
         first = wrong.index(True) if any(wrong) else 0
@@ -161,10 +162,7 @@ def verdict_on_readings(
         if other.verdict != verdict.verdict:
             notes.append(_on_reading(usual, reading, other, notation(reading)))
     if late:
-        notes.append(
-            f"other readings were not decided, since one needs more than {MOST_SECONDS} s of processor time; "
-            "a faster machine may decide them"
-        )
+        notes.append("other readings of the text were not decided, since one needs more than the budget for a claim")
     seconds = sum(other.seconds for _, other in verdicts)
     return _beside_units(replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds), source)
 
@@ -172,6 +170,14 @@ def verdict_on_readings(
 def _is_false_by_context(verdict: Verdict, stated: Context) -> bool:
     """Return whether a claim is false only because its context ``stated`` gives its quantity another formula."""
     return bool(stated) and verdict.verdict == "false" and bool(verdict.recognised_as)
+
+
+def _renames_a_rate(verdict: Verdict) -> bool:
+    """Return whether a claim is recognised only with a name such as psi_prime for the rate of another angle, dphi."""
+    return all(
+        any(own.startswith("d") and other.endswith("_prime") for own, other in known.mapping.items())
+        for known in verdict.recognised_as
+    ) and bool(verdict.recognised_as)
 
 
 def _is_unknown(reading: tuple[Reading, Verdict]) -> bool:

@@ -92,8 +92,8 @@ def _derive_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--detail",
         action="store_true",
-        help="with --step: show each intermediate expression that leads from the left side of the step's equation to "
-        "the right side",
+        help="with --step: add the proof with vectors, or else the expressions that lead from the left side of the "
+        "step's equation to the right side, as many as fit on a screen",
     )
     parser.add_argument("-o", type=Path, metavar="DIR", dest="directory",
                         help="folder for the pages of --all or of the NAMEs, and the folder that --check reads "

@@ -118,6 +118,7 @@ def _sweep(options: Namespace) -> int:
         "stopped": result.stopped,
         "impossible": result.impossible,
         "reasons": [{"trajectory": row, "reason": reason} for row, reason in result.reasons],
+        "warnings": list(result.warnings),
     }
     if options.json:
         say_json(facts)
@@ -126,6 +127,7 @@ def _sweep(options: Namespace) -> int:
     if result.stopped or result.impossible:
         say([f"  {result.stopped} stopped early, {result.impossible} have values that no motion can have, for example"])
         say(f"  trajectory {row}: {reason}" for row, reason in result.reasons)
+    say(f"  warning: {warning}" for warning in result.warnings)
     opened = "xarray.open_zarr" if options.out.suffix.lower() == ".zarr" else "pandas.read_parquet"
     say([f"  open it with {opened}({str(result.path)!r})"])
     return OK

@@ -4,6 +4,7 @@ A computation that is written once for any kind of number, evaluated with dual n
 its results (forward accumulation). Source: A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., section 3.1.
 """
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -70,8 +71,11 @@ class Dual:
         return raised
 
 
-def dual_functions(functions: Mapping[str, Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
+def dual_functions(functions: Mapping[str, Callable[..., Any]], least_root: Any = 0) -> dict[str, Callable[..., Any]]:
     """Return functions of dual numbers, by name; ``functions`` are the same functions for plain numbers.
+
+    ``least_root`` is added to the divisor of the derivative of a root: a tiny number makes that of sqrt(x**2) zero, not
+    undefined, at x = 0. Derivatives of floats that do not exist are NaN.
 
     Raises
     ------
@@ -80,7 +84,7 @@ def dual_functions(functions: Mapping[str, Callable[..., Any]]) -> dict[str, Cal
     """
     f = functions
     rules: dict[str, Callable[[Any, Any], Any]] = {  # derivative at x of the function with the value y
-        "sqrt": lambda x, y: 1 / (2 * y),
+        "sqrt": lambda x, y: 1 / (2 * y + least_root),
         "sin": lambda x, y: f["cos"](x),
         "cos": lambda x, y: -f["sin"](x),
         "tan": lambda x, y: 1 + y * y,
@@ -99,7 +103,13 @@ def dual_functions(functions: Mapping[str, Callable[..., Any]]) -> dict[str, Cal
             if not isinstance(argument, Dual):
                 return f[name](argument)
             value = f[name](argument.value)
-            return argument._with(value, rules[name](argument.value, value)) if argument.slopes else Dual(value, {})
+            if not argument.slopes:
+                return Dual(value, {})
+            try:
+                return argument._with(value, rules[name](argument.value, value))
+            # of floats: the function has no derivative there, for example sqrt at zero
+            except ZeroDivisionError:
+                return argument._with(value, math.nan)
 
         return function
 
@@ -107,7 +117,10 @@ def dual_functions(functions: Mapping[str, Callable[..., Any]]) -> dict[str, Cal
         top, right = (each if isinstance(each, Dual) else Dual(each, {}) for each in (y, x))
         size = right.value * right.value + top.value * top.value
         # a plain number of any kind cannot multiply a dual number from the left
-        moved = top._with(0, right.value / size) + right._with(0, -top.value / size)
+        try:
+            moved = top._with(0, right.value / size) + right._with(0, -top.value / size)
+        except ZeroDivisionError:
+            moved = top._with(0, math.nan) + right._with(0, math.nan)
         return Dual(f["atan2"](top.value, right.value), moved.slopes)
 
     def absolute(argument: Any) -> Any:

@@ -24,6 +24,7 @@ from symrot.kinematics.quaternion import quaternion_to_dcm
 from symrot.planning.scene_kernel import Conserved, Parameters, SceneKernel, bind
 
 __all__ = [
+    "corner_note",
     "derive_scene_kernel",
     "rate_derivatives",
     "rates_jacobian_program",
@@ -222,16 +223,32 @@ def with_values(program: Program, parameters: Parameters, constants: Mapping[str
     return replace(program, signature=replace(program.signature, arguments=arguments))
 
 
+def corner_note(program: Program, results: str) -> str:
+    """Return where a program that contains derivatives of roots and absolute values has no result, or that of one side.
+
+    ``results`` names what it computes, such as ``"the derivatives"``. The text is empty or begins with "; ".
+    """
+    calls = program.operations()
+    return (calls["sqrt"] > 0) * f"; where a root of them is zero, {results} are NaN" + (
+        calls["copysign"] > 0
+    ) * "; at a kink, the derivatives are those of one side"
+
+
 def scene_description(
-    title: str, name: str, target: str, bounds: tuple[tuple[str, str], ...] = (), jacobian: Sequence[str] = ()
+    title: str,
+    name: str,
+    target: str,
+    bounds: tuple[tuple[str, str], ...] = (),
+    jacobian: Sequence[str] = (),
+    exceptions: str = "",
 ) -> Description:
     """Return the texts in the head comment of the file that is emitted for a scene's kernel."""
-    # jacobian: names of the states and constants by which the kernel computes derivatives
+    # jacobian: names of the states and constants by which the kernel computes derivatives; exceptions: see corner_note
     derivatives = f"; with their derivatives by {', '.join(jacobian)}, row by row" if jacobian else ""
     option = f" --jacobian {','.join(jacobian)}" if jacobian else ""
     return Description(
         title=f"equations of motion of the scene {name!r} ({title}){derivatives}",
-        domain="all states of finite size; a quaternion is of unit norm, and its rate keeps the norm",
+        domain=f"all states of finite size{exceptions}; a quaternion is of unit norm, and its rate keeps the norm",
         derivation="derivations/euler_equations.md, derivations/quaternion_rates.md",
         command=f"symrot emit {name}{option} --target {target}",
         # pairs (heading, text) about rounding errors

@@ -6,6 +6,7 @@ together with y, as one system, S has the same step control as y.
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
+from fractions import Fraction
 
 from symrot.codegen.duals import Dual, dual_functions
 from symrot.codegen.recording import Recorder
@@ -14,8 +15,11 @@ from symrot.formula.tree import FUNCTIONS
 
 __all__ = ["variational_program"]
 
+LEAST_ROOT = Fraction(1, 1 << 1000)
+"""Added to roots in divisors: it changes no double that is larger than 1e-284."""
 
-def variational_program(rates: Program, columns: Sequence[Collection[str]]) -> Program:
+
+def variational_program(rates: Program, columns: Sequence[Collection[str]], rough: bool = False) -> Program:
     """Return the program of the rates of the states and of their derivatives by initial values and parameters.
 
     Parameters
@@ -25,6 +29,8 @@ def variational_program(rates: Program, columns: Sequence[Collection[str]]) -> P
     columns : sequence of collections of str
         For each variable v of the derivatives: the names of the parameters p that depend on it. It is empty for an
         initial value.
+    rough : bool
+        Whether the derivative of a root is zero, not undefined, where the root is zero.
 
     Returns
     -------
@@ -50,7 +56,7 @@ def variational_program(rates: Program, columns: Sequence[Collection[str]]) -> P
         slopes += [(f"{name}{mark}", "", "") for name, *_ in parameters if name in depends]
     if "t" in inputs:
         values["t"] = Dual(recorder.symbol("t"), {})
-    functions = dual_functions({name: recorder.function(name) for name in FUNCTIONS})
+    functions = dual_functions({name: recorder.function(name) for name in FUNCTIONS}, LEAST_ROOT if rough else 0)
     results = rates.evaluate(values, functions, recorder.constant)
     outputs = {}
     for name, result in results.items():

@@ -22,7 +22,15 @@ from symrot.formula.program import Program
 from symrot.planning.general_structure import constants_of, switched
 from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import EPOCH
-from symrot.propagation.compiled_models import has_formulas
+from symrot.propagation.sensitivities.libraries import (
+    ORDER,
+    RATES,
+    TOLERANCE,
+    MotionLibrary,
+    needs_bounds,
+    rates_of,
+    variation_source,
+)
 from symrot.propagation.sensitivities.variables import (
     ATTITUDE,
     Variable,
@@ -33,22 +41,15 @@ from symrot.propagation.sensitivities.variables import (
 )
 from symrot.propagation.sensitivities.variation import (
     AT_ONCE,
-    ORDER,
-    RATES,
     SMALL,
     STATES,
-    TOLERANCE,
     TRIES,
     Column,
     columns_of,
-    motion_library,
-    rates_of,
     rotation_slopes,
     small_rotation,
     structure_of,
-    variation_source,
 )
-from symrot.propagation.steppers import taylor
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import Floats
 from symrot.propagation.time_shift import starts_far
@@ -211,8 +212,10 @@ class _Equations:
             for column in columns
         ]
         depends = [list(slopes) for slopes in self.slopes]
-        self.in_lanes = not has_formulas(self.plan)
-        self.path = self._lanes(rates, depends) if self.in_lanes else motion_library(self.plan, rates, depends)
+        # the stepper in lanes does not support the bounds that limit steps, for example under torques given by formulas
+        self.compiled = (
+            MotionLibrary(self.plan, rates, depends) if needs_bounds(self.plan) else self._lanes(rates, depends)
+        )
 
     def _lanes(self, rates: Program, depends: Sequence[Sequence[str]]) -> Path:
         from symrot.codegen.taylor.ensemble_source import lane_definitions
@@ -288,16 +291,15 @@ class _Equations:
         """Return samples (n, m, 7 (1 + k)), states and derivatives at m times, and why each motion stopped early."""
         # the reason is an empty text for a motion that did not stop early
         problem = self.problem
-        if self.in_lanes:
+        if isinstance(self.compiled, Path):
             clock = problem.t0 - self.epoch, times - self.epoch
-            outcome = lanes.follow(self.path, p, y, *clock, TOLERANCE, workers=problem.workers, epoch=self.epoch)
+            outcome = lanes.follow(self.compiled, p, y, *clock, TOLERANCE, workers=problem.workers, epoch=self.epoch)
             return outcome.states, outcome.messages
-        # steps under torques given by formulas are limited by bounds, which the stepper in lanes does not support
         samples, messages = np.full((len(y), times.shape[-1], y.shape[1]), np.nan), []
         for k in range(len(y)):
-            motion = taylor.integration(self.path, p[k], y[k], problem.t0 - self.epoch, TOLERANCE)
+            own = (times if times.ndim == 1 else times[k]) - self.epoch
             try:
-                samples[k], _ = motion.sample((times if times.ndim == 1 else times[k]) - self.epoch)
+                samples[k] = self.compiled.sample(p[k].tolist(), y[k].tolist(), problem.t0 - self.epoch, own)
                 messages.append("")
             except IntegrationStopped as error:
                 messages.append(str(error.later(self.epoch)))

@@ -10,12 +10,16 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from typing import Any
 
+from symrot.exact.operations import spend
 from symrot.exact.ring.ratio import TooLarge
 
 __all__ = ["MOST_RINGS", "one_decision", "remembered", "spend_ring"]
 
 MOST_RINGS = 2000
 """Most conversions in one decision, which take seconds; the claims of the random tests need at most 400."""
+
+OPERATIONS_OF_RING = 500
+"""Operations of one conversion, besides those that depend on the size of the formulas."""
 
 
 @dataclass
@@ -66,6 +70,7 @@ def spend_ring() -> None:
     TooLarge
         If the budget of the decision is exhausted.
     """
+    spend(OPERATIONS_OF_RING)
     budget = _current.get()
     if budget is None:
         return

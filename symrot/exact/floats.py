@@ -8,6 +8,8 @@ from typing import Any
 import sympy
 from sympy import Expr, S, pi
 
+from symrot.exact.operations import spend
+
 __all__ = ["NoValue", "float_at", "seems_zero"]
 
 LOOKS = 40
@@ -56,6 +58,7 @@ def float_at(formula: Expr, values: Mapping[Expr, float], known: dict[Expr, floa
         If the value is no finite real number, or a symbol has no value in ``values``.
     """
     if formula not in known:
+        spend(2)
         try:
             value = _computed(formula, values, known)
         except (KeyError, ValueError, OverflowError, ZeroDivisionError, TypeError):

@@ -12,6 +12,8 @@ import sympy
 from mpmath import iv
 from sympy import Expr, S, pi
 
+from symrot.exact.operations import spend
+
 __all__ = ["DIGITS", "Undefined", "enclosure", "is_nonnegative_at", "surely_nonnegative_number"]
 
 DIGITS = 50
@@ -149,6 +151,7 @@ def _interval(value: Value) -> Any:
 
 def _value(node: Expr, values: Mapping[Expr, Any], known: dict[Expr, Value]) -> Value:
     if node not in known:
+        spend(20)
         value = _computed(node, values, known)
         if isinstance(value, Fraction):
             if max(value.numerator.bit_length(), value.denominator.bit_length()) > MOST_BITS_EXACT:

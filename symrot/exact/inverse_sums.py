@@ -17,6 +17,7 @@ from sympy.polys.rings import PolyElement
 
 from symrot.errors import InputError
 from symrot.exact.angles.inverse import INVERSE, range_of
+from symrot.exact.factors import factor_list
 from symrot.exact.floats import seems_zero
 from symrot.exact.intervals import enclosure
 from symrot.exact.ring.ring import FormulaRing
@@ -69,7 +70,7 @@ def lifts(ring: FormulaRing, numerator: PolyElement, only_zero: bool = False) ->
     if not places or len(numerator) > MOST_TERMS or not any(mono[n] for mono in numerator for n in places):
         return
     # the polynomial is zero if one of its factors is
-    for factor, _ in numerator.factor_list()[1]:
+    for factor, _ in factor_list(numerator)[1]:
         used = {number for number in places if any(mono[number] for mono in factor)}
         # with only_zero, factors that are clearly not zero in double precision give no condition
         if used and (not only_zero or seems_zero(factor.as_expr(*ring.generators), ring.domain)):
@@ -110,7 +111,7 @@ def principal(ring: FormulaRing, numerator: PolyElement) -> PrincipalValueProof 
     names = {number: leaf for leaf, number in ring.symbols.items() if type(leaf) in (*_PRINCIPAL, atan2)}
     if not names or len(numerator) > MOST_TERMS:
         return None
-    for factor, _ in numerator.factor_list()[1]:
+    for factor, _ in factor_list(numerator)[1]:
         used = [number for number in names if any(mono[number] for mono in factor)]
         if len(used) == 2 and (multiple := _principal_multiple(ring, factor, names)) is not None:
             return multiple

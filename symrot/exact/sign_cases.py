@@ -12,6 +12,7 @@ from math import prod
 from sympy import Abs
 from sympy.polys.rings import PolyElement
 
+from symrot.exact.factors import factor_list
 from symrot.exact.ring.ring import FormulaRing
 
 __all__ = ["vanishes_for_all_signs"]
@@ -73,7 +74,7 @@ def _constraints(ring: FormulaRing, insides: dict[int, PolyElement]) -> Iterator
     for poly in radicands:
         if poly.is_ground or len(poly) > MOST_TERMS:
             continue
-        constant, factors = poly.factor_list()
+        constant, factors = factor_list(poly)
         sign, places = (1 if constant > 0 else -1), set()
         for factor, power in factors:
             place = next((n for n, inside in insides.items() if inside in (factor, -factor)), None)
@@ -90,7 +91,7 @@ def _consistent(
 ) -> list[Constraint]:
     """Return ``constraints`` without those that share an f with an earlier constraint, unless f is nowhere zero."""
     # formulas are defined only where a divisor is not zero
-    divisors = {factor for poly in ring.ratios.factors for factor, _ in poly.factor_list()[1]}
+    divisors = {factor for poly in ring.ratios.factors for factor, _ in factor_list(poly)[1]}
     nonzero = {place for place, inside in insides.items() if inside in divisors or -inside in divisors}
     accepted: dict[frozenset[int], Constraint] = {}
     for sign, places in constraints:

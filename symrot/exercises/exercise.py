@@ -24,6 +24,9 @@ SCHEMA = 1
 DRAWS = 24
 """The number of draws among which the one with the shortest numbers is used."""
 
+MOST_DRAWS = 10_000
+"""The number of draws after which numbers that suit a problem are no longer expected."""
+
 ZERO = 30
 """The awkwardness of an answer that is zero, which teaches little."""
 
@@ -247,7 +250,9 @@ def _draw(problem: Problem, source: Random) -> list[tuple[Quantity, str]]:
     """Choose random numbers for the quantities; return pairs (quantity, number)."""
     # of many choices, the one with the shortest answers
     best: tuple[int, list[tuple[Quantity, str]]] | None = None
-    for _ in range(DRAWS):
+    for n in range(MOST_DRAWS):
+        if n >= DRAWS and best is not None:
+            break
         drawn = [(quantity, source.choice(quantity.numbers)) for quantity in problem.quantities]
         values = {quantity.symbol: _si(quantity, number) for quantity, number in drawn}
         if not problem.fits(values):
@@ -261,7 +266,9 @@ def _draw(problem: Problem, source: Random) -> list[tuple[Quantity, str]]:
         if best is None or length < best[0]:
             best = length, drawn
     if best is None:
-        raise ProofError(f"{problem.title}: expected numbers that suit the problem, got none in {DRAWS} random choices")
+        raise ProofError(
+            f"{problem.title}: expected numbers that suit the problem, got none in {MOST_DRAWS} random choices"
+        )
     return best[1]
 
 

@@ -47,7 +47,22 @@ STYLE = (
     ".sf text.word{font-style:normal;font-size:13px}.sf tspan{font-size:11px}"
     f"{_colours(0)}@media (prefers-color-scheme:dark){{{_colours(1)}}}"
 )
+PHONE, LEAST = 358.0, 12.5  # width of a figure on a phone, and the least size of letters there, CSS pixels
 BARS = ".sf path.bar{stroke-width:5}"  # for pictures with rods
+
+
+def _narrow(width: float) -> str:
+    """Return CSS that enlarges the letters of a picture where it is shown as narrow as on a phone.
+
+    It is empty if the picture, which is ``width`` CSS pixels wide, has legible letters there.
+    """
+    factor = LEAST / 13.0 * width / PHONE
+    if factor < 1.1:
+        return ""
+    sizes = zip((" text", " text.word", " tspan"), (15, 13, 11), strict=True)
+    rules = "".join(f".sf.sf{width:.0f}{name}{{font-size:{_number(factor * size)}px}}" for name, size in sizes)
+    # in an image the rule sees the width of the image; in a page, the width of the page
+    return f".sf{{overflow:visible}}@media (max-width:{_number(0.8 * width + 62)}px){{{rules}}}"
 
 
 class Picture:
@@ -137,10 +152,13 @@ class Picture:
         (x, y), (width, height) = low, high - low
         box = " ".join(map(_number, (x, y, width, height)))
         size = f'width="{_number(width)}" height="{_number(height)}"'
-        head = f'<svg xmlns="http://www.w3.org/2000/svg" class="sf" role="img" viewBox="{box}" {size}>'
+        narrow = _narrow(width)
+        # a page with several pictures has the styles of all of them: rules for one picture need a name of its own
+        names = f"sf sf{width:.0f}" if narrow else "sf"
+        head = f'<svg xmlns="http://www.w3.org/2000/svg" class="{names}" role="img" viewBox="{box}" {size}>'
         words = [f"<title>{escape(title)}</title>", *([f"<desc>{escape(description)}</desc>"] if description else [])]
         bars = BARS if any('bar"' in part for part in self._parts) else ""
-        return "\n".join([head, *words, f"<style>{bars}{STYLE}</style>", *self._parts, "</svg>"]) + "\n"
+        return "\n".join([head, *words, f"<style>{bars}{STYLE}{narrow}</style>", *self._parts, "</svg>"]) + "\n"
 
     def _path(self, places: Floats, style: str, closed: bool = False) -> None:
         self._corners.append(places)

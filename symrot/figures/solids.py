@@ -211,12 +211,13 @@ def solid_figures() -> tuple[Figure, ...]:
 
 def _figure(name: str) -> Figure:
     words = name.replace("_", " ")
-    axes = SHAPES[name].axes
+    axes = SHAPES[name].axes.rstrip(".")
     lengths = "; ".join(f"${each.symbol}$, {each.meaning}" for each in SHAPES[name].dimensions)
     return Figure(
         f"solid_{name}",
         f"{words.capitalize()} with the axes of its map",
-        f"{axes[0].upper()}{axes[1:].rstrip('.')}; the red point $c$ is the centre of mass. Dimensions: {lengths}.",
+        f"{words.capitalize()}. {axes[0].upper()}{axes[1:]}; the red point $c$ is the centre of mass. "
+        f"Dimensions: {lengths}.",
         partial(draw_solid, name),
         f"The argument, for the {words}" if name == EXAMPLE else DRAWN,
     )

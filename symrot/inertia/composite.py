@@ -14,7 +14,7 @@ from symrot.inertia.principal import principal_axes, require_admissible
 from symrot.inertia.shapes import Shape, check_dimensions, find_shape
 from symrot.inertia.tensor import IDENTITY
 
-__all__ = ["MassProperties", "Part", "mass_properties"]
+__all__ = ["MassProperties", "Part", "doubtful_holes", "mass_properties"]
 
 _ORIGIN = (0, 0, 0)
 _ROTATION_TOLERANCE = Fraction(1, 10**9)  # rejects a matrix of rounded decimals, accepts a matrix of doubles
@@ -152,3 +152,44 @@ def mass_properties(parts: Sequence[Part], where: str = "") -> MassProperties:
         read(value, where, "dimensions whose mass and moments of inertia are within the range of a double")
     require_admissible(body, where)
     return whole
+
+
+def doubtful_holes(parts: Sequence[Part], where: str = "") -> tuple[str, ...]:
+    """Return a sentence for each hole (part with ``subtract``) that may reach out of the other parts of a body.
+
+    The arguments are those of :func:`mass_properties`, which must accept them.
+
+    Raises
+    ------
+    InputError
+        If the body has a negative density at a point, because a hole reaches out of the other parts, overlaps another
+        hole, or has a larger density than the parts around it.
+    """
+    if not any(part.subtract for part in parts):
+        return ()
+    from symrot.inertia import holes  # here, so that a body without holes does not load it
+
+    names = [f"{where or 'part'}[{n}]" for n in range(len(parts))]
+    filled: list[holes.Filled | None] = []
+    added: list[holes.PointMass] = []
+    subtracted: list[tuple[str, holes.PointMass]] = []
+    for part, name in zip(parts, names, strict=True):
+        shape = find_shape(part.shape, name)
+        dimensions = check_dimensions(shape, part.dimensions, name)
+        pose = holes.pose([read(x, name) for x in part.at], [[read(x, name) for x in row] for row in part.rotation])
+        if shape.kind == "points":
+            for mass, point in zip(dimensions["masses"], dimensions["points"], strict=True):
+                x, y, z = map(float, point)
+                place = mass, pose.to_body((x, y, z))
+                subtracted.append((name, place)) if part.subtract else added.append(place)
+            filled.append(None)
+            continue
+        if part.mass is not None:
+            measure = uniform(shape, dimensions, density=Fraction(1)).mass
+            density: Fraction | Node = _positive(part.mass, "mass", name) / measure
+        else:
+            node = _density_node(part.density, name)
+            density = node[1] if node[0] == "number" else node
+        filled.append(holes.filled(shape.name, dimensions, pose, density, part.subtract))
+    holes.require_points(added, subtracted)
+    return holes.doubtful_holes(filled, names)

@@ -5,7 +5,7 @@ and sines, so every integral is exact (powers, and Wallis' recursion): a polynom
 """
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cache
 from itertools import combinations, product
@@ -28,7 +28,7 @@ from symrot.inertia.shapes import Coordinate, Shape, scalar_names, scalars
 
 __all__ = [
     "LARGEST_DEGREE", "Domain", "Moments", "density_polynomial", "domain", "exact_moments", "integrate", "moments",
-    "moments_per_measure", "require_not_negative",
+    "moments_per_measure", "require_not_negative", "shape_points",
 ]  # fmt: skip
 
 LARGEST_DEGREE = 12
@@ -235,8 +235,13 @@ def require_not_negative(
         )
 
 
-def _samples(shape: Shape, numbers: Mapping[str, Fraction]) -> Iterator[dict[str, float]]:
-    """Yield points of a shape with the given dimensions: x, y and z in m, with the dimensions."""
+def shape_points(
+    shape: Shape, numbers: Mapping[str, Fraction], shares: Sequence[float] = (0.0, 0.25, 0.5, 0.75, 1.0)
+) -> Iterator[dict[str, float]]:
+    """Yield points of a shape with the given dimensions: x, y and z in m, with the dimensions.
+
+    ``shares``: of the range of each coordinate.
+    """
     known = {"pi": math.pi} | {name: float(value) for name, value in numbers.items()}
     functions = {"cos": math.cos, "sin": math.sin}
 
@@ -244,8 +249,8 @@ def _samples(shape: Shape, numbers: Mapping[str, Fraction]) -> Iterator[dict[str
         return float(evaluate(parse(text), symbols, functions, float))
 
     limits = [(value(c.lower, known), value(c.upper, known)) for c in shape.coordinates]
-    for shares in product((0.0, 0.25, 0.5, 0.75, 1.0), repeat=len(limits)):
-        own = [low + share * (high - low) for share, (low, high) in zip(shares, limits, strict=True)]
+    for chosen in product(shares, repeat=len(limits)):
+        own = [low + share * (high - low) for share, (low, high) in zip(chosen, limits, strict=True)]
         symbols = known | {c.name: number for c, number in zip(shape.coordinates, own, strict=True)}
         yield known | {axis: value(text, symbols) for axis, text in zip("xyz", shape.position, strict=True)}
 
@@ -267,7 +272,7 @@ def exact_moments(
     # pi is correct to 2^-320; source is the density as the user wrote it, for errors
     integrals = moments(region, density_polynomial(density, values | {"pi": constant(PI)}, source, where))
     if integrals.zeroth.value(_PI) > 0:  # otherwise the caller refuses the mass
-        require_not_negative(density, _samples(shape, numbers), source, f"{where}: " if where else "")
+        require_not_negative(density, shape_points(shape, numbers), source, f"{where}: " if where else "")
     return Moments(
         integrals.zeroth.value(_PI),
         tuple(entry.value(_PI) for entry in integrals.first),

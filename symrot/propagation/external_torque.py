@@ -13,7 +13,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar, final
 
@@ -32,6 +31,7 @@ from symrot.propagation.propagator import Propagator
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers import dop853
 from symrot.propagation.steppers.stepping import MAX_STEPS, Integration, Recording, Stats
+from symrot.propagation.table_splines import table_splines
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial
 
@@ -225,22 +225,8 @@ class _Table(TorqueSource):
 
 def _pieces(t: Floats, values: Floats, switching: Sequence[float]) -> tuple[Floats, list[float]]:
     """Return the splines of a table as one array for C, and the times, s, at which a spline's derivative jumps."""
-    from scipy.interpolate import CubicSpline
-
-    # a separate spline between any two consecutive switching times
-    cuts = [0]
-    for switch in switching:
-        inside = np.flatnonzero(t == switch)
-        if len(inside) == 2:
-            cuts.append(int(inside[1]))
-    cuts.append(len(t))
     edges, coefficients, knots = [], [], [float(t[-1])]
-    for low, high in pairwise(cuts):
-        if high - low < 2:
-            raise InputError(
-                f"torque: expected two samples or more between switching times, got only one, at {t[low]} s"
-            )
-        spline = CubicSpline(t[low:high], values[low:high])
+    for spline in table_splines(t, values, switching):
         _check_overshoot(spline, float(np.abs(values).max()))
         edges.append(spline.x[:-1])
         knots += [float(spline.x[0]), *_bends(spline)]
@@ -417,7 +403,7 @@ class ExternallyDrivenPropagator(Propagator):
 
     def __init__(
         self, scene: Scene, tolerance: float, torque: Any, switching_times: ArrayLike = (), frame: str = "body",
-        max_step: float = math.inf,
+        max_step: float = math.inf, sensitivities: Sequence[str] | None = None,
     ) -> None:  # fmt: skip
         switching = real_array(switching_times, "switching_times", "finite times in s", ndmin=1).ravel()
         if not np.isfinite(switching).all():
@@ -427,7 +413,7 @@ class ExternallyDrivenPropagator(Propagator):
         self._switching = tuple(sorted(set(switching.tolist())))
         self._max_step = max_step
         self._source, self._in_space = _torque_source(torque, self._switching), frame == "space"
-        super().__init__(scene, "dop853", tolerance)
+        super().__init__(scene, "dop853", tolerance, sensitivities)
 
     def _planned(self, initial: Initial | None = None) -> Plan:
         return make_plan(self.scene, initial, external_torque=True)

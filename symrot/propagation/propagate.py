@@ -71,7 +71,7 @@ def propagator(
         function is called just before and just after each of these times; a table has two samples there, before and
         after the jump.
     torque_frame : str
-        ``"body"`` or ``"space"``: the frame of the components of the additional torque.
+        ``"body"`` or ``"space"``: the frame of the components of ``torque``; not allowed without it.
     state : str
         ``"quaternion"``, or an Euler sequence such as ``"ZXZ"`` to step its angles instead, for teaching; see
         :mod:`symrot.propagation.euler_state`.
@@ -117,6 +117,17 @@ def propagator(
     if torque is None and real_array(switching_times, "switching_times", "finite times in s").size:
         reason = "leave it out unless torque is a function or a table"
         raise InputError(f"switching_times: {reason}, got {number.show(switching_times)}")
+    if torque is None and torque_frame != "body":
+        where = "a table of the scene has a frame of its own" if scene.table is not None else "no torque is given"
+        raise InputError(
+            f"torque_frame: leave it out unless torque is a function or a table, got {number.show(torque_frame)} "
+            f"({where})"
+        )
+    if state == "quaternion" and switching is not True:
+        raise InputError(
+            "switching: leave it out unless state is an Euler sequence, such as 'ZXZ', which can reach gimbal lock, "
+            f"got {number.show(switching)}"
+        )
     if scene.table is not None:
         samples = scene.table
         torque, switching_times, torque_frame = samples[:2], samples.switching_times, samples.frame
@@ -149,18 +160,18 @@ def propagator(
         )
     from symrot.propagation.external_torque import ExternallyDrivenPropagator
 
-    return ExternallyDrivenPropagator(scene, aim, torque, switching_times, torque_frame, _longest_step(max_step))
+    longest = _longest_step(max_step)
+    return ExternallyDrivenPropagator(scene, aim, torque, switching_times, torque_frame, longest, sensitivities)
 
 
 def _refuse_sensitivities(scene: Scene, torque: Any, state: str) -> None:
-    """Raise InputError for motions without derivatives: Euler angles as state, or a torque without formulas."""
+    """Raise InputError for motions without derivatives: Euler angles as state, or the argument ``torque``."""
     if state != "quaternion":
         raise InputError(f"sensitivities: expected state='quaternion', got {state!r}; Euler angles have none")
-    if torque is not None:
-        raise InputError("sensitivities: expected torques with formulas, got a torque that is a function or a table")
-    from symrot.propagation.sensitivities.variables import require_formulas
-
-    require_formulas(scene)
+    if torque is not None and scene.table is None:
+        raise InputError(
+            "sensitivities: expected torques of the scene, formulas or a table of samples, got the argument torque"
+        )
 
 
 def _with_values(

@@ -135,7 +135,7 @@ class Trajectory(MotionSamples):
         self._motion, self._parts, self._propagator = motion, states, propagator
         self.plan, self.tolerance, self.has_external_torque = motion.plan, motion.tolerance, motion.has_external_torque
         self.t, self.method, self.stats, self.message = t, method, stats, message
-        self.status, self.warnings = 0, motion.setup.warnings
+        self.status, self.warnings = 0, (*motion.plan.scene.warnings, *motion.setup.warnings)
         self.t_events, self.y_events, self.event_kinds, self.events = None, None, None, None
         self.sensitivities: Sensitivities | None = None
         if events is not None:
@@ -345,7 +345,7 @@ class Trajectory(MotionSamples):
         Raises
         ------
         InputError
-            If the times are not finite, or if a torque has no formula.
+            If the times are not finite, or if the argument ``torque`` acts.
         PropagationError
             If the motion cannot be followed to both times, or if it has no derivatives beyond a switch of a torque.
 
@@ -360,9 +360,9 @@ class Trajectory(MotionSamples):
         times = [float(real_array(t, name, "a time in s")) for t, name in ((t0, "t0"), (t1, "t1"))]
         if not np.isfinite(times).all():
             raise InputError(f"t0, t1: expected finite times in s, got {number.show(t0)} and {number.show(t1)}")
-        if self.has_external_torque or self._propagator is None:
+        if (self.has_external_torque and self.scene.table is None) or self._propagator is None:
             raise InputError(
-                "transition: expected torques with formulas, got a motion under a torque without a formula"
+                "transition: expected torques of the scene, formulas or a table, got a motion under the argument torque"
             )
         # variational Taylor series, for every method, also for closed forms
         return self._propagator.transition(self.scene, times[0], times[1])

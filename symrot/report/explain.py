@@ -150,7 +150,7 @@ def facts(plan: Plan) -> "PlanReport":
     """
     scene = plan.scene
     ladder = _ladder(plan)
-    rows = [*ladder, *_others(plan)]
+    rows = [*ladder, *_others(plan), *(_row("warning", False, one_line(text)) for text in scene.warnings)]
     return {
         "scene": {"name": scene.name, "title": scene.title, "source": scene.source},
         "rows": rows,

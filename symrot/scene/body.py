@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from symrot.errors import nearest
 from symrot.formula import tree as expression
 from symrot.formula.exact_numbers import NEGLIGIBLE
-from symrot.inertia.composite import MassProperties, Part, mass_properties
+from symrot.inertia.composite import MassProperties, Part, doubtful_holes, mass_properties
 from symrot.inertia.principal import Principal, principal_axes, require_admissible, why_not_propagable
 from symrot.inertia.shapes import SHAPES, Shape, check_dimensions
 from symrot.inertia.tensor import about_point
@@ -65,6 +65,8 @@ class Body(NamedTuple):
         The point of rotation, m, in the axes in which the parts or facets are placed.
     facets : tuple of triangles
         The surface of a body given by a small mesh, for pictures: the corners, m, of each triangle.
+    warnings : tuple of str
+        Sentences about holes that could not be proven to lie within the body.
 
     Examples
     --------
@@ -83,6 +85,7 @@ class Body(NamedTuple):
     parts: tuple[Part, ...] = ()
     origin: Vector = _ZERO
     facets: tuple[Facet, ...] = ()
+    warnings: tuple[str, ...] = ()
 
 
 def read_body(value: Any, where: str, folders: Folders | None = None) -> Body:
@@ -328,7 +331,8 @@ def _placed(parts: Sequence[Part], values: Mapping[str, Any], where: str, source
 
     ``source`` describes the body; ``where`` and ``of_parts`` are names for messages.
     """
-    return _about_point(mass_properties(parts, of_parts), values, where, source)._replace(parts=tuple(parts))
+    body = _about_point(mass_properties(parts, of_parts), values, where, source)
+    return body._replace(parts=tuple(parts), warnings=doubtful_holes(parts, of_parts))
 
 
 def _about_point(properties: MassProperties, values: Mapping[str, Any], where: str, source: str) -> Body:

@@ -89,6 +89,11 @@ class Scene:
         table = () if self.table is None else (self.table.kind,)
         return (*(torque.kind for torque in self.torques), *table)
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences about what may be meant otherwise: holes that may reach out of the body, parameters without use."""
+        return (*self.body.warnings, *(warning for torque in self.torques for warning in torque.warnings))
+
     @classmethod
     def from_dict(
         cls, content: Mapping[str, Any], where: str = "scene", *, table_folders: str | Path | Sequence[str | Path] = ()

@@ -46,6 +46,8 @@ class Torque(NamedTuple):
         functions with jumps or kinks.
     frame : str
         ``"body"`` or ``"space"``: the frame of the components.
+    warnings : tuple of str
+        Sentences about parameters that no formula contains.
 
     Examples
     --------
@@ -58,6 +60,7 @@ class Torque(NamedTuple):
     values: Mapping[str, Value]
     formulas: tuple[str, ...] = ()
     frame: str = "body"
+    warnings: tuple[str, ...] = ()
 
     def number(self, name: str) -> Fraction:
         """Return the number that is the constant ``name`` of the torque, such as ``"weight"``."""
@@ -236,6 +239,7 @@ def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str,
     parameters = dict(values["parameters"])
     # its parameters, and the quantities of the motion, such as omega_1
     known = {*EXPRESSION_NAMES, *parameters, "pi"}
+    unused = set(parameters)
     for index, formula in enumerate(values["torque"]):
         node = expression.parse(formula, switching=True)
         if "atan2" in expression.operations(node):  # continued across its branch cut, by multiples of pi
@@ -249,8 +253,13 @@ def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str,
                 fail(f"{where}.torque[{index}]", f"a formula in {allowed}", formula, reason)
             if name == "pi":
                 parameters["pi"] = PI
+            unused.discard(name)
         _check_clips(node, {name: float(value) for name, value in parameters.items()} | {"pi": math.pi}, where, index)
-    return {**values, "parameters": parameters}
+    warnings = tuple(
+        f"{where}.parameters.{name}: no formula of this torque contains this parameter, so it has no effect"
+        for name in sorted(unused)
+    )
+    return {**values, "parameters": parameters, "warnings": warnings}
 
 
 def _check_clips(node: expression.Node, values: Mapping[str, float], where: str, index: int) -> None:
@@ -309,7 +318,8 @@ def read_torque(value: Any, body: Body, where: str) -> Torque:
     try:
         fields = fit(values, body, where) if fit else values
         if name == "expression":
-            return Torque(name, fields["parameters"], tuple(fields["torque"]), fields["frame"])
+            formulas = tuple(fields["torque"])
+            return Torque(name, fields["parameters"], formulas, fields["frame"], fields["warnings"])
         return Torque(name, fields)
     except RecursionError:
         raise InputError(f"{where}: expected a formula with fewer nested levels, got {show(entries)}") from None

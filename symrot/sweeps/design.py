@@ -130,6 +130,8 @@ def read_design(
     _require_apart(axes)
     points = prod(len(axis.law) for axis in axes if isinstance(axis.law, Grid))
     random = attitudes == "uniform" or any(isinstance(axis.law, Distribution) for axis in axes)
+    if not random and sampling != "random":
+        raise InputError(f"sampling: leave it out unless values are drawn from distributions, got {show(sampling)}")
     number = _count(count, points, random)
     return Design(axes, attitudes, sampling, number, _whole(seed, "seed", 0, 2**64))
 

@@ -13,11 +13,12 @@ from symrot.errors import InputError, nearest
 from symrot.formula.exact_numbers import show
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.method import choose_method
-from symrot.propagation.sensitivities.variation import rates_of, structure_of
+from symrot.propagation.sensitivities.libraries import rates_of
+from symrot.propagation.sensitivities.variation import structure_of
 from symrot.propagation.steppers.taylor import refusal
 from symrot.scene.scene import Scene, SceneSource, load_scene
 from symrot.scene.tables import read_tolerance
-from symrot.sweeps.chunk import IMPOSSIBLE, STOPPED, Job, prepared
+from symrot.sweeps.chunk import IMPOSSIBLE, STOPPED, Chunk, Job, prepared
 from symrot.sweeps.cluster import run_on_cluster
 from symrot.sweeps.design import Design, read_design
 from symrot.sweeps.layout import MESSAGE, STATUS, TIME, Header, Store, header_of
@@ -25,6 +26,7 @@ from symrot.sweeps.memory_store import MemoryStore
 from symrot.sweeps.outputs import UNAVERAGED, SweepOutput, read_outputs, scene_for, variable_keys
 from symrot.sweeps.parquet_store import ParquetStore
 from symrot.sweeps.processes import cores, run_here
+from symrot.sweeps.shared_store import Written
 from symrot.sweeps.statistics import Statistic, read_statistics, statistics_of
 from symrot.sweeps.targets import OMEGA, Content, constants_of
 from symrot.sweeps.zarr_store import ZarrStore
@@ -60,6 +62,8 @@ class Sweep:
         Number of trajectories that stopped early, and number of trajectories whose values no body or motion can have.
     reasons : list of (int, str)
         The first trajectories that stopped or were impossible: their indices and the reasons.
+    warnings : tuple of str
+        Warnings about the scene, such as a hole that may reach out of the body.
 
     Examples
     --------
@@ -75,6 +79,7 @@ class Sweep:
     impossible: int
     reasons: list[tuple[int, str]]
     _store: Any
+    warnings: tuple[str, ...] = ()
 
     def array(self, name: str) -> NDArray[Any]:
         """Return one array of the results; all its values are loaded into memory.
@@ -183,7 +188,7 @@ def sweep(
     workers : int, optional
         Number of processes on this machine; default: the number of cores.
     scheduler : str, optional
-        Address of a Dask scheduler, such as ``"tcp://host:8786"``, whose workers compute instead.
+        Address of a Dask scheduler, such as ``"tcp://host:8786"``, whose workers compute instead of processes here.
     chunk : int, optional
         Number of trajectories in a chunk; it does not change the results.
     table_folders
@@ -221,6 +226,7 @@ def sweep(
     _require(keep in KEEP, "keep", f"one of {', '.join(KEEP)}", keep)
     _require(keep == "all" or bool(chosen), "keep", "statistics to compute, with keep = 'statistics'", statistics)
     target = None if path is None else _target(path, keep)
+    _require(workers is None or scheduler is None, "workers", "no number of processes here with a scheduler", workers)
     number = cores() if workers is None else workers
     _whole(number, "workers", MOST_WORKERS)
     if chunk is not None:
@@ -242,15 +248,16 @@ def sweep(
         done = header.count - sum(stop - start for start, stop in pending)
         if progress is not None:
             progress(done, header.count)
-        for part in _chunks(job, pending, number, scheduler):
-            store.write(part)
+        for part in _chunks(job, pending, number, scheduler, store):
+            if isinstance(part, Chunk):
+                store.write(part)
             done += part.stop - part.start
             if progress is not None:
                 progress(done, header.count)
         outputs_of_store = [each for each in header.variables if each.name in {one.name for one in job.outputs}]
         tables = statistics_of(store, chosen, outputs_of_store, note) if chosen else []
         store.finish(tables, only_statistics)
-    return _result(store, target)
+    return _result(store, target, job.scene.warnings)
 
 
 def _require_averages(statistics: Sequence[Statistic], outputs: Sequence[SweepOutput]) -> None:
@@ -264,10 +271,13 @@ def _require_averages(statistics: Sequence[Statistic], outputs: Sequence[SweepOu
         )
 
 
-def _chunks(job: Job, pending: list[tuple[int, int]], workers: int, scheduler: str | None) -> Iterator[Any]:
+def _chunks(
+    job: Job, pending: list[tuple[int, int]], workers: int, scheduler: str | None, store: Store
+) -> Iterator[Chunk | Written]:
+    """Yield for each range of trajectories in ``pending`` its chunk, or that a worker has stored it."""
     if not pending:
         return iter(())
-    return run_here(job, pending, workers) if scheduler is None else run_on_cluster(job, pending, scheduler)
+    return run_here(job, pending, workers) if scheduler is None else run_on_cluster(job, pending, scheduler, store)
 
 
 def _require(condition: bool, where: str, expectation: str, value: object) -> None:
@@ -324,6 +334,10 @@ def _job(
     ``texts`` are the outputs, ``folders`` the table folders.
     """
     own = scene_for(load_scene(scene, table_folders=folders), texts)
+    if own.table is not None:
+        raise InputError(
+            f"{own.name}: expected torques that are formulas, got a torque of kind table, which no sweep has"
+        )
     content = _content(own)
     _require(isinstance(vary, Mapping), "vary", "a dict of laws by name", vary)
     design = read_design(own, content, vary, attitudes, sampling, count, seed)
@@ -374,7 +388,7 @@ def _content(scene: Scene) -> Content | None:
         return None
 
 
-def _result(store: Store, path: Path | None) -> Sweep:
+def _result(store: Store, path: Path | None, warnings: tuple[str, ...]) -> Sweep:
     stopped, impossible, reasons = 0, 0, list[tuple[int, str]]()
     count = store.header.count
     for start in range(0, count, BLOCK):
@@ -382,4 +396,4 @@ def _result(store: Store, path: Path | None) -> Sweep:
         stopped, impossible = stopped + int((status == STOPPED).sum()), impossible + int((status == IMPOSSIBLE).sum())
         for row in np.flatnonzero(status)[: SHOWN_REASONS - len(reasons)].tolist():
             reasons.append((start + row, str(store.read(MESSAGE, start + row, start + row + 1)[0])))
-    return Sweep(path, count, stopped, impossible, reasons, store)
+    return Sweep(path, count, stopped, impossible, reasons, store, warnings)

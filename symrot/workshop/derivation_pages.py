@@ -360,4 +360,6 @@ def _left_over(directory: Path, printed: dict[str, str]) -> list[Path]:
 
 def _mark(path: Path) -> str:
     """Return words that symrot prints into every page or figure, by which it recognises a file as its own."""
-    return 'class="sf" role="img"' if path.suffix == ".svg" else f"printed by `symrot derive {path.stem}`; do not edit."
+    if path.suffix == ".svg":
+        return 'xmlns="http://www.w3.org/2000/svg" class="sf'
+    return f"printed by `symrot derive {path.stem}`; do not edit."

@@ -25,6 +25,7 @@ from symrot.codegen.printing.js_source import js_source
 from symrot.codegen.printing.math_header import math_header
 from symrot.codegen.printing.numpy_source import numpy_source
 from symrot.codegen.scene_kernels import (
+    corner_note,
     rate_derivatives,
     rates_jacobian_program,
     rates_program,
@@ -228,7 +229,8 @@ class SceneText(KernelText):
         return c_functions(self.program)
 
     def _description(self, target: str, lines: tuple[tuple[str, str], ...] = ()) -> Description:
-        return scene_description(self.scene.title, self.scene.name, target, lines, self.jacobian)
+        note = corner_note(self._lowered.program, "the derivatives") if self.jacobian else ""
+        return scene_description(self.scene.title, self.scene.name, target, lines, self.jacobian, note)
 
     def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
         """Return the C source and its header, whose head comments state the bounds."""

@@ -1,7 +1,6 @@
 """The texts of one time step of a scene: C with test vectors, NumPy, JavaScript, JAX, and a certificate."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -14,6 +13,7 @@ from symrot.codegen.printing.jax_source import jax_source
 from symrot.codegen.printing.js_source import js_source
 from symrot.codegen.printing.numpy_source import numpy_source
 from symrot.codegen.printing.parameters_header import parameters_file
+from symrot.codegen.scene_kernels import corner_note
 from symrot.codegen.steps import (
     RK4,
     Method,
@@ -25,18 +25,17 @@ from symrot.codegen.steps import (
     step_program,
     stepped,
 )
-from symrot.dynamics.structure import MOVING
 from symrot.errors import CertificateError, InputError
 from symrot.formula.exact_numbers import equal
 from symrot.formula.program import Program
 from symrot.formula.tree import FUNCTIONS
 from symrot.kernels.jacobian import jacobian_name
 from symrot.kernels.library import is_kernel
-from symrot.planning.plan import make_plan
 from symrot.propagation.steppers.tableau import NODES, STAGE_WEIGHTS, WEIGHTS
 from symrot.scene.scene import Scene, SceneSource, load_scene
-from symrot.workshop.kernel_text import Bounds, KernelText, SceneText, scene_kernel_name
+from symrot.workshop.kernel_text import Bounds, KernelText, SceneText
 from symrot.workshop.steps.files import StepFiles, constant_table
+from symrot.workshop.steps.whole_state import WholeState
 
 __all__ = ["ORDER", "STEPS", "StepText", "step_method", "step_text"]
 
@@ -116,16 +115,6 @@ def _exact(scene: Scene, order: int | None, jacobian: Sequence[str]) -> KernelTe
     return ExactStepText(scene)
 
 
-class _WholeState(SceneText):
-    """The rates of a scene whose state has all components of omega and of the quaternion, including constant ones."""
-
-    def __init__(self, scene: Scene) -> None:
-        plan = make_plan(scene)
-        whole = replace(plan.structure, attitude=True, planar=None, initial_quaternion=None, constant=MOVING)
-        self.plan, self.scene, self.jacobian = replace(plan, structure=whole), plan.scene, ()
-        self.name = scene_kernel_name(self.scene.name)
-
-
 def _steady_rotations(scene: Scene) -> SteadyRotations | None:
     """Return the closed form of a scene's motion if it is a product of steady rotations, otherwise None."""
     kinds, principal = [torque.kind for torque in scene.torques], scene.body.principal
@@ -153,7 +142,7 @@ class StepText(StepFiles):
     """
 
     def __init__(self, scene: Scene, method: Method) -> None:
-        self.rates = _WholeState(scene) if isinstance(method, SteadyRotations) else SceneText(scene)
+        self.rates = WholeState(scene) if isinstance(method, SteadyRotations) else SceneText(scene)
         self.method = method
         self.name = f"{self.rates.name.removesuffix('_rates')}_{method.name}_step"
         if isinstance(method, WithDerivatives):
@@ -189,9 +178,12 @@ class StepText(StepFiles):
             *((("Errors", "rounding alone; it grows with the angle |omega| dt"),) if exact else ()),
             ("Assumes", "IEEE 754 arithmetic, rounding to nearest; next does not overlap x"),
         )
+        note = ""
+        if isinstance(self.method, WithDerivatives) or isinstance(plain, TaylorSeries):
+            note = corner_note(self._program, "the results")
         return Description(
             title=f"one time step of the scene {scene.name!r} ({scene.title}): next is the state at t + dt{slopes}",
-            domain=f"all states of finite size; the norm of a quaternion drifts with the {self._drift}",
+            domain=f"all states of finite size{note}; the norm of a quaternion drifts with the {self._drift}",
             derivation=self._derivation,
             command=f"symrot emit {scene.name} --step {self.method.name}{order}{jacobian} --target {target}",
             contract=contract if target == "c" else contract[:1],

@@ -4,6 +4,7 @@ import json
 import math
 from fractions import Fraction
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -45,6 +46,23 @@ def test_the_truth_is_that_of_elliptic_integrals_a_million_turns_later():
     for row, t in zip(found, times, strict=True):
         omega, q = ([float(x) for x in part] for part in expected(t))
         assert largest(row[:3], omega) < 2e-16 and largest(row[3:], q, sign=True) < 2e-16
+
+
+def test_the_error_of_the_reference_is_that_of_its_own_series():
+    """The check of a coarse series gives its distance from one with 1e-12 of its last terms."""
+    motion = propagator(plate(), "taylor", 1e-15)._motion
+    coarse, fine = (ExactPath(motion.plan, motion.kernel, tail=tail) for tail in (1e-16, 1e-28))
+    with mpmath.workdps(exact_path.DIGITS):
+        rows = [path.state(mpmath.mpf(1)) for path in (coarse, fine)]
+        apart = max(abs(x - y) for x, y in zip(*rows, strict=True))
+    assert 1e-22 < coarse.error(1.0, periodic=False) == pytest.approx(float(apart), rel=0.5)
+    assert fine.error(1.0, periodic=False) < 1e-27
+    lines = stability._growth_lines({**GROWTH, "reference_error": 3e-24})
+    assert "compared with a series in 40 digits, 23 of them right at the end" in lines[2]
+
+
+GROWTH = {"title": "a plate", "variable": "t", "at": [0.0, 1.0], "curves": [
+    {"method": "exact", "attitude": [0.0, 1e-16], "invariants": {"energy": [0.0, 1e-16]}}]}  # fmt: skip
 
 
 def test_the_truth_under_gravity():

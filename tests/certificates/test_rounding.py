@@ -32,6 +32,7 @@ from symrot.errors import CertificateError, InputError
 from symrot.formula.exact_numbers import PI
 from symrot.kernels.library import definition, kernel_names
 from symrot.workshop.bound_table import understated
+from tests.campaigns.certificates import rounding_campaign
 from tests.campaigns.certificates.rounding_campaign import compare, loosest
 from tests.campaigns.certificates.rounding_measured import measure
 
@@ -177,11 +178,11 @@ def test_arithmetic_is_enclosed_and_exact_ends_stay():
 # --- bounds against measured errors -----------------------------------------------------------------------------------
 
 
-def rows_of(name, suffix="", points=3000, budget=BUDGET):
+def rows_of(name, suffix):
     operations = operations_of(name, text_of(name))[1 if suffix else 0]
     problem = library_problem(definition(name), operations)
-    bounds = bound_outputs(operations, problem.box, problem.region, budget)
-    return compare(operations, bounds, measure(operations, problem.box, bounds, problem.region, points), name)
+    bounds = bound_outputs(operations, problem.box, problem.region, BUDGET)
+    return compare(operations, bounds, measure(operations, problem.box, bounds, problem.region, 3000), name)
 
 
 @pytest.mark.thinned(8)
@@ -196,9 +197,8 @@ def test_no_error_is_larger_than_its_bound_nor_the_bound_far_from_it(name, suffi
 @pytest.mark.campaign
 @pytest.mark.parametrize("name", kernel_names())
 def test_no_error_of_any_kernel_is_larger_than_its_bound(name):
-    for suffix in ("", "f"):
-        for row in rows_of(name, suffix, 100_000, 100_000):
-            assert row.holds and row.tight, row
+    for row in rounding_campaign.rows(name, text_of(name), 100_000, budget=100_000):
+        assert row.holds and row.tight, row
 
 
 def test_a_kernel_that_rounds_worse_has_a_larger_bound():

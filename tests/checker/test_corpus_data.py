@@ -15,7 +15,7 @@ FAULTS = (
     "transposed", "half_angle", "other",
 )  # fmt: skip
 CHAPTERS = {
-    "axis_angle", "books", "energy", "euler_equations", "free_bodies", "further", "identities", "inertia", "quaternions", "rates", "rotation",
+    "axis_angle", "books", "energy", "euler_equations", "free_bodies", "further", "identities", "inertia", "quaternions", "rates", "references", "rotation",
     "tops", "vectors", "work",
 }  # fmt: skip
 FIELDS = {"id", "text", "form", "kind", "source", "expected", "check", "chapter"}

@@ -96,3 +96,18 @@ def test_a_bound_of_an_exponential_is_a_bound_of_its_exponent():
     assert verdict.verdict == "conditional"
     assert verdict.requires == ("x >= 0",)
     assert verdict.conditions == ("x >= 0",)
+
+
+@pytest.mark.parametrize("text", [
+    "asin x + asin y = asin(x sqrt(1 - y^2) + y sqrt(1 - x^2))", "acos x - acos y = acos(x y + sqrt(1-x^2) sqrt(1-y^2))",
+])  # fmt: skip
+def test_a_sum_of_angles_needs_no_condition_on_the_argument_of_its_inverse_function(text):
+    """``1 - (x*sqrt(1 - y^2) + y*sqrt(1 - x^2))^2`` is a square, so asin of it has a value wherever the roots have."""
+    verdict = symrot.check(text, repair=False)
+    assert verdict.conditions[1:] == ("-1 <= x <= 1", "-1 <= y <= 1")
+
+
+def test_a_radicand_with_roots_that_may_be_negative_stays_a_condition():
+    verdict = symrot.check("sqrt(x*sqrt(1 - y**2) + 1)**2 == x*sqrt(1 - y**2) + 1", repair=False)
+    assert any("x*sqrt(1 - y**2)" in condition for condition in verdict.conditions)
+    assert symrot.check("sqrt(1 + 1/x + sqrt(y)) == sqrt(sqrt(y) + (x + 1)/x)", repair=False).verdict == "true"

@@ -1,4 +1,4 @@
-"""Every claim gets an answer within a limited processor time, even if SymPy would need minutes."""
+"""Every claim gets an answer within a count of operations, or a processor time if SymPy alone would need minutes."""
 
 import signal
 import threading
@@ -9,6 +9,7 @@ import pytest
 import symrot
 from symrot.checker import claim_verdict
 from symrot.checker.time_limit import TimeUp, processor_seconds
+from symrot.exact.operations import one_claim, operations_left
 
 ENDLESS = 30.0  # seconds after which a test gives up waiting
 
@@ -96,3 +97,37 @@ def test_a_verdict_whose_repair_takes_too_long_is_kept(monkeypatch):
     verdict = symrot.check("sin(2*x) == sin(x)*cos(x)")
     assert verdict.verdict == "false"
     assert any("stopped after 0.5 s" in note for note in verdict.notes)
+
+
+LONG = "sin(a + b + c + d + f)*cos(a - b) == sin(b + c + d + f + a)*cos(b - a) + x"
+
+
+def test_a_claim_ends_after_a_number_of_operations_that_is_the_same_everywhere(monkeypatch):
+    monkeypatch.setattr(claim_verdict, "MOST_OPERATIONS", 300)
+    verdict = symrot.check(LONG)
+    assert verdict.verdict == "undecided"
+    assert verdict.reason == "it needs more than 300 operations; a letter in place of an inner function may help"
+    monkeypatch.undo()
+    assert symrot.check(LONG, repair=False).verdict == "false"
+
+
+def test_a_verdict_whose_repairs_need_too_many_operations_is_kept(monkeypatch):
+    counts = []
+    for _ in range(2):
+        with one_claim(10**9):
+            symrot.check(LONG, repair=False)
+            counts.append(operations_left())
+    assert counts[0] == counts[1]
+    monkeypatch.setattr(claim_verdict, "MOST_OPERATIONS", 10**9 - counts[0] + 200)
+    verdict = symrot.check(LONG)
+    assert verdict.verdict == "false" and any("was stopped after" in note for note in verdict.notes)
+
+
+@pytest.mark.parametrize(("text", "word"), [
+    ("sqrt(exp(-3000) - x) == x", "false"), ("sqrt(x**30 - y) == x", "false"), ("exp(1000000)*x == x", "false"),
+    ("sqrt((x**30 - y)**2) == x**30 - y", "conditional"), ("sqrt(10**100 - x) == x", "false"),
+    (f"sqrt({(10**49 + 9) * (10**50 + 151)} - x) == x", "false"),
+])  # fmt: skip
+def test_high_powers_and_long_numbers_need_no_long_factoring(text, word):
+    with one_claim(300_000):
+        assert symrot.check(text, repair=False).verdict == word

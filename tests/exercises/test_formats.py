@@ -137,6 +137,26 @@ def test_the_page_grades_numbers_as_python_does(tmp_path):
     assert page_outcomes(sheet, "1b", answers, tmp_path) == [outcome for _, outcome in CASES]
 
 
+SAME = (
+    "{v:.2g} {u}", "{v:.1g} {u}", "{v:.1e} {u}", "1 = 2 = {v} {u}", "{v} {u}.", "{v} [{u}]", "{v} ({u})", "14 pi {u}",
+    "14π {u}", "{v:.4g} x 10^0 {u}", "44.4 {u}", "45.9 {u}", "{v}",
+)  # fmt: skip
+
+
+@pytest.mark.skipif(NODE is None, reason="needs Node")
+@pytest.mark.parametrize("name", ["top_of_wheel", "angle_of_two_rotations"])  # 14 pi m/s, 82.8 deg
+def test_the_page_and_python_agree_on_roundings_and_ways_to_write(name, tmp_path):
+    """The page called a number of two right digits rounded too much; Python read neither 14 pi nor [m/s]."""
+    sheet = symrot.exercise(name, seed=1)
+    question = sheet[0].questions[1]
+    answers = [form.format(v=float(question.decimal), u=question.unit) for form in SAME]
+    marks = [symrot.grade(sheet[0], {"b": answer}).marks[1] for answer in answers]
+    partial = {"coarse": "partial", "unit_forgotten": "partial"}
+    outcomes = [partial.get(mark.code, "right" if mark.credit == 1 else "wrong") for mark in marks]
+    assert page_outcomes(sheet, "1b", answers, tmp_path) == outcomes
+    assert name != "top_of_wheel" or outcomes.count("right") == 9
+
+
 @pytest.mark.skipif(NODE is None, reason="needs Node")
 def test_on_the_page_a_hertz_next_to_an_angle_is_one_rotation_per_second(tmp_path):
     sheet = symrot.exercise("body_rates")

@@ -89,6 +89,17 @@ def test_an_answer_that_no_line_proves_is_refused():
         make("unproven", "inertia", 0, unproven, Random("0"))
 
 
+def test_a_seed_whose_first_draws_do_not_fit_draws_on():
+    """Of 24 draws none had moments in the right order; the command ended with an error."""
+    assert len(symrot.exercise("swing_about_largest", seed=17)) == 1
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_angle_between_two_attitudes_is_below_180_degrees(seed):
+    """For q = -p the answer was -1, the cosine of half of 360 degrees."""
+    assert 0 < float(symrot.exercise("angle_between", seed=seed)[0].questions[1].decimal) < 1
+
+
 def test_a_number_is_exact():
     right = problem(Line("Right.", X + X, 2 * X, "d"), Asked("d", "the sum", 2 * X, "m"))
     question = make("right", "inertia", 0, right, Random("0")).questions[1]

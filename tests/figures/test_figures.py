@@ -32,6 +32,18 @@ def test_at_least_25_pages_have_figures_and_each_figure_has_its_own_file():
     assert len({figure.name for figure in ALL}) == len(ALL)
 
 
+def test_letters_of_wide_figures_are_enlarged_on_a_phone(texts):
+    """At the width of a phone no letter is smaller than 12 pixels; the rule names its figure, other figures keep theirs."""
+    for text in texts.values():
+        width = float(re.search(r' width="([\d.]+)"', text)[1])
+        enlarged = re.search(
+            r"@media \(max-width:([\d.]+)px\)\{\.sf\.sf\d+ text\{.*? text\.word\{font-size:([\d.]+)px", text
+        )
+        size = float(enlarged[2]) if enlarged else 13
+        assert size * min(1, 358 / width) > 11.3
+        assert (not enlarged) or (390 < float(enlarged[1]) < width and 'class="sf sf' in text)
+
+
 @pytest.mark.parametrize("figure", ALL, ids=lambda figure: figure.name)
 def test_a_figure_is_a_document_that_stands_alone(figure, texts):
     tree = ElementTree.fromstring(texts[figure.name])

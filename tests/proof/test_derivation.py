@@ -184,7 +184,12 @@ def test_mathml_of_the_pages_own_latex():
     )
     assert "<mfrac><mn>1</mn><mn>2</mn></mfrac>" in mathml(r"\tfrac12 x")
     assert mathml("x_1^2").count("<msubsup>") == 1
-    assert mathml("f''").count("′") == 2 and "<mrow><mo>′</mo><mn>2</mn></mrow>" in mathml("x'^2")
+    assert mathml("f''").count("′") == 2 and "<mn>2</mn></msup>" in mathml("x'^2")
+    assert '<mo form="prefix">−</mo>' in mathml("(-x, y)") and '<mo form="prefix">±</mo>' in mathml(r"u = \pm 1")
+    assert 'stretchy="false"' in mathml(r"\left(x_1\right)") and 'stretchy="true"' in mathml(r"\left(\frac12\right)")
+    # names of functions are set off from factors, but not from brackets, relations and commas
+    assert mathml(r"\operatorname{cn}\operatorname{dn}").count("<mspace") == 1
+    assert "<mspace" not in mathml(r"(\tanh, \operatorname{sn}) = 0")
     assert '<mo form="prefix">−</mo>' in mathml("-x") and "<mo>−</mo>" in mathml("x - y")
 
 

@@ -216,6 +216,13 @@ def test_switching_times_without_a_torque_of_their_own_are_refused(name):
         symrot.propagator(name, switching_times=[1.0])
 
 
+@pytest.mark.parametrize("name", ["t_handle", "thruster_pulse"])
+@pytest.mark.parametrize("option", [{"torque_frame": "space"}, {"torque_frame": "orbit"}, {"switching": False}])
+def test_options_without_an_effect_are_refused(name, option):
+    with pytest.raises(InputError, match=r"(torque_frame|switching): leave it out unless (torque|state) is "):
+        symrot.propagator(name, **option)
+
+
 def test_a_method_that_cannot_be_named_is_not_proposed():
     with pytest.raises(InputError, match=r"got 'constant'$"):
         symrot.propagator("t_handle", "constant")

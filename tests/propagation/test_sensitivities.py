@@ -358,3 +358,53 @@ def test_a_constant_with_a_kink_at_the_value_of_a_variable_is_refused(formula):
 @needs_compiler
 def test_a_constant_that_vanishes_to_a_higher_order_has_the_derivative_zero():
     assert at_zero("c*abs(c) + c**3*(1 + t)") == 0.0
+
+
+def damped(omega, *torques, stop=2):
+    content = {"schema": 1, "body": {"principal": [2, 3, 4]}, "initial": {"omega": omega}, "span": {"t": [0, stop]}}
+    return {**content, "torque": [{"kind": "damping", "quadratic": 1}, *torques]}
+
+
+@needs_compiler
+def test_derivatives_through_a_reversal_under_quadratic_damping():
+    """A wheel with 4 w' = 2 - |w| w passes zero, where |omega| has no derivative; ``w = tan`` before, tanh after."""
+    with mpmath.workdps(40):
+        rate, root = mpmath.sqrt(2) / 4, mpmath.sqrt(2)
+
+        def later(start):
+            return root * mpmath.tanh(rate * (3 + mpmath.atan(start / root) / rate))
+
+        slope = float(mpmath.diff(later, -1))
+    content = damped([0, 0, -1], {"kind": "constant_body", "torque": [0, 0, 2]}, stop=3)
+    motion = symrot.propagate(content, t=[3], sensitivities=["omega_3"])
+    assert abs(motion.sensitivities.omega[0, 2, 0] / slope - 1) < 1e-12
+    both = symrot.propagate_ensemble(content, omega=[[0, 0, -1], [0, 0, 1]], t=[3], sensitivities=["omega_3"])
+    assert abs(both.sensitivities.omega[0, 0, 2, 0] / slope - 1) < 1e-12
+
+
+@needs_compiler
+def test_derivatives_from_rest_under_quadratic_damping():
+    """Spun up from rest, 2 w' = 1 - |w| w: ``w = tanh(t/2)``, and a faster start by dw has ``dw/cosh(t/2)^2``."""
+    at_rest = symrot.propagate(damped([0, 0, 0]), t=[2], sensitivities=["omega"])
+    assert np.array_equal(at_rest.sensitivities.omega[0], np.eye(3))
+    content = damped([0, 0, 0], {"kind": "constant_body", "torque": [1, 0, 0]})
+    motion = symrot.propagate(content, t=[2], sensitivities=["omega_1"])
+    assert abs(motion.sensitivities.omega[0, 0, 0] - 1 / np.cosh(1) ** 2) < 1e-13
+
+
+@needs_compiler
+@pytest.mark.parametrize(
+    "formula", ["-sqrt(omega_1**2 + omega_2**2)", "-sqrt(omega_1*omega_2)*omega_1", "-sqrt(q1**2 + q2**2)"]
+)
+def test_a_motion_that_stays_at_a_corner_of_its_torque_has_no_derivatives(formula):
+    content = damped([0, 0, 1], {"kind": "expression", "torque": [formula, "0", "0"]}, stop=1)
+    with pytest.raises(symrot.PropagationError, match="stays at zero"):
+        symrot.propagate(content, t=[1], sensitivities=["omega"])
+
+
+@needs_compiler
+def test_an_event_whose_formula_has_no_derivative_at_its_zero_has_none():
+    """A root at zero divided by zero here."""
+    content = {**damped([0, 0, 1]), "torque": [{"kind": "constant_body", "torque": [1, 0, 0]}]}
+    motion = symrot.propagate(content, t=[1], sensitivities=["omega_1"], events=["sqrt(omega_1**2 + omega_2**2)"])
+    assert len(motion.t_events[0]) == 1 and np.isnan(motion.sensitivities.t_events[0]).all()

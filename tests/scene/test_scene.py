@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+import symrot
 from symrot.conventions import SEQUENCES
 from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
@@ -370,6 +371,15 @@ def test_the_rotor_steadies_the_prism():
 def test_the_disk_is_flat_and_damped():
     found = load_scene("damped_disk")
     assert found.body.principal.flat and found.torques[0].kind == "damping"
+
+
+def test_a_parameter_that_no_formula_contains_is_a_warning():
+    torque = {"kind": "expression", "torque": ["-k*omega_1", 0, 0], "parameters": {"k": 1, "j": 2}}
+    made = scene(None, [torque])
+    assert made.warnings == (
+        "scene: torque[0].parameters.j: no formula of this torque contains this parameter, so it has no effect",
+    )
+    assert symrot.propagate(made, t=[0]).warnings == made.warnings
 
 
 # --- the walls --------------------------------------------------------------------------------------------------------

@@ -16,5 +16,6 @@ OUTPUTS = ("omega_1", "axis_z@end", "energy@max")
 
 def sweep(**options):
     """Return a sweep of 40 damped tops in this process; ``options`` change it."""
-    chosen = {"vary": VARY, "attitudes": "uniform", "count": 40, "seed": 7, "outputs": OUTPUTS, "workers": 1}
+    chosen = {"vary": VARY, "attitudes": "uniform", "count": 40, "seed": 7, "outputs": OUTPUTS}
+    chosen |= {} if "scheduler" in options else {"workers": 1}
     return symrot.sweep(DAMPED_TOP, **(chosen | options))

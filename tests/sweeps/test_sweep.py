@@ -119,6 +119,12 @@ def test_a_trajectory_whose_output_overflows_has_no_value():
     assert result.array("energy@end_number") == 1
 
 
+def test_a_scene_with_samples_is_refused_before_the_sweep():
+    """Every trajectory was written as one that no motion can have."""
+    with pytest.raises(InputError, match="got a torque of kind table"):
+        symrot.sweep("thruster_pulse", {"omega_1": [0.0, 1.0]}, workers=1)
+
+
 def test_zeros_and_equal_moments_in_other_rows_change_no_bit():
     """The equations of a row are chosen by its own constants, also where a chunk holds rows of other kinds."""
     vary = {"linear_3": [0.0, 0.1], "I_xy": [0.0, 0.05], "I_xx": [1.0, 1.1]}

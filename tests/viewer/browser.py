@@ -73,15 +73,15 @@ class Browser:
                     raise RuntimeError(f"{method}: {answer['error']['message']}")
                 return answer["result"]
 
-    def open(self, path, *, dark=False, still=True):
-        """Open a page and wait until its motion is computed; ``still`` asks for reduced motion, so that it does not play."""
+    def open(self, path, *, dark=False, still=True, ready="window.symrot && !symrot.job && symrot.first"):
+        """Open a page and wait until ``ready`` is true: its motion is computed; ``still`` asks for reduced motion."""
         features = [
             {"name": "prefers-color-scheme", "value": "dark" if dark else "light"},
             {"name": "prefers-reduced-motion", "value": "reduce" if still else "no-preference"},
         ]
         self.ask("Emulation.setEmulatedMedia", features=features)
         self.ask("Page.navigate", url=Path(path).resolve().as_uri())
-        self.wait("window.symrot && !symrot.job && symrot.first")
+        self.wait(ready)
 
     def evaluate(self, expression):
         """Return the value of a JavaScript expression in the page."""

@@ -11,12 +11,15 @@ import pytest
 
 import symrot
 from symrot.certificates.certificate import certificate_json, seal
+from symrot.certificates.exact_law import law_section
 from symrot.certificates.step_certificate import formula_section
 from symrot.cli.main import main
 from symrot.codegen.steps import SteadyRotations, stepped
 from symrot.errors import CertificateError, InputError
 from symrot.formula.tree import FUNCTIONS, parse
 from symrot.workshop.step_text import StepText, step_text
+from symrot.workshop.steps import exact
+from symrot.workshop.steps.whole_state import WholeState
 from tests.needs import needs_compiler
 
 START = {"omega": ["1/2", "1/3", 2], "attitude": {"quaternion": [3, 1, 2, 1]}}
@@ -92,11 +95,100 @@ def test_the_emitted_test_passes(scene, tmp_path):
     assert b"agrees" in subprocess.run([tmp_path / "check"], capture_output=True, check=True).stdout
 
 
-def test_exact_steps_with_elliptic_functions_have_no_certificate(capsys):
-    assert main(["certify", "tumbling_prism", "--step", "exact"]) == 2
-    assert "with elliptic functions, an exact step has a test" in capsys.readouterr().err
-    with pytest.raises(CertificateError, match="only a test"):
-        _ = symrot.emit("tumbling_prism", step="exact").certificate
+@pytest.fixture(scope="module")
+def elliptic(tmp_path_factory):
+    """Return the folder and the certificate of the exact step of a heavy top, checked at one state."""
+    folder = tmp_path_factory.mktemp("elliptic")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(exact, "STATES", 1)
+        yield folder, symrot.certify("heavy_top_loops", directory=folder, step="exact")
+
+
+def test_the_text_of_a_step_with_elliptic_functions_solves_the_equations(elliptic):
+    """Run with 60 digits, at states that follow from the text; both functions, and nothing is called a proof."""
+    folder, certificate = elliptic
+    assert certificate.proofs == () and "checked, not proven" in str(certificate)
+    laws = list(certificate.data["formula"].values())
+    assert len(laws) == 2 and all(float(law["largest_violation"]) < 1e-15 for law in laws)
+    (path,) = folder.glob("*.cert.json")
+    statements = symrot.audit(path).statements[str(path)]
+    assert "the scene in the certificate is the scene heavy_top_loops of symrot" in statements
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("content", [FREE, TOP, {"body": {"principal": [1, 5, "5.9"]}}], ids=["free", "top", "flat"])
+def test_the_law_holds_at_many_states(content):
+    """A comment at the end changes the states: ten times five states, in all regimes."""
+    text = step_text(scene_of(content), "exact")
+    rates, p = WholeState(text.scene), [value for _, _, value in text.form.parameters]
+    for k in range(10):
+        source = f"{text.c()[0]}/* {k} */"
+        law_section(source, f"symrot_{text.name}", rates.program, rates.exact_parameters, p, text._rate)
+
+
+@pytest.mark.parametrize(("content", "old", "new"), [
+    (FREE, "c->u = dd_mul(sine, ", "c->u = dd_mul(dd_negative(sine), "),  # the start of the phase
+    (FREE, "1.0 + f->momentum[2]*b->dn[i]", "1.0 - f->momentum[2]*b->dn[i]"),  # the tilt of the angular momentum
+    *(pytest.param(*each, marks=pytest.mark.campaign) for each in (
+        (FREE, "kappa = prepare_circular(", "kappa = dd_of(1.0); prepare_circular("),  # the rate of precession
+        (FREE, "next, next + 3);", "next + 4, next);"),  # the order of the state
+        (TOP, "rates[6] = {x[", "rates[6] = {2.0*x["),
+    )),
+])  # fmt: skip
+def test_a_wrong_text_violates_the_equations(content, old, new):
+    text = step_text(scene_of(content), "exact")
+    source, rates = text.c()[0], WholeState(text.scene)
+    assert source.count(old) == 1
+    p = [value for _, _, value in text.form.parameters]
+    with pytest.raises(CertificateError, match="expected"):
+        law_section(
+            source.replace(old, new), f"symrot_{text.name}", rates.program, rates.exact_parameters, p, text._rate, 1
+        )
+
+
+def _edited(name, old, new):
+    def change(folder):
+        path = next(folder.glob(name))
+        text = path.read_text()
+        assert old in text
+        path.write_text(text.replace(old, new, 1))
+
+    return change
+
+
+def _sealed(edit):
+    def change(folder):
+        (path,) = folder.glob("*.cert.json")
+        data = json.loads(path.read_text())
+        edit(data)
+        data["seal"] = seal(data)
+        path.write_text(certificate_json(data))
+
+    return change
+
+
+@pytest.mark.parametrize(("change", "message"), [
+    (_edited("*step.c", "status)", "status && x[0] == 3.0)"), "an edited one"),
+    (_edited("*parameters.h", "0.", "1."), "an edited one"), (_edited("*.cert.json", "5,", "7,"), "as symrot prints it"),
+    (_sealed(lambda data: data["scene"]["content"]["body"].update(mass="0.6")), "an edited one"),
+    (_sealed(lambda data: data["scene"]["content"].update(source="elsewhere")), "to be the scene heavy_top_loops"),
+    (_sealed(lambda data: data["scene"].update(content=3)), "expected 'scene'"),
+    (_sealed(lambda data: data["scene"]["content"].update(body={})), "expected 'scene'"),
+    (_sealed(lambda data: data["scene"].update(name="other")), "got that of other_exact_step"),
+    (_sealed(lambda data: data.update(trusted={})), "'trusted' as symrot prints it"),
+    (_sealed(lambda data: data["rates"]["formulas"].pop()), "'rates' as symrot prints it"),
+])  # fmt: skip
+def test_forged_certificates_of_steps_with_elliptic_functions_are_refused(elliptic, tmp_path, change, message):
+    for path in elliptic[0].iterdir():
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    change(tmp_path)
+    with pytest.raises(CertificateError, match=message):
+        symrot.audit(next(tmp_path.glob("*.cert.json")))
+
+
+def test_boxes_of_steps_with_elliptic_functions_are_refused():
+    with pytest.raises(InputError, match="bounds no errors of a step with elliptic functions"):
+        symrot.certify("tumbling_prism", BOX, step="exact")
 
 
 @pytest.mark.parametrize(
@@ -138,12 +230,12 @@ def test_the_bound_of_rounding_contains_the_errors_of_one_step(certified):
             x, dt = np.array([*draw.uniform(-1, 1, 3), *q / np.linalg.norm(q)]), draw.uniform(0.05, 0.1)
             values = dict(zip(names, map(mpmath.mpf, x), strict=True)) | {"t": mpmath.mpf(0)}
             values |= dict(zip(text._parameter_names, map(mpmath.mpf, p), strict=True))
-            exact = stepped(
+            expected = stepped(
                 text._rates_program, text.method, values, mpmath.mpf(dt), functions,
                 lambda value: mpmath.mpf(value.numerator) / value.denominator,
             )  # fmt: skip
             computed = room[text.name](0.0, x, p, dt)
-            worst = np.maximum(worst, [abs(float(mpmath.mpf(a) - b)) for a, b in zip(computed, exact, strict=True)])
+            worst = np.maximum(worst, [abs(float(mpmath.mpf(a) - b)) for a, b in zip(computed, expected, strict=True)])
     assert (worst <= most).all()
     assert most.max() < 5 * worst.max()
 

@@ -30,6 +30,7 @@ Floats = NDArray[np.float64]
 
 DIGITS, ORDER, TAIL = 40, 32, 1e-28
 MOST_STEPS = 2000
+FINER = 1e-4  # share of the last terms of the series that the check of a reference allows
 SLOWEST = 1e-8  # times the initial angular speed (or 1 rad/s): errors of slower bodies are relative to this speed
 
 
@@ -68,12 +69,16 @@ class ExactPath:
         The motion.
     rounded : pair of sequences, optional
         The parameters of the rates and the initial states as doubles; default: the exact numbers of the scene.
+    tail : float
+        The size of the last terms of the series, which determines the steps.
     """
 
     def __init__(
-        self, plan: Plan, kernel: SceneKernel, rounded: tuple[Sequence[float], Sequence[float]] | None = None
+        self, plan: Plan, kernel: SceneKernel, rounded: tuple[Sequence[float], Sequence[float]] | None = None,
+        tail: float = TAIL,
     ) -> None:  # fmt: skip
-        self.plan, self.system = plan, recurrences(kernel.rates)
+        self.plan, self.system, self.tail = plan, recurrences(kernel.rates), tail
+        self._again: Callable[[], ExactPath] = lambda: ExactPath(plan, kernel, rounded, tail * FINER)
         parameters, start = rounded or (exact_parameters(kernel.rate_parameters, plan).values(), exact_start(plan))
         names = [name for name, _ in kernel.rate_parameters]
         with mpmath.workdps(DIGITS):
@@ -88,6 +93,7 @@ class ExactPath:
         self.slowest = SLOWEST * (max([abs(x) for x in self.start[: self.rates]], default=0) or 1)
         self.pieces: list[tuple[Any, Any, list[Any]]] = []  # start and end of the step, coefficients of each state
         self._end: tuple[Any, list[Any]] = (self.t0, self.start)
+        self._period: Any = None
 
     def _advance(self) -> None:
         """Add one step of the Taylor series at the end of the path computed so far."""
@@ -98,11 +104,11 @@ class ExactPath:
         last = max(
             abs(one[ORDER - k]) / (size if i < self.rates else 1) for i, one in enumerate(series) for k in (0, 1)
         )
-        step = (TAIL / last) ** (mpmath.mpf(1) / ORDER) if last else mpmath.mpf(1)
+        step = (self.tail / last) ** (mpmath.mpf(1) / ORDER) if last else mpmath.mpf(1)
         if self.deviations:  # the step must end before a pulse of the torque that its coefficients do not show
             step = min(step, self.span)
             terms = [[float(abs(one[n] * step**n)) for n in range(1, ORDER + 1)] for one in series]
-            allowed = [TAIL * float(size if first < self.rates else 1) for first in self.edges[:-1]]
+            allowed = [self.tail * float(size if first < self.rates else 1) for first in self.edges[:-1]]
             place = [float(x) for x in state]
             proven = longest_followed(
                 self.deviations, float(now), place, terms, float(step), allowed, self.edges, ORDER
@@ -190,17 +196,36 @@ class ExactPath:
 
     def states_of_free_body(self, times: Floats) -> Floats:
         """Return omega and quaternion of a free body at ``times``, none of them before the start, shape (n, 7)."""
-        period = self.period()
         with mpmath.workdps(DIGITS):
-            first, last = self.start[self.rates :], self.state(self.t0 + period)[self.rates :]
-            turn = hamilton(last, [first[0], *(-x for x in first[1:])])
-            length = mpmath.sqrt(sum(x * x for x in turn[1:]))
-            half, axis = mpmath.atan2(length, turn[0]), [x / length for x in turn[1:]]
-            rows = []
-            for time in times:
-                t = mpmath.mpf(float(time)) - self.t0
-                count = mpmath.floor(t / period)
-                state = self.state(self.t0 + (t - count * period))
-                whole = [mpmath.cos(count * half), *(mpmath.sin(count * half) * x for x in axis)]
-                rows.append([*state[: self.rates], *hamilton(whole, state[self.rates :])])
-            return np.array([[float(x) for x in row] for row in rows])
+            return np.array([[float(x) for x in row] for row in self._rows_of_free_body(times)])
+
+    def _rows_of_free_body(self, times: Sequence[float] | Floats) -> list[list[Any]]:
+        """Return omega and quaternion of a free body at ``times`` in 40 digits."""
+        period = self._period = self._period or self.period()
+        first, last = self.start[self.rates :], self.state(self.t0 + period)[self.rates :]
+        turn = hamilton(last, [first[0], *(-x for x in first[1:])])
+        length = mpmath.sqrt(sum(x * x for x in turn[1:]))
+        half, axis = mpmath.atan2(length, turn[0]), [x / length for x in turn[1:]]
+        rows = []
+        for time in times:
+            t = mpmath.mpf(float(time)) - self.t0
+            count = mpmath.floor(t / period)
+            state = self.state(self.t0 + (t - count * period))
+            whole = [mpmath.cos(count * half), *(mpmath.sin(count * half) * x for x in axis)]
+            rows.append([*state[: self.rates], *hamilton(whole, state[self.rates :])])
+        return rows
+
+    def error(self, t: float, periodic: bool) -> float:
+        """Return the error of the states at the time ``t``, from the same path with shorter steps.
+
+        The error of rates is relative to the largest initial rate. ``periodic``: as continued by the period of a free
+        body.
+        """
+        with mpmath.workdps(DIGITS):
+            rows = [
+                path._rows_of_free_body([t])[0] if periodic else path.state(mpmath.mpf(t))
+                for path in (self, self._again())
+            ]
+            size = max([abs(x) for x in self.start[: self.rates]] + [self.slowest])
+            pairs = zip(*rows, strict=True)
+            return float(max(abs(x - y) / (size if i < self.rates else 1) for i, (x, y) in enumerate(pairs)))

@@ -55,7 +55,7 @@ def _ensembles(scene: Scene, count: int, workers: int) -> float:
     return perf_counter() - begin
 
 
-def _sweep(scene: Scene, count: int, workers: int, scheduler: str | None = None) -> float:
+def _sweep(scene: Scene, count: int, workers: int | None, scheduler: str | None = None) -> float:
     """Return the seconds of a sweep of ``count`` tops into a new Zarr file."""
     with TemporaryDirectory(prefix="symrot-") as folder:
         begin = perf_counter()
@@ -72,8 +72,8 @@ def _on_cluster(scene: Scene, count: int, workers: int) -> float:
 
     with LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
         address = cluster.scheduler_address
-        _sweep(scene, 2048 * workers, 1, address)
-        return _sweep(scene, count, 1, address)
+        _sweep(scene, 2048 * workers, None, address)
+        return _sweep(scene, count, None, address)
 
 
 def _peak() -> float:

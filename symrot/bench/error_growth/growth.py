@@ -8,6 +8,7 @@ accepts, and textbook RK4 with 200 steps per revolution.
 import ctypes
 import math
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -61,9 +62,14 @@ class Track:
         self.scene, self.times = scene, times
         self.motion = propagator(scene, "dop853" if self.rough(scene) else "taylor", TIGHTEST)._motion
         self.speed = max(float(np.linalg.norm([float(w) for w in scene.initial.omega_b])), 1e-300)
-        path = ExactPath(self.motion.plan, self.motion.kernel)
-        exact = path.states_of_free_body(times) if periodic else path.states(times)
+        self.periodic, self.path = periodic, ExactPath(self.motion.plan, self.motion.kernel)
+        exact = self.path.states_of_free_body(times) if periodic else self.path.states(times)
         self.truth = self.trajectory(exact)
+
+    @cached_property
+    def reference_error(self) -> float:
+        """The error of the reference at the last time, see :meth:`ExactPath.error`."""
+        return self.path.error(float(self.times[-1]), self.periodic)
 
     @staticmethod
     def rough(scene: Scene) -> str:

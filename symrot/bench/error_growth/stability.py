@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from symrot.bench.comparison.exact_path import DIGITS
 from symrot.bench.error_growth.growth import FROM, METHODS, Track, exponent, growth, median_curve
 from symrot.bench.error_growth.points import carried, laws
 from symrot.errors import InputError, PropagationError
@@ -86,7 +87,7 @@ def _of_plates(long: bool, say: Callable[[str], object]) -> dict[str, Any]:
     revolutions = 10.0 ** np.linspace(1, power, 6 * (power - 1) + 1)
     tracks = []
     for omega in STARTS:
-        say("reference in 30 digits ..")
+        say(f"reference in {DIGITS} digits ..")
         scene = _scene("free plate", {"principal": list(PLATE)}, omega)
         size = math.sqrt(sum(float(w) ** 2 for w in scene.initial.omega_b))
         tracks.append(Track(scene, revolutions * (2.0 * math.pi / size), periodic=True))
@@ -99,7 +100,10 @@ def _of_plates(long: bool, say: Callable[[str], object]) -> dict[str, Any]:
         curves.append(_curve(same[0].method, revolutions, median_curve(list(same), "attitude"),
                              median_curve(list(same), "rates"), invariants))  # fmt: skip
     title = f"free plate, moments {PLATE}, medians of {len(STARTS)} starts"
-    return {"title": title, "variable": "revolutions", "at": revolutions.tolist(), "curves": curves}
+    return {
+        "title": title, "variable": "revolutions", "at": revolutions.tolist(), "curves": curves,
+        "reference_error": max(track.reference_error for track in tracks),
+    }  # fmt: skip
 
 
 def _median(rows: list[Floats], count: int) -> Floats:
@@ -114,7 +118,7 @@ def _of_scene(scene: Scene, long: bool, say: Callable[[str], object]) -> dict[st
             f"{scene.name}: span: expected a last time after the first, got {scene.span.start} to {scene.span.stop} s"
         )
     times = np.linspace(float(scene.span.start), float(scene.span.stop), SAMPLES)
-    say(f"{scene.name}: reference in 30 digits ..")
+    say(f"{scene.name}: reference in {DIGITS} digits ..")
     track = Track(scene, times, periodic=False)
     curves = []
     for curve in growth(track, long, say):
@@ -123,6 +127,7 @@ def _of_scene(scene: Scene, long: bool, say: Callable[[str], object]) -> dict[st
     return {
         "title": scene.title, "variable": "t", "at": times.tolist(), "curves": curves,
         "omega": track.truth.omega.tolist(), "revolutions": track.turns(float(times[-1] - times[0])),
+        "reference_error": track.reference_error,
     }  # fmt: skip
 
 
@@ -200,7 +205,12 @@ def _growth_lines(data: Any) -> list[str]:
     else:
         places = [round(k * (len(at) - 1) / 6) for k in range(1, 7)]
         heads = [f"{at[i]:.4g} s" for i in places]
-    text_lines = [data["title"], "", "error of the attitude, rad, compared with 30 digits"]
+    error = data["reference_error"]
+    right = DIGITS if not error else math.floor(-math.log10(error))
+    text_lines = [
+        data["title"], "",
+        f"error of the attitude, rad, compared with a series in {DIGITS} digits, {right} of them right at the end",
+    ]  # fmt: skip
     rows = [["  method", *heads, *(["grows as"] if "exponents" in data["curves"][0] else [])]]
     drifts = [["  method", *heads, *rows[0][len(heads) + 1 :], "norm of q"]]
     for curve in data["curves"]:
@@ -212,11 +222,11 @@ def _growth_lines(data: Any) -> list[str]:
             rows[-1].append(_power(curve["exponents"]["attitude"]))
             drifts[-1].append(_power(curve["exponents"]["invariants"]))
         drifts[-1].append(_figure(_worst(curve["invariants"].get("quaternion norm", []))))
-    right = tuple(range(1, len(drifts[0])))
+    aligned = tuple(range(1, len(drifts[0])))
     invariant_names = [name for name in data["curves"][0]["invariants"] if name != "quaternion norm"]
-    text_lines += columns(rows, right=right[:-1])
+    text_lines += columns(rows, right=aligned[:-1])
     text_lines += ["", f"largest relative drift of {', '.join(invariant_names) or 'nothing: no invariant'}; "
-              "and of the norm of the quaternion, on the way", *columns(drifts, right=right)]  # fmt: skip
+              "and of the norm of the quaternion, on the way", *columns(drifts, right=aligned)]  # fmt: skip
     notes = "; ".join(f"{each.name}: {each.about}" for each in METHODS)
     if data["variable"] == "revolutions":
         notes += f". Powers are fitted from {FROM:.0f} revolutions on; rounding alone grows as t^0.5 in an invariant, "

@@ -148,6 +148,7 @@ def _wall(d: Derivation, struck: Matrix) -> None:
     d.passage("The body hits a wall with the unit normal $n$, without friction. The coefficient of restitution "
         r"$\epsilon$ gives the impulse:",
             ("J", r"-(1 + \epsilon)\,\frac{n \cdot v_d}{n \cdot K n}\,n"))  # fmt: skip
+    d.nonzero("$K$ is positive definite (step 3), so", give, r"n \cdot K n")
     d.step(
         r"The struck point leaves the wall with the fraction $\epsilon$ of its normal velocity before the impact.",
         speed + N.dot(MOBILITY * blow),

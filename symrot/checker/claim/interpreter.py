@@ -13,6 +13,7 @@ from symrot.checker.claim.scope import Scope, described, is_matrix
 from symrot.checker.claim.tree import Node
 from symrot.checker.decide.unordered import is_unordered
 from symrot.checker.typed.defined_functions import DISPUTED_NAMES, instead
+from symrot.exact.operations import spend
 
 __all__ = ["CONSTANTS", "Interpreter", "time"]
 
@@ -55,6 +56,7 @@ class Interpreter(Scope):
         return value
 
     def evaluate(self, node: Node) -> Any:
+        spend(30)
         try:
             return _EVALUATE[node.kind](self, node)
         except (TypeError, AttributeError) as reason:

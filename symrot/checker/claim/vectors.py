@@ -173,12 +173,17 @@ def _without_marks(node: Node, spelled: Mapping[str, str], vectors: Sequence[Nod
 
 
 def gyroscopic_tensors(sides: Sequence[Node]) -> Iterator[str]:
-    """Yield the names of inertia tensors: J in ``cross(w, J*w)``, ``skew(w)*J*w`` and ``w.T*J*w``."""
+    """Yield the names of inertia tensors: J in ``cross(w, J*w + h)``, ``skew(w)*J*w`` and ``w.T*J*w``."""
     for side in sides:
         for _, node in walk(side):
             factors: Sequence[Node] = ()
-            if node.kind == "call" and node.value == "cross" and node.args[1].kind == "product":
-                factors = (node.args[0], *node.args[1].args)
+            if node.kind == "call" and node.value == "cross":
+                first, second = node.args
+                vector = first.args[-1] if first.kind == "product" else first
+                terms = [term.args[0] if term.kind == "neg" else term
+                         for term in (second.args if second.kind == "sum" else (second,))]  # fmt: skip
+                products = [term for term in terms if term.kind == "product" and vector in term.args]
+                factors = (vector, *products[0].args) if products else ()
             elif node.kind == "product":
                 wrapped = [f.kind == "transpose" or (f.kind == "call" and f.value == "skew") for f in node.args]
                 factors = [f.args[0] if inside else f for f, inside in zip(node.args, wrapped, strict=True)]

@@ -17,6 +17,7 @@ from symrot.checker.decide.definite import surely_nonnegative
 from symrot.checker.decide.ranges import range_text
 from symrot.exact.decide import normal_form
 from symrot.exact.evidence import Requirement
+from symrot.exact.factors import factor_list
 from symrot.exact.printing import as_text
 from symrot.exact.ring.ring import FormulaRing
 
@@ -73,7 +74,7 @@ def _shared_factors(ring: FormulaRing, numerators: Sequence[PolyElement]) -> lis
     if sum(degree > 0 for degree in smallest.degrees()) > MOST_LETTERS:
         return []
     shared = reduce(lambda a, b: a if a.is_ground else a.gcd(b), sorted(numerators, key=len))
-    return [] if shared.is_ground else [factor for factor, _ in shared.factor_list()[1]]
+    return [] if shared.is_ground else [factor for factor, _ in factor_list(shared)[1]]
 
 
 def _left_out(requirement: Requirement, sides: Sequence[tuple[Expr, Expr]], hypotheses: Sequence[Expr]) -> bool:

@@ -14,6 +14,7 @@ from sympy.polys.domains import QQ
 from sympy.polys.orderings import grevlex
 from sympy.polys.rings import PolyElement, PolyRing
 
+from symrot.exact.factors import factor_list
 from symrot.exact.ring.ring import FormulaRing
 
 __all__ = ["Constraints", "constraints_of", "distinct_factors", "occurring"]
@@ -77,7 +78,7 @@ def distinct_factors(poly: PolyElement) -> list[PolyElement]:
     Of a large one, only single unknowns are split off.
     """
     if len(poly) <= MOST_TERMS and len(occurring([poly])) <= MOST_UNKNOWNS and max(map(sum, poly)) <= LARGEST_DEGREE:
-        return [factor.monic() for factor, _ in poly.factor_list()[1]]
+        return [factor.monic() for factor, _ in factor_list(poly)[1]]
     # a large polynomial is not factored: only unknowns that divide every term are split off
     shared = [min(column) for column in zip(*poly, strict=True)]
     unknowns = [poly.ring.gens[place] for place, power in enumerate(shared) if power]

@@ -21,6 +21,7 @@ from symrot.checker.decide.hypotheses import Hypotheses
 from symrot.checker.decide.large_powers import LARGEST_DEGREE, degree_of, point_of_difference, shorter_powers
 from symrot.checker.decide.ranges import condition_texts, follow, positive_symbols, range_text, with_domain
 from symrot.checker.decide.real_points import ATTEMPTS
+from symrot.checker.decide.squares_of_roots import is_square_of_roots
 from symrot.checker.decide.unordered import is_unordered
 from symrot.errors import InputError
 from symrot.exact.budget import one_decision
@@ -276,6 +277,7 @@ class _ClaimCase(Case):
         shorter = [_shorter(*pair) for pair in forms if pair not in free]
         nonzero = _independent({as_text(form): form for form in shorter})
         bases = [base for base in (*self.equation.radicands, *domain.radicands(ring)) if not surely_nonnegative(base)]
+        bases = [base for base in bases if not is_square_of_roots(base, [other for other in bases if other != base])]
         nonnegative = {as_text(base): base for base in bases}
         relations = {f"{text} != 0": Ne(form, 0, evaluate=False) for text, form in nonzero.items()
                      if text not in nonnegative}  # fmt: skip

@@ -3,6 +3,8 @@
 import sympy
 from sympy import Abs, Add, Expr, Mul, Pow
 
+from symrot.exact.factors import factored
+
 __all__ = ["surely_nonnegative"]
 
 MOST_TERMS_OF_SQUARE = 40
@@ -24,5 +26,5 @@ def surely_nonnegative(value: Expr) -> bool:
         return False
     if any(value == 1 - node**2 for node in value.atoms(sympy.sin, sympy.cos)):
         return True
-    factored = sympy.factor(value)
-    return not isinstance(factored, Add) and surely_nonnegative(factored)
+    product = factored(value)
+    return not isinstance(product, Add) and surely_nonnegative(product)

@@ -18,6 +18,7 @@ from symrot.checker.decide.definite import surely_nonnegative
 from symrot.errors import InputError
 from symrot.exact.domain.everywhere import range_everywhere
 from symrot.exact.evidence import Requirement
+from symrot.exact.factors import is_dear
 from symrot.exact.plain_arguments import with_plain_arguments
 from symrot.exact.printing import as_text
 from symrot.exact.ring.roots import is_positive_where_defined
@@ -152,7 +153,7 @@ def _factors(formula: Expr) -> tuple[int, dict[Expr, int]] | None:
     sign, powers = 1, dict[Expr, int]()
     for part, direction in ((above, 1), (below, -1)):
         try:
-            constant, pairs = sympy.factor_list(part)
+            constant, pairs = (Integer(1), [(part, 1)]) if is_dear(part) else sympy.factor_list(part)
         except PolynomialError:
             # SymPy cannot factor it
             return None

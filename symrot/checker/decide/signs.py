@@ -6,6 +6,7 @@ import sympy
 from sympy import Abs, Add, Expr, Mul, Poly, Pow, Rational, S
 
 from symrot.checker.decide.definite import surely_nonnegative
+from symrot.exact.factors import factored
 from symrot.exact.intervals import enclosure
 
 __all__ = ["is_proven_nonnegative", "is_proven_positive"]
@@ -61,7 +62,7 @@ def _proven(formula: Expr, strict: bool) -> bool:
     if _by_form(formula, strict):
         return True
     expanded = sympy.expand(formula)
-    return any(_by_form(other, strict) for other in (expanded, sympy.factor(formula)) if other != formula)
+    return any(_by_form(other, strict) for other in (expanded, factored(formula)) if other != formula)
 
 
 def _by_form(formula: Expr, strict: bool) -> bool:

@@ -4,12 +4,13 @@ A wrong order of factors or a missing transpose changes all entries at once. The
 does not see such faults; so this module edits the whole formula and computes its values at random test points.
 """
 
+import re
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
-from itertools import islice
+from itertools import chain, combinations, islice
 from typing import Any, NamedTuple
 
-from symrot.checker.claim.tree import Node, number, product, replaced, walk
+from symrot.checker.claim.tree import Node, number, product, replaced, walk, with_names
 from symrot.checker.recognition.parts import FUNCTIONS, LACKING, Letters, Values, near, values_of
 from symrot.checker.repair.edits import COST, Edit, bracketed, flattened, single_edits
 from symrot.checker.repair.filter import NumericFilter
@@ -25,7 +26,7 @@ CLOSE = 1e-8
 """The largest relative difference between sums of entries that are compared further."""
 OPERATIONS = ("skew", "cross", "dot", "qmul", "conjugate", "trace")
 """Functions of vectors, matrices and quaternions."""
-LEFT_OUT = ("extra_term", "two_faults", "overall_sign")
+LEFT_OUT = ("extra_term", "overall_sign")
 """Edits that make another formula likelier than a fault: with a term less, or a vector in the other direction."""
 
 
@@ -49,7 +50,10 @@ def has_arrays(formula: Node, numeric: NumericFilter) -> bool:
 def array_faults(formula: Node, numeric: NumericFilter, letters: Letters) -> list[ArrayFault]:
     """Return the edits that may undo a fault of a formula, each with the values of the edited formula."""
     # other faults of scalar formulas are sought part by part, in the module `parts`
-    edits = _edits(formula, numeric, letters) if has_arrays(formula, numeric) else _brackets(formula)
+    if has_arrays(formula, numeric):
+        edits = _edits(formula, numeric, letters)
+    else:
+        edits = chain(_brackets(formula), _exchanges(formula, letters))
     faults = []
     for edit in islice(edits, MOST_EDITS):
         values = values_of(edit.tree, letters.points)
@@ -99,6 +103,15 @@ def _brackets(formula: Node) -> Iterator[Edit]:
             for made in bracketed(node.args):
                 cost = COST["lost_brackets"] + COST["per_level"] * len(path)
                 yield Edit("lost_brackets", cost, path, flattened(replaced(formula, path, _always(made))))
+
+
+def _exchanges(formula: Node, letters: Letters) -> Iterator[Edit]:
+    """Yield edits that exchange two moments of inertia of a scalar formula, such as I_1 and I_3."""
+    # the letters of lengths, a and b, may mean either length
+    moments = [name for name in letters.names if re.fullmatch(r"[IJ](_\w+|[1-3])", name)]
+    for first, second in combinations(moments, 2):
+        tree = with_names(formula, {first: second, second: first})
+        yield Edit("wrong_symbol", COST["wrong_symbol"] + COST["names_exchanged"], (), tree)
 
 
 def _always(node: Node) -> Callable[[Node], Node]:

@@ -67,22 +67,28 @@ SAFE_BY_UNIT = ("exponent", "factor", "wrong_symbol", "extra_term", "missing_ter
 SURE_IF_STATED = ("sin_cos_swap", "half_angle", "double_half_angle", "exponent")
 """The faults of a formula whose letters are all stated, so that it can be no other formula."""
 
+AXIS_OF_MATRIX = "axis of a rotation matrix"
+
 QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"I(_bar)?_?(xy|yx|yz|zy|xz|zx|12|21|23|32|13|31)", ("product of inertia",)),
     (r"[IJ](_bar)?_?(p|t|s|a|c|g|cm|0|n|[xyzOPQGC1-3A-D]|([xyz1-3]_?[1-3]?)\3)?",
      ("moment of inertia", "inertia tensor", "parallel-axis")),
-    (r"(omega|w|Omega)_?(p|pr|prec)", ("precession",)),
-    (r"w", ("angular velocity", "precession", "spin", "rate at", "frequency", "quaternion")),
+    (r"(omega|w|Omega)_?(p|pr|prec)",
+     ("precession", "rate at which the angular velocity", "rate of spin of a free symmetric body")),
+    (r"w", ("angular velocity", "precession", "spin", "rate at", "frequency", "quaternion", AXIS_OF_MATRIX)),
+    (r"(omega|w)_?[xyz1-3]",
+     ("angular velocity", "precession", "spin", "rate at", "frequency", AXIS_OF_MATRIX)),
     (r"(omega|w|Omega)(_?[a-zA-Z0-3]+)?|n|lambda", ("angular velocity", "precession", "spin", "rate at", "frequency")),
     (r"[pqr]", ("angular velocity", "angle rates", "distance of", "vector", "Rodrigues", "quaternion")),
     (r"(d(phi|theta|psi|alpha|gamma)|(phi|theta|psi)_?dot)(_?[1-3])?", ("angle rates", "precession", "spin")),
     (r"dbeta(_?[0-4])?", ("angle rates", "quaternion rates")),
     (r"(q|beta|e|eps|epsilon|eta)_?[0-4iswxyz]",
-     ("quaternion", "Rodrigues parameters of", "axis of a rotation matrix")),
+     ("quaternion", "Rodrigues parameters of", AXIS_OF_MATRIX)),
     (r"d(omega|w|Omega)(_?[xyz1-3])?|d[pr]", ("Euler's equations", "angular acceleration")),
     (r"dq", ("Euler's equations", "angular acceleration", "Rodrigues", "quaternion")),
     (r"theta|phi|psi|Phi|vartheta|varphi", ("angle of", "angle at")),
     (r"alpha(_?[xyz1-3])?|d(dphi|dtheta|dpsi)", ("angular acceleration",)),
+    (r"a_?[xyz1-3]", ("acceleration", "frequency", AXIS_OF_MATRIX)),
     (r"a(_?[a-zA-Z0-9]+)?", ("acceleration", "frequency")),
     (r"v(_?[a-zA-Z0-9]+)?", ("speed", "velocity of", "product", "vector")),
     (r"T(_?rot)?|K|K_?E|E(_?(k|kin|rot))?|KE",
@@ -91,13 +97,14 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"(V|U)_?eff", ("effective potential",)),
     (r"W", ("work", "potential", "energy")),
     (r"V|U|E_?p|PE", ("potential", "work")),
-    (r"d[LHh](_?([xyzOGCPAB0-3]|cm))?", ("rate of the angular momentum",)),
+    (r"d[LHhM](_?([xyzOGCPAB0-3]|cm))?", ("rate of the angular momentum",)),
     (r"[Hh](_?([xyzOGCPAB0-3]|cm))?", ("angular momentum",)),
     (r"L(_?([xyzOGCPAB0-3]|cm))?", ("angular momentum", "Lagrangian", "torque")),
     (r"p_?(phi|theta|psi|varphi)|P_?(phi|theta|psi)", ("momentum of",)),
     (r"M", ("torque", "angular momentum of", "gyroscopic couple")),
     (r"(M|N|tau|Gamma|Q)(_?[a-zA-Z1-3]+)?", ("torque", "gyroscopic couple")),
     (r"P(_?rot)?", ("power",)), (r"e", ("angle", "energy")),
+    (r"k_?[xyz1-3]", ("radius of gyration", AXIS_OF_MATRIX)),
     (r"[kK](_?[a-zA-Z0-3]+)?", ("radius of gyration", "kinetic energy")),
     (r"dq_?[0-4swxyz]?|d(e|eta|epsilon)_?[0-3]?", ("quaternion",)),
 )  # fmt: skip
@@ -178,8 +185,10 @@ def is_of_body(code: str, known: str) -> bool:
 def misfit_of(name: str, known: str) -> float:
     """Return how badly a known formula's name ``known`` fits the quantity ``name``: a larger number is worse."""
     sequence = _rank_of_sequence(known) / (2 * len(USUAL_SEQUENCES))
-    # "first component .." does not fit to omega_3
-    return _misplaced(name, known) + any(body in known for body in RARE) + sequence
+    # "first component .." does not fit to omega_3, nor "entry 22 .." to R_11
+    own, entry = re.fullmatch(ENTRY, name), re.match("entry ([1-3]{2}) of", known)
+    is_other_entry = own is not None and entry is not None and entry[1] != own[1]
+    return _misplaced(name, known) + is_other_entry + any(body in known for body in RARE) + sequence
 
 
 def has_word(known: str, words: Sequence[str] | None) -> bool:
@@ -199,6 +208,9 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     count += is_steady(near.known.name) and TIME in [node for _, node in walk(named.formula)]  # t is a letter of it
     is_new = not quantities_in(near.tree) <= quantities_in(named.formula)
     is_special = near.is_symmetric and not OF_ANGLES.search(near.known.name)
+    is_component = _is_component_of_parameters(named, near) or _is_angle_of_entries(named, near)
+    if is_new and near.code == "wrong_symbol" and is_component:
+        return True
     if is_new and (
         max(quantities, near.array_letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_special
     ):
@@ -235,6 +247,8 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
     if is_rotation and re.fullmatch(r"[RCAQ](_\w+)?", named.name):
         return True
     if _is_stated(claim, named, near) or _is_component_of_quaternion(named, near) or _is_entry_of_matrix(named, near):
+        return True
+    if is_component:
         return True
     if near.code == "sign_of_term" and _is_of_stated_flat_body(claim, near):
         return True
@@ -322,7 +336,31 @@ def _is_entry_of_matrix(named: NamedFormula, near: Near) -> bool:
     """Return whether a claim's quantity is named as a matrix entry, such as R_12, and ``near`` is a formula for it."""
     # a single product may be an entry of another matrix
     own, entry = re.fullmatch(ENTRY, named.name), re.match(r"entry ([1-3]{2}) of the rotation matrix", near.known.name)
-    return own is not None and entry is not None and own[1] == entry[1] and has_terms(named.formula)
+    is_same = own is not None and entry is not None and own[1] in (entry[1], entry[1][::-1])
+    return is_same and has_terms(named.formula)
+
+
+def _is_angle_of_entries(named: NamedFormula, near: Near) -> bool:
+    """Return whether a claim gives an angle by three or more entries of a matrix, and ``near`` is such an angle."""
+    letters = names_in(named.formula)
+    is_of_entries = len(letters) >= LEAST_SYMBOLS_EDITED and all(re.fullmatch(ENTRY, letter) for letter in letters)
+    return is_of_entries and re.search(r"angle .*of a rotation matrix", near.known.name) is not None
+
+
+def _is_component_of_parameters(named: NamedFormula, near: Near) -> bool:
+    """Return whether a claim is for a component of Rodrigues parameters, as ``sigma_1`` is, from those of a quaternion,
+    as beta_1 and beta_0 are, and ``near`` is a formula for this component.
+    """
+    place = re.fullmatch(r"[a-z]+_?([1-3])", named.name)
+    word, _, rest = near.known.name.partition(" component of the ")
+    series = {re.sub("_?[0-4]$", "", name) for name in names_in(named.formula)}
+    is_series = len(series) == 1 and not names_in(named.formula) & series
+    return (
+        place is not None
+        and is_series
+        and place[1] in COMPONENTS.get(word, "")
+        and "Rodrigues parameters of a quaternion" in rest
+    )
 
 
 def _only_in_sines(formula: Node) -> set[str]:

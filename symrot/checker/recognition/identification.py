@@ -69,7 +69,7 @@ LETTERS = {
     "kg m/s": r"[pP]\w*", "N m, of momentum": r"d[LHhM]\w*",
     "N m": r"(M|N|T|Q|tau|Gamma)(_\w+)?|K_?[1-3xyz]",
     "rad/s": r"(omega|w|Omega|n|nu|p|q|r|s|S|lambda)(_?\w+)?|d(phi|theta|psi|alpha|beta|gamma)(_?[1-3])?",
-    "rad/s^2": r"alpha\w*|d(omega|w)\w*|dd\w+|d[pqr]", "m/s": r"[vuV]\w*", "m/s^2": r"[ga]\w*",
+    "rad/s^2": r"alpha\w*|d(omega|w|Omega)\w*|dd\w+|d[pqr]", "m/s": r"[vuV]\w*", "m/s^2": r"[ga]\w*",
     "s": r"[tTP]\w*|tau|Delta_t", "J": r"[ETKVUW]\w*", "N m/rad": r"(k|c|kappa)(_\w+)?", "m, of gyration": r"[kri]\w*",
     "1": r"([nkeulqpsgcabdr]|beta|eps|epsilon|varepsilon|eta|xi|rho|sigma|gamma|lambda|mu|[RACQ]_?[0-9])\w*",
 }  # fmt: skip

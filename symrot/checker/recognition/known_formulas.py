@@ -16,7 +16,7 @@ from symrot.checker.recognition.formulas.bodies import bodies
 from symrot.checker.recognition.formulas.kinematics import GYROSCOPE, OF_ONE_ENTRY, along_axes, rotations, vectors
 from symrot.checker.recognition.formulas.mechanics import one_axis, tops
 from symrot.checker.recognition.formulas.points import ANY_VECTORS, GENERAL, points
-from symrot.checker.recognition.relations import primitive, relations, solved
+from symrot.checker.recognition.relations import new_symbol, primitive, relations, solved
 from symrot.conventions import SEQUENCES
 from symrot.dynamics.equations import euler_equations
 from symrot.dynamics.structure import FieldPattern, FieldTorque, Pattern
@@ -221,6 +221,10 @@ def _mechanics() -> Iterator[Named]:
         yield f"gyroscopic torque omega x I omega, {axes}", page_of, omega.cross(momentum)
         yield f"angular momentum I omega, {axes}", "derivations/angular_momentum.md", momentum
         yield f"kinetic energy of rotation, {axes}", "derivations/kinetic_energy.md", omega.dot(momentum) / 2
+    wheels = Matrix([new_symbol(f"h_{n}", "kg m^2/s") for n in (1, 2, 3)])
+    for inertia, axes in ((principal, "principal axes"), (full, "any body axes")):
+        needed = inertia * rates + omega.cross(inertia * omega + wheels)
+        yield f"torque by Euler's equations of a gyrostat, {axes}", "derivations/gyroscopic_wheel.md", needed
     A, B, C = moments
     symmetric = diag(A, A, C)
     needed = symmetric * rates + omega.cross(symmetric * omega)
@@ -256,6 +260,26 @@ def _torques() -> Iterator[Named]:
             yield f"torque of {title}, body components", source, law.torque.subs(letters)
         if law.potential is not None:
             yield f"potential of {title}", source, law.potential
+    yield from _gravity_gradient()
+
+
+def _gravity_gradient() -> Iterator[Named]:
+    """Yield the torque of the gradient of gravity on a body with any tensor of inertia."""
+    (xx, yy, zz), (xy, xz, yz) = symbols.moments, symbols.products
+    full = Matrix([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    motion = Motion(Matrix(symbols.omega_b), symbols.quaternion, full)
+    law = torque_law(FieldTorque("gravity_gradient", "", (("mean_motion", FREE),)), motion)
+    named = {symbol.name: symbol for symbol in law.torque.free_symbols}
+    direction = dict(zip((named[f"radius_{axis}"] for axis in (1, 2, 3)), symbols.axis, strict=True))
+    by_rate = law.torque.subs({named["mean_motion"]: symbols.n, **direction})
+    attraction = new_symbol("mu_g", "m^3/s^2")  # Kepler: n^2 = mu/R^3 on a circle
+    by_distance = by_rate.subs(symbols.n**2, attraction / symbols.R**3)
+    for torque in (by_rate, by_distance):
+        yield (
+            "torque of the gravity gradient by the tensor of inertia",
+            'symrot.dynamics.torques, kind "gravity_gradient"',
+            torque,
+        )
 
 
 def _letters_of_books(torque: Matrix) -> list[dict[Symbol, Symbol]]:
@@ -368,7 +392,7 @@ def _selected(
             continue
         seen.add((name, text))
         scaled = "quaternion rate" in name
-        only_named = (name in few and _is_monomial(entries[0])) or name in of_letters
+        only_named = (name in few and all(map(_is_monomial, entries))) or name in of_letters
         known = Known(name, source, text, scaled or is_relation, only_named, is_relation)
         yield relation_key(own.key(shape, range(len(entries))), is_relation), known
 

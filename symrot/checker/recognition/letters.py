@@ -52,7 +52,10 @@ def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:
     at = sorted(defined, key=lambda point: -min((point.value(root) for root in roots), default=0.0))[:POINTS]
     if len(at) < POINTS:
         return None
-    trees, atoms, angles = [named.formula], dict[Node, Values](), dict[Node, Values]()
+    # in I_1*omega_1' = .. the factor I_1 is a letter of the formula for omega_1', too
+    factors = named.side.args if named.side.kind == "product" else ()
+    coefficients = [factor for factor in factors if factor.kind == "name" and factor.value != named.name]
+    trees, atoms, angles = [named.formula, *coefficients], dict[Node, Values](), dict[Node, Values]()
     while trees:
         tree = trees.pop()
         if tree.kind == "call" and tree.value in OPPOSITE:
@@ -76,7 +79,7 @@ def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:
         for place, point in enumerate(at)
     ]  # fmt: skip
     aliases = {Node("name", name): values_of(Node("name", name), at) or () for name in short}
-    return Letters(_active(named.formula, atoms, places), angles, places, aliases)
+    return Letters(_active(named, atoms, places), angles, places, aliases)
 
 
 def _symbols_of(definitions: Mapping[str, Node], numeric: NumericFilter) -> set[str]:
@@ -86,8 +89,9 @@ def _symbols_of(definitions: Mapping[str, Node], numeric: NumericFilter) -> set[
     return names - {"pi", *numeric.functions, *numeric.definitions}
 
 
-def _active(formula: Node, atoms: dict[Node, Values], places: list[PointOfLetters]) -> dict[Node, Values]:
+def _active(named: NamedFormula, atoms: dict[Node, Values], places: list[PointOfLetters]) -> dict[Node, Values]:
     """Return the ``atoms`` that change a formula's value: only the diagonal entries for the trace of a matrix."""
+    formula = named.formula
     if len(atoms) < MANY:
         return atoms  # a formula of few letters depends on all of them
     here = values_of(formula, places[:1])
@@ -98,7 +102,7 @@ def _active(formula: Node, atoms: dict[Node, Values], places: list[PointOfLetter
             moved.symbols = {**moved.symbols, str(atom.value): values[0] + 0.1}
         else:
             moved.rates = {**moved.rates, atom: values[0] + 0.1}
-        if values_of(formula, [moved]) != here:
+        if values_of(formula, [moved]) != here or atom in named.side.args:
             active[atom] = values
     return active
 

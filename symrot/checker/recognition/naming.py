@@ -11,7 +11,7 @@ from dataclasses import replace
 from itertools import combinations, islice
 from typing import Any
 
-from sympy import Function, Matrix, Mul, Pow, Rational, Symbol, acos, asin, atan2
+from sympy import Function, Matrix, Mul, Pow, Rational, Symbol, acos, asin, atan, atan2, fraction
 
 from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.claim.claims import Claim
@@ -51,7 +51,12 @@ from symrot.checker.recognition.identification import identified, known_value
 from symrot.checker.recognition.known_formulas import ending_of
 from symrot.checker.recognition.letters import is_atom
 from symrot.checker.recognition.nearby import Near, near_formulas
-from symrot.checker.recognition.quantity_variants import is_evident_by_quantity, quantity_variants, without_inverse
+from symrot.checker.recognition.quantity_variants import (
+    by_lengths,
+    is_evident_by_quantity,
+    quantity_variants,
+    without_inverse,
+)  # fmt: skip
 from symrot.checker.recognition.relations import terms_expanded, without_common_powers
 from symrot.checker.recognition.solved_relations import put_back, solved_claims
 from symrot.checker.repair.edits import COST, FAULT_DESCRIPTIONS, PRODUCT_OF_INERTIA, Edit, single_edits
@@ -144,6 +149,8 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
         recognised = Verdict("recognised", recognised_as=readings, notes=_on_signs_of_products(claim, named, readings))
         return recognised if usual is None else usual
     nearest = _nearest(claim, named) if repair else None
+    if nearest is None:
+        nearest = by_lengths(named, lambda changed: verdict_on_name(claim, changed, repair))
     if nearest is not None:
         return nearest
     own, others = names_in(named.side), names_in(named.formula)
@@ -399,6 +406,8 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     for near in nearby:
         if near.tree in tried or len(repairs) == MOST_REPAIRS or len(tried) == MOST_PROOFS:
             continue
+        if near.code == "two_faults" and not repairs:
+            continue  # two signs alone are no evidence of a fault
         tried.add(near.tree)
         if not is_evident(claim, named, near) or (shifted and is_of_body(near.code, near.known.name)):
             continue
@@ -558,7 +567,7 @@ def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int)
     Empty for too few symbols; ``least_symbols`` is the usual minimum.
     """
     solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
-    is_open = (words_of(named) is None or _is_stated(claim, named)) and least_symbols == LEAST_SYMBOLS
+    is_open = _is_stated(claim, named) or (words_of(named) is None and least_symbols == LEAST_SYMBOLS)
     least = LEAST_SYMBOLS if is_open else _least_symbols_related(named.side, tree)
     return solved or _readings_of_relation(claim, named, tree, least)
 
@@ -619,7 +628,8 @@ def _readings_of_formula(
     if not is_matrix(value) and len(value.atoms(Function, Symbol) - {time}) < fewest:
         return ()
     letters = {*letters_of(formula)}
-    searched, ending = _without_function(value)
+    is_tangent = named.side.kind == "call" and named.side.value == "tan"
+    searched, ending = _without_function(value, is_tangent)
 
     def fits(known: Identification) -> bool:
         return (
@@ -639,10 +649,11 @@ def _readings_of_formula(
     return tuple(likeliest[:MOST_READINGS])
 
 
-def _without_function(value: Any) -> tuple[Any, str]:
+def _without_function(value: Any, of_tangent: bool = False) -> tuple[Any, str]:
     """Return a value without its outer root or inverse function, and words for that function.
 
     ``acos(u)`` gives (u, ", acos"), ``sqrt(u)`` gives (u, ", squared"); another u gives (u, "").
+    ``of_tangent``: ``atan(a/b)``, the solution of ``tan(x) = a/b``, gives (a and b, ", atan2").
     """
     if is_matrix(value):
         return value, ""
@@ -650,6 +661,8 @@ def _without_function(value: Any) -> tuple[Any, str]:
     if any(power.exp == Rational(1, 2) for power in Mul.make_args(value) if power.is_Pow):
         return value**2, SQUARED
     factor, function = value.as_coeff_Mul()
+    if of_tangent and isinstance(function, atan) and factor == 1:
+        return Matrix(fraction(function.args[0])), ", atan2"
     if not isinstance(function, acos | asin | atan2):
         return value, ""
     if factor < 0 and isinstance(function, asin):

@@ -281,7 +281,8 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
     if not trees:
         return []
     absent = next((name for name, other in renaming.items() if other is None), None)
-    name, is_similar = absent_name(absent, renaming) if absent is not None else ("", False)
+    unused = [text_of(atom) for atom in letters.atoms if text_of(atom) not in renaming.values()]
+    name, is_similar = absent_name(absent, renaming, unused) if absent is not None else ("", False)
     lacking = _lacking_letter(absent, name, letters) if absent is not None else None
     if lacking in letters.atoms:
         return []
@@ -440,6 +441,10 @@ def _needed(named: NamedFormula, known: Known, target: Values, letters: Letters)
     if named.solve is None:
         return None
     if ending_of(known.name) == SQUARED and named.side == Node("power", None, (_quantity(named), number(2))):
+        return target
+    if (named.side.value, ending_of(known.name)) in (("cos", ", acos"), ("sin", ", asin")) and is_atom(
+        named.side.args[0]
+    ):
         return target
     try:
         # the root for a known square, the angle for a known cosine

@@ -29,6 +29,9 @@ ORDER = {"phi": "1", "theta": "2", "psi": "3"}
 RATES = {"omega_1": "p", "omega_2": "q", "omega_3": "r"}
 """Component of an angular velocity -> the letter of an aircraft's rate."""
 
+MATRIX_ENTRY = re.compile("R_[1-3]{2}")
+"""An entry of a rotation matrix in known formulas."""
+
 USUAL = {"c_3": "l", "mu": "m", "omega_3": "omega", "domega_3": "alpha"}
 """Name in known formulas -> the name that books use where it is the only quantity of its kind."""
 
@@ -201,17 +204,22 @@ def is_fitting(known: str, own: str, is_angle: bool) -> bool:
     return agree_in_unit(known, own)
 
 
-def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]:
-    """Return a name for the symbol ``known`` that a claim lacks, and whether a series gives it: w_3 after w_1, w_2."""
+def absent_name(known: str, renaming: dict[str, str | None], unused: Collection[str] = ()) -> tuple[str, bool]:
+    """Return a name for the symbol ``known`` that a claim lacks, and whether a series gives it: w_3 after w_1, w_2.
+
+    ``unused`` are the claim's letters that are no other symbol of the known formula: I_1 gives I_3 for C.
+    """
     for mine, other in renaming.items():
         if other is not None and (numbered := _numbered_angle(known, mine, plain_name(other))):
             return numbered, True
-        if known in ORDER and mine in ORDER and plain_name(other or "") == mine:
+        if known in ORDER and mine.removeprefix("d") in ORDER and plain_name(other or "") == mine:
             return known, True
     if (of_product := _absent_of_product(known, renaming)) is not None:
         return of_product, True
     if known in RATES and any(renaming.get(mine) == letter for mine, letter in RATES.items()):
         return RATES[known], True
+    if (entry := _absent_entry(known, renaming)) is not None:
+        return entry, True
     axis = axes_of(known)
     unit = UNIT_OF_NAME.get(known)
     for mine, other in renaming.items():
@@ -221,7 +229,28 @@ def absent_name(known: str, renaming: dict[str, str | None]) -> tuple[str, bool]
             continue
         own, new = axes_of(mine), axes_of(name)
         if axis and own == new:
-            letters = "0xyz" if index[0].isalpha() else "0123"
-            new_index = "".join(letters[place] for place in sorted(axis))
-            return name[: index.start()] + new_index * (len(index[0]) if len(axis) == 1 else 1) + mark, True
+            return name[: index.start()] + _index_like(index[0], axis) + mark, True
+    for other in unused:
+        name, mark = _without_mark(plain_name(other))
+        index = INDEX.search(name)
+        if index is not None and len(axis) == 1 and len(axes_of(name)) == 1 and is_fitting(known, other, False):
+            return name[: index.start()] + _index_like(index[0], axis) + mark, True
     return USUAL.get(known, known), False
+
+
+def _absent_entry(known: str, renaming: dict[str, str | None]) -> str | None:
+    """Return a name for the entry ``known`` of a rotation matrix: r_21 for R_21 if R_11 is r_11.
+
+    None without entries in the claim, or if they have other indices.
+    """
+    pairs = [(mine, other) for mine, other in renaming.items() if other is not None and MATRIX_ENTRY.fullmatch(mine)]
+    if MATRIX_ENTRY.fullmatch(known) is None or not pairs or any(mine[-2:] != other[-2:] for mine, other in pairs):
+        return None
+    return pairs[0][1][:-2] + known[-2:]
+
+
+def _index_like(index: str, axes: Collection[int]) -> str:
+    """Return the index for the axes, written as ``index`` is: "z" or "zz" for axis 3 beside "x" or "xx"."""
+    letters = "0xyz" if index[0].isalpha() else "0123"
+    made = "".join(letters[place] for place in sorted(axes))
+    return made * (len(index) if len(axes) == 1 else 1)

@@ -47,7 +47,24 @@ def solved_relations() -> tuple[SolvedRelation, ...]:
                 value = product([solution.rest, Node("inv", None, (solution.coefficient,))])
                 title = known.name + SQUARED * (solution.exponent == 2)
                 solved.append(SolvedRelation(name, Known(title, known.source, text(value))))
+        for name, known_angle in _solved_for_angles(known, tree):
+            solved.append(SolvedRelation(name, known_angle))
     return tuple(solved)
+
+
+def _solved_for_angles(known: Known, tree: Node) -> Iterator[tuple[str, Known]]:
+    """Yield (angle, formula) for each angle whose cosine or sine occurs once: ``H*cos(theta) == C*omega`` for theta."""
+    for function, inverse in (("cos", "acos"), ("sin", "asin")):
+        calls = [node for _, node in walk(tree) if node.kind == "call" and node.value == function]
+        for call in dict.fromkeys(calls):
+            angle = call.args[0]
+            solution = _solution(_terms(tree), call) if angle.kind == "name" else None
+            if solution is None or solution.exponent != 1:
+                continue
+            if any(node == angle for part in (solution.coefficient, solution.rest) for _, node in walk(part)):
+                continue
+            value = product([solution.rest, Node("inv", None, (solution.coefficient,))])
+            yield str(angle.value), Known(f"{known.name}, {inverse}", known.source, text(value))
 
 
 def solved_claims(left: Node, right: Node, atoms: Sequence[Node]) -> Iterator[NamedFormula]:

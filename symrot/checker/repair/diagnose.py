@@ -22,6 +22,7 @@ from symrot.checker.repair.insertions import exchanged_definitions, missing_matr
 from symrot.checker.repair.joined_pairs import joined_pairs, pair_of
 from symrot.checker.repair.points import UndefinedValue
 from symrot.checker.repair.solve_for_piece import solutions
+from symrot.checker.repair.vector_edits import vector_edits
 from symrot.checker.repair.whole_edits import after_whole_edits
 from symrot.checker.verdict import Diagnosis, Repair
 from symrot.errors import InputError
@@ -108,6 +109,7 @@ class _Search:
             ),
             lambda: () if self.conditional else missing_terms(numeric),
             lambda: missing_matrices(numeric),
+            lambda: () if self.conditional else vector_edits(numeric),
         )
         repairs: list[Repair] = []
         for stage in stages:

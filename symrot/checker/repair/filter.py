@@ -59,7 +59,7 @@ class NumericFilter:
         self.functions = sorted({*claim.functions, *(name for name, called in names if called)})
         loose = {name for name, called in names if not called and claim.implied and name != "pi"}
         loose -= {*self.definitions}  # a vector has the value of its components
-        self.symbols = sorted({*claim.symbols, *loose, "t"} - {*self.functions})
+        self.symbols = sorted({*claim.symbols, *loose, "t"} - {*self.functions, *self.definitions})
         hypotheses = [relation[1:] for relation in claim.hypotheses if relation[0] == "=="]
         narrow = any(node.value in ("asin", "acos") for tree in trees for _, node in walk(tree))
         most = 0.9 if narrow else 1.7

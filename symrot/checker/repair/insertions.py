@@ -6,7 +6,7 @@ A missing term is the exact difference of the sides.
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from sympy import Add, Expr, Integer, factor
+from sympy import Add, Expr, Integer
 
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, Path, number, product, replaced, sum_of, text, walk
@@ -23,6 +23,7 @@ from symrot.checker.repair.filter import (
 )
 from symrot.errors import InputError
 from symrot.exact.decision import flatten
+from symrot.exact.factors import factored
 from symrot.exact.inverse_sums import vanishes
 from symrot.exact.printing import as_text
 from symrot.exact.ring.ratio import TooLarge
@@ -165,7 +166,7 @@ def _term(residual: Any, piece: Node | None) -> Node | None:
     if above.is_Add:
         if len(above.free_symbols) > most:
             return None  # a term with that many names is longer, and factoring takes seconds
-        residual = factor(residual) if len(above.args) <= MOST_TERMS else above
+        residual = factored(residual) if len(above.args) <= MOST_TERMS else above
     letters = len(as_text(residual))
     if residual.is_Add or letters > MOST_LETTERS:
         return None

@@ -45,6 +45,7 @@ from symrot.checker.repair.rows import (
     times,
     transposed,
 )
+from symrot.exact.operations import spend
 from symrot.kinematics.hamilton import hamilton
 
 __all__ = ["Point", "UndefinedValue", "agree", "entries_of", "points"]
@@ -112,7 +113,9 @@ class Point:
         key = id(node)
         if key in self.known:
             return self.known[key]
-        self.spent[0] += self.weight * (1 + len(node.args) // 4)  # long sums and products cost more
+        weight = self.weight * (1 + len(node.args) // 4)  # long sums and products cost more
+        self.spent[0] += weight
+        spend(weight)
         value = _VALUE[node.kind](self, node)
         if key in self.remembered:
             self.known[key] = value

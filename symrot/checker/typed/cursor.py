@@ -31,7 +31,7 @@ FACTOR_MARKS = ("(", "[", "√")
 """Marks with which a factor without a sign before it may start."""
 
 VECTOR_FUNCTIONS = ("cross", "vee", "Matrix")
-USUAL_VECTORS = frozenset([*"abcdeuvwrpqnsFLHMNRT", "omega", "Omega", "alpha", "tau"])
+USUAL_VECTORS = frozenset([*"abcdeuvwrpqnsFLHMNRT", "omega", "Omega", "alpha", "tau", "epsilon", "eps", "sigma"])
 """Names between which a letter x with blanks around it is a product sign, unless x is a name of the text."""
 
 

@@ -12,6 +12,7 @@ from symrot.formula.program import Argument, Program
 __all__ = ["CONTRACT", "Description", "banner", "cost"]
 
 WIDTH = 110
+LONGEST = 116  # of a domain in one line
 WIDEST = 56  # largest width of an aligned column; a longer entry shifts the rest of its row
 NAMES = {"add": "add", "mul": "mul", "div": "div", "neg": "neg"}
 
@@ -34,6 +35,12 @@ class Description:
     command: str  # the command that prints the file
     convention: str = "body axes; quaternion scalar first, Hamilton, body to space (symrot conventions)"
     contract: tuple[tuple[str, str], ...] = ()  # further lines (heading, text); {kernel} is its name
+
+
+def _domain(domain: str) -> list[str]:
+    """Return the lines that state the domain: one, unless it is very long."""
+    line = f"Domain: {domain}."
+    return [line] if len(line) <= LONGEST else wrap(line, WIDTH, subsequent_indent="    ")
 
 
 def _harmless(text: str) -> str:
@@ -99,7 +106,7 @@ def banner(program: Program, description: Description, start: str, each: str, en
     lines += [
         "",
         f"Convention: {description.convention}.",
-        f"Domain: {description.domain}.",
+        *_domain(description.domain),
         *(line for heading, text in description.contract
           for line in wrap(f"{heading}: {text.replace('{kernel}', name)}.", WIDTH, subsequent_indent="    ")),
         f"Cost: {cost(program)}.",

@@ -12,6 +12,7 @@ from sympy import Abs, Add, Expr, Integer, Rational, default_sort_key, exp, fact
 from sympy.polys.domains import ZZ
 from sympy.polys.rings import PolyElement
 
+from symrot.exact.factors import factor_list
 from symrot.exact.functions import REWRITTEN
 from symrot.exact.intervals import enclosure
 from symrot.exact.ring.roots import sign_of
@@ -71,7 +72,7 @@ def product_of(
         if poly.is_ground:
             constant, pairs = poly.LC, []
         else:
-            constant, pairs = poly.factor_list() if len(poly) <= MOST_TERMS else (1, [(poly, 1)])
+            constant, pairs = factor_list(poly) if len(poly) <= MOST_TERMS else (1, [(poly, 1)])
         numbers.append((Rational(abs(int(constant)), int(denominator)), times))
         sign *= -1 if constant < 0 else 1
         for factor, n in pairs:

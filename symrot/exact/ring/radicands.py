@@ -12,6 +12,7 @@ from sympy import Abs, Expr, Rational
 from sympy.polys.domains import ZZ
 from sympy.polys.rings import PolyElement
 
+from symrot.exact.factors import factor_list
 from symrot.exact.ring.roots import Root, absolute, sign_of, written
 
 __all__ = ["Dependence", "dependences", "take_squares"]
@@ -55,14 +56,14 @@ def _square_part(poly: PolyElement) -> tuple[PolyElement, list[tuple[PolyElement
     for part, times in poly.sqf_list()[1]:
         if times > 1 and not part.is_ground:
             rest = rest.exquo(part ** (times // 2 * 2))
-            squares += [(factor, n * (times // 2)) for factor, n in part.factor_list()[1]]
+            squares += [(factor, n * (times // 2)) for factor, n in factor_list(part)[1]]
     return rest, squares
 
 
 def _irreducible(poly: PolyElement) -> list[tuple[PolyElement, int]]:
     if len(poly) > MOST_TERMS:
         return [(poly, 1)]
-    return [(factor, n) for factor, n in poly.factor_list()[1]]
+    return factor_list(poly)[1]
 
 
 @dataclass(frozen=True)
@@ -123,8 +124,8 @@ def _factored(poly: PolyElement) -> tuple[Rational, dict[PolyElement, int]]:
     if poly.is_ground or len(poly) > MOST_TERMS:
         # a long polynomial is not factored: it is the only factor
         return (_rational(poly.LC), {}) if poly.is_ground else (Rational(1), {poly: 1})
-    constant, pairs = poly.factor_list()
-    return _rational(constant), {factor: int(n) for factor, n in pairs}
+    constant, pairs = factor_list(poly)
+    return _rational(constant), dict(pairs)
 
 
 def _rational(value: Any) -> Rational:

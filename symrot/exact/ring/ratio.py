@@ -15,6 +15,7 @@ from sympy.polys.domains import QQ
 from sympy.polys.rings import PolyElement, PolyRing
 
 from symrot.errors import InputError
+from symrot.exact.operations import spend
 
 __all__ = ["MOST_PRODUCTS", "Ratio", "Ratios", "TooLarge"]
 
@@ -134,11 +135,13 @@ class Ratios:
         return below
 
     def _spend(self, products: int) -> None:
-        self.products += products * (1 + len(self.generators) // 8)  # a long monomial costs more
+        products *= 1 + len(self.generators) // 8  # a long monomial costs more
+        self.products += products
         if self.products > MOST_PRODUCTS:
             raise TooLarge(
                 f"expected a formula whose expansion takes at most {MOST_PRODUCTS} products of terms, got more"
             )
+        spend(products)
 
     def _split(self, poly: PolyElement, source: Expr) -> tuple[Fraction, tuple[tuple[int, int], ...]]:
         """Return (constant, factors): a polynomial as a rational constant times powers of the stored factors.

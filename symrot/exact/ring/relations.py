@@ -11,6 +11,7 @@ from typing import Any
 from sympy.polys.domains import ZZ
 from sympy.polys.rings import PolyElement
 
+from symrot.exact.operations import spend
 from symrot.exact.ring.groebner import groebner_basis
 from symrot.exact.ring.ratio import TooLarge
 
@@ -52,6 +53,7 @@ class Relations:
         It is 0 if and only if the relations imply that the polynomial is zero.
         """
         for rule in self.rules:
+            spend(2 * len(poly))
             poly = (_divide if rule.minimal else _replace)(poly, rule)
         return poly.rem(list(self.basis)) if self.basis and poly else poly
 

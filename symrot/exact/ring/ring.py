@@ -31,6 +31,7 @@ from symrot.exact.angles.inverse import INVERSE, cosine_sine
 from symrot.exact.angles.known_angles import halved, is_bound, parts_of, unbound
 from symrot.exact.budget import remembered, spend_ring
 from symrot.exact.functions import REWRITTEN, TRIGONOMETRIC, is_function_of_time
+from symrot.exact.operations import spend
 from symrot.exact.ring.logarithms import logarithms_in, product_of, sums_of_logarithms
 from symrot.exact.ring.radicands import Dependence, dependences, take_squares
 from symrot.exact.ring.ratio import Ratio, Ratios, TooLarge
@@ -196,6 +197,7 @@ class FormulaRing:
             if node in seen:
                 continue
             seen.add(node)
+            spend(20)
             if node.is_Symbol and node.is_commutative:
                 self.leaves[node] = True
             elif node.is_Rational:

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 from math import comb, prod
 
-from sympy import Abs, Add, Expr, I, Integer, Pow, Rational, Symbol, exp, factorint, sqrt
+from sympy import Abs, Add, Expr, Function, I, Integer, Pow, Rational, Symbol, exp, factorint, isprime, sqrt
 from sympy.core.function import AppliedUndef
+from sympy.printing.str import StrPrinter
 
 from symrot.errors import InputError
 from symrot.exact.ring.ratio import TooLarge
@@ -31,13 +32,21 @@ __all__ = [
 MOST_TERMS = 4000
 """Largest number of terms of the radicand of a root, which is ``P Q^(n-1)`` for a root of P/Q."""
 
+MOST_BITS_FACTORED, LARGEST_DIVISOR = 64, 2**15
+"""The most bits of a number that is factored completely; of a longer one, only divisors below the second are sought."""
+
+
+_UNORDERED = StrPrinter({"order": "none"})
+
 
 # Roots that depend on each other, such as nested roots, have one variable each. An equation that follows from their
 # relations is true; another one may be true too, because a root is only one branch of its relation.
 @lru_cache(maxsize=20_000)
 def written(node: Expr) -> str:
     """Return the text of an expression, used as a sort key that is the same in every run."""
-    return str(node)
+    # to order terms, SymPy computes the values of functions of numbers, which takes seconds if they are nested
+    has_values = any(part.is_number for part in node.atoms(Function))
+    return str(_UNORDERED.doprint(node)) if has_values else str(node)
 
 
 @dataclass(frozen=True)
@@ -189,10 +198,24 @@ def square_root_of_number(value: Rational) -> tuple[Rational, list[Root]]:
 
     12/5 gives 2/5, sqrt(3) and sqrt(5).
     """
-    powers = factorint(int(value.p) * int(value.q))
+    powers: dict[int, int] = {}
+    for whole in (int(value.p), int(value.q)):
+        for prime, power in _factors_of_number(whole).items():
+            powers[prime] = powers.get(prime, 0) + power
     outside = prod(prime ** (power // 2) for prime, power in powers.items())
     primes = sorted(prime for prime, power in powers.items() if power % 2)
     return Rational(outside, value.q), [Root(sqrt(prime), Integer(prime), 2, 1) for prime in primes]
+
+
+def _factors_of_number(whole: int) -> dict[int, int]:
+    """Return the prime factors of a whole number with their powers; raise TooLarge if they take too long to find."""
+    if whole.bit_length() <= MOST_BITS_FACTORED:
+        return dict(factorint(whole))
+    # only small factors, and squares and primes among the rest, are found in a short time
+    powers = dict(factorint(whole, limit=LARGEST_DIVISOR, use_rho=False, use_pm1=False, use_ecm=False))
+    if all(factor < LARGEST_DIVISOR**2 or isprime(factor) for factor in powers):
+        return powers
+    raise TooLarge(f"expected numbers under roots of at most {MOST_BITS_FACTORED} bits, to be factored")
 
 
 def _nesting(expressions: Iterable[Expr]) -> int:

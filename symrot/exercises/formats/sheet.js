@@ -59,6 +59,7 @@ function arithmetic(text) {
     for (;;) {
       if (next(/^\s*[*·×](?=\s*([\d.(π√]|pi\b|sqrt))/)) value *= signed();
       else if (next(/^\s*\/(?=\s*([\d.(π√]|pi\b|sqrt))/)) value /= signed();
+      else if (/^\s*(pi\b|[π√]|sqrt)/.test(rest)) value *= power(); // as in 14 pi
       else return value;
     }
   };
@@ -77,20 +78,32 @@ function arithmetic(text) {
 const near = (a, b) => Math.abs(a - b) <= TOLERANCE * Math.abs(b) || Math.abs(a - b) < 1e-12;
 const same = (a, b) => JSON.stringify(Object.entries(a).sort()) === JSON.stringify(Object.entries(b).sort());
 
+/** Return half a unit of the last digit of a decimal such as "0.25", and the number of its digits; 0 for "1/4". */
+function rounding(text, value) {
+  const plain = text.trim().match(/^[-−+]?\s*(\d*[.,]?\d*)(?:(?:[eE]|\s*(?:\*|·|×|x)\s*10\s*(?:\^|\*\*))\s*\(?[+-]?\d+\)?)?$/);
+  if (!plain || !value) return [0, 0];
+  const digits = plain[1].replace(/[.,]/, "").replace(/^0+/, "").length || 1;
+  return [0.5 * 10 ** (Math.floor(Math.log10(Math.abs(value))) - digits + 1), digits];
+}
+
 /** Return [class, sentence] on an answer. */
 function grade(text, question) {
-  const number = arithmetic(text.replace(/^[^=]*=/, ""));
+  const typed = text.replace(/^.*=/, "").trim().replace(/[.,;]+$/, "").replace(/²/g, "^2").replace(/³/g, "^3");
+  const number = arithmetic(typed);
   if (!number) return ["wrong", "This is no number: write for example 0.125, 1.2e-3 or 3/8."];
   const [value, rest] = number;
-  const unit = rest.trim() ? unitOf(rest, /rad|rev|rpm|deg/.test(question.unit)) : null;
+  const name = rest.trim().replace(/^\[([^[\]]*)\]$|^\(([^()]*)\)$/, "$1$2");
+  const unit = rest.trim() ? unitOf(name, /rad|rev|rpm|deg/.test(question.unit)) : null;
   if (rest.trim() && !unit) return ["wrong", `“${rest.trim()}” is no unit that this page knows.`];
   const truth = Number(question.value);
   if (unit && !same(unit.dimension, question.dimension))
     return ["wrong", `The unit does not fit: the answer is in ${question.unit || "no unit, a pure number"}.`];
   const angle = !unit && question.unit && !Object.keys(question.dimension).length;
-  const answer = unit ? (value * unit.factor) / question.factor : value;
-  if (near(answer, truth)) {
-    if (!unit && question.unit && question.unit !== "rad")
+  const scale = unit ? unit.factor / question.factor : 1, answer = value * scale;
+  const [half, digits] = rounding(typed.slice(0, typed.length - rest.length), value);
+  const rounds = Math.abs(answer - truth) <= half * scale * (1 + 1e-9);
+  if (near(answer, truth) || (digits > 1 && rounds)) {
+    if (!unit && Object.keys(question.dimension).length)
       return ["partial", `The number is right; write its unit, ${question.unit}.`];
     return ["right", "Right."];
   }
@@ -106,8 +119,7 @@ function grade(text, question) {
   const power = truth && answer / truth > 0 ? Math.log10(answer / truth) : NaN;
   if (Math.abs(power - Math.round(power)) < 0.002 && Math.round(power))
     return ["wrong", "Wrong by a power of ten: check the conversion of units."];
-  if (Math.abs(answer - truth) < 0.05 * Math.abs(truth))
-    return ["partial", "Close, but rounded too much: give three digits."];
+  if (rounds) return ["partial", "Rounded too much: give three digits."];
   return ["wrong", "Not right. Try a hint."];
 }
 

@@ -29,11 +29,12 @@ _LATEX = (
     (r"\\(?:SI|qty)\{([^{}]*)\}\{([^{}]*)\}", r"\1 \2"), (r"\\(?:mathrm|text|operatorname|rm)\s*\{([^{}]*)\}", r" \1 "),
     (r"\^\{?\\circ\}?|\\degree|°", " deg"), (r"\\(?:cdot|times)\b|[·⋅×]", "*"), (r"\\approx\b|≈", "="),
     (r"\\[,;: !]|~|\\quad|\\left|\\right|\$", " "), (r"\\pi\b|π", " pi "), (r"[{]", "("), (r"[}]", ")"), ("−", "-"),
+    ("²", "^2"), ("³", "^3"),
     (r"√\(", "sqrt("), (r"√(\d+(?:\.\d+)?)", r"sqrt(\1)"),
 )  # fmt: skip
 """LaTeX and signs of numbers with units -> plain text."""
 
-_EXPONENT = re.compile(r"(\d)\s*\*\s*10\s*(?:\^|\*\*)\s*\(?([+-]?\d+)\)?")
+_EXPONENT = re.compile(r"(\d)\s*[*x]\s*10\s*(?:\^|\*\*)\s*\(?([+-]?\d+)\)?")
 _HERTZ = re.compile(r"(?<![A-Za-z])(k|M|)Hz\b")
 _ROTATIONS = {"": "rev/s", "k": "rev/ms", "M": "rev/us"}
 _PLAIN = re.compile(r"[-+]?\s*(\d*\.?\d*)(?:[eE][-+]?\d+)?")
@@ -87,6 +88,7 @@ def _readings(answer: str) -> Iterator[_Number]:
     text = re.split(r"=", text)[-1].strip().rstrip(".,;")
     text = re.sub(r"\s+\^", "^", text)
     text = _EXPONENT.sub(r"\1e\2", text)
+    text = re.sub(r"(?<=[\d)])\s*(?=(?:pi\b|sqrt\b))", "*", text)
     texts = {re.sub(r"(?<=\d),(?=\d)", ".", text): None}
     if re.search(r"(?<=\d),\d{3}(?!\d)", text):
         texts[re.sub(r"(?<=\d),(?=\d{3}(?!\d))", "", text)] = None
@@ -105,7 +107,8 @@ def _read(text: str) -> _Number | None:
         rest = text[end:].strip().removeprefix("*")
         if end < len(text) and (text[end - 1].isalnum() and text[end].isalnum() and not text[end - 1].isdigit()):
             continue
-        unit = unit_of(rest) if rest else None
+        inside = re.fullmatch(r"\(([^()]*)\)|\[([^\[\]]*)\]", rest)
+        unit = unit_of((inside[1] or inside[2] or "") if inside else rest) if rest else None
         if rest and unit is None:
             continue
         value = _value(text[:end])

@@ -1,5 +1,8 @@
 """Exercises on quaternions: product, rotation of a vector, rates."""
 
+from itertools import permutations
+from itertools import product as products
+from operator import mul
 from random import Random
 
 from sympy import Matrix, Symbol, cos, sin, sqrt
@@ -10,6 +13,12 @@ from symrot.kinematics.rotation_vector import quaternion_of_axis_angle
 from symrot.symbols import alpha, omega_1, omega_2, omega_3, quaternion, second_quaternion
 
 NUMBERS = "-3 -2 -1 1 2 3 4"
+UNITS = sorted(
+    {tuple(map(mul, sizes, signs)) for sizes in {(5, 5, 5, 5), *permutations((1, 5, 5, 7))}
+     for signs in products((-1, 1), repeat=4)}
+)  # fmt: skip
+"""Unit quaternions, in tenths."""
+
 PARTS = ("scalar part", "component 1", "component 2", "component 3")
 PRODUCT = (
     "Use Hamilton's rules, $ij = k$, $jk = i$, $ki = j$, and $i^2 = j^2 = k^2 = -1$; the order of factors matters."
@@ -137,11 +146,15 @@ def rate_of_component(random: Random) -> Problem:
 def angle_between(random: Random) -> Problem:
     """Return a problem that asks for the cosine of half the angle between two attitudes, given as quaternions."""
     relative = quaternion_product(conjugate(second_quaternion), quaternion)[0]
+    p = random.choice(UNITS)
+    q = random.choice([each for each in UNITS if 0 < sum(map(mul, p, each)) < 100])
+    given = zip((*second_quaternion, *quaternion), (*p, *q), strict=True)
     return Problem(
         "The angle between two quaternions",
-        "Two attitudes are the unit quaternions $p$ and $q$. The rotation from one to the other is $\\bar p q$.",
+        "Two attitudes are the unit quaternions $p$ and $q$. The rotation from one to the other is $\\bar p q$. Its "
+        "scalar part is positive, so that its angle $\\alpha$ is less than $180^\\circ$.",
         "The scalar part of a unit quaternion is the cosine of half the angle.",
-        tuple(quantity(each, "-0.5 0.5", "", "component") for each in (*second_quaternion, *quaternion)),
+        tuple(quantity(symbol, str(tenths / 10), "", "component") for symbol, tenths in given),
         (Line("The scalar part of the relative quaternion.", relative, relative, r"\cos(\alpha/2)"),),
         (Asked(r"\cos(\alpha/2)", "the cosine of half the angle between the attitudes", relative, ""),),
     )

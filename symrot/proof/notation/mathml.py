@@ -78,7 +78,12 @@ TOKENS = {
 SCRIPTS = {
     (True, False): ("msub", "munder"), (False, True): ("msup", "mover"), (True, True): ("msubsup", "munderover"),
 }  # fmt: skip
-SIGNS = {"+": "+", "-": "−"}
+SIGNS = {"+": "+", "-": "−", "\\pm": "±", "\\mp": "∓"}
+OPENING = ("(", "[", ",", "\\{", "\\lbrace")
+CLOSE = ("(", ")", "]", ",", ";", "=", "<", ">", "&", "\\left", "\\right", "\\\\", "\\neq", "\\ne", "\\,", "\\ ")
+"""LaTeX that needs no thin space between it and the name of a function before it."""
+# what needs brackets taller than a line; around other formulas, browsers would stretch brackets for each index
+TALL = ("<mfrac", "<mtable", "<msqrt", "<mroot", "<munder", "∑", "∏", "∫", 'stretchy="true"')
 
 
 class _Translation:
@@ -101,13 +106,14 @@ class _Translation:
                 continue
             # the LaTeX of an item extends up to the next item
             end = row.items[place].start if place < len(row.items) else row.end
-            item = self.item(node, kind in ("", "function"))
+            opens = place > 1 and row.items[place - 2].text in OPENING
+            item = self.item(node, kind in ("", "function") and not opens)
             body = item.mathml
             if marked:
                 body, marked = f'<mrow class="mark">{body}</mrow>', False
-            if item.kind == "function":  # set off by thin spaces, but for a parenthesis after it
-                before = THIN if items and kind == "" else ""
-                body = before + body + ("" if self.latex.startswith(("(", "\\left"), end) else THIN)
+            if item.kind == "function":  # set off by thin spaces, but not from brackets, relations and punctuation
+                before = THIN if items and kind == "" and not opens else ""
+                body = before + body + ("" if end >= row.end or self.latex.startswith(CLOSE, end) else THIN)
             kind = item.kind
             # the constructor of a NamedTuple takes twice as long
             items.append(tuple.__new__(Item, (body, item.width, kind, self.latex[node.start : end])))
@@ -128,15 +134,15 @@ class _Translation:
         text = node.text
         if node.kind == "sized" and text in FENCES:
             return Item(f'<mo stretchy="true" minsize="1.6em">{FENCES[text]}</mo>', 0.5)
+        sign = SIGNS.get(text)
+        if sign and not after_operand:  # an operand is to the left of a binary sign
+            return Item(f'<mo form="prefix">{sign}</mo>', 0.7)
         if text in TOKENS:
             return TOKENS[text]
         if node.kind == "number":
             return Item(f"<mn>{text}</mn>", 0.6 * len(text))
-        if text in SIGNS:
-            # an operand is to the left of the sign, which is then binary, otherwise a prefix
-            if after_operand:
-                return Item(f"<mo>{SIGNS[text]}</mo>", 1.2, "sign")
-            return Item(f'<mo form="prefix">{SIGNS[text]}</mo>', 0.7)
+        if sign:
+            return Item(f"<mo>{sign}</mo>", 1.2, "sign")
         if text.isalpha():
             return Item(f"<mi>{text}</mi>", 0.7)
         raise self.refuse(node)
@@ -145,11 +151,15 @@ class _Translation:
         base = self.item(node.base, after_operand)
         below, above = [], []
         for script in node.scripts:
-            if script.text == "_":
+            if script.text == "'":  # the font's prime is small and raised: it is no superscript
+                primes = f'<mo form="postfix" lspace="0" rspace="0">{"′" * len(script.inside.text)}</mo>'
+                base = Item(f"<mrow>{base.mathml}{primes}</mrow>", base.width + 0.3, base.kind)
+            elif script.text == "_":
                 below.append(self.group(script.inside))
             else:
-                primes = "<mo>′</mo>" * len(script.inside.text)
-                above.append(Item(primes, 0.4) if script.text == "'" else self.group(script.inside))
+                above.append(self.group(script.inside))
+        if not (below or above):
+            return base
         tag = SCRIPTS[bool(below), bool(above)]["lim" in base.mathml or "∑" in base.mathml]
         parts = [items[0] if len(items) == 1 else _joined(items) for items in (below, above) if items]
         width = base.width + SMALL * max([part.width for part in parts])
@@ -171,7 +181,8 @@ class _Translation:
         letters = "".join(_letter(letter, variant) for letter in text)
         tag = "mtext" if " " in text else "mi"
         style = ' mathvariant="normal"' if tag == "mi" else ""
-        return Item(f"<{tag}{style}>{escape(letters)}</{tag}>", 0.6 * len(text) + 0.4)
+        kind = "function" if font.text == "\\operatorname" else ""
+        return Item(f"<{tag}{style}>{escape(letters)}</{tag}>", 0.6 * len(text) + 0.4, kind)
 
     def fraction(self, fraction: Fraction) -> Item:
         small = fraction.command == "\\tfrac"
@@ -192,8 +203,10 @@ class _Translation:
         for mark in (node.opening, node.closing):
             if mark.text not in FENCES:
                 raise self.refuse(mark)
-        first, last = _fence(FENCES[node.opening.text], "prefix"), _fence(FENCES[node.closing.text], "postfix")
         inner = self.group(node.inside)
+        tall = any(tag in inner.mathml for tag in TALL)
+        first = _fence(FENCES[node.opening.text], "prefix", tall)
+        last = _fence(FENCES[node.closing.text], "postfix", tall)
         return Item(f"<mrow>{first}{inner.mathml}{last}</mrow>", inner.width + 0.8)
 
     def table(self, table: Table) -> Item:
@@ -212,8 +225,8 @@ ITEMS: dict[type, Callable[[_Translation, Any], Item]] = {
 }  # fmt: skip
 
 
-def _fence(mark: str, form: str) -> str:
-    return f'<mo form="{form}" stretchy="true" fence="true">{mark}</mo>' if mark else ""
+def _fence(mark: str, form: str, tall: bool = True) -> str:
+    return f'<mo form="{form}" stretchy="{str(tall).lower()}" fence="true">{mark}</mo>' if mark else ""
 
 
 def _letter(letter: str, variant: str) -> str:

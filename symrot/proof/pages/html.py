@@ -27,6 +27,14 @@ math { font-size: 1.05em; font-family: "STIX Two Math", "Latin Modern Math", "ST
   "TeX Gyre Termes Math", "DejaVu Math TeX Gyre", math; }
 mover > mo { padding-bottom: 0.12em; }
 msubsup > mo:first-child ~ :last-child { padding-left: 0.6em; } /* an upper limit beside the slanted integral sign */
+mfrac { padding: 0 0.08em; } /* not against a bracket */
+mtable > mtr > mtd { padding: 0.33em 0.4em; }
+math:not([display]) { padding-right: 0.07em; } /* beside a slanted last letter */
+@supports (-moz-appearance: none) { /* Firefox sets these spaces by itself, and a row as high as a line */
+  msubsup > mo:first-child ~ :last-child, math:not([display]) { padding: 0; }
+  mfrac { padding: 0; }
+  mtable > mtr > mtd { padding-top: 0.12em; padding-bottom: 0.12em; }
+}
 .display { overflow-x: auto; overflow-y: hidden; margin: 0.8rem 0; padding: 0.3rem 0; }
 .display math { margin: 0 auto; }
 .lines > mtr > mtd { text-align: left; padding-left: 0; padding-top: 0.25em; padding-bottom: 0.25em; }
@@ -43,7 +51,8 @@ table { border-collapse: collapse; margin: 0 auto; }
 td:first-child { white-space: nowrap; }
 th, td { text-align: left; padding: 0.3rem 0.6rem; border-bottom: 1px solid #8886; }
 .whole { white-space: nowrap; }
-.wide { display: inline-block; max-width: 100%; overflow-x: auto; overflow-y: hidden; vertical-align: middle; }
+.wide { display: inline-block; max-width: 100%; white-space: nowrap; overflow-x: auto; overflow-y: hidden;
+  vertical-align: middle; }
 td .wide { max-width: none; overflow: visible; }
 code { font-size: 0.9em; overflow-wrap: anywhere; }
 footer { margin-top: 3rem; border-top: 1px solid #8886; padding-top: 0.6rem; font-size: 0.9rem; }

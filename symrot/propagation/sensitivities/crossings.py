@@ -91,10 +91,10 @@ class Crossings:
         rows: dict[str, Floats] = {}
         for mode, guard in causes.items():
             speed, mean = guard.along(f), _mean_speed(guards, before, mode)
-            grazes = abs(speed) <= STEEP * max(guard.size(f), mean)
+            grazes = not abs(speed) > STEEP * max(guard.size(f), mean)
             if mode in jumps and mode not in held:
                 leaving = guard.along(later)
-                grazes |= leaving * speed <= 0.0 or abs(leaving) <= STEEP * max(guard.size(later), mean)
+                grazes |= leaving * speed <= 0.0 or not abs(leaving) > STEEP * max(guard.size(later), mean)
             if grazes and mode in jumps:
                 raise guards.refusal(
                     before.end, f"the argument of {guards.name(mode)} reaches zero at a speed near zero"
@@ -116,7 +116,7 @@ class Crossings:
             for mode in released:
                 value = guards.held_mode(before, mode)
                 speed = value.along(f)
-                grazes = abs(speed) <= STEEP * value.size(f)
+                grazes = not abs(speed) > STEEP * value.size(f)
                 rows[mode] = np.full(len(by.T), np.nan) if grazes else 0.0 - value.change(by) / speed
         self._note(after.begin, rows, rows[first] if first is not None else None)
         return by if first is None else np.asarray(by - np.outer(later - f, rows[first]))

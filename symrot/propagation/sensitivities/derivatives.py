@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from symrot.planning.general_structure import switched
 from symrot.propagation.events.event_result import EventResult
+from symrot.propagation.sensitivities.libraries import RATES
 from symrot.propagation.sensitivities.switched import SwitchedEquations
-from symrot.propagation.sensitivities.variables import groups_of, require_formulas
-from symrot.propagation.sensitivities.variation import RATES, SmoothEquations, small_rotation
+from symrot.propagation.sensitivities.tabulated import TableEquations
+from symrot.propagation.sensitivities.variables import groups_of
+from symrot.propagation.sensitivities.variation import SmoothEquations, small_rotation
 from symrot.results.sensitivity import Sensitivities
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial
@@ -21,7 +23,7 @@ __all__ = ["event_slopes", "transition_matrix", "variation"]
 Floats = NDArray[np.float64]
 MOST_RECENT = 8
 TRANSITION = ("omega", "attitude")
-_Equations = SmoothEquations | SwitchedEquations
+_Equations = SmoothEquations | SwitchedEquations | TableEquations
 
 
 def variation(scene: Scene, keys: Sequence[str], times: Floats) -> Sensitivities:
@@ -39,7 +41,7 @@ def variation(scene: Scene, keys: Sequence[str], times: Floats) -> Sensitivities
     Raises
     ------
     InputError
-        If the scene has a table of samples, or if a key names no variable.
+        If a key names no variable.
     PropagationError
         If the motion cannot be followed to the last time.
     """
@@ -90,7 +92,7 @@ def _equations(scene: Scene, keys: Sequence[str]) -> _Equations:
     """Return the equations of a scene's motion and its derivatives by ``keys``; recent ones are used again."""
     equations = next((each for each in _recent if each.fit(scene, keys)), None)
     if equations is None:
-        require_formulas(scene)
-        equations = (SwitchedEquations if switched(scene) else SmoothEquations)(scene, keys)
+        kind: type[_Equations] = SwitchedEquations if switched(scene) else SmoothEquations
+        equations = (kind if scene.table is None else TableEquations)(scene, keys)
         _recent[:] = [equations, *_recent[: MOST_RECENT - 1]]
     return equations

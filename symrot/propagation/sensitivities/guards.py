@@ -21,8 +21,8 @@ from symrot.planning.general_structure import constants_of
 from symrot.planning.scene_kernel import EPOCH, Parameters
 from symrot.propagation.binding import value_of
 from symrot.propagation.sensitivities.intervals import Interval
+from symrot.propagation.sensitivities.libraries import rates_of
 from symrot.propagation.sensitivities.parameter_slopes import ParameterSlopes, Rows
-from symrot.propagation.sensitivities.variation import rates_of
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.system import SwitchedSystem, is_continuous
 from symrot.scene.scene import Scene

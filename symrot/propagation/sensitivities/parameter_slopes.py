@@ -1,8 +1,9 @@
 """The derivatives of the parameters of a motion's equations by variables, such as those of ``weight/A`` by a mass."""
 
 from collections.abc import Mapping, Sequence
+from copy import copy
 from fractions import Fraction
-from typing import Any
+from typing import Any, Self
 
 from symrot.dynamics.structure import Structure
 from symrot.errors import InputError
@@ -10,7 +11,7 @@ from symrot.formula.tree import Node, names
 from symrot.planning.general_structure import constants_of
 from symrot.planning.scene_kernel import Parameters
 from symrot.propagation.binding import value_of
-from symrot.propagation.sensitivities.variables import difference, slopes
+from symrot.propagation.sensitivities.variables import difference, slopes, without_jumps
 from symrot.propagation.sensitivities.variation import Column
 from symrot.scene.scene import Scene
 
@@ -27,6 +28,12 @@ class ParameterSlopes:
         self.scene, self.columns, self.structure = scene, columns, structure
         self._changes = [self._changes_of(column) for column in self.columns]
 
+    def with_changes(self, changes: Sequence[Mapping[str, Fraction]]) -> Self:
+        """Return a copy in which the constants change as given, for each variable: their derivatives by name."""
+        other = copy(self)
+        other._changes = [{**own, **more} for own, more in zip(self._changes, changes, strict=True)]
+        return other
+
     def _changes_of(self, column: Column) -> Mapping[str, Fraction]:
         """Return the derivatives by a variable of those constants of the equations that depend on it."""
         if not column.constants:
@@ -42,7 +49,7 @@ class ParameterSlopes:
         rows: dict[str, list[float]] = {}
         for k, column in enumerate(self.columns):
             own, changes = set(self.depends(parameters, k)), self._changes[k]
-            moving = [(name, formula) for name, formula in parameters if name in own]
+            moving = [(name, without_jumps(formula)) for name, formula in parameters if name in own]
             if not moving:
                 continue
 

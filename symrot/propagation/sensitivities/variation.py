@@ -4,34 +4,29 @@ Motion and derivatives are one system, integrated in common steps. The derivativ
 *column* of the matrix of derivatives.
 """
 
-import json
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import frexp, ldexp
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.build import cache as library
 from symrot.dynamics.structure import FieldTorque, FormulaTorque, InertiaTensor, Pattern, PrincipalInertia, Structure
-from symrot.errors import InputError, PropagationError
+from symrot.errors import PropagationError
 from symrot.formula import exact_numbers as number
 from symrot.formula.float_functions import FLOAT_FUNCTIONS
-from symrot.formula.program import Program, node_from_json, node_to_json
 from symrot.formula.switches import STATES
 from symrot.planning.general_structure import PRODUCTS, constants_of, general_structure, switched
 from symrot.planning.plan import Plan
 from symrot.planning.rules import UNIT_FIELDS, pattern
-from symrot.planning.scene_kernel import EPOCH, Parameters
+from symrot.planning.scene_kernel import EPOCH
 from symrot.propagation.binding import value_of
-from symrot.propagation.compiled_models import has_formulas, kernel_key
 from symrot.propagation.events.event_result import EventResult
 from symrot.propagation.sensitivities.event_times import event_time_slopes
-from symrot.propagation.sensitivities.variables import Variable, difference, read_variables
-from symrot.propagation.steppers import taylor
+from symrot.propagation.sensitivities.libraries import RATES, MotionLibrary, rates_of
+from symrot.propagation.sensitivities.variables import Variable, difference, read_variables, without_jumps
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.time_shift import starts_far
 from symrot.results.sensitivity import SwitchSlopes
@@ -40,30 +35,22 @@ from symrot.scene.tables import Initial
 
 __all__ = [
     "AT_ONCE",
-    "ORDER",
-    "RATES",
     "SMALL",
     "STATES",
-    "TOLERANCE",
     "TRIES",
     "Column",
     "SmoothEquations",
     "columns_of",
+    "fitting_unit",
     "follow_columns",
-    "motion_library",
-    "rates_of",
     "rotation_slopes",
     "small_rotation",
     "structure_of",
     "unit_of",
-    "variation_source",
 ]
 
 Floats = NDArray[np.float64]
-RATES = 3  # the first states are angular velocities
-ORDER = 20
 AT_ONCE = 6  # columns in one library: many more would take a compiler too long
-TOLERANCE = 1e-16
 SMALL = 2.0**-6  # largest size of a column below which it is integrated again in smaller units
 TRIES = 4
 
@@ -159,92 +146,6 @@ def structure_of(scene: Scene, columns: Sequence[Column], varying: Collection[st
     return replace(general, inertia=tensor, torques=tuple(torques))
 
 
-# ------------------------------------------------------------------------------------------------ libraries
-
-
-def rates_of(plan: Plan) -> tuple[Program, Parameters]:
-    """Return the rates (time derivatives of the states) of a plan as a program, with their parameters."""
-    key = f"rates alone\n{kernel_key(plan)}"
-    # a clock counts time from an epoch, which is a further constant in the formulas
-    saved = library.fetch(key)
-    if saved is None and plan.structure.clock:
-        from symrot.codegen.taylor.time_shift import moved
-
-        rates, formulas = moved(*rates_of(replace(plan, structure=replace(plan.structure, clock=None))))
-        saved = json.dumps(
-            {"rates": rates.to_json(), "parameters": [(name, node_to_json(node)) for name, node in formulas]}
-        )
-        library.store(key, saved)
-    if saved is None:
-        from symrot.codegen.scene_kernels import rates_program
-        from symrot.dynamics.equations import equations_of_motion
-
-        derived = rates_program(equations_of_motion(plan.structure), "rates")
-        parameters = [(name, node_to_json(node)) for name, node in derived.parameters]
-        saved = json.dumps({"rates": derived.program.to_json(), "parameters": parameters})
-        library.store(key, saved)
-    record = json.loads(saved)
-    formulas = tuple((name, node_from_json(node)) for name, node in record["parameters"])
-    # parameters: pairs of name and formula in the constants of the scene
-    return Program.from_json(record["rates"]), formulas
-
-
-def variation_source(
-    plan: Plan, rates: Program, depends: Sequence[Sequence[str]], stepper: str, source: Callable[..., str]
-) -> str:
-    """Return the C source of a library that integrates the motion and its derivatives together by Taylor series.
-
-    Parameters
-    ----------
-    plan : Plan
-        The plan of the rates; the source is kept in the cache under its key.
-    rates : Program
-        The time derivatives of the states.
-    depends : sequence of sequences of str
-        For each variable of the derivatives, the names of those parameters of ``rates`` whose values depend on it.
-    stepper : str
-        The name of the stepper, which is a part of the key.
-    source : function
-        Returns the C source for three arguments: the program of the rates of states and derivatives, ``edges`` and
-        ``scales``. The error of a step is measured in blocks of the state vector: block i goes from index ``edges[i]``
-        to ``edges[i + 1]``, and its error is divided by ``scales[i]`` or, where this is 0, by the size of the block
-        (:func:`symrot.propagation.compiled_models.error_blocks`).
-
-    Raises
-    ------
-    InputError
-        If the rates have no Taylor series.
-    """
-    key = f"variation {stepper} {ORDER} {json.dumps(depends)}\n{kernel_key(plan)}"
-    text = library.fetch(key)
-    if text is None:
-        from symrot.codegen.variational import variational_program
-
-        size = len(STATES)
-        edges, scales = [0], []
-        for column in range(len(depends) + 1):
-            edges += [column * size + RATES, (column + 1) * size]
-            scales += [0.0, 1.0]
-        try:
-            text = source(variational_program(rates, depends), edges, scales)
-        except InputError as reason:
-            raise InputError(f"{plan.scene.name}: sensitivities: {reason}") from None
-        library.store(key, text)
-    return text
-
-
-def motion_library(plan: Plan, rates: Program, depends: Sequence[Sequence[str]]) -> Path:
-    """Return the path of the compiled library that integrates one motion and its derivatives by Taylor series.
-
-    The arguments are those of :func:`variation_source`.
-    """
-
-    def source(program: Program, edges: Sequence[int], scales: Sequence[float]) -> str:
-        return taylor.translation_unit(program, edges, scales, ORDER, "", has_formulas(plan))
-
-    return library.build(variation_source(plan, rates, depends, "taylor", source), "taylor", taylor.FLAGS)
-
-
 # ------------------------------------------------------------------------------------------------ motions
 
 
@@ -329,13 +230,14 @@ class _Part:
 
         def numbers(other: Scene) -> dict[str, Fraction]:
             constants = {"pi": number.PI, EPOCH: Fraction(epoch), **constants_of(other, structure)}
-            return {name: value_of(node, constants) for name, node in parameters}
+            return {name: value_of(node, constants) for name, node in smooth}
 
+        smooth = [(name, without_jumps(node)) for name, node in parameters]
         slopes = [difference(scene, column.variable, numbers) if column.constants else {} for column in columns]
         depends = [[name for name, _ in parameters if name in each] for each in slopes]
-        self.columns, self._path = columns, motion_library(plan, rates, depends)
-        own = numbers(scene)
-        self._values = [float(own[name]) for name, _ in parameters]
+        self.columns, self._library = columns, MotionLibrary(plan, rates, depends)
+        constants = {"pi": number.PI, EPOCH: Fraction(epoch), **constants_of(scene, structure)}
+        self._values = [float(value_of(node, constants)) for _, node in parameters]
         self._slopes = [[float(each[name]) for name in names] for each, names in zip(slopes, depends, strict=True)]
 
     def rates(self, time: float, state: Floats) -> list[float]:
@@ -354,13 +256,13 @@ class _Part:
             return PropagationError(f"{scene.name}: sensitivities: {later}")
 
         states, derivatives, _ = follow_columns(
-            self._path, self._values, self._slopes, start, starts, units, begin - epoch, times - epoch, labelled
+            self._library, self._values, self._slopes, start, starts, units, begin - epoch, times - epoch, labelled
         )
         return states, derivatives
 
 
 def follow_columns(
-    path: Path,
+    library: MotionLibrary,
     values: Sequence[float],
     slopes: Sequence[Sequence[float]],
     start: Sequence[float],
@@ -374,8 +276,8 @@ def follow_columns(
 
     Parameters
     ----------
-    path : Path
-        The library of :func:`motion_library`.
+    library : MotionLibrary
+        The code that integrates motion and derivatives.
     values, slopes : sequences
         The parameters of the rates, and for each variable the derivatives of those that depend on it.
     start, starts : sequences
@@ -397,9 +299,8 @@ def follow_columns(
         for unit, own, by in zip(units, starts, slopes, strict=True):
             state += [unit * slope for slope in own]
             p += [unit * slope for slope in by]
-        motion = taylor.integration(path, p, state, begin, TOLERANCE)
         try:
-            samples, _ = motion.sample(times)
+            samples = library.sample(p, state, begin, times)
         except PropagationError as error:
             raise labelled(error) from None
         derivatives = samples[:, size:].reshape(len(times), len(starts), size)
@@ -424,6 +325,12 @@ def unit_of(scene: Scene, column: Column) -> float:
         # the largest component of omega, for each component
         value = max(abs(float(rate)) for rate in scene.initial.omega_b)
     return ldexp(1.0, frexp(value)[1]) if value and column.variable.moved is not None else 1.0
+
+
+def fitting_unit(unit: float, by: Floats) -> float:
+    """Return ``unit`` or, if derivatives ``by`` times it are large, a smaller power of two."""
+    largest = float(np.abs(by).max())
+    return ldexp(1.0, 1 - frexp(largest)[1]) if largest * unit > 2.0 else unit
 
 
 def small_rotation(q: Floats, slopes: Floats) -> Floats:

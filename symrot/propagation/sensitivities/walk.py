@@ -1,6 +1,5 @@
 """A motion through the switches of its torques, with its derivatives at any time."""
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
@@ -15,12 +14,14 @@ from symrot.propagation.method import choose_method
 from symrot.propagation.sensitivities.crossings import AT_SWITCH, Crossings, jumps_at_end
 from symrot.propagation.sensitivities.guards import Guards, alike
 from symrot.propagation.sensitivities.intervals import Interval, smooth_intervals
+from symrot.propagation.sensitivities.libraries import TOLERANCE, MotionLibrary
 from symrot.propagation.sensitivities.parameter_slopes import ParameterSlopes
 from symrot.propagation.sensitivities.sliding import hold_at_rest, refuse_resting
 from symrot.propagation.sensitivities.starts import from_start
 from symrot.propagation.sensitivities.touching import refuse_touching
-from symrot.propagation.sensitivities.variation import AT_ONCE, TOLERANCE, follow_columns, motion_library, unit_of
+from symrot.propagation.sensitivities.variation import AT_ONCE, fitting_unit, follow_columns, unit_of
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
+from symrot.propagation.steppers.smoothness import non_smooth_torque
 from symrot.propagation.switched.motion import SwitchedMotion
 from symrot.results.sensitivity import SwitchSlopes
 from symrot.scene.scene import Scene
@@ -50,7 +51,8 @@ class Walk:
         self.side = 1.0 if end > begin else -1.0
         own = replace(scene, span=scene.span._replace(start=Fraction(begin)))
         plan = Plan(own, parameter_slopes.structure, ())
-        motion = SwitchedMotion(plan, choose_method(plan, "taylor"), TOLERANCE)
+        method = "dop853" if non_smooth_torque(plan) else "taylor"
+        motion = SwitchedMotion(plan, choose_method(plan, method), TOLERANCE)
         self.length = abs(end - begin)
         self._units = [unit_of(scene, column) for column in parameter_slopes.columns]
         self.guards = Guards(scene, motion.system, parameter_slopes, self.side)
@@ -98,14 +100,14 @@ class Walk:
         for first in range(0, len(columns), AT_ONCE):
             places = range(first, min(first + AT_ONCE, len(columns)))
             depends = [self.parameter_slopes.depends(parameters, k) for k in places]
-            path = motion_library(interval.regime.plan, program, depends)
+            library = MotionLibrary(interval.regime.plan, program, depends)
             slopes_of = [[rows.get(name, ZEROS)[k if name in rows else 0] for name in own]
                          for k, own in zip(places, depends, strict=True)]  # fmt: skip
             starts = [interval.before[:, k].tolist() for k in places]
-            units = [self._unit(k, interval.before[:, k]) for k in places]
+            units = [fitting_unit(self._units[k], interval.before[:, k]) for k in places]
             numbers = [values[name] for name, _ in parameters]
             states, derivatives, units = follow_columns(
-                path,
+                library,
                 numbers,
                 slopes_of,
                 interval.first.tolist(),
@@ -119,13 +121,6 @@ class Walk:
                 self._units[k] = unit
             results.append((states, derivatives))
         return results[0][0], np.concatenate([derivatives for _, derivatives in results], axis=2)
-
-    def _unit(self, column: int, by: Floats) -> float:
-        """Return the power of two by which a column of derivatives is multiplied while it is integrated."""
-        largest = float(np.abs(by).max())
-        if largest * self._units[column] > 2.0:
-            return math.ldexp(1.0, 1 - math.frexp(largest)[1])
-        return self._units[column]
 
     def _label(self, interval: Interval) -> Callable[[PropagationError], PropagationError]:
         def named(error: PropagationError) -> PropagationError:

@@ -26,6 +26,7 @@ from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
 from symrot.scene.file import shipped_names
 from symrot.workshop.step_text import ORDER, step_method, step_text
+from symrot.workshop.steps.elliptic_audit import audit_elliptic
 
 __all__ = ["audit_step", "step_data"]
 
@@ -63,6 +64,9 @@ def audit_step(
     CertificateError
         If a statement does not hold; the message names the first such statement.
     """
+    if "scene" in data:
+        progress("checking ..")
+        return audit_elliptic(path, data)
     name = str(data.get("kernel"))
     if data.get("schema") != SCHEMA:
         raise CertificateError(f"{path}: expected the schema {SCHEMA}, got {data.get('schema')}; emit the step again")

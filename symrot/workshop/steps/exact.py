@@ -8,21 +8,32 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, ClassVar, NamedTuple
+from hashlib import sha256
+from typing import Any, NamedTuple
 
-from symrot.certificates.certificate import KernelUnderTest
+from symrot.certificates.certificate import Data, KernelUnderTest, certificate_json
+from symrot.certificates.exact_law import STATES, law_section
+from symrot.certificates.step_certificate import SCHEMA
 from symrot.closed_form.build import joined
 from symrot.closed_form.registry import exact_form
 from symrot.codegen.printing.c_source import DOUBLE, FLOAT, Real
 from symrot.codegen.printing.parameters_header import parameters_file
 from symrot.errors import CertificateError, InputError
+from symrot.formula.tree import text as formula_text
 from symrot.planning.plan import make_plan
 from symrot.scene.scene import Scene
 from symrot.workshop.kernel_text import Bounds, scene_kernel_name
 from symrot.workshop.steps.files import StepFiles, constant_table
+from symrot.workshop.steps.whole_state import WholeState
 
-__all__ = ["ExactStepText"]
+__all__ = ["ExactStepText", "plain_content"]
 
+METHOD = "closed form of the motion, elliptic functions"
+TRUSTED = {
+    "formula": "that equations which hold at the states to 15 digits hold at others: nothing is proven between them",
+    "not stated": "errors of rounding, and of truncation below 15 digits",
+    "C text": "that the compiler gives C its meaning: real numbers are rounded as IEEE 754 says, to nearest",
+}
 SHARES = (Fraction(1, 16), Fraction(-3, 2), Fraction(5))  # sizes of the test vectors, in units of 1/|omega|
 Motions = Callable[[Sequence[Fraction], Sequence[Fraction]], Any]
 
@@ -116,6 +127,15 @@ _FORMS: Mapping[str, Callable[[Scene, str], _Form]] = {
 }  # fmt: skip
 
 
+def plain_content(content: Any) -> Any:
+    """Return the content of a scene as data for JSON, in which decimals are texts, such as ``"0.1"``."""
+    if isinstance(content, Mapping):
+        return {str(key): plain_content(value) for key, value in content.items()}
+    if isinstance(content, list | tuple):
+        return [plain_content(each) for each in content]
+    return content if isinstance(content, str | int | float | bool | None) else str(content)
+
+
 def _table(name: str, values: Sequence[float]) -> str:
     return f"    {constant_table(f'{name}[]', list(values))}"
 
@@ -128,8 +148,6 @@ class ExactStepText(StepFiles):
     scene : Scene
         A scene whose motion has a closed form.
     """
-
-    has_certificate: ClassVar[bool] = False
 
     def __init__(self, scene: Scene) -> None:
         make_plan(scene)  # refuses tables and switches with their own sentences
@@ -163,11 +181,53 @@ class ExactStepText(StepFiles):
         return self._other("jax")
 
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
-        """Raise CertificateError: an exact step with elliptic functions has no certificate."""
+        """Raise CertificateError: a step has a certificate of its own kind."""
         raise CertificateError(
-            f"{self.name}: expected a kernel or a step with a certificate, got an exact step with elliptic functions, "
-            "which has only a test; use the step 'taylor'"
+            f"{self.name}: expected a kernel of the library or of a scene, got a time step; "
+            "`symrot certify SCENE --step METHOD` certifies steps"
         )
+
+    def certificate(self, bounds: Bounds | None = None) -> str:
+        """Return the text of the certificate; raise CertificateError if the C text violates the equations of motion."""
+        rates, source = WholeState(self.scene), self.c()[0]
+        exact, p = rates.exact_parameters, [value for _, _, value in self.form.parameters]
+        laws = {
+            f"symrot_{self.name}{suffix}": law_section(
+                source, f"symrot_{self.name}{suffix}", rates.program, exact, p, self._rate, count
+            )
+            for suffix, count in (("", STATES), ("f", 1))
+        }
+        return certificate_json(self.statement | {"formula": laws, "trusted": TRUSTED})
+
+    @property
+    def statement(self) -> Data:
+        """The part of the certificate that says which step of which scene it is about."""
+        rates = WholeState(self.scene)
+        return {
+            "schema": SCHEMA, "kernel": self.name,
+            "title": f"one time step of the scene {self.scene.name!r}, a {self.form.title}",
+            "regenerate": f"symrot emit {self.scene.name} --step exact --target c", "method": METHOD,
+            "step": {"method": "exact", "form": self.form.library},
+            "scene": {"name": self.scene.name, "content": plain_content(self.scene.to_dict())},
+            "parameters": [[name, meaning, str(value)] for name, meaning, value in self.form.parameters],
+            "rates": {
+                "constants": [[name, str(value)] for name, value in rates.exact_parameters.items()],
+                "temporaries": [[name, formula_text(node)] for name, node in rates.program.temporaries],
+                "formulas": [[name, formula_text(node)] for name, node in rates.program.outputs],
+            },
+            "files": {path: sha256(text.encode()).hexdigest() for path, text in self.c_files().items()},
+        }  # fmt: skip
+
+    @property
+    def _rate(self) -> Fraction:
+        """The size of the angular velocities at which the certificate checks the equations, a power of two, rad/s."""
+        names = [name for name, *_ in self.form.parameters]
+        if "pull" not in names:
+            return Fraction(1)
+        values = dict(zip(names, (value for _, _, value in self.form.parameters), strict=True))
+        # those of a top in which weight and rotation matter
+        exponent = (int(values["pull"] / values["A"] * 2**64).bit_length() - 64) // 2
+        return Fraction(2) ** exponent
 
     def _declaration(self, real: Real) -> str:
         count, c = len(self.form.parameters), real.type

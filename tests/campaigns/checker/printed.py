@@ -21,6 +21,7 @@ The command ends with exit code 1 if there is a wrong answer.
 """
 
 import argparse
+import re
 import sys
 import tomllib
 from collections import Counter
@@ -38,7 +39,7 @@ from sympy import Expr, ImmutableMatrix, acos, asin, atan, atan2
 import symrot
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.functions import ROTATIONS
-from symrot.checker.claim.reader import Declared, readings_of
+from symrot.checker.claim.reader import Declared, Reading, readings_of
 from symrot.checker.claim.source.lines import claims_of_reading
 from symrot.checker.claim.source.text import functions_of_time, is_latex
 from symrot.checker.claim.tree import Node, negated
@@ -134,10 +135,13 @@ def offers(
     original those of ``given_with_original``.
     """
     return any(
-        _same_terms(repair, original)
-        or any(
-            _equal_renamed(mine, other)
-            for mine, other in product(_equations(repair, given), _equations(original, given_with_original))
+        _direction(repair) == _direction(original)
+        and (
+            _same_terms(repair, original)
+            or any(
+                _equal_renamed(mine, other)
+                for mine, other in product(_equations(repair, given), _equations(original, given_with_original))
+            )
         )
         for repair in repairs
     )
@@ -183,12 +187,26 @@ def _claims(source: str, given: Sequence[str] = ()) -> list[Claim]:
         return []
     for reading in readings:
         with suppress(SymrotError):
-            for first, *others in claims_of_reading(reading, source, given):
+            for first, *others in claims_of_reading(_as_equations(reading), source, given):
                 claims += [first, *others]
                 if first.relation is not None:  # a = b = c says that a = c
                     links = [(first.relation[1], link.relation[2]) for link in others if link.relation is not None]
                     claims += [first.with_relation(("==", left, right)) for left, right in links]
     return claims
+
+
+def _direction(source: str) -> str:
+    """Return ">" or "<" for the text of an inequality, and "" for other texts."""
+    sign = re.search(r"(>|≥|\\g[et]q?\b)|(<|≤|\\l[et]q?\b)", source)
+    return "" if sign is None else ">" if sign[1] else "<"
+
+
+def _as_equations(reading: Reading) -> Reading:
+    """Return a reading with ``==`` in place of the signs of inequalities.
+
+    Two inequalities are compared by the equations in which they end.
+    """
+    return replace(reading, lines=tuple(replace(line, signs=tuple("==" for _ in line.signs)) for line in reading.lines))
 
 
 def _equations(source: str, given: Sequence[str] = ()) -> list[list[Expr]]:

@@ -4,12 +4,12 @@ An angle is stored by its sine, cosine or tangent, and its name ends with the in
 unit quaternion, 2 acos" has the formula q0.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import reduce
 from operator import add
 from typing import Any
 
-from sympy import Matrix, Symbol, cancel, cos, diag, expand, eye, sin, solve, sqrt, trace
+from sympy import Expr, Matrix, Symbol, cancel, cos, diag, expand, eye, sin, solve, sqrt, together, trace
 
 from symrot import symbols
 from symrot.conventions import SEQUENCES
@@ -233,7 +233,11 @@ def _euler_angles() -> Iterator[Named]:
     matrix = euler.dcm("ZYX")
     for name, angle, over, under in (("yaw", yaw, (1, 0), (0, 0)), ("roll", roll, (2, 1), (2, 2))):
         assert expand(matrix[over] * cos(angle) - matrix[under] * sin(angle)) == 0
-        for title, entries in (("unit quaternion", quaternion.quaternion_to_dcm(Q)), ("rotation matrix", ENTRIES)):
+        for title, entries in (
+            ("unit quaternion", quaternion.quaternion_to_dcm(Q)),
+            ("quaternion", quaternion.quaternion_to_dcm(Q, "homogeneous")),
+            ("rotation matrix", ENTRIES),
+        ):
             yield f"{name} angle of a {title}, atan2", PARAMETERS, Matrix([entries[over], entries[under]])
     first, _, third = symbols.angles
     for name, over_first, under_first, over_third, under_third in (
@@ -248,6 +252,14 @@ def _euler_angles() -> Iterator[Named]:
             pair = Matrix([up * ENTRIES[over], down * ENTRIES[under]])
             yield f"{word} angle of {name} of a rotation matrix, atan2", PARAMETERS, pair
     assert matrix[2, 0] == -sin(pitch)
+    for places in (((0, 0), (1, 0)), ((2, 1), (2, 2))):  # cos(theta) times the cosine and the sine of another angle
+        cosine = _root_of_squares(matrix, places, cos(pitch) ** 2)
+        yield "pitch angle of a rotation matrix, atan2", PARAMETERS, Matrix([-ENTRIES[2, 0], cosine])
+    for name in ("ZYZ", "ZXZ"):
+        for places in (((0, 2), (1, 2)), ((2, 0), (2, 1))):
+            sine = _root_of_squares(euler.dcm(name), places, sin(symbols.theta) ** 2)
+            title = f"second angle of {name} of a rotation matrix, atan2"
+            yield title, PARAMETERS, Matrix([sine, ENTRIES[2, 2]])
     yield "pitch angle of a unit quaternion, asin", PARAMETERS, -quaternion.quaternion_to_dcm(Q)[2, 0]
     assert euler.dcm("XYZ")[0, 2] == sin(pitch)
     of_xyz = expand(quaternion.quaternion_to_dcm(Q)[0, 2])
@@ -255,6 +267,28 @@ def _euler_angles() -> Iterator[Named]:
     yield PITCH, PARAMETERS, -ENTRIES[2, 0]
     assert euler.dcm("ZXZ")[2, 2] == euler.dcm("ZYZ")[2, 2] == cos(symbols.theta)
     yield SECOND_ANGLE_OF_MATRIX, PARAMETERS, ENTRIES[2, 2]
+
+
+def _root_of_squares(matrix: Matrix, places: Sequence[tuple[int, int]], square: Expr) -> Expr:
+    """Return the root of the sum of the squares of two entries, given that their squares add up to ``square``."""
+    total = sum(matrix[place] ** 2 for place in places)
+    (outer,) = {factor for factor in symbols.angles if not square.has(factor) and total.has(factor)}
+    assert expand(expand(total - square).subs(sin(outer) ** 2, 1 - cos(outer) ** 2)) == 0
+    return sqrt(sum(ENTRIES[place] ** 2 for place in places))
+
+
+def _composed_parameters() -> Iterator[Named]:
+    """Yield the Rodrigues parameters, and the modified ones, of two rotations one after the other."""
+    for name, title in (("rodrigues", "Rodrigues parameters"), ("mrp", "modified Rodrigues parameters")):
+        chart = attitude.chart(name)
+        one, other = (
+            chart.quaternion.subs(dict(zip(chart.parameters, vector, strict=True)), simultaneous=True)
+            for vector in (Q[1:], symbols.second_quaternion[1:])
+        )
+        scalar, *vector = Matrix(quaternion.quaternion_product(one, other))
+        below = scalar if name == "rodrigues" else 1 + scalar
+        composed = Matrix([cancel(together(component) / together(below)) for component in vector])
+        yield f"{title} of two rotations one after the other", RODRIGUES, composed
 
 
 def _with_words(name: str, source: str, column: Matrix) -> Iterator[Named]:
@@ -265,6 +299,7 @@ def _with_words(name: str, source: str, column: Matrix) -> Iterator[Named]:
 
 def _rodrigues() -> Iterator[Named]:
     """Yield the Rodrigues parameters from axis and angle and from a quaternion, and their rates from omega."""
+    yield from _composed_parameters()
     of_axis = rotation_vector.quaternion_of_axis_angle()
     for name, title in (("rodrigues", "Rodrigues parameters"), ("mrp", "modified Rodrigues parameters")):
         for q, origin in ((of_axis, "axis and angle"), (Q, "a quaternion")):

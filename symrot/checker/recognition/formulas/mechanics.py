@@ -103,6 +103,8 @@ def _free(omega: Matrix) -> Iterator[Named]:
     (by_rate,) = solve(balance, DPHI)
     (spin,) = solve((omega[2] - symbols.omega_3).subs(DPHI, by_rate), DPSI)
     yield "rate of spin of a free symmetric body", FREE, spin
+    across, _, along = inertia * OMEGA.subs(symbols.omega_2, 0)
+    yield "angle of the axis of a free symmetric body to its angular momentum, atan2", FREE, Matrix([across, along])
 
 
 def one_axis() -> Iterator[Named]:

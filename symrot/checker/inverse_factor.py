@@ -1,0 +1,43 @@
+"""Claims solved by an inverse matrix, ``ω' = J^-1 (M - ω × J ω)``, decided as ``J ω' = M - ω × J ω``."""
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.reader import Relation
+from symrot.checker.claim.tree import Node, number, product
+from symrot.checker.equivalent_claim import brought_back
+from symrot.checker.verdict import Verdict
+
+__all__ = ["in_claim", "multiplied"]
+
+
+def multiplied(claim: Claim) -> tuple[Claim, Node] | None:
+    """Return the claim multiplied by the matrix J whose inverse is the first factor of its right side, and J; else
+    None.
+    """
+    if claim.relation is None or not claim.define:
+        return None
+    sign, left, right = claim.relation
+    matrix = _inverted(right.args[0]) if right.kind == "product" else None
+    if matrix is None or matrix.value not in dict(claim.define):
+        return None
+    relation = sign, product([matrix, left]), product(list(right.args[1:]))
+    return claim.with_relation(relation, alternatives=()), matrix
+
+
+def in_claim(verdict: Verdict, matrix: Node) -> Verdict:
+    """Return ``verdict``, on the claim multiplied by ``matrix``, for the original claim."""
+
+    def divided(relation: Relation) -> Relation:
+        sign, left, right = relation
+        if left.kind != "product" or left.args[0] != matrix:
+            return relation
+        inverse = Node("power", None, (matrix, number(-1)))
+        return sign, product(list(left.args[1:])), product([inverse, right])
+
+    return brought_back(verdict, divided, f"it is decided after multiplying both sides by {matrix.value}")
+
+
+def _inverted(factor: Node) -> Node | None:
+    """Return the name J for a factor ``J^-1`` or ``inverse(J)``; None for other factors."""
+    is_power = factor.kind == "power" and factor.args[1] == number(-1)
+    is_call = factor.kind == "call" and factor.value == "inverse"
+    return factor.args[0] if (is_power or is_call) and factor.args[0].kind == "name" else None

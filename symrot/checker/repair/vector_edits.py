@@ -1,0 +1,53 @@
+"""Repairs of formulas with vectors and matrices: a square of a matrix that is missing, a missing term ``p0*q``."""
+
+from collections.abc import Iterator
+
+from symrot.checker.claim.tree import Node, Path, negated, number, product, replaced, sum_of, walk
+from symrot.checker.repair.edits import COST, Edit
+from symrot.checker.repair.entries import replacement
+from symrot.checker.repair.filter import Candidate, Change, NumericFilter
+
+__all__ = ["vector_edits"]
+
+MOST_TERMS = 80
+"""The most terms, products of a scalar and a vector, that are tried in one sum."""
+
+
+def vector_edits(numeric: NumericFilter) -> Iterator[Candidate]:
+    """Yield the repairs that square a matrix, or add a vector times a letter to a sum of vectors, the cheapest first.
+
+    All are true at the test points.
+    """
+    if not numeric.matrix_names:
+        return
+    for place in numeric.sides_to_edit:
+        tree = numeric.tree_at(place)
+        for path, made, code in (*_squares(tree, numeric), *_terms(tree, numeric)):
+            edit = Edit(code, COST[code], path, replaced(tree, path, replacement(made)))
+            change = Change(place, edit)
+            if numeric.holds([change]):
+                yield Candidate(change.cost, code, (change,))
+
+
+def _squares(tree: Node, numeric: NumericFilter) -> Iterator[tuple[Path, Node, str]]:
+    """Yield (path, M^2, code) for each matrix M in a tree, and (path, M, code) for each square of a matrix."""
+    squares = [path for path, node in walk(tree) if node.kind == "power"]
+    for path, node in walk(tree):
+        if node.kind == "power" and numeric.is_matrix(node.args[0]):
+            yield path, node.args[0], "exponent"
+        elif node.kind in ("name", "call") and path[:-1] not in squares and numeric.is_matrix(node):
+            yield path, Node("power", None, (node, number(2))), "exponent"
+
+
+def _terms(tree: Node, numeric: NumericFilter) -> Iterator[tuple[Path, Node, str]]:
+    """Yield (path, sum, code) for each sum of vectors in a tree, with one more term: a vector times a letter."""
+    vectors = [Node("name", name) for name in sorted(numeric.matrix_names)]
+    scalars = [Node("name", name) for name in numeric.names if name not in numeric.matrix_names]
+    letters = {node.value for _, node in walk(tree) if node.kind == "name"}
+    for path, node in walk(tree):
+        if node.kind != "sum" or not numeric.is_matrix(node):
+            continue
+        terms = [product([scalar, vector]) for vector in vectors if vector.value in letters for scalar in scalars]
+        for term in [term for term in terms if term not in node.args][:MOST_TERMS]:
+            for own in (term, negated(term)):
+                yield path, sum_of([*node.args, own]), "missing_term"

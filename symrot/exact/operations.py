@@ -1,0 +1,62 @@
+"""The budget of operations for one claim: its decision, its other readings and its repairs.
+
+The count depends on the formulas alone, so that a claim gets the same verdict on every machine.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+
+__all__ = ["MOST_OPERATIONS", "OutOfOperations", "one_claim", "operations_left", "spend"]
+
+MOST_OPERATIONS = 2_000_000
+"""Most operations for one claim. One takes some microseconds: the product of two terms is one, a value of a sine at a
+point twenty."""
+
+
+class OutOfOperations(BaseException):
+    """The exception for a claim that needs more operations than its budget allows.
+
+    It is not derived from ``Exception``: code that goes on after a failed proof must not go on after it.
+    """
+
+
+_left: ContextVar[list[int] | None] = ContextVar("operations left for the claim", default=None)
+
+
+@contextmanager
+def one_claim(most: int) -> Iterator[None]:
+    """Return a context in which operations count against one budget of ``most``.
+
+    A claim inside another one, such as a repair that is checked, shares its budget.
+    """
+    if _left.get() is not None:
+        yield
+        return
+    token = _left.set([most])
+    try:
+        yield
+    finally:
+        _left.reset(token)
+
+
+def spend(operations: int) -> None:
+    """Count some operations; outside a claim nothing is counted.
+
+    Raises
+    ------
+    OutOfOperations
+        If the budget of the claim is exhausted.
+    """
+    left = _left.get()
+    if left is None:
+        return
+    left[0] -= operations
+    if left[0] < 0:
+        raise OutOfOperations
+
+
+def operations_left() -> int | None:
+    """Return how many operations the budget of the claim still has; None outside a claim."""
+    left = _left.get()
+    return None if left is None else left[0]

@@ -1,0 +1,229 @@
+"""Holes of a body of parts: whether each lies within parts whose density is at least its own. Standard library.
+
+A hole (a part with ``subtract = true``) is mass that is taken away. Where no part is, or where two holes overlap, the
+body would have a negative density. Such a body is refused at a point that shows it. A hole is accepted where bounds
+prove it to lie within the parts, and otherwise reported as doubtful.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from itertools import pairwise, product
+from typing import Any, NamedTuple
+
+from symrot.errors import InputError
+from symrot.formula.tree import Node, evaluate
+from symrot.inertia import containment
+from symrot.inertia.containment import Pose, Solid3, are_apart, excess, outside
+from symrot.inertia.integration import shape_points
+from symrot.inertia.shapes import SHAPES, scalars
+
+__all__ = ["Filled", "PointMass", "doubtful_holes", "filled", "pose", "require_points"]
+
+ROUNDING = 1e-9
+"""Length by which a hole may reach out of a part, relative to its size, because dimensions are rounded numbers."""
+
+DENSITY = 0.01
+"""Share by which the density of a hole may exceed that of a part, because masses are rounded numbers."""
+
+SHARES = (0.001, 0.25, 0.5, 0.75, 0.999)  # of the coordinates of a hole, at test points
+INWARDS = 1e-6  # share of the way from the end of a hole to its middle, at test points
+MOST_PIECES = 200
+MOST_POINTS = 200_000  # tests of a point against a part
+Vec = tuple[float, float, float]
+PointMass = tuple[Any, Sequence[Any]]  # mass, kg; position in the axes of the body, m
+
+
+class Filled(NamedTuple):
+    """A part for the test of holes: its shape and place, its density, and whether it is subtracted."""
+
+    solid: Solid3
+    exact_dimensions: Mapping[str, Any]
+    # kg/m^3, kg/m^2 or kg/m: a number, or a polynomial in x, y, z
+    density: Fraction | Node
+    subtract: bool
+
+    @property
+    def kind(self) -> str:
+        return SHAPES[self.solid.shape].kind
+
+    def density_at(self, point: Vec) -> float:
+        """Return the density at a point of the body."""
+        if isinstance(self.density, Fraction):
+            return float(self.density)
+        x, y, z = self.solid.pose.from_body(point)
+        names = {name: float(value) for name, value in scalars(SHAPES[self.solid.shape], self.exact_dimensions).items()}
+        return float(evaluate(self.density, {"pi": math.pi, **names, "x": x, "y": y, "z": z}, None, float))
+
+
+def pose(at: Sequence[Any], rotation: Sequence[Sequence[Any]]) -> Pose:
+    """Return the place of a part, in doubles, from its position and its rotation matrix."""
+    x, y, z = map(float, at)
+    first, second, third = ((float(a), float(b), float(c)) for a, b, c in rotation)
+    return Pose((x, y, z), (first, second, third))
+
+
+def filled(shape: str, dimensions: Mapping[str, Any], place: Pose, density: Fraction | Node, subtract: bool) -> Filled:
+    """Return a part for the test of holes, from its dimensions as Fractions and points."""
+    rounded = {
+        name: tuple(tuple(map(float, point)) for point in value) if isinstance(value, tuple) else float(value)
+        for name, value in dimensions.items()
+    }
+    return Filled(Solid3(shape, rounded, place), dimensions, density, subtract)
+
+
+def doubtful_holes(parts: Sequence[Filled | None], names: Sequence[str]) -> tuple[str, ...]:
+    """Return a sentence for each hole of a body that can be proven neither to lie within its parts nor to reach out.
+
+    Parameters
+    ----------
+    parts : sequence of Filled or None
+        The parts; None for point masses.
+    names : sequence of str
+        Place of each part in the scene, for messages.
+
+    Raises
+    ------
+    InputError
+        If the density of the body is negative at a point, because a hole reaches out of the parts, overlaps another
+        hole, or has a larger density than the parts around it.
+    """
+    known = [part for part in parts if part is not None]
+    sizes = {id(part): (containment.center(part.solid), containment.size(part.solid)) for part in known}
+    doubts = []
+    for hole, name in zip(parts, names, strict=True):
+        if hole is None or not hole.subtract:
+            continue
+        middle, radius = sizes[id(hole)]
+        near = [
+            part
+            for part in known
+            if part.kind == hole.kind and part is not hole
+            and math.dist(middle, sizes[id(part)][0]) <= (radius + sizes[id(part)][1]) * (1 + ROUNDING)
+        ]  # fmt: skip
+        if _is_within(hole, near, radius):
+            continue
+        _refuse_negative(hole, near, radius, name)
+        doubts.append(
+            f"{name}: whether this hole lies within parts of at least its density could not be decided; where it does "
+            "not, the body has a negative density"
+        )
+    return tuple(doubts)
+
+
+def _is_within(hole: Filled, near: Sequence[Filled], radius: float) -> bool:
+    """Return whether bounds prove that the density of the body is nowhere negative in a hole."""
+    rounding = ROUNDING * radius
+    others = [part for part in near if part.subtract and not are_apart(hole.solid, part.solid, rounding)]
+    hosts = [part for part in near if not part.subtract and _carries(part, [hole, *others])]
+    if any(outside(hole.solid, part.solid) <= rounding for part in hosts):
+        return True
+    pieces = _pieces(hole.solid, [part.solid for part in hosts])
+    return bool(pieces) and all(any(outside(piece, part.solid) <= rounding for part in hosts) for piece in pieces)
+
+
+def _carries(part: Filled, holes: Sequence[Filled]) -> bool:
+    """Return whether the density of a part is at least the sum of the densities of holes."""
+    if isinstance(part.density, Fraction):
+        densities = [hole.density for hole in holes]
+        if any(not isinstance(density, Fraction) for density in densities):
+            return False
+        return float(sum(densities)) <= float(part.density) * (1 + DENSITY)  # type: ignore[arg-type]
+    return len(holes) == 1 and holes[0].density == part.density and holes[0].solid.pose == part.solid.pose
+
+
+_CUT = {
+    "box": (("a", 0), ("b", 1), ("c", 2)),
+    "cylinder": (("length", 2),),
+    "hollow_cylinder": (("length", 2),),
+    "triangular_prism": (("length", 2),),
+}
+"""Shapes that planes cut into shapes of the same kind: the dimension, and the axis along which it is measured."""
+
+
+def _pieces(hole: Solid3, hosts: Sequence[Solid3]) -> list[Solid3]:
+    """Return the pieces into which the ends of the parts ``hosts`` cut a hole; empty for other shapes than prisms."""
+    # a bore through two parts that touch is cut where one ends and the other begins
+    cuts = []
+    for name, axis in _CUT.get(hole.shape, ()):
+        half = hole.dimensions[name] / 2
+        up = hole.pose.turn(tuple(float(k == axis) for k in range(3)))  # type: ignore[arg-type]
+        down = -up[0], -up[1], -up[2]
+        origin = sum(a * b for a, b in zip(hole.pose.at, up, strict=True))
+        ends = {containment.height(host, up) - origin for host in hosts}
+        ends |= {-containment.height(host, down) - origin for host in hosts}
+        inside = sorted(end for end in ends if abs(end) < half * (1 - ROUNDING))
+        cuts.append([(name, axis, low, high) for low, high in pairwise([-half, *inside, half])])
+    if not cuts or math.prod(map(len, cuts)) > MOST_PIECES:
+        return []
+    pieces = []
+    for ranges in product(*cuts):
+        shift = [0.0, 0.0, 0.0]
+        dimensions = dict(hole.dimensions)
+        for name, axis, low, high in ranges:
+            shift[axis], dimensions[name] = (low + high) / 2, high - low
+        at = hole.pose.to_body((shift[0], shift[1], shift[2]))
+        pieces.append(Solid3(hole.shape, dimensions, Pose(at, hole.pose.rotation)))
+    return pieces
+
+
+def _refuse_negative(hole: Filled, near: Sequence[Filled], radius: float, name: str) -> None:
+    """Raise InputError if the density of the body is negative at a test point of a hole."""
+    rounding = ROUNDING * radius
+    strict = -rounding if hole.kind == "solid" else rounding
+    points = 0
+    for point in _test_points(hole, near, radius):
+        points += len(near) + 1
+        if points > MOST_POINTS:
+            return
+        if excess(hole.solid, point) > strict:
+            continue
+        own = hole.density_at(point)
+        around = [part for part in near if not part.subtract and excess(part.solid, point) <= rounding]
+        holes = [part for part in near if part.subtract and excess(part.solid, point) <= strict]
+        filled = sum(part.density_at(point) for part in around)
+        emptied = own + sum(part.density_at(point) for part in holes)
+        if filled - emptied < -DENSITY * abs(own):
+            unit = SHAPES[hole.solid.shape].density_unit
+            place = ", ".join(f"{x:.5g}" for x in point)
+            if not around:
+                fault = f"one that reaches out of them, to ({place}) m in the axes of the body"
+            elif holes and filled >= own * (1 - DENSITY):
+                fault = f"one that overlaps another hole, at ({place}) m in the axes of the body"
+            else:
+                fault = f"a density of {own:.6g} {unit} where they have {filled:.6g} {unit}, at ({place}) m"
+            raise InputError(f"{name}: expected a hole within the other parts, got {fault}")
+
+
+def _test_points(hole: Filled, near: Sequence[Filled], radius: float) -> Iterator[Vec]:
+    """Yield points of a hole in the axes of the body: near its ends along axes and normals of faces, then a lattice."""
+    middle = containment.center(hole.solid)
+    normals = [n for part in (hole, *near) for n in containment.directions(part.solid)]
+    for part in near:
+        away = tuple(a - b for a, b in zip(middle, containment.center(part.solid), strict=True))
+        if length := math.hypot(*away):
+            normals.append((away[0] / length, away[1] / length, away[2] / length))
+    for x, y, z in dict.fromkeys(normals):
+        for end in (containment.farthest(hole.solid, n) for n in ((x, y, z), (-x, -y, -z))):
+            first, second, third = (a + INWARDS * (b - a) for a, b in zip(end, middle, strict=True))
+            yield first, second, third
+    shape = SHAPES[hole.solid.shape]
+    for point in shape_points(shape, scalars(shape, hole.exact_dimensions), SHARES):
+        yield hole.solid.pose.to_body((point["x"], point["y"], point["z"]))
+
+
+def require_points(added: Sequence[PointMass], subtracted: Sequence[tuple[str, PointMass]]) -> None:
+    """Raise InputError unless each point mass that is subtracted is at a point mass of at least its size.
+
+    ``subtracted`` has the place in the scene with each point mass.
+    """
+    size = max((math.hypot(*map(float, point)) for _, (_, point) in subtracted), default=0.0)
+    for name, (mass, point) in subtracted:
+        there = sum(float(own) for own, other in added if math.dist(point, other) <= ROUNDING * size)
+        gone = sum(float(own) for _, (own, other) in subtracted if math.dist(point, other) <= ROUNDING * size)
+        if gone > there * (1 + DENSITY):
+            place = ", ".join(f"{float(x):.6g}" for x in point)
+            raise InputError(
+                f"{name}: expected point masses to subtract that other point masses have at the same points, got "
+                f"{float(mass):.6g} kg at ({place}) m in the axes of the body, where they have {there:.6g} kg"
+            )

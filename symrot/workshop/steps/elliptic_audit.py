@@ -1,0 +1,92 @@
+"""The audit of the certificate of an exact step with elliptic functions: symrot prints and checks the step again."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from symrot.certificates.audit import LARGEST
+from symrot.certificates.certificate import Data
+from symrot.certificates.exact_law import DIGITS, STATES
+from symrot.errors import CertificateError, InputError
+from symrot.files.reading import read_input
+from symrot.scene.file import shipped_names
+from symrot.scene.scene import Scene, load_scene
+from symrot.workshop.steps.exact import ExactStepText, plain_content
+
+__all__ = ["audit_elliptic"]
+
+
+def audit_elliptic(path: Path, data: Data) -> list[str]:
+    """Audit the certificate of an exact step with elliptic functions; return the statements that hold, one line each.
+
+    Parameters
+    ----------
+    path : Path
+        NAME.cert.json, in the folder with the files that it names.
+    data : mapping
+        Its content.
+
+    Raises
+    ------
+    CertificateError
+        If a file is not the one that symrot prints for the scene in the certificate, or violates the equations.
+    """
+    step = _step(path, data)
+    if path.name != f"{step.name}.cert.json":
+        raise CertificateError(f"{path}: expected the certificate of {path.name.removesuffix('.cert.json')}, "
+                               f"got that of {step.name[:60]}")  # fmt: skip
+    texts = step.c_files()
+    for file, text in texts.items():
+        try:
+            content = read_input(path.parent / file, LARGEST)
+        except OSError:
+            raise CertificateError(f"{path}: expected its file {file} in the same folder, got none") from None
+        if content != text.encode():
+            raise CertificateError(
+                f"{path.parent / file}: expected the text that symrot prints for the scene in the certificate, got an "
+                "edited one"
+            )
+    stated = step.statement
+    _same(path, stated, {section: data.get(section) for section in stated})
+    own = step.certificate()
+    if read_input(path, LARGEST) != own.encode():
+        _same(path, json.loads(own), data)
+        raise CertificateError(f"{path}: expected the layout of a certificate as symrot prints it, got another")
+    return [
+        f"{step.name}: {len(texts)} files are those that symrot prints for the scene in the certificate",
+        f"the C text solves the equations of motion at {STATES} states to {DIGITS} digits; nothing is proven elsewhere",
+        _of_scene(path, step.scene, data),
+        "no bounds of rounding and truncation",
+    ]
+
+
+def _same(path: Path, own: Data, data: Data) -> None:
+    """Raise CertificateError if a section of a certificate is not the one that symrot prints."""
+    for section in (*own, *data):
+        if json.dumps(own.get(section), sort_keys=True) != json.dumps(data.get(section), sort_keys=True):
+            raise CertificateError(
+                f"{path}: expected {section!r} as symrot prints it for the scene in the certificate, got other content"
+            )
+
+
+def _step(path: Path, data: Data) -> ExactStepText:
+    """Return the step of the scene that a certificate states."""
+    try:
+        name, content = data["scene"]["name"], data["scene"]["content"]
+        if not isinstance(name, str) or not isinstance(content, Mapping):
+            raise TypeError("a name and the content of a scene")
+        return ExactStepText(replace(Scene.from_dict(content), name=name))
+    except (InputError, KeyError, TypeError, ValueError, RecursionError) as reason:
+        raise CertificateError(
+            f"{path}: expected 'scene' to be a scene with an exact step in elliptic functions, got another ({reason})"
+        ) from None
+
+
+def _of_scene(path: Path, scene: Scene, data: Data) -> str:
+    """Compare the scene in a certificate with the shipped scene of its name; return the result as a sentence."""
+    if scene.name not in shipped_names():
+        return "the scene in the certificate was not compared, because symrot has no scene of its name"
+    if plain_content(load_scene(scene.name).to_dict()) != data["scene"]["content"]:
+        raise CertificateError(f"{path}: expected 'scene' to be the scene {scene.name} of symrot, got other content")
+    return f"the scene in the certificate is the scene {scene.name} of symrot"
