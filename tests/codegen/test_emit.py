@@ -303,17 +303,14 @@ def test_a_scene_of_any_name_is_emitted_and_certified(name, tmp_path, monkeypatc
 
 
 def test_emitted_text_is_the_same_under_any_hash_seed():
-    chosen = SCENES[::18]
+    chosen = SCENES[::6]
     code = (
         "import symrot, sys; print(*(''.join(symrot.emit(n, t)) for n in sys.argv[1:] for t in ('c', 'numpy')), sep='')"
     )
     seed = "2" if os.environ.get("PYTHONHASHSEED") == "1" else "1"
     printed = subprocess.run([sys.executable, "-c", code, *chosen], env=os.environ | {"PYTHONHASHSEED": seed},
                              capture_output=True, text=True, check=True).stdout  # fmt: skip
-    assert (
-        len(chosen) > 1
-        and printed == "".join("".join(symrot.emit(n, t)) for n in chosen for t in ("c", "numpy")) + "\n"
-    )
+    assert printed == "".join("".join(symrot.emit(n, t)) for n in chosen for t in ("c", "numpy")) + "\n"
 
 
 def test_arguments_that_are_not_used_do_not_warn_and_literals_are_doubles():

@@ -6,7 +6,7 @@ from typing import Any
 from sympy import Add, Expr, Matrix, MatrixBase, Symbol
 
 from symrot import symbols
-from symrot.exact.derivative import derivative
+from symrot.catalogue.tools.derivative import derivative
 from symrot.kinematics.quaternion import quaternion_rates
 
 __all__ = ["OMEGA", "TENSOR", "attitude_rates", "pairs", "rate", "squared"]

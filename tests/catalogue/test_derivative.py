@@ -3,7 +3,7 @@
 import pytest
 from sympy import Function, Rational, cos, exp, log, sin, sqrt, srepr
 
-from symrot.exact.derivative import derivative
+from symrot.catalogue.tools.derivative import derivative
 from symrot.symbols import a, phi, q0, t, theta, x, y
 
 FORMULAS = (
