@@ -12,6 +12,8 @@ from symrot.checker.claim.source.text import functions_of_time, is_latex
 from symrot.checker.claim_verdict import check_claim, check_readings, unfinished, verdict_of_decision, within_limits
 from symrot.checker.context.context import Context, read_context
 from symrot.checker.decide.decision import Equation, decide_equation
+from symrot.checker.frame_rates import verdict_on_rates, without_marks
+from symrot.checker.inertia_in_frames import without_brackets
 from symrot.checker.text import verdict_on_readings, verdict_on_text
 from symrot.checker.time_limit import TimeUp
 from symrot.checker.typed.copied_signs import with_plain_signs
@@ -129,13 +131,18 @@ def _checked(
         if isinstance(assume, str) or not all(isinstance(hypothesis, str) for hypothesis in assume):
             raise InputError("assume: expected a list of texts like 'a == b', since the claim is a text")
         typed = _without_backticks(left).lstrip()  # places in the text count from its first character
-        left = with_plain_signs(typed)
+        if not assume and not stated and (of_frames := verdict_on_rates(typed)) is not None:
+            return of_frames
+        typed, of_mark = without_marks(typed)
+        left = with_plain_signs(without_brackets(typed))
         if is_latex(left) and measured_text(left) is None:
             left = numbers_of_latex(left).lstrip() or left
         if is_latex(left) and measured_text(left) is None:
             verdict = _on_latex(left, assume, units, repair, stated)
         else:
             verdict = verdict_on_text(left, assume, units, repair, stated)
+        if of_mark:
+            verdict = replace(verdict, notes=(of_mark, *verdict.notes))
         if left == typed:
             return verdict
         return replace(verdict, text=typed.strip(), notes=(f"it is read as {left.strip()}", *verdict.notes))

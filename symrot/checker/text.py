@@ -147,7 +147,8 @@ def verdict_on_readings(
     if refusal is not None and not of_usual and all(other.verdict == "false" for _, other in verdicts):
         raise refusal  # an unusual reading alone must not make a claim false
     known = ("recognised", "true") if stated else ("recognised",)
-    first = next((n for n, (_, other) in enumerate(verdicts) if other.verdict in known), 0)
+    likely = [other.verdict in known and not _renames_a_rate(other) for _, other in verdicts]
+    first = likely.index(True) if any(likely) else 0
     if _is_unknown(verdicts[0]) and not first:
         wrong = [other.verdict == "doubtful" or _is_false_by_context(other, stated) for _, other in verdicts]
         first = wrong.index(True) if any(wrong) else 0
@@ -169,6 +170,14 @@ def verdict_on_readings(
 def _is_false_by_context(verdict: Verdict, stated: Context) -> bool:
     """Return whether a claim is false only because its context ``stated`` gives its quantity another formula."""
     return bool(stated) and verdict.verdict == "false" and bool(verdict.recognised_as)
+
+
+def _renames_a_rate(verdict: Verdict) -> bool:
+    """Return whether a claim is recognised only with a name such as psi_prime for the rate of another angle, dphi."""
+    return all(
+        any(own.startswith("d") and other.endswith("_prime") for own, other in known.mapping.items())
+        for known in verdict.recognised_as
+    ) and bool(verdict.recognised_as)
 
 
 def _is_unknown(reading: tuple[Reading, Verdict]) -> bool:
@@ -381,6 +390,7 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Ve
     verdict = _with_two_meanings(claim, verdict) if verdict.verdict == "false" and plain else verdict
     # a false equation outside SymPy syntax may be meant as a condition, such as x^2 = 4
     verdict = as_equation(claim, verdict, notation) if verdict.verdict == "false" and plain else verdict
+    verdict = _on_inertia_matrix(claim, verdict) if verdict.verdict == "false" else verdict
     if verdict.verdict in ("recognised", "doubtful") and _has_indices(claim):
         verdict = replace(verdict, verdict="definition", recognised_as=(), repairs=(), reason=INDICES)
     if verdict.verdict == "false" and claim.relation is not None and has_index_symbols(claim.relation):
@@ -397,6 +407,16 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Ve
     )
     notes = (*claim.notes, *verdict.notes, *_on_numbers(claim, verdict), *_on_zero_powers(claim, verdict))
     return replace(verdict, repairs=repairs, notes=notes, requires=requires, conditions=conditions)
+
+
+def _on_inertia_matrix(claim: Claim, verdict: Verdict) -> Verdict:
+    """Return "definition" for ``I = [A, 0, 0; 0, B, 0; 0, 0, C]``, false if I is the unit matrix; else ``verdict``."""
+    sides = claim.relation[1:] if claim.relation else ()
+    kinds = [side.kind if side.kind != "call" else str(side.value) for side in sides]
+    if sorted(kinds) not in (["eye", "list"], ["Matrix", "eye"]):
+        return verdict
+    reason = "I is the unit matrix or a tensor of inertia: the first is another matrix, the second is not known here"
+    return Verdict("definition", reason=reason, notes=verdict.notes, dimension=verdict.dimension)
 
 
 def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:

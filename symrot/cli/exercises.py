@@ -29,7 +29,7 @@ def _exercise(options: Namespace) -> int:
         return OK
     form = options.format or FORM_OF.get(options.output.suffix.lower() if options.output else "", "markdown")
     text = symrot.exercise(options.topic or "", seed=options.seed, count=options.count).print(
-        form, not options.no_solutions
+        form, not options.no_solutions, statements=not options.only_solutions, title=options.title
     )
     if options.output is None:
         seen = EMBEDDED.sub(r"*Figure:* \1 (drawn in a file: `-o sheet.html`)", text) if sys.stdout.isatty() else text
@@ -75,8 +75,8 @@ def _exercise_arguments(parser: ArgumentParser) -> None:
         "topic",
         metavar="TOPIC",
         nargs="*",
-        help="topics, or templates of exercises; the sheet takes one exercise from each, then starts again (default: "
-        "all topics)",
+        help="topics, or templates of exercises, in the order of the sheet; each supplies as many exercises as any "
+        "other, or one less (default: all topics)",
     )
     parser.add_argument(
         "--seed", type=_whole, default=0, metavar="N", help="seed of the numbers in the exercises (default: 0)"
@@ -88,8 +88,13 @@ def _exercise_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "-o", type=Path, metavar="FILE", dest="output", help="write to a file (default: standard output)"
     )
-    parser.add_argument(
-        "--no-solutions", action="store_true", help="leave out hints and solutions (Markdown and LaTeX)"
+    parser.add_argument("--title", default="", help="title of the sheet (Markdown, LaTeX and HTML; default: Exercises)")
+    part = parser.add_mutually_exclusive_group()
+    part.add_argument(
+        "--no-solutions", action="store_true", help="leave out hints and solutions (Markdown, LaTeX and HTML)"
+    )
+    part.add_argument(
+        "--only-solutions", action="store_true", help="print the solutions alone, with their numbers on the sheet"
     )
     parser.add_argument("--list", action="store_true", help="list the topics and their templates")
 

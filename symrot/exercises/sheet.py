@@ -52,24 +52,32 @@ class ExerciseSheet:
         """Return the sheet as plain data for JSON."""
         return sheet_data(self.exercises)
 
-    def print(self, form: str, solutions: bool = True) -> str:
+    def print(self, form: str, solutions: bool = True, *, statements: bool = True, title: str = "") -> str:
         """Return the text of the sheet; ``form`` is ``markdown``, ``latex``, ``html``, ``moodle`` or ``json``.
+
+        Markdown, LaTeX and HTML can have a ``title`` of their own, and leave out the solutions (to hand out) or the
+        statements (a sheet of solutions).
 
         Raises
         ------
         InputError
-            For an unknown format, and for a format that cannot leave out the solutions.
+            For an unknown format, for Moodle and JSON with a title or without a part, and if both parts are left out.
         """
-        from symrot.exercises.formats import FORMATS, WITHOUT_SOLUTIONS
+        from symrot.exercises.formats import FORMATS, HANDOUTS, TITLE
 
+        if not (statements or solutions):
+            raise InputError("sheet: expected statements, solutions or both")
+        if form in HANDOUTS:
+            heading = title or (TITLE if statements else f"{TITLE}: solutions")
+            return HANDOUTS[form](self.exercises, heading, statements, solutions)
         if form not in FORMATS:
-            raise InputError(f"format: expected one of {', '.join(FORMATS)}, got {form!r}")
-        if solutions:
-            return FORMATS[form](self.exercises)
-        # the other formats are made to show hints and solutions later
-        if form not in WITHOUT_SOLUTIONS:
-            raise InputError(f"format without solutions: expected {' or '.join(WITHOUT_SOLUTIONS)}, got {form!r}")
-        return WITHOUT_SOLUTIONS[form](self.exercises, False)
+            raise InputError(f"format: expected one of {', '.join((*HANDOUTS, *FORMATS))}, got {form!r}")
+        if title or not (statements and solutions):
+            raise InputError(
+                f"format of a sheet with a title of its own, or with a part alone: expected {', '.join(HANDOUTS)}, "
+                f"got {form!r}"
+            )
+        return FORMATS[form](self.exercises)
 
     def markdown(self) -> str:
         """Return the sheet as Markdown, with hints and solutions after the exercises."""
@@ -101,8 +109,8 @@ def exercise(topic: str | Sequence[str] = "", *, seed: int = 0, count: int = 1) 
     Parameters
     ----------
     topic : str or sequence of str
-        A topic or the name of a template, see ``symrot exercise --list``. Several of them supply one exercise each,
-        in turn; an empty text stands for all topics.
+        A topic or the name of a template, see ``symrot exercise --list``. Several of them share the exercises, which
+        are in the order of the topics; an empty text stands for all topics.
     seed : int
         Seed of the random choices. Another seed usually gives other numbers and begins with another template; the same
         seed gives the same exercises on every machine.
@@ -128,7 +136,7 @@ def exercise(topic: str | Sequence[str] = "", *, seed: int = 0, count: int = 1) 
     >>> sheet.questions[0].prompt
     'Find $I_O$, the moment of inertia about the axis, as a formula in $m$, $L$.'
     >>> [each.topic for each in symrot.exercise(["gears", "rolling"], count=3)]
-    ['gears', 'rolling', 'gears']
+    ['gears', 'gears', 'rolling']
     """
     if not isinstance(seed, int) or seed < 0:
         raise InputError(f"seed: expected a whole number, 0 or more, got {seed!r}")
@@ -149,7 +157,9 @@ def exercise(topic: str | Sequence[str] = "", *, seed: int = 0, count: int = 1) 
     for name in names:
         exercises.append(_exercise(name, seed + uses[name]))
         uses[name] += 1
-    return ExerciseSheet(tuple(exercises))
+    # the topics took turns; on the sheet, the exercises of a topic are together
+    order = sorted(range(count), key=lambda place: place % len(lists))
+    return ExerciseSheet(tuple(exercises[place] for place in order))
 
 
 def _exercise(name: str, seed: int) -> Exercise:

@@ -1,13 +1,19 @@
-"""Computation of the chunks of a sweep by the workers of a Dask cluster; only this process writes the results."""
+"""Computation of the chunks of a sweep by the workers of a Dask cluster.
+
+Workers on this machine write their chunks into the file of the sweep; others send them to this process, which writes.
+"""
 
 from collections import deque
 from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
 from typing import Any
 
 from symrot.errors import InputError, PropagationError
 from symrot.sweeps.chunk import Chunk, Job
+from symrot.sweeps.layout import Store
 from symrot.sweeps.optional import optional
 from symrot.sweeps.processes import IN_FLIGHT, Range, compute_packed, packed
+from symrot.sweeps.shared_store import Offer, Written, offered, stored
 
 __all__ = ["run_on_cluster"]
 
@@ -38,10 +44,20 @@ def _client(address: str) -> Any:
     return client
 
 
-def run_on_cluster(job: Job, ranges: Sequence[Range], address: str) -> Iterator[Chunk]:
+def compute_and_store(text: bytes, start: int, stop: int, offer: Offer | None) -> Chunk | Written:
+    """Return the chunk of the trajectories ``start`` to ``stop - 1``, or that it is stored.
+
+    ``text`` is the job from :func:`packed`; ``offer`` says whether this process may write into the client's file.
+    """
+    chunk = compute_packed(text, start, stop)
+    return chunk if offer is None else stored(chunk, offer)
+
+
+def run_on_cluster(job: Job, ranges: Sequence[Range], address: str, store: Store) -> Iterator[Chunk | Written]:
     """Yield the chunks of a job, as each is complete, computed by the workers of a Dask cluster.
 
-    ``ranges``: (start, stop) per chunk; ``address``: the scheduler.
+    A chunk that a worker has written into ``store`` comes as its range. ``ranges``: (start, stop) per chunk;
+    ``address``: the scheduler.
 
     Raises
     ------
@@ -52,19 +68,21 @@ def run_on_cluster(job: Job, ranges: Sequence[Range], address: str) -> Iterator[
     """
     client = _client(address)
     in_order = optional("distributed", "--scheduler", "cluster").as_completed
-    try:
+    with ExitStack() as stack:
+        stack.callback(client.close)
+        offer = stack.enter_context(offered(store))
         text, missing = packed(job), deque(ranges)
         threads = sum(client.nthreads().values()) or 1
 
         def submit() -> Any:
             # if a worker is lost, Dask computes its chunks on another one
-            return client.submit(compute_packed, text, *missing.popleft(), pure=False, retries=RETRIES)
+            return client.submit(compute_and_store, text, *missing.popleft(), offer, pure=False, retries=RETRIES)
 
         # at most two chunks for each thread of the cluster at a time
         running = in_order([submit() for _ in range(min(len(missing), IN_FLIGHT * threads))], loop=client.loop)
         for future in running:
             try:
-                chunk: Chunk = future.result()
+                chunk: Chunk | Written = future.result()
             except Exception as reason:
                 raise PropagationError(
                     f"the cluster did not compute a chunk ({type(reason).__name__}: "
@@ -74,5 +92,3 @@ def run_on_cluster(job: Job, ranges: Sequence[Range], address: str) -> Iterator[
             if missing:
                 running.add(submit())
             yield chunk
-    finally:
-        client.close()

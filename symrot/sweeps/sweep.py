@@ -13,11 +13,12 @@ from symrot.errors import InputError, nearest
 from symrot.formula.exact_numbers import show
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.method import choose_method
-from symrot.propagation.sensitivities.variation import rates_of, structure_of
+from symrot.propagation.sensitivities.libraries import rates_of
+from symrot.propagation.sensitivities.variation import structure_of
 from symrot.propagation.steppers.taylor import refusal
 from symrot.scene.scene import Scene, SceneSource, load_scene
 from symrot.scene.tables import read_tolerance
-from symrot.sweeps.chunk import IMPOSSIBLE, STOPPED, Job, prepared
+from symrot.sweeps.chunk import IMPOSSIBLE, STOPPED, Chunk, Job, prepared
 from symrot.sweeps.cluster import run_on_cluster
 from symrot.sweeps.design import Design, read_design
 from symrot.sweeps.layout import MESSAGE, STATUS, TIME, Header, Store, header_of
@@ -25,6 +26,7 @@ from symrot.sweeps.memory_store import MemoryStore
 from symrot.sweeps.outputs import UNAVERAGED, SweepOutput, read_outputs, scene_for, variable_keys
 from symrot.sweeps.parquet_store import ParquetStore
 from symrot.sweeps.processes import cores, run_here
+from symrot.sweeps.shared_store import Written
 from symrot.sweeps.statistics import Statistic, read_statistics, statistics_of
 from symrot.sweeps.targets import OMEGA, Content, constants_of
 from symrot.sweeps.zarr_store import ZarrStore
@@ -246,8 +248,9 @@ def sweep(
         done = header.count - sum(stop - start for start, stop in pending)
         if progress is not None:
             progress(done, header.count)
-        for part in _chunks(job, pending, number, scheduler):
-            store.write(part)
+        for part in _chunks(job, pending, number, scheduler, store):
+            if isinstance(part, Chunk):
+                store.write(part)
             done += part.stop - part.start
             if progress is not None:
                 progress(done, header.count)
@@ -268,10 +271,13 @@ def _require_averages(statistics: Sequence[Statistic], outputs: Sequence[SweepOu
         )
 
 
-def _chunks(job: Job, pending: list[tuple[int, int]], workers: int, scheduler: str | None) -> Iterator[Any]:
+def _chunks(
+    job: Job, pending: list[tuple[int, int]], workers: int, scheduler: str | None, store: Store
+) -> Iterator[Chunk | Written]:
+    """Yield for each range of trajectories in ``pending`` its chunk, or that a worker has stored it."""
     if not pending:
         return iter(())
-    return run_here(job, pending, workers) if scheduler is None else run_on_cluster(job, pending, scheduler)
+    return run_here(job, pending, workers) if scheduler is None else run_on_cluster(job, pending, scheduler, store)
 
 
 def _require(condition: bool, where: str, expectation: str, value: object) -> None:
@@ -328,6 +334,10 @@ def _job(
     ``texts`` are the outputs, ``folders`` the table folders.
     """
     own = scene_for(load_scene(scene, table_folders=folders), texts)
+    if own.table is not None:
+        raise InputError(
+            f"{own.name}: expected torques that are formulas, got a torque of kind table, which no sweep has"
+        )
     content = _content(own)
     _require(isinstance(vary, Mapping), "vary", "a dict of laws by name", vary)
     design = read_design(own, content, vary, attitudes, sampling, count, seed)

@@ -91,6 +91,15 @@ def _times(trajectory: Trajectory) -> Floats:
     return np.linspace(start, stop, round(duration * RATE))
 
 
+def _clock(time: float, last: float) -> str:
+    """Return the time as a frame shows it: ``_clock(1.5, 12.0)`` is ``"t = 1.50 s"``.
+
+    All frames up to the time ``last`` have the same decimals, so that the digits do not jump.
+    """
+    decimals = max(3 - int(np.floor(np.log10(max(abs(last), 1e-12)))), 0)
+    return f"t = {time:.{decimals}f} s"
+
+
 def _frames(trajectory: Trajectory, times: Floats) -> Iterator[Floats]:
     """Yield the frame for each of ``times`` as an array of pixels, shape (height, width, 3), 8 bits per colour."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -133,7 +142,7 @@ def _frames(trajectory: Trajectory, times: Floats) -> Iterator[Floats]:
             axes.text(*place, name if is_close else name.strip(), ha=side if is_close else "center", **label)
         title = scene.title if len(scene.title) <= LONGEST_TITLE else f"{scene.title[: LONGEST_TITLE - 2]} .."
         figure.text(0.02, 0.95, title, fontsize=11, color=EDGE, parse_math=False)
-        figure.text(0.02, 0.03, f"t = {time:.4g} s", fontsize=11, color=EDGE)
+        figure.text(0.02, 0.03, _clock(time, times[-1]), fontsize=11, color=EDGE)
         canvas.draw()
         yield np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
 

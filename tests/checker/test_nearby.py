@@ -45,7 +45,60 @@ FAULTS = (
     (r"T = \frac{mg}{1 + mR/I}", "exponent", r"T = m \frac{g}{1 + m \frac{R^2}{I}}"),
     ("θ = ω_0 t + αt²", "factor", "θ = ω_0*t + α*t^2/2"),
     ("M^2 = I_1^2 w_1^2 + I_2 w_2^2 + I_3^2 w_3^2", "exponent", "M^2 = I_1^2*w_1^2 + I_2^2*w_2^2 + I_3^2*w_3^2"),
+    # a letter of the right formula that the claim lacks
+    ("ω₃ = ψ̇ + φ̇ cos ψ", "wrong_symbol", "ω₃ = ψ' + φ'*cos(theta)"),
+    ("omega_pr = m g l/(I_1 omega_3)", "wrong_symbol", "omega_pr = m*g*l/(I_3*omega_3)"),
+    ("σ₁ = β₁/(1 + β₁)", "wrong_symbol", "σ₁ = β₁/(1 + beta_0)"),
+    ("C₁₃ = 2(q₁q₃ − q₂q₃)", "wrong_symbol", "C₁₃ = 2*(q₁*q₃ - q₂*q_0)"),
+    ("R₁₁ = cos φ cos θ cos ψ − sin θ sin ψ", "wrong_symbol", "R₁₁ = cos(φ)*cos(θ)*cos(ψ) - sin(φ)*sin(ψ)"),
+    ("beta = atan2(-r_31, sqrt(r_11^2 + r_12^2))", "wrong_symbol", "beta = atan2(-r_31, sqrt(r_11^2 + r_21^2))"),
+    # two letters exchanged
+    ("tan theta = I_3 w_T/(I_T w_3)", "wrong_symbol", "tan(theta) = I_T*w_T/(I_3*w_3)"),
+    ("q_1 = 2 beta_1/beta_0", "factor", "q_1 = beta_1/beta_0"),
+    ("epsilon_dot = eta omega + epsilon x omega", "factor", "epsilon_dot = 1/2*(eta*omega + cross(epsilon, omega))"),
+    ("I w' + w x (I w - h) = M", "sign_of_term", "M = I*w' + cross(w, I*w + h)"),
+    ("k_x = (r_32 + r_23)/(2 sin theta)", "sign_of_term", "k_x = (r_32 - r_23)/(2*sin(theta))"),
+    ("dM_1/dt = (1/I_3 + 1/I_2) M_2 M_3", "sign_of_term", "M_1' = (1/I_3 - 1/I_2)*M_2*M_3"),
+    ("I_1 w_1' = (I_2 - I_3) w_2 w_3 - h w_1", "wrong_symbol", "I_1*w_1' = (I_2 - I_3)*w_2*w_3 - h*w_2"),
+    ("g_dot = 1/2 (I - [g x] - g g^T) omega", "sign_of_term", "g_dot = 1/2*(eye(3) + skew(g) + g*g.T)*omega"),
+    ("sigma_1_dot = 1/4 ((1 - sigma^2 + 2 sigma_1^2) omega_1 + 2 (sigma_1 sigma_2 - sigma_3) omega_2"
+     " + 2 (sigma_1 sigma_3 + sigma_3) omega_3)", "wrong_symbol",
+     "sigma_1_dot = 1/4*((1 - sigma^2 + 2*sigma_1^2)*omega_1 + 2*(sigma_1*sigma_2 - sigma_3)*omega_2"
+     " + 2*(sigma_1*sigma_3 + sigma_2)*omega_3)"),
 )  # fmt: skip
+
+
+RIGHT = (
+    ("tan theta = I_T w_T/(I_3 w_3)", "angle of the axis of a free symmetric body to its angular momentum"),
+    ("phi = atan2(2 q_2 q_3 + 2 q_0 q_1, q_3^2 - q_2^2 - q_1^2 + q_0^2)", "roll angle of a quaternion"),
+    ("beta = atan2(-r_31, sqrt(r_11^2 + r_21^2))", "pitch angle of a rotation matrix"),
+    ("omega_p = (1 - I_3/I_T) omega_3", "rate of spin of a free symmetric body"),
+    (r"\mathbf N = \frac{3\mu}{R^3}\hat{\mathbf r}\times(I\hat{\mathbf r})", "gravity gradient by the tensor of inertia"),
+    ("q = (g + h + g × h)/(1 - g · h)", "Rodrigues parameters of two rotations one after the other"),
+    (r"\mathbf a = \mathbf a_r + 2\boldsymbol\Omega\times\mathbf v_r + \boldsymbol\Omega\times(\boldsymbol\Omega\times\mathbf r)"
+     r" + \dot{\boldsymbol\Omega}\times\mathbf r", "acceleration of a point in a rotating frame"),
+)  # fmt: skip
+
+
+@pytest.mark.thinned(3)
+@pytest.mark.parametrize(("claim", "known"), RIGHT)
+def test_formulas_of_references_are_recognised(claim, known):
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "recognised"
+    assert known in str(verdict.recognised_as[0])
+
+
+def test_a_wrong_unit_shows_a_fault_of_a_short_formula():
+    body = "free symmetric body with moments I_1, I_1, I_3"
+    verdict = symrot.check("cos θ = I₃ω₃²/L", where=["L = angular momentum"], body=body)
+    assert (verdict.verdict, verdict.diagnosis.code) == ("false", "exponent")
+    assert [repair.text for repair in verdict.repairs] == ["cos(θ) = I₃*ω₃/L"]
+
+
+def test_a_formula_for_another_quantity_is_repaired_if_its_letters_are_stated():
+    where = ["I_a = moment about the axis", "I_t = transverse moment", "nu = angular velocity along the axis",
+             "Omega = precession rate"]  # fmt: skip
+    assert [repair.text for repair in symrot.check("Omega = I_t/I_a nu", where=where).repairs] == ["Omega = I_a/I_t*nu"]
 
 
 @pytest.mark.thinned(4)
@@ -128,6 +181,9 @@ def test_a_renaming_leaves_out_at_most_one_symbol_on_each_side():
     assert absent_name("omega_3", first) == ("Omega_3", True)
     assert renamings(known, own[:4]) == []
     assert absent_name("c_3", {"m": "m"}) == ("l", False)
+    assert absent_name("C", {"omega_3": "w_3"}, ["I_1"]) == ("I_3", True)
+    assert absent_name("theta", {"dphi": "diff(phi(t), t)"}) == ("theta", True)
+    assert absent_name("R_21", {"R_11": "r_11"}) == ("r_21", True)
 
 
 def test_units_and_axes_of_letters_limit_the_renamings():
@@ -138,6 +194,7 @@ def test_units_and_axes_of_letters_limit_the_renamings():
 
 def test_the_campaign_compares_diagnoses_and_repairs_with_the_corpus():
     assert names_fault("missing_square", "exponent") and not names_fault("sign", "factor")
+    assert offers(("x^2 >= 4 a b",), "w² ≥ 4 m g") and not offers(("x^2 <= 4 a b",), "x^2 >= 4 a b")
     assert names_fault("other", "factor") and not names_fault("other", "none")
     assert offers(("T = I*omega^2/2",), r"T = \frac12 J\omega^2")
     assert offers(("x = 1", "I_1*w' = M"), "w' = M/I_1")
@@ -168,7 +225,7 @@ def test_a_fault_in_an_equation_is_found_from_the_known_relation(claim, code, re
     ("T = 1/2 (A p^2 + B q^2 + C q^2)", "doubtful"),  # a component of omega that occurs twice
     ("J_1 w_1' = w_2 w_3 (J_2 - J_1)", "doubtful"),  # no book writes J_1 for J_3
     ("J_1 w_1' = w_2 w_3 (J_1 - J_3)", "definition"),  # a body with J_1 = J_2
-    ("L = (J_1 w_1, J_1 w_2, J_3 w_3)", "definition"),  # a body with J_1 = J_2; the third axis is usually that of symmetry
+    ("L = (J_1 w_1, J_1 w_2, J_3 w_3)", "recognised"),  # a body with J_1 = J_2; the third axis is usually that of symmetry
     ("I_x = 1/4 m r^2 + 1/9 m h^2", "definition"),  # 1/12 + 1/6^2: about a parallel axis
     ("I_x = 1/4 m r^2 + 1/6 m h^2", "doubtful"),  # 1/6 - 1/12 is no square
     ("p_psi = J_3 psi'", "definition"),  # not the momentum of nutation with another letter

@@ -110,3 +110,4 @@ def test_a_sum_of_angles_needs_no_condition_on_the_argument_of_its_inverse_funct
 def test_a_radicand_with_roots_that_may_be_negative_stays_a_condition():
     verdict = symrot.check("sqrt(x*sqrt(1 - y**2) + 1)**2 == x*sqrt(1 - y**2) + 1", repair=False)
     assert any("x*sqrt(1 - y**2)" in condition for condition in verdict.conditions)
+    assert symrot.check("sqrt(1 + 1/x + sqrt(y)) == sqrt(sqrt(y) + (x + 1)/x)", repair=False).verdict == "true"

@@ -32,20 +32,26 @@ def test_one_exercise_is_graded_by_its_name_and_seed(capsys):
     assert code == 0 and json.loads(text)["credit"] == 2
 
 
-def test_topics_take_turns(capsys):
+def test_topics_share_a_sheet_in_the_order_of_the_command_line(capsys):
     code, text, _ = run(capsys, "exercise", "gears", "rolling", "--count", "5", "--format", "json")
     sheet = json.loads(text)["exercises"]
-    assert code == 0 and [each["topic"] for each in sheet] == ["gears", "rolling", "gears", "rolling", "gears"]
+    assert code == 0 and [each["topic"] for each in sheet] == ["gears"] * 3 + ["rolling"] * 2
     assert len({each["template"] for each in sheet}) == 5
 
 
-@pytest.mark.parametrize("form", ["markdown", "latex"])
+@pytest.mark.parametrize("form", ["markdown", "latex", "html"])
 def test_a_sheet_without_solutions_has_the_exercises_alone(capsys, form):
     words = ("exercise", "rod_about_end", "--format", form)
     _, whole, _ = run(capsys, *words)
-    _, text, _ = run(capsys, *words, "--no-solutions")
-    assert "Hints" in whole and "Solutions" in whole and not ("Hints" in text or "Solution" in text)
+    _, text, _ = run(capsys, *words, "--no-solutions", "--title", "Week 3, rods")
+    assert (
+        "Hint" in whole and "Solution" in whole and not ("Hint" in text or "Solution<" in text or "Solutions" in text)
+    )
     assert "A rod about its end" in text and (form != "latex" or text.endswith("\\end{document}\n"))
+    assert "Week 3, rods" in text and "Exercises" not in text
+    code, text, _ = run(capsys, *words, "--only-solutions")
+    assert code == 0 and "Exercises: solutions" in text and "Find" not in text and "<form" not in text
+    assert "Answers:" in text and "A rod about its end" in text
 
 
 def test_the_list_names_every_topic(capsys):
@@ -54,7 +60,9 @@ def test_the_list_names_every_topic(capsys):
 
 
 @pytest.mark.parametrize("arguments, words", [
-    (("exercise", "gears", "--format", "html", "--no-solutions"), "expected markdown or latex, got 'html'"),
+    (("exercise", "gears", "--format", "moodle", "--no-solutions"), "expected markdown, latex, html, got 'moodle'"),
+    (("exercise", "gears", "--format", "json", "--title", "Week 3"), "a title of its own"),
+    (("exercise", "gears", "--only-solutions", "--no-solutions"), "not allowed with"),
     (("exercise", "cooking"), "expected a topic"), (("exercise", "gears", "rollin"), "did you mean 'rolling'"), (("exercise", "--count", "many"), "invalid whole number"),
     (("exercise", "--format", "pdf"), "invalid choice"), (("exercise", "gears", "--list"), "--list alone"),
     (("exercise", "--count", "0"), "count: expected"), (("grade", "x.json"), "expected EXERCISES.json"),

@@ -12,6 +12,7 @@ import symrot
 from symrot.errors import InputError, PropagationError
 from symrot.propagation.events.events import read_events
 from symrot.scene.scene import Scene
+from tests.needs import needs_compiler
 
 pytestmark = pytest.mark.usefixtures("quick_compiler")
 METHODS = ["taylor", "dop853", "exact"]
@@ -179,6 +180,10 @@ def test_many_zeros_in_one_step():
 def test_what_is_zero_all_along_or_never_is_no_event():
     trajectory = run(scene((0, 0, 1)), ["omega_1", "omega_3 - 2", "q0*q0 + q3*q3 - 1"])
     assert [len(t) for t in trajectory.t_events] == [0, 0, 0]
+    assert trajectory.warnings == tuple(
+        f"events: {formula!r} is zero within rounding from t = 0.0 to 30.0 s: no event is listed there"
+        for formula in ("omega_1", "q0*q0 + q3*q3 - 1")
+    )
 
 
 def test_formulas_without_a_value_somewhere():
@@ -217,6 +222,18 @@ def test_directions_and_backward_motion():
     assert list(two_sided.t) == [two_sided.t_events[2][0], 0.0, two_sided.t_events[2][1]]
     reverse = run(scene(), [symrot.Event("omega_2", terminal=True)], t=t[::-1])
     assert list(reverse.t) == list(two_sided.t[::-1]) and (reverse.y == two_sided.y[:, ::-1]).all()
+
+
+@needs_compiler
+@pytest.mark.parametrize("method", ["taylor", "dop853"])
+def test_events_of_a_motion_under_switches_that_runs_backward_only(method):
+    """The part after the start, which has no length, ended in a traceback."""
+    torque = [{"kind": "expression", "torque": ["0", "0", "where(mod(t, 1) < 1/2, 1, -1)"]}]
+    motion = symrot.propagate(
+        scene((0, 0, 0), body={"principal": [1, 1, 1]}, torque=torque), t=[0, -5], method=method,
+        events=["omega_3 - 1/4", "t"],
+    )  # fmt: skip
+    assert motion.t_events[0] == pytest.approx(np.arange(-4.75, 0, 0.5)) and list(motion.t_events[1]) == [0.0]
 
 
 def test_an_event_at_the_start_is_listed_and_ends_nothing():
@@ -283,6 +300,19 @@ def test_poles_and_jumps_are_no_events(method):
     tangent, *others, sine = run(scene(stop=10), events, method, 1e-10).t_events
     assert abs(tangent - math.pi * np.arange(4)).max() < 1e-14
     assert [len(t) for t in others] == [0] * 5 and len(sine) == 4
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_an_angle_that_jumps_by_a_turn_is_no_event(method):
+    """The branch cut of atan2 was listed as a zero, and ended motions there."""
+    spin = scene((0, 0, 1), 20, **SPIN)
+    yaw = "atan2(2*(q0*q3 + q1*q2), q0*q0 + q1*q1 - q2*q2 - q3*q3) == 0.1"
+    events = [yaw, "sin(atan2(q3, q0)/2) == 0.1", "atan(tan(t))", "atan2(t - 5, -1)", "cos(atan2(q3, q0)/2)"]
+    angle, half, tangent, jump, touch = run(spin, events, method, 1e-12).t_events
+    assert angle == pytest.approx(0.1 + 2 * math.pi * np.arange(4), abs=1e-9)
+    assert half == pytest.approx(4 * math.asin(0.1) + np.array([0, 4 * math.pi]), abs=1e-9)
+    assert tangent == pytest.approx(math.pi * np.arange(7), abs=1e-14) and len(jump) == 0
+    assert touch == pytest.approx([2 * math.pi, 6 * math.pi], abs=1e-6)
 
 
 def test_zeros_at_the_edge_of_a_domain_are_no_events_but_touches_by_a_kink_are():

@@ -2,6 +2,7 @@
 from there.
 """
 
+import math
 from fractions import Fraction
 
 import mpmath
@@ -62,6 +63,17 @@ def test_the_momentum_is_the_impulse_however_late_it_is(method, torque, impulse,
         for rate, t in zip(rates, when, strict=True):
             true = Fraction(1, 10) + (impulse(Fraction(t), start) - impulse(Fraction(start), start)) / 3
             assert abs(Fraction(rate) - true) <= 20 * Fraction(1e-12) * max(abs(true), Fraction(1, 10)), t
+
+
+@needs_compiler
+@pytest.mark.parametrize(("torque", "impulse"), [
+    ("sign(1/(t-2)-1)", -8), ("sign(exp(1/(t-2))-2)", 2 / math.log(2) - 10), ("sign(1/(t-1))", 8),
+    ("sign(1/(1+exp(1/(t-2)))-1/2)", -6), ("step(atan((t-1)/(t-2)))", 9),
+])  # fmt: skip
+def test_a_sign_changes_at_a_pole_and_at_a_jump_of_its_argument(torque, impulse):
+    """A pole and a zero in one step cancelled: the torque kept its sign, without a word."""
+    trajectory = symrot.propagate(scene(torque, 0, 10, omega=0))
+    assert trajectory.omega[-1, 2] == pytest.approx(impulse / 3, rel=1e-10)
 
 
 @needs_compiler

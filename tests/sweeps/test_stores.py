@@ -12,6 +12,8 @@ import pytest
 
 import symrot
 from symrot.errors import InputError
+from symrot.sweeps.chunk import Chunk
+from symrot.sweeps.design import Draws
 from symrot.sweeps.zarr_store import ZarrStore
 from tests.sweeps.scenes import OUTPUTS, sweep
 
@@ -262,3 +264,53 @@ def test_a_parquet_file_has_only_the_arrays_of_its_header(tmp_path):
     assert store.has("status") and store.has(OUTPUTS[0]) and not store.has("no such array")
     with pytest.raises(InputError, match="expected one of status"):
         result.array("no such array")
+
+
+def on_cluster(**options):
+    """Return a sweep by two Dask workers in this process, which see its files."""
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None
+    ) as cluster:
+        return sweep(scheduler=cluster.scheduler_address, chunk=5, **options)
+
+
+@pytest.mark.skipif(not Path("/proc/sys/kernel/random/boot_id").exists(), reason="only on Linux")
+@pytest.mark.parametrize("name", NAMES)
+def test_workers_on_this_machine_write_their_chunks(whole, tmp_path, monkeypatch, name):
+    from symrot.sweeps import cluster
+
+    parts = []
+    run = cluster.stored
+    monkeypatch.setattr(cluster, "stored", lambda *given: parts.append(run(*given)) or parts[-1])
+    on_cluster(path=tmp_path / name, statistics="mean")
+    assert sorted(parts) == [(start, start + 5) for start in range(0, 40, 5)]
+    for key, array in values(tmp_path / name).items():
+        assert np.array_equal(array, whole[key])
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
+def test_a_worker_that_cannot_write_sends_its_chunk(whole, tmp_path, monkeypatch):
+    from symrot.sweeps import shared_store
+
+    monkeypatch.setattr(shared_store, "_opened", lambda store, mark: 1 / 0)
+    on_cluster(path=tmp_path / "a.zarr")
+    for key, array in values(tmp_path / "a.zarr").items():
+        assert np.array_equal(array, whole[key])
+
+
+def test_a_worker_writes_only_for_its_own_client_while_that_runs(tmp_path):
+    from symrot.sweeps.shared_store import BOOT, Written, offered, stored
+
+    if not BOOT.exists():
+        pytest.skip("only on Linux")
+    store = sweep(path=tmp_path / "a.zarr", chunk=5)._store
+    part = Chunk(0, 5, Draws(np.zeros((5, 2)), np.zeros((5, 4))), {}, np.full(5, -1, np.int8), {})
+    with offered(store) as offer, offered(store) as second:
+        assert offer is not None and second is None  # another client runs
+        assert stored(part, offer) == Written(0, 5)
+        assert store.read("status", 0, 6).tolist() == [-1] * 5 + [0]
+    with offered(store) as later:
+        for wrong in (offer, later._replace(mark="other machine"), later._replace(lock=str(tmp_path / "none"))):
+            assert stored(part, wrong) is part
+    assert stored(part, later) is part  # its client has ended

@@ -40,10 +40,10 @@ def test_a_trajectory_is_the_motion_of_its_own_scene(whole):
 
 def test_outputs_have_units_frames_and_meanings(whole):
     assert whole.omega_1.attrs == {
-        "units": "rad/s", "frame": "body", "long_name": "angular velocity, body components"
+        "units": "rad/s", "frame": "body", "long_name": "omega_1", "description": "angular velocity, body components"
     }  # fmt: skip
     assert whole["energy@max"].attrs["units"] == "J" and whole.input_weight.attrs["units"] == "N"
-    assert whole["axis_z@end"].attrs["long_name"].endswith("at t = 1.0 s")
+    assert whole["axis_z@end"].attrs["description"].endswith("at t = 1.0 s")
 
 
 def test_outputs_at_one_time_need_no_other_samples(whole):
@@ -117,6 +117,12 @@ def test_a_trajectory_whose_output_overflows_has_no_value():
     assert result.array("status").tolist() == [-2, 0] and np.isnan(result.array("omega_3@end")[0])
     assert result.reasons == [(0, "energy@end: expected a value within the range of doubles, got infinity")]
     assert result.array("energy@end_number") == 1
+
+
+def test_a_scene_with_samples_is_refused_before_the_sweep():
+    """Every trajectory was written as one that no motion can have."""
+    with pytest.raises(InputError, match="got a torque of kind table"):
+        symrot.sweep("thruster_pulse", {"omega_1": [0.0, 1.0]}, workers=1)
 
 
 def test_zeros_and_equal_moments_in_other_rows_change_no_bit():

@@ -186,6 +186,13 @@ def test_the_picture_of_a_top_is_not_empty_below_its_tip():
     assert film._middle(top, still, path) > 0.5 and film._middle(free, still, np.vstack([path, -path])) < 0.1
 
 
+@pytest.mark.parametrize(
+    "time, last, text", [(1.5, 12.0, "1.50"), (0.0, 2.0, "0.000"), (5e3, 9e4, "5000"), (1e-4, 3e-3, "0.000100")]
+)
+def test_the_clock_of_a_film_has_the_same_decimals_in_each_frame(time, last, text):
+    assert film._clock(time, last) == f"t = {text} s"
+
+
 @pytest.mark.parametrize("films", [1, pytest.param(2, marks=pytest.mark.campaign)])
 def test_a_film_has_the_frames_of_the_dense_motion(films, tmp_path):
     """A scene with five samples gives as many frames as any other, and two films are the same bytes."""

@@ -209,8 +209,7 @@ def _growth_lines(data: Any) -> list[str]:
     right = DIGITS if not error else math.floor(-math.log10(error))
     text_lines = [
         data["title"], "",
-        f"error of the attitude, rad, compared with a series in {DIGITS} digits, of which {right} are right at the end "
-        f"(error {error:.0e}, from the same series with shorter steps)",
+        f"error of the attitude, rad, compared with a series in {DIGITS} digits, {right} of them right at the end",
     ]  # fmt: skip
     rows = [["  method", *heads, *(["grows as"] if "exponents" in data["curves"][0] else [])]]
     drifts = [["  method", *heads, *rows[0][len(heads) + 1 :], "norm of q"]]

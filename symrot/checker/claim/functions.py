@@ -321,7 +321,9 @@ def _integrate(scope: Scope, node: Node) -> Any:
             raise scope.fail(place, "a range (x, from, to) after the integrand")
         variable = scope.scalar(place.args[0], "to integrate over")
         lower, upper = (scope.scalar(limit, "as a limit of an integral") for limit in place.args[1:])
-        if not variable.is_Symbol or lower.has(variable) or upper.has(variable):
+        is_inside = lower.has(variable) or upper.has(variable)
+        # books write the integral of f(t) dt from 0 to t
+        if not variable.is_Symbol or (is_inside and (len(ranges) > 1 or str(variable) != "t")):
             raise scope.fail(place, "a symbol to integrate over that does not occur in its limits")
         limits.append((variable, lower, upper))
     divisors_before, radicands_before = len(scope.divisors), len(scope.radicands)
@@ -333,9 +335,15 @@ def _integrate(scope: Scope, node: Node) -> Any:
         raise scope.fail(integrand, "an integrand without the variable in divisors and under roots")
     for (variable, lower, upper), place in zip(limits, ranges, strict=True):
         entries = []
-        for entry in total if is_matrix(total) else [total]:
+        inside = variable
+        if lower.has(variable) or upper.has(variable):  # the inner t of an integral from 0 to t is another one
+            inside = sympy.Dummy(str(variable), real=True)
+        for written in total if is_matrix(total) else [total]:
+            if inside != variable and written.atoms(AppliedUndef):
+                raise scope.fail(place, f"another symbol than {variable}, the upper limit, inside the integral")
+            entry = written.xreplace({variable: inside})
             try:
-                value, divisors = definite_integral(entry, variable, lower, upper)
+                value, divisors = definite_integral(entry, inside, lower, upper)
             except InputError as reason:
                 raise scope.fail(place, f"an integral that symrot can compute ({reason})") from None
             scope.divisors.extend(Divisor(value, place) for value in divisors)

@@ -42,7 +42,7 @@ from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.recognition.evidence import has_word, words_of
 from symrot.checker.recognition.identification import known_value
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint
-from symrot.checker.recognition.naming import SQUARED, verdict_on_name
+from symrot.checker.recognition.naming import SQUARED, recognised_edits, verdict_on_name
 from symrot.checker.recognition.renaming import axes_of, component, is_consistent
 from symrot.checker.repair.diagnose import MOST_REPAIRS, diagnose
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
@@ -231,6 +231,9 @@ def _is_exchanged(known: Identification) -> bool:
     return any({old, plain(new)} in EXCHANGED for old, new in known.mapping.items())
 
 
+MOST_EDITS = 40
+"""The most edits that are tried of a formula for another quantity than the context states."""
+
 TANGENT = "about a tangent"
 ENGLISH = ("from", "to", "that", "at", "between", "on", "of")
 
@@ -273,7 +276,9 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
         if verdict.repairs and verdict.diagnosis.code not in ("none", "derived"):
             whole = replace(verdict.diagnosis, text=f"{verdict.diagnosis.text}; {sentence}")
             return replace(verdict, verdict=word, diagnosis=whole, reason="")
-        return replace(verdict, verdict=word, diagnosis=Diagnosis("context", sentence), reason="")
+        # of the repairs, those are offered that the context admits
+        repairs = tuple(islice((repair for repair, _ in recognised_edits(claim, named, (), MOST_EDITS)), MOST_REPAIRS))
+        return replace(verdict, verdict=word, diagnosis=Diagnosis("context", sentence), reason="", repairs=repairs)
     return verdict
 
 

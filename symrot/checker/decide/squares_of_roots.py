@@ -27,17 +27,18 @@ def is_square_of_roots(formula: Expr, nonnegative: Collection[Expr]) -> bool:
     slope = expanded.coeff(whole) if len(roots) == 1 else expand(expanded.coeff(roots[0]).coeff(roots[1]))
     rest = expand(expanded - slope * whole)
     inside = prod(root.base for root in roots)
-    try:
-        if rest.has(*roots) or slope.has(*roots) or Poly(rest).total_degree() > LARGEST_DEGREE:
-            return False
-        squared = _root_of_square(expand(rest**2 - slope**2 * inside))
-    except BasePolynomialError:  # no polynomial, or a number
-        return False
-    if squared is None:
+    if rest.has(*roots) or slope.has(*roots) or not rest.free_symbols:
         return False
     # formulas with roots prove nothing here: they might rely on this one
     known = [base for base in (*nonnegative, *(root.base for root in roots)) if not _roots(base)]
-    return all(_is_nonnegative(expand(half), known) for half in (rest + squared, rest - squared))
+    try:
+        if Poly(rest).total_degree() > LARGEST_DEGREE:
+            return False
+        squared = _root_of_square(expand(rest**2 - slope**2 * inside))
+        halves = () if squared is None else (expand(rest + squared), expand(rest - squared))
+        return bool(halves) and all(_is_nonnegative(half, known) for half in halves)
+    except BasePolynomialError:  # a quotient, such as 1 + 1/x
+        return False
 
 
 def _roots(formula: Expr) -> list[Expr]:

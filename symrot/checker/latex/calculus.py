@@ -202,6 +202,10 @@ class CalculusPart(NamesPart):
         self.integrals += 1
         integrand = number(1) if self.differential() else self.expression()
         self.integrals -= 1
+        if self.differential() and self.peek(1).text == "t":
+            self.index += 2
+            limits = Node("name", "t_initial"), Node("name", "t_final")
+            return Node("call", "integrate", (integrand, Node("list", ("(", ")"), (TIME, *limits))))
         if self.differential() and self.peek(1).text in ("V", "A", "s") and (mass := over_mass(integrand)) is not None:
             self.notes.append(f"the density times d{self.peek(1).text} is read as dm")
             integrand = mass

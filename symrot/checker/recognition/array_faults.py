@@ -4,6 +4,7 @@ A wrong order of factors or a missing transpose changes all entries at once. The
 does not see such faults; so this module edits the whole formula and computes its values at random test points.
 """
 
+import re
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from itertools import chain, combinations, islice
@@ -11,7 +12,7 @@ from typing import Any, NamedTuple
 
 from symrot.checker.claim.tree import Node, number, product, replaced, walk, with_names
 from symrot.checker.recognition.parts import FUNCTIONS, LACKING, Letters, Values, near, values_of
-from symrot.checker.repair.edits import COST, Edit, bracketed, flattened, neighbours, single_edits
+from symrot.checker.repair.edits import COST, Edit, bracketed, flattened, single_edits
 from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.repair.rows import entries_of, is_matrix, shape_of
 
@@ -105,13 +106,12 @@ def _brackets(formula: Node) -> Iterator[Edit]:
 
 
 def _exchanges(formula: Node, letters: Letters) -> Iterator[Edit]:
-    """Yield edits that exchange two similar letters of a scalar formula, such as I_1 and I_3."""
-    names = [name for name in letters.names if name != str(LACKING.value)]
-    for first, second in combinations(names, 2):
-        is_indexed = "_" in first and first.partition("_")[0] == second.partition("_")[0]
-        if is_indexed or second in neighbours(first, names):
-            tree = with_names(formula, {first: second, second: first})
-            yield Edit("wrong_symbol", COST["wrong_symbol"] + COST["names_exchanged"], (), tree)
+    """Yield edits that exchange two moments of inertia of a scalar formula, such as I_1 and I_3."""
+    # the letters of lengths, a and b, may mean either length
+    moments = [name for name in letters.names if re.fullmatch(r"[IJ](_\w+|[1-3])", name)]
+    for first, second in combinations(moments, 2):
+        tree = with_names(formula, {first: second, second: first})
+        yield Edit("wrong_symbol", COST["wrong_symbol"] + COST["names_exchanged"], (), tree)
 
 
 def _always(node: Node) -> Callable[[Node], Node]:

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from hashlib import sha256
 
 import sympy
-from sympy import Expr, Rational, S, cancel
+from sympy import Expr, Mul, Rational, S, cancel
 
 from symrot.checker.claim.atoms import atoms_of
 
-__all__ = ["PRIME", "Fingerprint", "NotInField", "fingerprint", "values_at"]
+__all__ = ["PRIME", "Fingerprint", "NotInField", "fingerprint", "in_lowest_terms", "values_at"]
 
 PRIME = 2**61 - 1  # different functions agree at a random point with a probability of 1e-18
 """A prime that is 3 modulo 4: the circle then has no points at infinity, and one power gives a square root."""
@@ -182,12 +182,37 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
         return Fingerprint(tuple(atoms), tuple(rows), tuple(atom for atom in written if atom not in atoms))
     if len(written) > MOST_CANCELLED:
         raise NotInField
-    cancelled = [cancel(entry) for entry in entries]
+    cancelled = [entry if in_lowest_terms(entry) else cancel(entry) for entry in entries]
     if cancelled != list(entries):
         return fingerprint(cancelled)
     # x/(A - B) has no value where two atoms are equal
     rows = [_sum_over_pairs(entries, atom, atoms, written) for atom in atoms]
     return Fingerprint(tuple(atoms), tuple(rows), tuple(atom for atom in written if atom not in atoms))
+
+
+def in_lowest_terms(formula: Expr) -> bool:
+    """Return whether a product has no divisor that divides its other factors, as a - b divides those of
+    ``(a**2 - b**2)/(a - b)``. False if a divisor is linear in no atom.
+    """
+    # quicker than cancel: a divisor that is linear in x divides the rest only if the rest is 0 at its root
+    atoms = sorted(atoms_of([formula]), key=str)
+    point = {atom: _pseudorandom(n) for n, atom in enumerate(atoms)}
+    powers = [factor for factor in Mul.make_args(formula) if factor.is_Pow and factor.exp.could_extract_minus_sign()]
+    rest = Mul(*(factor for factor in Mul.make_args(formula) if factor not in powers))
+    try:
+        return all(_misses(rest, power.base, point) for power in powers)
+    except NotInField:
+        return False
+
+
+def _misses(rest: Expr, divisor: Expr, point: Mapping[Expr, int]) -> bool:
+    for atom in sorted(atoms_of([divisor]), key=str):
+        values = [values_at([divisor], {**point, atom: value})[0] for value in range(3)]
+        slope = (values[1] - values[0]) % PRIME
+        if slope and (values[2] - values[1]) % PRIME == slope:
+            root = -values[0] * _inverse(slope) % PRIME
+            return values_at([rest], {**point, atom: root}) != (0,)
+    return False
 
 
 def _from_one_draw(entries: Sequence[Expr], written: Sequence[Expr]) -> Fingerprint | None:

@@ -34,6 +34,7 @@ from sympy import (
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, TENSOR
+from symrot.checker.recognition.fingerprint import in_lowest_terms
 from symrot.dynamics.equations import angular_acceleration
 from symrot.inertia.solids import solid
 from symrot.kinematics import quaternion, rotation_vector
@@ -128,7 +129,10 @@ def terms_expanded(formula: Expr) -> int:
 def primitive(difference: Expr) -> Expr:
     """Return the numerator of a difference without common factors: a - b for ``2*c*a/d - 2*c*b/d``."""
     # equations that differ by a factor or denominator get the same result, perhaps with another sign
-    numerator = fraction(cancel(together(difference)) if difference.count_ops() < LONGEST else together(difference))[0]
+    quotients = [term for term in Add.make_args(difference) if not fraction(term)[1].is_number]
+    is_whole = len(quotients) <= 1 and all(map(in_lowest_terms, quotients))
+    is_cancelled = not is_whole and difference.count_ops() < LONGEST
+    numerator = fraction(cancel(together(difference)) if is_cancelled else together(difference))[0]
     try:
         return Poly(numerator).terms_gcd()[1].primitive()[1].as_expr()
     except (PolynomialError, GeneratorsNeeded):

@@ -29,8 +29,8 @@ CONSTRUCTORS = {"hstack": "hstack", "eye": "eye", "diag": "diag"}
 """Name after ``Matrix.`` -> the function."""
 
 
-ELEMENTS = (MASS, "dV", "dA", "ds")
-"""The elements of integrals over a body, by its mass, volume, area or length."""
+ELEMENTS = (MASS, "dV", "dA", "ds", "dt")
+"""The elements of integrals over a body, by its mass, volume, area or length, and of an integral over time."""
 
 MOST_DOTS = 4
 """The highest order of a derivative that is written with primes or dots."""
@@ -345,6 +345,9 @@ class PiecesPart(OpenFunctionsPart):
         self.in_integral, self.element = outer
         if limits is not None:
             variable = Node("list", ("(", ")"), (Node("name", element[1:]), *limits))
+            return Node("call", "integrate", (inner, variable), self.span(token.start))
+        if element == "dt":
+            variable = Node("list", ("(", ")"), (TIME, Node("name", "t_initial"), Node("name", "t_final")))
             return Node("call", "integrate", (inner, variable), self.span(token.start))
         if element != MASS:
             mass = over_mass(inner)

@@ -25,6 +25,7 @@ assert set(SLOPES) == set(FUNCTIONS)
 ENCLOSURES = {  # kind -> the C call that encloses a number with an error, and the enclosure of all numbers
     "range": ("symrot_range_around", "symrot_nowhere()"), "disc": ("symrot_disc_of", "symrot_disc_unknown()"),
 }  # fmt: skip
+JUMPS = ("/", "tan", "atan2")  # kinds of operations whose result may jump
 OPERATIONS = {"+": "add", "-": "sub", "*": "mul", "/": "div", "neg": "neg"}
 
 
@@ -87,7 +88,32 @@ def event_definitions(
             f"    return {ending};",
             "}",
         ]
+    # symrot_event_jumps: whether the function may jump between t - h and t + h
+    around, _ = ENCLOSURES["range"]
+    texts = [
+        [f"x{i} = {_enclosed('range', around, op, places, known)}" for i, op in enumerate(tape.operations)]
+        if any(op.kind in JUMPS for op in tape.operations) else []
+        for tape in tapes
+    ]  # fmt: skip
+    lines += [
+        "",
+        "static int symrot_event_jumps(",
+        "    int which, double t, double h, const double *y, const double *r, const double *p)",
+        *_switch(["    (void)h;", "    (void)r;", *sizes], tapes, texts, [], "symrot_range", list(map(_jumps, tapes))),
+        "    return 0;",
+        "}",
+    ]
     return "\n".join([*lines, ""])
+
+
+def _jumps(tape: Tape) -> list[str]:
+    """Return C statements that return whether an operation of the tape may jump, given the ranges x0, x1, ..."""
+    jumps = []
+    for op in tape.operations:
+        if op.kind in JUMPS:
+            operands = op.operands[1:] if op.kind == "/" else op.operands
+            jumps.append(f"symrot_jumps_{OPERATIONS.get(op.kind, op.kind)}({', '.join(f'x{i}' for i in operands)})")
+    return ["(void)x{last};", f"return {' || '.join(jumps)};"] if jumps else ["return 0;"]
 
 
 def _switch(
@@ -96,13 +122,16 @@ def _switch(
     texts: Sequence[Sequence[str]],
     ends: Sequence[str],
     kind: str = "double",
+    own_ends: Sequence[Sequence[str]] = (),
 ) -> list[str]:
     """Return the lines of a C function body: ``switch (which)`` with one case per event function."""
     lines = ["{", "    (void)t;", "    (void)y;", "    (void)p;", *head, "    switch (which) {"]
-    # case k: the definitions texts[k] of type kind, then ends, where {last} is the index of the result of tapes[k]
+    # case k: the definitions texts[k] of type kind, then ends or own_ends[k], where {last} is the index of the result
+    # of tapes[k]
     for number, (tape, statements) in enumerate(zip(tapes, texts, strict=True)):
         lines += [f"    case {number}: {{", *(f"        const {kind} {text};" for text in statements)]
-        lines += [*(f"        {end.format(last=tape.outputs[0])}" for end in ends), "    }"]
+        last = own_ends[number] if own_ends else ends
+        lines += [*(f"        {end.format(last=tape.outputs[0])}" for end in last), "    }"]
     # the caller adds the return for an unknown event
     return [*lines, "    }"]
 

@@ -9,7 +9,10 @@ from symrot.exercises.formats.latex import latex_sheet
 from symrot.exercises.formats.markdown import markdown_sheet
 from symrot.exercises.formats.moodle import moodle_quiz
 
-__all__ = ["FORMATS", "WITHOUT_SOLUTIONS"]
+__all__ = ["FORMATS", "HANDOUTS", "TITLE"]
+
+TITLE = "Exercises"
+"""The title of a sheet without another one."""
 
 
 def _json(exercises: Sequence[Exercise]) -> str:
@@ -17,16 +20,14 @@ def _json(exercises: Sequence[Exercise]) -> str:
 
 
 FORMATS: dict[str, Callable[[Sequence[Exercise]], str]] = {
-    "markdown": markdown_sheet,
-    "latex": latex_sheet,
-    "html": html_sheet,
     "moodle": moodle_quiz,
     "json": _json,
 }
-"""Format -> the function that prints exercises in it."""
+"""Format for a program -> the function that prints exercises in it."""
 
-WITHOUT_SOLUTIONS: dict[str, Callable[[Sequence[Exercise], bool], str]] = {
+HANDOUTS: dict[str, Callable[[Sequence[Exercise], str, bool, bool], str]] = {
     "markdown": markdown_sheet,
     "latex": latex_sheet,
+    "html": html_sheet,
 }
-"""Format -> the function that prints exercises in it, with solutions or without."""
+"""Format -> the function that prints exercises in it under a title, without their statements or their solutions."""

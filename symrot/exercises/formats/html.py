@@ -8,56 +8,73 @@ from importlib.resources import files
 from typing import Any
 
 from symrot.checker.units.conversion import ALIASES, FACTORS
-from symrot.exercises.exercise import Exercise, Question
+from symrot.exercises.exercise import Exercise, Question, related
 from symrot.exercises.formats.markdown import data_text
 from symrot.exercises.grading.words import SLIPS
 from symrot.exercises.units import unit_of
 from symrot.proof.pages.html import display, document, prose
+from symrot.proof.pages.math_font import face
 
 __all__ = ["drawing", "html_sheet", "mathjax", "solution_html"]
 
 HINTS = ("Hint 1: the law", "Hint 2: the equation", "Hint 3: with numbers")
 
 
-def html_sheet(exercises: Sequence[Exercise]) -> str:
-    """Return the text of one self-contained HTML page with exercises; the page grades numerical answers."""
+def html_sheet(exercises: Sequence[Exercise], title: str, statements: bool, solutions: bool) -> str:
+    """Return one self-contained HTML page with exercises, which grades numerical answers.
+
+    Without ``statements`` the page has the solutions alone; without ``solutions`` it has no hints and no formulas of
+    answers either.
+    """
     folder = files(__package__)
+    heading = f"<h1>{prose(title)}</h1>"
+    style = face() + (folder / "sheet.css").read_text(encoding="utf-8")
+    if not statements:
+        return document(title, [heading, *map(_solution, range(1, len(exercises) + 1), exercises)], style)
+    compare = ", or compare them with the answer" if solutions else ""
     parts = [
-        "<h1>Exercises</h1>",
+        heading,
         '<p class="note">Numbers are checked in this page: write them with a unit and at least three digits, such as '
-        "<code>0.125 kg m^2</code>. Check formulas with <code>symrot grade</code>, "
-        "or compare them with the answer.</p>",
-        *(_exercise(number, exercise) for number, exercise in enumerate(exercises, 1)),
+        f"<code>0.125 kg m^2</code>. Check formulas with <code>symrot grade</code>{compare}.</p>",
+        *(_exercise(number, exercise, solutions) for number, exercise in enumerate(exercises, 1)),
         f'<script type="application/json" id="questions">{_json(_data(exercises))}</script>',
         f"<script>\n{(folder / 'sheet.js').read_text(encoding='utf-8')}</script>",
     ]
-    return document("Exercises", parts, (folder / "sheet.css").read_text(encoding="utf-8"))
+    return document(title, parts, style)
 
 
-def _exercise(number: int, exercise: Exercise) -> str:
+def _solution(number: int, exercise: Exercise) -> str:
+    answers = (f"({each.key}) ${each.name} {related(each.latex)}$" for each in exercise.questions)
+    return (
+        f'<section id="solution-{number}">\n<h2>{number}. {prose(exercise.title)}</h2>\n'
+        f"{solution_html(exercise, _displayed)}\n<p><b>Answers:</b> {prose('; '.join(answers))}.</p>\n</section>"
+    )
+
+
+def _exercise(number: int, exercise: Exercise, solutions: bool) -> str:
     hints = "\n".join(
         f'<details class="hint"><summary>{label}</summary><p>{_displayed(hint)}</p></details>'
         for label, hint in zip(HINTS, exercise.hints, strict=True)
     )
-    questions = "\n".join(_question(number, question) for question in exercise.questions)
+    questions = "\n".join(_question(number, question, solutions) for question in exercise.questions)
+    help_after = (
+        f'<div class="hints">\n{hints}\n</div>\n'
+        f'<details class="solution"><summary>Solution</summary>\n{solution_html(exercise, _displayed)}\n</details>\n'
+    )
     return (
         f'<section class="exercise" id="exercise-{number}">\n<h2>{number}. {prose(exercise.title)}</h2>\n'
         f"<p>{prose(exercise.statement)}</p>\n{drawing(exercise)}\n<p>{prose(data_text(exercise.data))}</p>\n"
-        f'{questions}\n<div class="hints">\n{hints}\n</div>\n'
-        f'<details class="solution"><summary>Solution</summary>\n{solution_html(exercise, _displayed)}\n</details>\n'
-        "</section>"
+        f"{questions}\n{help_after if solutions else ''}</section>"
     )
 
 
-def _question(number: int, question: Question) -> str:
+def _question(number: int, question: Question, solutions: bool) -> str:
     name = f"{number}{question.key}"
     prompt = f'<p class="prompt"><b>({question.key})</b> {prose(question.prompt)}</p>'
     if question.kind == "formula":
-        answer = display(f"{question.name} = {question.latex}")
-        return (
-            f'<div class="question formula">{prompt}'
-            f'<details class="answer"><summary>Answer</summary>{answer}</details></div>'
-        )
+        formula = display(f"{question.name} = {question.latex}")
+        answer = f'<details class="answer"><summary>Answer</summary>{formula}</details>' if solutions else ""
+        return f'<div class="question formula">{prompt}{answer}</div>'
     return (
         f'<form class="question numeric" data-question="{name}">{prompt}<p class="entry">'
         f'<label for="answer-{name}">Answer</label> <input id="answer-{name}" autocomplete="off" spellcheck="false" '

@@ -28,10 +28,10 @@ HEAD = r"""\documentclass[a4paper]{article}
 ESCAPES = {"&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "^": r"\^{}", "~": r"\~{}", "°": r"\textdegree{}"}
 
 
-def latex_sheet(exercises: Sequence[Exercise], solutions: bool = True) -> str:
-    """Return exercises as the text of a LaTeX document; without ``solutions``, it has no hints either."""
-    parts = [HEAD + r"\section*{Exercises}"]
-    for number, exercise in enumerate(exercises, 1):
+def latex_sheet(exercises: Sequence[Exercise], title: str, statements: bool, solutions: bool) -> str:
+    """Return a LaTeX document with the statements of exercises, their hints and solutions, or one of both alone."""
+    parts = [HEAD + rf"\section*{{{prose(title)}}}"]
+    for number, exercise in enumerate(exercises if statements else (), 1):
         questions = "\n".join(rf"\item[({each.key})] {prose(each.prompt)}" for each in exercise.questions)
         parts += [
             rf"\subsection*{{{number}. {prose(exercise.title)}}}",
@@ -46,11 +46,12 @@ def latex_sheet(exercises: Sequence[Exercise], solutions: bool = True) -> str:
         ]
     if not solutions:
         return "\n\n".join([*parts, r"\end{document}"]) + "\n"
-    parts.append("\\clearpage\n\\section*{Hints}")
+    parts.append("\\clearpage\n\\section*{Hints}" if statements else r"\subsection*{Hints}")
     for number, exercise in enumerate(exercises, 1):
         hints = "\n".join(rf"\item {prose(hint)}" for hint in exercise.hints)
         parts.append(rf"\textbf{{{number}.}}" + f"\n\\begin{{enumerate}}\n{hints}\n\\end{{enumerate}}")
-    parts.append("\\clearpage\n\\section*{Solutions}")
+    if statements:
+        parts.append("\\clearpage\n\\section*{Solutions}")
     for number, exercise in enumerate(exercises, 1):
         parts.append(rf"\subsection*{{{number}. {prose(exercise.title)}}}")
         parts += [f"{prose(line.reason)}\n\\fitted{{{line.latex}}}" for line in exercise.solution]

@@ -15,10 +15,10 @@ def data_text(data: Sequence[Datum]) -> str:
     return f"Data: {', '.join(pairs)}." if data else ""
 
 
-def markdown_sheet(exercises: Sequence[Exercise], solutions: bool = True) -> str:
-    """Return exercises as Markdown text; without ``solutions``, it has no hints either."""
-    lines = ["# Exercises", ""]
-    for number, exercise in enumerate(exercises, 1):
+def markdown_sheet(exercises: Sequence[Exercise], title: str, statements: bool, solutions: bool) -> str:
+    """Return the statements of exercises as Markdown, then their hints and solutions, or one of both alone."""
+    lines = [f"# {title}", ""]
+    for number, exercise in enumerate(exercises if statements else (), 1):
         lines += [f"## {number}. {exercise.title}", "", exercise.statement, ""]
         if exercise.figure:
             lines += [f"![{title_of(exercise.figure)}]({image_address(exercise.figure)})", ""]
@@ -27,12 +27,12 @@ def markdown_sheet(exercises: Sequence[Exercise], solutions: bool = True) -> str
         lines.append("")
     if not solutions:
         return "\n".join(lines).rstrip() + "\n"
-    lines += ["# Hints", ""]
+    lines += ["# Hints" if statements else "## Hints", ""]
     for number, exercise in enumerate(exercises, 1):
         lines += [f"**{number}.**", "", *(f"{stage}. {hint}" for stage, hint in enumerate(exercise.hints, 1)), ""]
-    lines += ["# Solutions", ""]
+    lines += ["# Solutions", ""] if statements else []
     for number, exercise in enumerate(exercises, 1):
-        lines += [f"## Solution of {number}", "", *_solution(exercise)]
+        lines += [f"## Solution of {number}: {exercise.title}", "", *_solution(exercise)]
     return "\n".join(lines).rstrip() + "\n"
 
 

@@ -180,6 +180,14 @@ static inline symrot_range symrot_range_atan2(symrot_range y, symrot_range x)
     return symrot_outward(fmin(fmin(p, q), fmin(r, s)), fmax(fmax(p, q), fmax(r, s)));
 }
 
+/* Return whether an operation may jump, from the ranges of what it is applied to: a quotient, a tangent, an angle. */
+static inline int symrot_jumps_div(symrot_range b) { return !(b.lo > 0.0 || b.hi < 0.0); }
+static inline int symrot_jumps_tan(symrot_range a) { return !(symrot_range_tan(a).hi <= DBL_MAX); }
+static inline int symrot_jumps_atan2(symrot_range y, symrot_range x)
+{
+    return !(y.lo > 0.0 || y.hi < 0.0 || x.lo > 0.0);
+}
+
 /* ---------------------------------------------------------------------------------------------- discs */
 
 static inline symrot_disc symrot_disc_of(double c, double r)

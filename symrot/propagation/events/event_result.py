@@ -126,6 +126,7 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
     zeros: list[tuple[EventZero, Floats]] = []
     counts, ended, switchings = np.zeros(3, dtype=int), False, list[Switching]()
     doubts, errors = list[tuple[int, float]](), list[PropagationError]()
+    flat = list[tuple[int, float, float]]()
     accuracy = EXACT_ERROR if isinstance(motion, ClosedFormMotion) else TOLERANCES * motion.tolerance
     for part in split_at(times, motion.start):
         end = float(times[part[-1]])
@@ -149,6 +150,7 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
             known[last], sample_times[last], states[last] = True, stop + zero, rows[-1]
         zeros = _joined(zeros, list(zip(listed, rows, strict=True)), motion.start)
         doubts += [(event, t + zero) for event, t in result.doubts]
+        flat += [(event, first + zero, last + zero) for event, first, last in result.flat]
         side.pieces.close()
         counts += side.cost()
         switchings += [each for each in side.switchings if abs(each.t - motion.start) <= reached]
@@ -163,7 +165,7 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
         [[each.kind for each, _ in group] for group in own],
         ended,
         tuple(events),
-        tuple(_warnings(events, doubts)),
+        (*_warnings(events, doubts), *_flat_warnings(events, flat)),
         errors[0] if errors else None,
     )
 
@@ -197,6 +199,17 @@ def _warnings(events: Sequence[Event], doubts: Sequence[tuple[int, float]]) -> I
             yield (
                 f"events: {event.formula!r} differs from zero at t = {times[0]!r} s{more} by less than the error of "
                 "the motion: whether it is zero there is not known"
+            )
+
+
+def _flat_warnings(events: Sequence[Event], flat: Sequence[tuple[int, float, float]]) -> Iterator[str]:
+    """Yield a warning for each event whose formula is zero for long; ``flat`` has its number and two times, s."""
+    for number, event in enumerate(events):
+        times = [t for each, *both in flat if each == number for t in both]
+        if times:
+            yield (
+                f"events: {event.formula!r} is zero within rounding from t = {min(times)!r} to {max(times)!r} s: no "
+                "event is listed there"
             )
 
 

@@ -19,8 +19,8 @@
  * extremum also with its change over the rounding of the time: no tolerance decides what a touch is. The ends around a
  * zero approach each other until no double lies between them.
  *
- * A change of sign is a zero if the function is bounded there, or decreases in size towards it from both sides: poles
- * and jumps past zero are not zeros.
+ * A change of sign is a zero if the function is continuous there, or decreases in size towards it from both sides: poles
+ * and jumps past zero are not zeros. If SYMROT_JUMPS is 1, every change of sign counts.
  *
  * C99 that is also valid C++; no malloc, no globals, no input or output, reentrant.
  *
@@ -97,6 +97,13 @@ static symrot_range symrot_range_near(const symrot_search *search, int event, do
     double y[SYMROT_STATES] = {0.0}, r[SYMROT_STATES] = {0.0};
     symrot_path(search, event, t, h, y, r);
     return symrot_event_range(event, t, h, y, r, search->p);
+}
+
+static int symrot_jumps_near(const symrot_search *search, int event, double t, double h)
+{
+    double y[SYMROT_STATES] = {0.0}, r[SYMROT_STATES] = {0.0};
+    symrot_path(search, event, t, h, y, r);
+    return symrot_event_jumps(event, t, h, y, r, search->p);
 }
 
 static int symrot_sign(double value, double noise) { return value > noise ? 1 : value < -noise ? -1 : 0; }
@@ -213,7 +220,7 @@ static double symrot_rest(const double *c)
 }
 
 /*
- * Return whether a function without a finite enclosure decreases in size towards an interval from both sides: it is
+ * Return whether a function that may have a pole or a jump decreases in size towards an interval from both sides: it is
  * much smaller at the ends than farther away. At a pole it increases, at a jump it does not change.
  */
 static int symrot_falls(const symrot_search *search, int event, double a, double fa, double b, double fb)
@@ -247,13 +254,23 @@ static void symrot_shortest(symrot_search *search, int event, double a, double b
     const double fa = symrot_value(search, event, a, &na), fb = symrot_value(search, event, b, &nb);
     const int from = symrot_sign(fa, na), to = symrot_sign(fb, nb);
     symrot_spend(search, 2);
+    if (SYMROT_JUMPS) {  /* infinite values and values with infinite errors, next to a pole, have their own signs */
+        const int left = na <= DBL_MAX ? from : symrot_sign(fa, 0.0), right = nb <= DBL_MAX ? to : symrot_sign(fb, 0.0);
+        if (left*right < 0) {
+            const double t = symrot_close_in(search, event, a, fa, b, fb);
+            symrot_add(search, event, t, t, left, right);
+            return;
+        }
+    }
     if (!(fabs(fa) <= DBL_MAX && fabs(fb) <= DBL_MAX)) return;  /* no value at an end */
     if ((fa != 0.0 && !(na <= DBL_MAX)) || (fb != 0.0 && !(nb <= DBL_MAX))) return;  /* or infinite rounding errors */
     if (from == 0 && to == 0) {
         symrot_add(search, event, a, b, 0, 0);
         return;
     }
-    if (!symrot_bounded(all) && !symrot_falls(search, event, a, fa, b, fb)) return;
+    const double half = 0.5*fabs(b - a)*(1.0 + 1e-13) + DBL_EPSILON*fabs(a);
+    const int jump = from*to < 0 && symrot_jumps_near(search, event, a + 0.5*(b - a), half);
+    if ((jump || !symrot_bounded(all)) && !symrot_falls(search, event, a, fa, b, fb)) return;
     if (from*to <= 0) {
         symrot_at_most_one(search, event, a, fa, na, b, fb, nb);
         return;
@@ -309,6 +326,14 @@ static int symrot_settle(symrot_search *search, int event, double a, double b, i
     if (smallest) {
         symrot_shortest(search, event, a, b, all);
         return 1;
+    }
+    if (SYMROT_JUMPS && !symrot_bounded(all) && !(middle > own)) {  /* so near a pole that no sign is known */
+        symrot_spend(search, 2);
+        const double left = fabs(symrot_value(search, event, a, &n0)), right = fabs(symrot_value(search, event, b, &n1));
+        if (!(left > n0) && !(right > n1)) {
+            symrot_add(search, event, a, b, 0, 0);
+            return 1;
+        }
     }
     double bound = INFINITY;
     int disc = -1;
@@ -422,7 +447,9 @@ static void symrot_enter(symrot_search *search)
     const int here = symrot_sign(value, noise);
     if (search->before[event]*here < 0) {
         const double near = 64.0*DBL_EPSILON*fabs(from);
-        if (symrot_bounded(symrot_range_near(search, event, from, near)))
+        const int smooth = symrot_bounded(symrot_range_near(search, event, from, near))
+            && !symrot_jumps_near(search, event, from, near);
+        if (SYMROT_JUMPS || smooth)
             symrot_add(search, event, from, from, search->before[event], here);
     }
     const double last = symrot_value(search, event, to, &noise);

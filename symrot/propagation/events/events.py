@@ -184,25 +184,33 @@ def event_library_source(
 ) -> str:
     """Return the C source of a library that locates the events of a motion with the given states."""
     # its functions take the parameters of quantities, the kernel that computes omega and q from the states
-    return guard_library_source(quantities, [_with_pi(event.node) for event in events], states, edges, scales)
+    return _library_source(quantities, [_with_pi(event.node) for event in events], states, edges, scales, False)
 
 
 def guard_library_source(
     quantities: Program, formulas: Sequence[Node], states: Sequence[str], edges: Sequence[int], scales: Sequence[float]
 ) -> str:
-    """Return the C source of a library that locates the zeros of formulas along a motion.
+    """Return the C source of a library that locates where formulas change their signs along a motion.
 
-    They contain t, omega, q and parameters.
+    A change of sign at a pole or jump counts too: a function such as sign then changes its value.
     """
+    return _library_source(quantities, formulas, states, edges, scales, True)
+
+
+def _library_source(
+    quantities: Program, formulas: Sequence[Node], states: Sequence[str], edges: Sequence[int],
+    scales: Sequence[float], jumps: bool,
+) -> str:  # fmt: skip
     from symrot.codegen.printing.event_source import event_definitions
 
-    # A formula may be a guard: where it is zero, a function such as sign changes its value. It may contain the
-    # parameters of quantities, the program that computes omega and q from the states.
+    # The formulas contain t, omega, q, and the parameters of quantities, the program that computes omega and q from the
+    # states. jumps: whether a change of sign at a pole or jump counts.
     columns = {name: f"{name} of t" for name in KNOWN if name != "t"}
     columned = [rename(formula, columns) for formula in formulas]
     definitions = event_definitions(quantities, columned, states, edges, scales)
     head = c_text("propagation/steppers/library.h") + c_text("propagation/events/event_enclosures.h")
-    head += "\nstatic const double SYMROT_ROUNDING = 0.5*DBL_EPSILON, SYMROT_STATE_ERROR = 4.0*DBL_EPSILON;\n\n"
+    head += "\nstatic const double SYMROT_ROUNDING = 0.5*DBL_EPSILON, SYMROT_STATE_ERROR = 4.0*DBL_EPSILON;\n"
+    head += f"enum {{ SYMROT_JUMPS = {int(jumps)} }};  /* whether changes of sign at poles and jumps count */\n\n"
     return head + definitions + "\n" + c_text("propagation/events/events.c")
 
 
@@ -247,6 +255,7 @@ class _Search:
         self.p = (ctypes.c_double * len(p))(*p)
         self.state = ctypes.create_string_buffer(self.library.bytes)
         self.arrived: set[tuple[int, float]] = set()  # events that are zero at an edge of a piece, with the time
+        self.flat: list[tuple[int, float, float]] = []  # events that are zero for long, from one time to another
         self.doubts: list[tuple[int, float]] = []  # events nearer to zero than the motion's error, with times
         self.again, self.spent, self.allowed = False, 0.0, MOST_OPERATIONS
 
@@ -311,11 +320,14 @@ class SearchResult(NamedTuple):
     doubts : list of (int, float)
         Index of the event and time, s, for each extremum whose distance from zero is less than the error of the motion:
         whether the formula touches zero there, crosses it twice or misses it is not known.
+    flat : list of (int, float, float)
+        Index of the event and two times, s, between which its formula is zero within rounding, without an event.
     """
 
     zeros: list[EventZero]
     stop: float | None
     doubts: list[tuple[int, float]]
+    flat: Sequence[tuple[int, float, float]] = ()
 
 
 def search(
@@ -362,13 +374,13 @@ def search(
         stop = _settled(searcher, piece, events, whole, t0, left, zeros)
         if stop is not None:
             before = [(event, t) for event, t in searcher.doubts if abs(t - t0) < abs(stop - t0)]
-            return SearchResult(zeros, stop, _open_doubts(before, zeros, t0))
+            return SearchResult(zeros, stop, _open_doubts(before, zeros, t0), searcher.flat)
         if early is not None:
             early.zeros = zeros
             raise early
         previous = piece
     stop = _settled(searcher, previous, events, held, t0, left, zeros) if previous is not None and held else None
-    return SearchResult(zeros, stop, _open_doubts(searcher.doubts, zeros, t0))
+    return SearchResult(zeros, stop, _open_doubts(searcher.doubts, zeros, t0), searcher.flat)
 
 
 def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: float) -> list[tuple[int, float]]:
@@ -480,15 +492,20 @@ def _settled(
         event, at_start = int(number_), start == t0
         before = before or (0 if at_start else sign(event, start, first, -side))
         after = after or sign(event, end, last, side)
-        if not before and not after:
-            continue  # the formula is zero throughout: no event
         rests = abs(end - start) > LONG * abs(last - t0)
+        if not before and not after:
+            # the formula is zero throughout: no event
+            if rests:
+                searcher.flat.append((event, start, end))
+            continue
         arrived = bool(before) and (event, start) in searcher.arrived  # the formula stays zero
         near = 4 * NEAR * max(abs(start), abs(last - t0))
         if arrived and any(each.event == event and abs(each.t - start) <= near for each in zeros):
             continue  # the crossing was already listed, within rounding of the edge
         if not (before and after) and rests and not arrived:
-            continue  # zero up to the end of the known motion: no crossing
+            # zero up to the end of the known motion: no crossing
+            searcher.flat.append((event, start, end))
+            continue
         if rests and arrived:
             after = 0  # the sign with which it leaves zero belongs to another event
         t = t0 if at_start else start if rests and arrived else end if start == end else 0.5 * (start + end)

@@ -11,7 +11,7 @@ from symrot.formula.tree import Node, names
 from symrot.planning.general_structure import constants_of
 from symrot.planning.scene_kernel import Parameters
 from symrot.propagation.binding import value_of
-from symrot.propagation.sensitivities.variables import difference, slopes
+from symrot.propagation.sensitivities.variables import difference, slopes, without_jumps
 from symrot.propagation.sensitivities.variation import Column
 from symrot.scene.scene import Scene
 
@@ -49,7 +49,7 @@ class ParameterSlopes:
         rows: dict[str, list[float]] = {}
         for k, column in enumerate(self.columns):
             own, changes = set(self.depends(parameters, k)), self._changes[k]
-            moving = [(name, formula) for name, formula in parameters if name in own]
+            moving = [(name, without_jumps(formula)) for name, formula in parameters if name in own]
             if not moving:
                 continue
 

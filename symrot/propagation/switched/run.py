@@ -202,7 +202,7 @@ class SwitchedRun(RunState):
         current: list[tuple[Piece, Callable[[Floats], Floats]]] = []
         watching = watched()
         try:
-            zeros, stop, _ = search(regime.path, events, values, watching, start)
+            zeros, stop, *_ = search(regime.path, events, values, watching, start)
         except ZerosNotSeparated as error:
             functions = ", ".join(dict.fromkeys(self._name(guard.mode) for guard in regime.guards))
             reason = f"the zeros inside {functions} cannot be told apart after {error.effort}"

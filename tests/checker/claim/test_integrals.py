@@ -34,3 +34,24 @@ def test_a_partial_derivative_by_a_letter_or_a_rate(text, verdict):
 ])  # fmt: skip
 def test_the_argument_of_a_complex_number(text, verdict):
     assert symrot.check(text, repair=False).verdict == verdict
+
+
+@pytest.mark.parametrize("text", [
+    "∫ M dt = ΔL", "∫ τ dt = L_f - L_i", "∫ M dt = I ω_2 - I ω_1", "I ω_1 + ∫ M dt = I ω_2",
+    r"\int_{t_1}^{t_2} \mathbf M\,dt = \Delta\mathbf L", r"\int \mathbf M\,dt = \mathbf L_2 - \mathbf L_1",
+])  # fmt: skip
+def test_an_impulse_is_the_change_of_a_quantity_whose_rate_is_the_integrand(text):
+    verdict = symrot.check(text, repair=False)
+    assert verdict.verdict == "recognised"
+    assert "an integral over time is the change of a quantity whose rate is the integrand" in verdict.notes
+
+
+@pytest.mark.parametrize("text", ["∫ M dt = I ω_2 + I ω_1", "∫ P dt = W"])
+def test_an_integral_over_time_without_limits_needs_a_change_beside_it(text):
+    with pytest.raises(symrot.InputError, match="the change of a quantity beside an integral over time"):
+        symrot.check(text)
+
+
+def test_the_upper_limit_may_have_the_name_of_the_inner_variable():
+    assert symrot.check("∫_0^t (ω_0 + α t) dt = ω_0 t + α t^2/2", repair=False).verdict == "true"
+    assert symrot.check("∫_0^t α t dt = α t^2", repair=False).verdict == "false"

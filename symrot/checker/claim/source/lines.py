@@ -6,6 +6,7 @@ from dataclasses import replace
 from symrot.checker.arrays.complex_parts import BAR, imaginary_unit, open_numbers, substituted
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import Chain, Reading, readings_of
+from symrot.checker.claim.source.impulses import with_rates
 from symrot.checker.claim.source.text import check_units, claim_of_relation, is_latex
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim.vectors import used_vectors
@@ -27,6 +28,7 @@ def claims_of_reading(
     """Return the claims of one reading (interpretation) of a text: for each line, one claim per equals sign."""
     define: list[tuple[str, Node]] = []
     lines = []
+    reading = with_rates(reading)
     if sum(len(chain.links) for chain in reading.lines) > MOST_EQUATIONS:
         raise InputError(f"expected at most {MOST_EQUATIONS} equations in one text; a file of claims may have more")
     # ``stated`` is what the user says in words about names and the body
