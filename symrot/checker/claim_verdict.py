@@ -22,6 +22,7 @@ from symrot.checker.claim.named_formula import (
 from symrot.checker.claim.values import decide_value
 from symrot.checker.decide.decision import decide_equation, for_positive_bases, is_large
 from symrot.checker.decide.ranges import condition_texts
+from symrot.checker.rotation_rates import tested_on_rotations
 from symrot.checker.symmetry_axis import in_claim, with_axis_z
 from symrot.checker.time_limit import TimeUp, processor_seconds
 from symrot.checker.units.check import check_dimensions
@@ -71,9 +72,10 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
     try:
         with within_limits():
             named = _on_name(claim, repair, named_formula) or _on_rule(claim)
-            named = named or _on_name(claim, repair, open_formula)
+            named = named or (None if claims_identity(claim) else _on_name(claim, repair, open_formula))
             decision, verdict = named or _decide(claim)
-            other_verdict = None if verdict or decision is None else _of_another_reading(claim)
+            is_settled = decision is None or verdict.holds
+            other_verdict = None if is_settled else _of_another_reading(claim)
             is_false = decision is not None and decision.verdict == "false"
             if other_verdict is None and is_false and verdict.dimension.status != "inconsistent":
                 named = _on_determinant(claim, repair) or _on_name(claim, repair, related_formula)
@@ -140,7 +142,7 @@ def _of_another_reading(claim: Claim) -> Verdict | None:
         source = relation_text(relation)
         other = claim.with_relation(relation, alternatives=(), sources={**claim.sources, "claim": source})
         _, verdict = _decide(other)
-        if verdict:
+        if verdict.holds:
             return verdict
     return None
 
@@ -191,7 +193,7 @@ def _on_name(
 
     with _place_of(claim):
         verdict = by_other_sizes(claim, named, judge(claim, named, repair), judge)
-        verdict = _on_motion(claim, verdict)
+        verdict = tested_on_rotations(claim, _on_motion(claim, verdict))
         if repair:
             verdict = by_exchanged_letters(claim, named, verdict, judge_with_motion)
         if claim.hypotheses and verdict.verdict in ("false", "doubtful"):  # the context does not use the hypotheses
@@ -323,7 +325,7 @@ def _diagnosed(claim: Claim, decision: Decision, verdict: Verdict) -> Verdict:
         return replace(verdict, diagnosis=Diagnosis("positive_base", text))
     if decision.verdict not in ("false", "conditional"):
         # a true claim: a remark if only one side is defined everywhere
-        return replace(verdict, diagnosis=_domain(claim)) if verdict and verdict.conditions else verdict
+        return replace(verdict, diagnosis=_domain(claim)) if verdict.holds and verdict.conditions else verdict
     from symrot.checker.recognition.identification import named_parts
     from symrot.checker.repair.diagnose import diagnose
 

@@ -113,7 +113,7 @@ def _rounded(claim: Claim, sides: list[Node], factors: dict[str, Node], measured
             continue
         worked = replace(claim, relation=None, value=value, printed=digits, hypotheses=())
         verdicts.append(_to_digits(worked, measured, measured.units[unit].text, is_right=side is sides[1]))
-    words = [verdict.verdict if verdict else "undecided" for verdict in verdicts]
+    words = ["undecided" if verdict is None else verdict.verdict for verdict in verdicts]
     return next((verdicts[words.index(word)] for word in ("true", "undecided", "false") if word in words), None)
 
 

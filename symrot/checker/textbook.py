@@ -115,7 +115,7 @@ def finding_of(
     verdict, other = check_readings(claim, repair)
     # a false claim that is true under the condition is conditional, as is a true one that divides by a possible zero
     listed, words = ((), "") if condition is None else (condition.hypotheses, condition.words)
-    if verdict:
+    if verdict.holds:
         broken = tuple(text for text in verdict.conditions if text in listed or _may_be_broken(text))
         return Finding(data, verdict, "conditional" if broken else "holds", conditions=broken, words=words)
     if other is not None:

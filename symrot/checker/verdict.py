@@ -209,10 +209,15 @@ class Verdict:
     context : str
         The user's statements in words about names, body, frame and sequence, as they were understood.
 
+    Notes
+    -----
+    In an ``if`` a verdict counts as :attr:`holds`. So ``check(a) or check(b)`` drops what "doubtful" or "conditional"
+    says: compare ``.verdict`` instead, and compare with None to ask whether there is a verdict.
+
     Examples
     --------
     >>> import symrot
-    >>> bool(symrot.check("sin(x)**2 + cos(x)**2 == 1"))
+    >>> symrot.check("sin(x)**2 + cos(x)**2 == 1").holds
     True
     """
 
@@ -238,8 +243,13 @@ class Verdict:
         """The matrix entry in which the sides differ, (row, column) from 1; None if there is none."""
         return self.counterexample.entry if self.counterexample else None
 
-    def __bool__(self) -> bool:
+    @property
+    def holds(self) -> bool:
+        """Whether the verdict is "true" or "recognised", the only ones that vouch for the formula."""
         return self.verdict in ("true", "recognised")
+
+    def __bool__(self) -> bool:
+        return self.holds
 
     def __str__(self) -> str:
         return "\n".join([self.verdict, *(f"  {name}: {text}" for name, text in self.facts())])

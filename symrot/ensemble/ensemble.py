@@ -386,12 +386,13 @@ def propagate_ensemble(
         raise InputError(f"workers: expected a whole number from 1 to {MOST_WORKERS}, got {number.show(workers)}")
     aim = own if tolerance is None else read_tolerance(tolerance)
     problem = Problem(variation, variation.plan(), float(source.span.start), times, aim, workers)
-    derivatives, reasons = None, ("",) * len(variation)
+    derivatives, reasons = None, None
     if sensitivities is not None:
         from symrot.ensemble.sensitivities import follow_sensitivities
 
         derivatives, reasons = follow_sensitivities(problem, sensitivities)
     followed = follow(problem, method)
-    messages = tuple(own or reason for own, reason in zip(followed.messages, reasons, strict=True))
-    followed = followed._replace(messages=messages)
+    if reasons is not None:
+        messages = tuple(own or reason for own, reason in zip(followed.messages, reasons, strict=True))
+        followed = followed._replace(messages=messages)
     return Ensemble(problem, followed, perf_counter() - began, derivatives)

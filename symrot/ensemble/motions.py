@@ -274,11 +274,14 @@ class _Stepped:
         for k, name in enumerate(OMEGA):
             omega[rows, :, k] = values_of[name]
         if quaternion is not None:
-            components = np.empty((len(chosen), *quaternion.shape[1:]))
+            components = quaternion if whole else np.empty((len(chosen), *quaternion.shape[1:]))
+            squares: Any = 0.0
             for k, name in enumerate(QUATERNION):
                 components[..., k] = values_of[name]
-            components /= np.sqrt((components**2).sum(axis=-1, keepdims=True))
-            quaternion[rows] = components
+                squares = squares + components[..., k] ** 2
+            components /= np.sqrt(squares)[..., None]
+            if not whole:
+                quaternion[rows] = components
 
     def _parameters_of(self, outputs: Sequence[str]) -> Any:
         """Return the parameters (constants of the kernel) that the named outputs need, as pairs (name, formula)."""

@@ -46,6 +46,11 @@ def _unpacked(text: bytes) -> Job:
     return job
 
 
+def _import(text: bytes) -> None:
+    """Import the modules that a job needs, in a new process."""
+    _unpacked(text)
+
+
 def compute_packed(text: bytes, start: int, stop: int) -> Chunk:
     """Return the chunk of the trajectories ``start`` to ``stop - 1``; ``text`` is the job from :func:`packed`."""
     # called in a process of run_here, which unpacks a job only once
@@ -67,13 +72,19 @@ def run_here(job: Job, ranges: Sequence[Range], workers: int) -> Iterator[Chunk]
         # one worker: this process, in order
         yield from (compute(job, *each) for each in ranges)
         return
-    compute(job, ranges[0][0], ranges[0][0] + 1)  # compiles the kernel once, before the processes need it
     context = multiprocessing.get_context("spawn")  # after a fork, other threads of the parent would leave locks behind
-    text, missing, losses = packed(job), deque(ranges), 0
+    text, missing, losses, is_compiled = packed(job), deque(ranges), 0, False
     while missing:
         pool = ProcessPoolExecutor(workers, mp_context=context, initializer=_begin)
         running: dict[Future[Chunk], Range] = {}
         try:
+            if not is_compiled:
+                with _without_main():
+                    for _ in range(workers):
+                        pool.submit(_import, text)
+                # compiles the kernel once, before the processes need it and while they start
+                compute(job, ranges[0][0], ranges[0][0] + 1)
+                is_compiled = True
             while missing or running:
                 while missing and len(running) < IN_FLIGHT * workers:
                     each = missing.popleft()

@@ -12,6 +12,7 @@ from sympy import Eq, Matrix, cos, sin, symbols
 import symrot
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.tree import text
+from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
 
 TRUE = (
@@ -205,3 +206,15 @@ def test_what_is_not_understood_is_refused_in_one_sentence(claim, words):
 def test_a_tree_printed_reads_back_to_itself(source):
     relation = read_relation(source)
     assert read_relation(f"{text(relation[1])} == {text(relation[2])}") == relation
+
+
+def test_no_code_of_the_checker_uses_a_verdict_as_a_truth_value(monkeypatch):
+    """A verdict "doubtful" or "conditional" is not True, and so would be lost by ``first or second``."""
+
+    def refuse(verdict):
+        raise AssertionError(f"{verdict.verdict} is used as a truth value")
+
+    monkeypatch.setattr(Verdict, "__bool__", refuse)
+    texts = ("x/x == 1", "sqrt(x**2) == x", "sin(2*x) == sin(x)", "I = m r^2/2", "I = m a b", "3 ft = 0.915 m")
+    words = [symrot.check(text).verdict for text in texts]
+    assert words == ["true", "conditional", "false", "recognised", "definition", "false"]

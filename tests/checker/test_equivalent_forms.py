@@ -36,3 +36,12 @@ def test_the_words_roll_pitch_and_yaw_are_the_usual_angles(text):
 def test_a_prime_that_would_name_the_rate_of_another_angle_does_not_hide_a_wrong_sign():
     assert symrot.check("p = φ' + ψ' sin θ").verdict == "doubtful"
     assert symrot.check("p = φ' - ψ' sin θ", repair=False).verdict == "recognised"
+
+
+@pytest.mark.parametrize(("text", "verdict"), [
+    ("Ṙ = [ω]× R", "recognised"), ("Ṙ = R [ω]×", "recognised"), ("Ṙ = -[ω]× R", "recognised"),
+    ("Ṙ = [ω]× R^T", "doubtful"), ("R' = R^T [ω]×", "doubtful"), (r"\dot R = R^T [\omega]_\times", "doubtful"),
+])  # fmt: skip
+def test_the_matrix_on_the_left_of_its_rate_is_the_one_on_the_right(text, verdict):
+    """``R^T [ω]×`` is the rate of the transposed matrix, and of no other."""
+    assert symrot.check(text).verdict == verdict

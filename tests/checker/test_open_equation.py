@@ -50,6 +50,10 @@ def test_a_double_equals_sign_claims_an_identity_and_a_single_one_relates_quanti
     assert (related.verdict, related.counterexample) == ("definition", None)
 
 
+def test_the_derivative_of_a_formula_of_constants_is_no_unknown_quantity():
+    assert symrot.check("diff(Rz(phi(t)), t) == diff(Rz(-b), t)", repair=False).verdict == "false"
+
+
 @pytest.mark.parametrize("text", [
     "m*a == F", "L**2 == m*x*y", "2*E1 == m*a", "cos(theta) == x/y", "diff(x(t), t, 2) == -k*x(t)/m",
     "m*diff(x(t), t, 2) + k*x(t) == 0", "(m + M)*x(t).diff(t, 2) == -k*x(t)", "diff(x(t)**2, t) == 0",

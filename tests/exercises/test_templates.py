@@ -100,6 +100,15 @@ def test_the_angle_between_two_attitudes_is_below_180_degrees(seed):
     assert 0 < float(symrot.exercise("angle_between", seed=seed)[0].questions[1].decimal) < 1
 
 
+@pytest.mark.parametrize("name, seed", [("ring_fixed", 1), ("both_driven", 1), ("torque_of_carrier", 8)])
+def test_the_planets_of_a_gear_have_a_whole_number_of_teeth(name, seed):
+    """A sun of 15 and a ring of 60 teeth left 22.5 teeth for a planet."""
+    teeth = {
+        datum.symbol: int(datum.value) for datum in symrot.exercise(name, seed=seed)[0].data if datum.symbol[0] == "Z"
+    }
+    assert (teeth["Z_R"] - teeth["Z_S"]) % 2 == 0
+
+
 def test_a_number_is_exact():
     right = problem(Line("Right.", X + X, 2 * X, "d"), Asked("d", "the sum", 2 * X, "m"))
     question = make("right", "inertia", 0, right, Random("0")).questions[1]

@@ -12,6 +12,7 @@ import symrot
 from symrot.errors import InputError, PropagationError
 from symrot.propagation.events.events import read_events
 from symrot.scene.scene import Scene
+from tests.needs import needs_compiler
 
 pytestmark = pytest.mark.usefixtures("quick_compiler")
 METHODS = ["taylor", "dop853", "exact"]
@@ -221,6 +222,18 @@ def test_directions_and_backward_motion():
     assert list(two_sided.t) == [two_sided.t_events[2][0], 0.0, two_sided.t_events[2][1]]
     reverse = run(scene(), [symrot.Event("omega_2", terminal=True)], t=t[::-1])
     assert list(reverse.t) == list(two_sided.t[::-1]) and (reverse.y == two_sided.y[:, ::-1]).all()
+
+
+@needs_compiler
+@pytest.mark.parametrize("method", ["taylor", "dop853"])
+def test_events_of_a_motion_under_switches_that_runs_backward_only(method):
+    """The part after the start, which has no length, ended in a traceback."""
+    torque = [{"kind": "expression", "torque": ["0", "0", "where(mod(t, 1) < 1/2, 1, -1)"]}]
+    motion = symrot.propagate(
+        scene((0, 0, 0), body={"principal": [1, 1, 1]}, torque=torque), t=[0, -5], method=method,
+        events=["omega_3 - 1/4", "t"],
+    )  # fmt: skip
+    assert motion.t_events[0] == pytest.approx(np.arange(-4.75, 0, 0.5)) and list(motion.t_events[1]) == [0.0]
 
 
 def test_an_event_at_the_start_is_listed_and_ends_nothing():

@@ -152,3 +152,18 @@ def test_a_square_wave_can_be_differentiated_by_its_frequency():
     motion = symrot.propagate(scene(["0", "0", "sign(sin(b*t))"], {"b": 2}, (0, 0, 1)), t=[2], sensitivities=["b"])
     # 3 (omega_3 - 1) is pi/b - (2 - pi/b)
     assert abs(motion.sensitivities["b"].omega[0, 2] + 2 * np.pi / 4 / 3) < 1e-14
+
+
+@needs_compiler
+def test_dry_friction_and_quadratic_damping_stop_a_wheel():
+    """C w' = -(k + c w^2) stops at ``t = C/sqrt(k c) atan(w_0 sqrt(c/k))``, where |omega| has no derivative."""
+    content = scene(["0", "0", "-k*sign(omega_3)"], {"k": 1}, (0, 0, 1), principal=(2, 3, 4))
+    content["torque"].append({"kind": "damping", "quadratic": 2})
+    motion = symrot.propagate(content, t=[4], sensitivities=["omega_3", "k"])
+    (stop,) = motion.sensitivities.switchings
+    time = 4 / np.sqrt(2) * np.arctan(np.sqrt(2))
+    assert abs(stop.t / time - 1) < 1e-13
+    # the derivative by k: that of C/sqrt(k c), then that of the arc tangent
+    by_k = -time / 2 - 4 / (2 * 3)
+    assert np.allclose(stop.slopes, [4 / 3, by_k], rtol=1e-12, atol=0)
+    assert not motion.sensitivities.omega[0, 2].any()

@@ -16,8 +16,8 @@ import sys
 from pathlib import Path
 from statistics import median
 from tempfile import TemporaryDirectory
-from time import perf_counter
-from typing import Any
+from time import perf_counter, process_time
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -66,14 +66,30 @@ def _sweep(scene: Scene, count: int, workers: int | None, scheduler: str | None 
         return perf_counter() - begin
 
 
-def _on_cluster(scene: Scene, count: int, workers: int) -> float:
-    """Return the seconds of a sweep by ``workers`` Dask workers with one thread each, which have run a short sweep."""
-    from distributed import LocalCluster
+class Cost(NamedTuple):
+    """What a sweep on a cluster takes: seconds, processor time of client and scheduler, and of the workers, s."""
+
+    seconds: float
+    client: float
+    workers: float
+
+    @property
+    def attainable(self) -> float:
+        """How many times as fast two workers can be as one, if client, scheduler and workers share two cores."""
+        return 2 / (1 + self.client / self.workers)
+
+
+def _on_cluster(scene: Scene, count: int, workers: int) -> Cost:
+    """Return the cost of a sweep by ``workers`` Dask workers with one thread each, which have run a short sweep."""
+    from distributed import Client, LocalCluster
 
     with LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
         address = cluster.scheduler_address
         _sweep(scene, 2048 * workers, None, address)
-        return _sweep(scene, count, None, address)
+        with Client(address, set_as_default=False) as client:
+            before, began = sum(client.run(process_time).values()), process_time()
+            seconds = _sweep(scene, count, None, address)
+            return Cost(seconds, process_time() - began, sum(client.run(process_time).values()) - before)
 
 
 def _peak() -> float:
@@ -93,17 +109,19 @@ def main() -> None:
     os.environ.setdefault("DASK_LOGGING__DISTRIBUTED", "error")
     scene = TOP | {"span": {"t": [0, options.seconds], "samples": 11}}
     _sweep(scene, 2048, number)  # compiles the kernel
-    rows = [("round", "propagate_ensemble", "sweep", "ratio", "memory", "1 Dask worker", "2 Dask workers", "ratio")]
+    rows = [("round", "propagate_ensemble", "sweep", "ratio", "memory", "1 Dask worker", "2 Dask workers", "ratio",
+             "processor time of workers", "of client and scheduler", "attainable")]  # fmt: skip
     ratios: list[tuple[float, float]] = []
     for turn in range(options.rounds):
         alone, sweep = _ensembles(scene, count, number), _sweep(scene, count, number)
         memory = _peak()
         one, two = _on_cluster(scene, count, 1), _on_cluster(scene, count, 2)
-        ratios.append((sweep / alone, one / two))
+        ratios.append((sweep / alone, one.seconds / two.seconds))
         rows.append((str(turn + 1), f"{alone:.1f} s", f"{sweep:.1f} s", f"{sweep / alone:.2f}", f"{memory:.0f} MB",
-                     f"{one:.1f} s", f"{two:.1f} s", f"{one / two:.2f}"))  # fmt: skip
+                     f"{one.seconds:.1f} s", f"{two.seconds:.1f} s", f"{one.seconds / two.seconds:.2f}",
+                     f"{two.workers:.1f} s", f"{two.client:.1f} s", f"{two.attainable:.2f}"))  # fmt: skip
     sweeps, workers = (median(each) for each in zip(*ratios, strict=True))
-    rows.append(("median", "", "", f"{sweeps:.2f}", "", "", "", f"{workers:.2f}"))
+    rows.append(("median", "", "", f"{sweeps:.2f}", "", "", "", f"{workers:.2f}", "", "", ""))
     print(f"{count} damped tops over {options.seconds:g} s, three outputs at 11 times, {number} cores")
     print("\n".join(columns(rows)))
 

@@ -321,7 +321,9 @@ def _integrate(scope: Scope, node: Node) -> Any:
             raise scope.fail(place, "a range (x, from, to) after the integrand")
         variable = scope.scalar(place.args[0], "to integrate over")
         lower, upper = (scope.scalar(limit, "as a limit of an integral") for limit in place.args[1:])
-        if not variable.is_Symbol or (len(ranges) > 1 and (lower.has(variable) or upper.has(variable))):
+        is_inside = lower.has(variable) or upper.has(variable)
+        # books write the integral of f(t) dt from 0 to t
+        if not variable.is_Symbol or (is_inside and (len(ranges) > 1 or str(variable) != "t")):
             raise scope.fail(place, "a symbol to integrate over that does not occur in its limits")
         limits.append((variable, lower, upper))
     divisors_before, radicands_before = len(scope.divisors), len(scope.radicands)

@@ -188,7 +188,9 @@ def claims_identity(claim: Claim) -> bool:
             return False
         if other == number(0) and _is_open_rate(side, other):
             return False  # diff(x**2, t) == 0 says that x is constant
-    if _has_open_derivative(*sides, _known(claim)):
+    nodes = [node for side in sides for _, node in walk(side)]
+    # diff(H, t) is the rate of an unknown quantity H
+    if any(is_derivative(node) and node.args[0].kind == "name" for node in nodes):
         return False
     motion = _with_highest_rate(*sides)
     return motion is None or any(node.kind == "call" for _, node in walk(motion[1]))

@@ -1,5 +1,6 @@
 """Exercises on gears: rates in planetary gears, and torques."""
 
+from collections.abc import Mapping
 from random import Random
 
 from sympy import Expr, Symbol, solve
@@ -28,6 +29,12 @@ def _contact() -> Expr:
     return (Z_P * (planet - omega_C) - Z_R * (omega_R - omega_C)).expand()
 
 
+def _can_be_built(values: Mapping[Symbol, Expr]) -> bool:
+    """Return whether the planets between sun and ring have a whole number of teeth, half of the difference."""
+    teeth = values[Z_R] - values[Z_S]
+    return bool(teeth > 0 and teeth % 2 == 0)
+
+
 def _train(
     fixed: Symbol, driving: Symbol, driven: Symbol, title: str, words: str, asked: str, formula: Expr
 ) -> Problem:
@@ -44,7 +51,7 @@ def _train(
             Line("The equation is solved for the rate.", rate, formula, name),
         ),
         (Asked(name, asked, formula, "rpm"),),
-        lambda values: values[Z_S] < values[Z_R],
+        _can_be_built,
     )
 
 
@@ -109,6 +116,7 @@ def both_driven(random: Random) -> Problem:
             Line("The equation is solved for the rate.", rate, formula, r"\omega_C"),
         ),
         (Asked(r"\omega_C", "the rate of the carrier", formula, "rpm"),),
+        _can_be_built,
     )
 
 
@@ -152,4 +160,5 @@ def torque_of_carrier(random: Random) -> Problem:
         (SUN, RING, quantity(tau_1, "2 4 5 10 20 50", "N m", "torque at the sun")),
         (Line("The power of the sun, divided by the rate of the carrier.", torque, formula, r"\tau_C"),),
         (Asked(r"\tau_C", "the torque that the carrier delivers", formula, "N m"),),
+        _can_be_built,
     )

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ from symrot.propagation.switched.run import Chunk, SwitchedRun
 __all__ = ["Interval", "smooth_intervals"]
 
 Floats = NDArray[np.float64]
+SHORT = 1e-14  # part of the time: length of an interval that is due to rounding errors
 
 
 @dataclass(eq=False)
@@ -78,4 +80,18 @@ def smooth_intervals(motion: SwitchedMotion, end: float) -> tuple[list[Interval]
         intervals.append(Interval(regime, dict(run.modes), run.held, chunk.zero, start, stop, first, last, [chunk]))
 
     run.follow(add)
-    return intervals, run.changes
+    return _without_returns(motion, intervals, abs(end - motion.start)), run.changes
+
+
+def _without_returns(motion: SwitchedMotion, intervals: list[Interval], length: float) -> list[Interval]:
+    """Return the intervals without those in which a motion, by rounding errors, passes a zero before it stays there."""
+    result = intervals[:1]
+    for current, following in pairwise([*intervals[1:], None]):
+        assert current is not None
+        before = result[-1]
+        short = abs(current.stop - current.start) <= SHORT * max(length, abs(current.end.high))
+        changed = {mode for mode, value in current.modes.items() if value != before.modes[mode]}
+        tied = following.held | motion.system.tied(following.held).keys() if following else frozenset[str]()
+        if not (short and changed and changed <= tied and current.held == before.held):
+            result.append(current)
+    return result

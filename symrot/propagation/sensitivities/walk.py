@@ -21,6 +21,7 @@ from symrot.propagation.sensitivities.starts import from_start
 from symrot.propagation.sensitivities.touching import refuse_touching
 from symrot.propagation.sensitivities.variation import AT_ONCE, fitting_unit, follow_columns, unit_of
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
+from symrot.propagation.steppers.smoothness import non_smooth_torque
 from symrot.propagation.switched.motion import SwitchedMotion
 from symrot.results.sensitivity import SwitchSlopes
 from symrot.scene.scene import Scene
@@ -50,7 +51,8 @@ class Walk:
         self.side = 1.0 if end > begin else -1.0
         own = replace(scene, span=scene.span._replace(start=Fraction(begin)))
         plan = Plan(own, parameter_slopes.structure, ())
-        motion = SwitchedMotion(plan, choose_method(plan, "taylor"), TOLERANCE)
+        method = "dop853" if non_smooth_torque(plan) else "taylor"
+        motion = SwitchedMotion(plan, choose_method(plan, method), TOLERANCE)
         self.length = abs(end - begin)
         self._units = [unit_of(scene, column) for column in parameter_slopes.columns]
         self.guards = Guards(scene, motion.system, parameter_slopes, self.side)

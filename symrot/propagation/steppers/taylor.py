@@ -7,7 +7,7 @@ all states at one time, computed by generated C code. The tolerance limits the e
 import ctypes
 import math
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -83,6 +83,7 @@ def order_for(tolerance: float, program: Program | None = None) -> int:
     return next(order for least, order in ORDERS[products >= MANY_PRODUCTS] if tolerance >= least)
 
 
+@lru_cache(maxsize=16)
 def refusal(program: Program) -> str:
     """Return why a right-hand side has no Taylor series, such as the absolute value of a state; empty if it has one."""
     from symrot.codegen.taylor.recurrences import recurrences

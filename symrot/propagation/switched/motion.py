@@ -117,6 +117,10 @@ class SwitchedRecording(Recording):
         self._ends, self._rests = np.array([end.high for end in ends]), np.array([end.low for end in ends])
 
     def _fill(self, times: Floats, states: Floats) -> None:
+        if not self._chunks:
+            # a motion of no length: it has its start alone
+            states[:] = np.nan
+            return
         places = np.searchsorted(self._ends, times)
         while True:  # a time that is rounded up to the end of a chunk lies in the next one
             inside = np.minimum(places, len(self._ends) - 1)

@@ -102,12 +102,12 @@ def _rate_of_change(terms: Sequence[Node], vectors: Mapping[str, bool]) -> tuple
     if len(factors) != len(befores) or len(changed) != 1:
         return None
     last, first = changed[0]
-    after, before = SUFFIX.fullmatch(str(last.value)), SUFFIX.fullmatch(str(first.value))
-    if last.kind != "name" or after is None or before is None or after["base"] != before["base"]:
+    ended, began = SUFFIX.fullmatch(str(last.value)), SUFFIX.fullmatch(str(first.value))
+    if last.kind != "name" or ended is None or began is None or ended["base"] != began["base"]:
         return None
-    if after["mark"] not in LATER or before["mark"] not in EARLIER:
+    if ended["mark"] not in LATER or began["mark"] not in EARLIER:
         return None
-    name, place = after["base"], factors.index(last)
+    name, place = ended["base"], factors.index(last)
     rate = _derivative(name, str(last.value) in vectors)
     return product([*factors[:place], rate, *factors[place + 1 :]]), name
 
