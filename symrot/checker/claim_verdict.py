@@ -22,6 +22,7 @@ from symrot.checker.claim.named_formula import (
 from symrot.checker.claim.values import decide_value
 from symrot.checker.decide.decision import decide_equation, for_positive_bases, is_large
 from symrot.checker.decide.ranges import condition_texts
+from symrot.checker.inertia_in_frames import on_inertia_in_frames
 from symrot.checker.rotation_rates import tested_on_rotations
 from symrot.checker.symmetry_axis import in_claim, with_axis_z
 from symrot.checker.time_limit import TimeUp, processor_seconds
@@ -170,6 +171,8 @@ def _on_name(
         result = _on_name(product[0], repair, related_formula)
         if result and result[1].verdict in ("recognised", "doubtful"):
             return None, replace(inverse_factor.in_claim(result[1], product[1]), text=claim.text)
+    if (on_frames := on_inertia_in_frames(claim)) is not None:
+        return None, on_frames
     named = formula_of(claim) if claim.relation is not None else None
     if named is None:
         return None

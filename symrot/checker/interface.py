@@ -13,6 +13,7 @@ from symrot.checker.claim_verdict import check_claim, check_readings, unfinished
 from symrot.checker.context.context import Context, read_context
 from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.frame_rates import verdict_on_rates, without_marks
+from symrot.checker.inertia_in_frames import without_brackets
 from symrot.checker.text import verdict_on_readings, verdict_on_text
 from symrot.checker.time_limit import TimeUp
 from symrot.checker.typed.copied_signs import with_plain_signs
@@ -133,7 +134,7 @@ def _checked(
         if not assume and not stated and (of_frames := verdict_on_rates(typed)) is not None:
             return of_frames
         typed, of_mark = without_marks(typed)
-        left = with_plain_signs(typed)
+        left = with_plain_signs(without_brackets(typed))
         if is_latex(left) and measured_text(left) is None:
             left = numbers_of_latex(left).lstrip() or left
         if is_latex(left) and measured_text(left) is None:

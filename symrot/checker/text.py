@@ -390,6 +390,7 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Ve
     verdict = _with_two_meanings(claim, verdict) if verdict.verdict == "false" and plain else verdict
     # a false equation outside SymPy syntax may be meant as a condition, such as x^2 = 4
     verdict = as_equation(claim, verdict, notation) if verdict.verdict == "false" and plain else verdict
+    verdict = _on_inertia_matrix(claim, verdict) if verdict.verdict == "false" else verdict
     if verdict.verdict in ("recognised", "doubtful") and _has_indices(claim):
         verdict = replace(verdict, verdict="definition", recognised_as=(), repairs=(), reason=INDICES)
     if verdict.verdict == "false" and claim.relation is not None and has_index_symbols(claim.relation):
@@ -406,6 +407,16 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Ve
     )
     notes = (*claim.notes, *verdict.notes, *_on_numbers(claim, verdict), *_on_zero_powers(claim, verdict))
     return replace(verdict, repairs=repairs, notes=notes, requires=requires, conditions=conditions)
+
+
+def _on_inertia_matrix(claim: Claim, verdict: Verdict) -> Verdict:
+    """Return "definition" for ``I = [A, 0, 0; 0, B, 0; 0, 0, C]``, false if I is the unit matrix; else ``verdict``."""
+    sides = claim.relation[1:] if claim.relation else ()
+    kinds = [side.kind if side.kind != "call" else str(side.value) for side in sides]
+    if sorted(kinds) not in (["eye", "list"], ["Matrix", "eye"]):
+        return verdict
+    reason = "I is the unit matrix or a tensor of inertia: the first is another matrix, the second is not known here"
+    return Verdict("definition", reason=reason, notes=verdict.notes, dimension=verdict.dimension)
 
 
 def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:

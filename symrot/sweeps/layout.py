@@ -43,8 +43,9 @@ class Variable:
 
     @property
     def attributes(self) -> dict[str, str]:
-        """Unit, meaning and frame as attributes of the array in a file, without those that are empty."""
-        labels = {"units": self.unit, "long_name": self.meaning, "frame": self.frame}
+        """Unit, name, meaning and frame as attributes of the array in a file, without those that are empty."""
+        # xarray writes long_name at the axes of its plots
+        labels = {"units": self.unit, "long_name": self.name, "description": self.meaning, "frame": self.frame}
         return {key: value for key, value in labels.items() if value}
 
 

@@ -106,7 +106,7 @@ def _of_variable(store: Store, statistics: Sequence[Statistic], variable: Variab
     survey = _survey(blocks, size)
 
     def table(name: str, values: NDArray[Any], meaning: str, lead: tuple[str, ...] = (), unit: bool = True) -> Table:
-        attributes = variable.attributes | {"long_name": f"{variable.meaning}: {meaning}"}
+        attributes = variable.attributes | {"long_name": f"{variable.name}, {meaning}"}
         if not unit:
             attributes.pop("units", None)
         return Table(f"{variable.name}_{name}", (*lead, *dimensions), values.reshape(-1, *shape)[0]

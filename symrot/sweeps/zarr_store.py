@@ -171,8 +171,9 @@ class ZarrStore:
 
 
 def _fast(zarr: Any) -> Any:
-    """Return the fastest compressor of the package ``zarr``; others save little, as digits of results look random."""
-    return zarr.codecs.ZstdCodec(level=1)
+    """Return a fast compressor of the package ``zarr``; others save little, as digits of results look random."""
+    # equal bits of numbers are stored together, so that signs and exponents take little room
+    return zarr.codecs.BloscCodec(cname="lz4", clevel=1, shuffle="bitshuffle")
 
 
 def _add(group: Any, table: Table) -> None:

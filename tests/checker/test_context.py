@@ -48,7 +48,7 @@ FIXED = ["T = kinetic energy of rotation", "I = moment of inertia about the fixe
     )),
     (r"P = \frac12 M\omega", "false", {"where": ["P = power of the torque M about a fixed axis"]}),
     (r"P = M\omega", "true", {"where": ["P = power of the torque M about a fixed axis"]}),
-    ("Omega = M g l/(I_1 omega_3)", "definition", {"where": ["Omega = rate of slow precession"], "body": "fast top"}),
+    ("Omega = M g l/(I_1 omega_3)", "doubtful", {"where": ["Omega = rate of slow precession"], "body": "fast top"}),
     ("R = R_z(psi) R_y(theta) R_x(phi)", "true", {"sequence": "ZYX"}),
     ("R = (R_z(psi) R_y(theta) R_x(phi))^T", "recognised", {"sequence": "ZYX"}),
     ("Omega = M g l/(I_3 omega_3)", "true", {"where": ["Omega = rate of slow precession"], "body": "fast top"}),

@@ -45,3 +45,18 @@ def test_a_prime_that_would_name_the_rate_of_another_angle_does_not_hide_a_wrong
 def test_the_matrix_on_the_left_of_its_rate_is_the_one_on_the_right(text, verdict):
     """``R^T [ω]×`` is the rate of the transposed matrix, and of no other."""
     assert symrot.check(text).verdict == verdict
+
+
+@pytest.mark.parametrize(("text", "condition"), [
+    ("I_B = R^T I_A R", "R takes components in the frame of I_B to those in the frame of I_A"),
+    ("[I]_F = R [I]_B R^T", "R takes components in the frame of I_B to those in the frame of I_F"),
+    (r"[I]_{\mathcal F} = R\,[I]_{\mathcal B}\,R^T", "R takes components in the frame of I_B to those in the frame of I_F"),
+])  # fmt: skip
+def test_a_tensor_of_inertia_in_two_frames_is_right_for_one_direction_of_the_matrix(text, condition):
+    verdict = symrot.check(text)
+    assert (verdict.verdict, verdict.requires) == ("conditional", (condition,))
+
+
+def test_a_matrix_with_the_name_of_the_unit_matrix_may_be_a_tensor_of_inertia():
+    assert symrot.check("I = [1, 0, 0; 0, 2, 0; 0, 0, 3]").verdict == "definition"
+    assert symrot.check("I = [1, 0, 0; 0, 1, 0; 0, 0, 1]").verdict == "true"

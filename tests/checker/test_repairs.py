@@ -162,3 +162,19 @@ def test_repairs_with_quaternions_and_matrices_are_written_as_people_write_them(
 def test_a_repair_can_be_checked_as_it_is_written(claim, repair):
     assert [each.text for each in symrot.check(claim).repairs] == [repair]
     assert symrot.check(repair).verdict in ("recognised", "true", "conditional")
+
+
+def test_a_missing_vector_term_and_a_missing_square_of_a_matrix_are_found():
+    (term,) = symrot.check("q p = (q0 p0 - qv . pv, q0 pv + qv x pv)", where=["q, p = quaternions"]).repairs
+    assert (term.code, term.text) == ("missing_term", "q*p = [q0*p0 - dot(qv, pv), q0*pv + cross(qv, pv) + p0*qv]")
+    claim = r"e^{\hat\omega\theta} = I + \hat\omega\sin\theta + \hat\omega(1-\cos\theta)"
+    (square,) = symrot.check(claim).repairs
+    assert square.code == "exponent" and "skew(omega)**2*(1 - cos(theta))" in square.text
+
+
+def test_the_inverse_of_a_tensor_before_a_sum_is_moved_to_the_other_side():
+    claim = r"\dot{\boldsymbol\omega} = J^{-1}\left[\mathbf L %s \boldsymbol\omega\times(J\boldsymbol\omega)\right]"
+    where = [r"\mathbf L = torque"]
+    assert symrot.check(claim % "-", where=where).verdict == "true"
+    right = r"\dot{\boldsymbol{\omega}} = J^{-1} (\mathbf{L} - \boldsymbol{\omega} \times (J \boldsymbol{\omega}))"
+    assert [repair.text for repair in symrot.check(claim % "+", where=where).repairs] == [right]

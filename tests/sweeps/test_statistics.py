@@ -90,7 +90,7 @@ def test_a_range_with_few_doubles_has_a_histogram(values):
 
 
 def test_units_and_meanings_go_with_the_statistics(tables):
-    assert tables["x_mean"].attributes == {"units": "m", "long_name": "place: mean"}
+    assert tables["x_mean"].attributes == {"units": "m", "long_name": "x, mean", "description": "place"}
     assert "units" not in tables["x_number"].attributes
     assert tables["percentile"].values.tolist() == list(SHARES)
 

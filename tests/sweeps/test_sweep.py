@@ -40,10 +40,10 @@ def test_a_trajectory_is_the_motion_of_its_own_scene(whole):
 
 def test_outputs_have_units_frames_and_meanings(whole):
     assert whole.omega_1.attrs == {
-        "units": "rad/s", "frame": "body", "long_name": "angular velocity, body components"
+        "units": "rad/s", "frame": "body", "long_name": "omega_1", "description": "angular velocity, body components"
     }  # fmt: skip
     assert whole["energy@max"].attrs["units"] == "J" and whole.input_weight.attrs["units"] == "N"
-    assert whole["axis_z@end"].attrs["long_name"].endswith("at t = 1.0 s")
+    assert whole["axis_z@end"].attrs["description"].endswith("at t = 1.0 s")
 
 
 def test_outputs_at_one_time_need_no_other_samples(whole):

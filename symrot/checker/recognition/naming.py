@@ -7,7 +7,7 @@ derives. The verdict is "recognised" if the right side equals one, "doubtful" if
 
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from itertools import combinations, islice
 from typing import Any
 
@@ -15,8 +15,8 @@ from sympy import Function, Matrix, Mul, Pow, Rational, Symbol, acos, asin, atan
 
 from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.interpreter import time
-from symrot.checker.claim.named_formula import NamedFormula, solution
+from symrot.checker.claim.interpreter import Interpreter, time
+from symrot.checker.claim.named_formula import NamedFormula, related_formula, solution
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, is_derivative, negated, number, product, sum_of, text, walk, with_names
@@ -137,7 +137,7 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
         For a side that cannot be read.
     """
     _ = claim.equation  # refuses a side that cannot be read
-    if (mapped := _by_matrix(claim, named, repair)) is not None:
+    if (mapped := _by_matrix(claim, named, repair) or _by_inverse(claim, named, repair)) is not None:
         return mapped
     readings = _readings(claim, named, named.formula, LEAST_SYMBOLS)
     readings = readings or _with_other_products(claim, named, named.formula) or _slowing_down(claim, named)
@@ -210,6 +210,40 @@ def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | Non
         side = product([read_relation(edited.text)[2], factors[1]])
         repairs.append(replace(edited, text=f"{text(named.side)} == {text(side)}"))
     return replace(verdict, repairs=tuple(repairs))
+
+
+def _by_inverse(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | None:
+    """Return the verdict on ``w' = J^-1*(M - ..)``, for a matrix J, by that on ``J*w' = M - ..``.
+
+    None for claims of another form, and if that verdict is "definition".
+    """
+    if named.formula.kind != "product" or len(named.formula.args) != 2:
+        return None
+    first, rest = named.formula.args
+    base = _inverted(first)
+    if base is None or base.value not in dict(claim.define):
+        return None
+    left = product([base, named.side])
+    moved = claim.with_relation(("==", left, rest))
+    other = related_formula(moved)
+    verdict = None if other is None else verdict_on_name(moved, other, repair)
+    if other is None or verdict is None or verdict.verdict == "definition":
+        return None
+    repairs = []
+    for edited in verdict.repairs:
+        sides = put_back(left, rest, other, read_relation(edited.text)[2])
+        if sides is not None and sides[0] == left:
+            edited = replace(edited, text=f"{text(named.side)} == {text(product([first, sides[1]]))}")
+        repairs.append(edited)
+    return replace(verdict, repairs=tuple(repairs))
+
+
+def _inverted(node: Node) -> Node | None:
+    """Return the name J for the trees of 1/J and ``J^-1``; None for other trees."""
+    if node.kind == "inv" and node.args[0].kind == "name":
+        return node.args[0]
+    is_power = node.kind == "power" and node.args[0].kind == "name"
+    return node.args[0] if is_power and node.args[1] in (number(-1), negated(number(1))) else None
 
 
 def verdict_on_relation(claim: Claim) -> Verdict | None:
@@ -406,8 +440,8 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     for near in nearby:
         if near.tree in tried or len(repairs) == MOST_REPAIRS or len(tried) == MOST_PROOFS:
             continue
-        if near.code == "two_faults" and not repairs:
-            continue  # two signs alone are no evidence of a fault
+        if near.code == "two_faults" and not _is_of_usual_frame(near, [known for _, known in repairs.values()]):
+            continue  # two wrong signs alone are no evidence of a fault
         tried.add(near.tree)
         if not is_evident(claim, named, near) or (shifted and is_of_body(near.code, near.known.name)):
             continue
@@ -422,6 +456,12 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
     (_, readings), *_ = repairs.values()
     notes = (UPRIGHT,) if any(is_inverted(named, near) for near in nearby if near.tree in repairs) else ()
     return _doubtful(tuple(repair for repair, _ in repairs.values()), readings, notes)
+
+
+def _is_of_usual_frame(near: Near, others: Sequence[Sequence[Identification]]) -> bool:
+    """Return whether ``near`` is for the body frame, and the known formulas ``others`` are for the space frame."""
+    in_space = [all("space frame" in known.name for known in readings) for readings in others]
+    return bool(in_space) and all(in_space) and "body frame" in near.known.name
 
 
 def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identification, ...]:
@@ -496,10 +536,12 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
     if len(quantities_in(named.formula)) < LEAST_SYMBOLS_EDITED + (not has_terms(named.formula)) and not is_of_trace:
         return None
     least = LEAST_SYMBOLS if named.solve is None and _is_stated(claim, named) else LEAST_SYMBOLS_EDITED
+    own = claim.interpreter()
+    interpreter = _Remembering(own.values, own.functions, own.implied)
     for edit in (*_edits(claim, named.formula), *_with_all_terms_added(named)):
         if names_in(edit.tree) < letters or edit.code == "extra_term":  # the formula may be a more general one
             continue
-        all_readings = _readings(claim, named, edit.tree, least)
+        all_readings = _readings(claim, named, edit.tree, least, interpreter)
         readings = tuple(known for known in all_readings if not any(body in known.name for body in RARE))
         is_growth = re.fullmatch("lambda|sigma|s", named.name) is not None
         is_open = edit.code in ("sign_of_term", "overall_sign") and (is_growth or not has_terms(named.formula))
@@ -513,6 +555,18 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
         if not any(strangeness):
             break
     return nearest and nearest[1]
+
+
+@dataclass
+class _Remembering(Interpreter):
+    """An interpreter that reads each part of a formula once, also where edits of the formula share it."""
+
+    known: dict[int, tuple[Node, Any]] = field(default_factory=dict)  # by id; the node is kept, so the id stays its own
+
+    def evaluate(self, node: Node) -> Any:
+        if id(node) not in self.known:
+            self.known[id(node)] = node, super().evaluate(node)
+        return self.known[id(node)][1]
 
 
 def recognised_edits(
@@ -561,15 +615,20 @@ def _edits(claim: Claim, formula: Node) -> Iterator[Edit]:
     yield from islice(sorted(edits, key=lambda edit: edit.cost), MOST_EDITS)
 
 
-def _readings(claim: Claim, named: NamedFormula, tree: Node, least_symbols: int) -> tuple[Identification, ...]:
+def _readings(
+    claim: Claim, named: NamedFormula, tree: Node, least_symbols: int, interpreter: Interpreter | None = None
+) -> tuple[Identification, ...]:
     """Return the known formulas and relations that a claim with the right side ``tree`` can mean, the likeliest first.
 
-    Empty for too few symbols; ``least_symbols`` is the usual minimum.
+    Empty for too few symbols; ``least_symbols`` is the usual minimum. ``interpreter`` is by default that of the claim.
     """
-    solved = () if named.solve is None else _readings_of_formula(claim, named, named.solve(tree), least_symbols)
+    interpreter = claim.interpreter() if interpreter is None else interpreter
+    solved: tuple[Identification, ...] = ()
+    if named.solve is not None:
+        solved = _readings_of_formula(claim, named, named.solve(tree), least_symbols, interpreter)
     is_open = _is_stated(claim, named) or (words_of(named) is None and least_symbols == LEAST_SYMBOLS)
     least = LEAST_SYMBOLS if is_open else _least_symbols_related(named.side, tree)
-    return solved or _readings_of_relation(claim, named, tree, least)
+    return solved or _readings_of_relation(claim, named, tree, least, interpreter)
 
 
 def _is_stated(claim: Claim, named: NamedFormula) -> bool:
@@ -579,7 +638,7 @@ def _is_stated(claim: Claim, named: NamedFormula) -> bool:
 
 
 def _readings_of_relation(
-    claim: Claim, named: NamedFormula, tree: Node, least_symbols: int
+    claim: Claim, named: NamedFormula, tree: Node, least_symbols: int, interpreter: Interpreter | None = None
 ) -> tuple[Identification, ...]:
     """Return the known relations that are equivalent to the equation ``named.side == tree``.
 
@@ -587,7 +646,7 @@ def _readings_of_relation(
     """
     difference = sum_of([named.side, negated(tree)])
     try:
-        value = claim.with_definitions(claim.interpreter().read(difference))
+        value = claim.with_definitions((interpreter or claim.interpreter()).read(difference))
     except InputError:
         return ()
     if is_matrix(value) or len(value.atoms(Function, Symbol) - {time}) < least_symbols:
@@ -610,14 +669,14 @@ def _has_root_of_sum(value: Any) -> bool:
 
 
 def _readings_of_formula(
-    claim: Claim, named: NamedFormula, formula: Node, least_symbols: int
+    claim: Claim, named: NamedFormula, formula: Node, least_symbols: int, interpreter: Interpreter | None = None
 ) -> tuple[Identification, ...]:
     """Return the known formulas for the claim's quantity that are equal to ``formula``, the likeliest first.
 
     Usually empty if a scalar ``formula`` has fewer than ``least_symbols`` symbols.
     """
     try:
-        value = claim.with_definitions(claim.interpreter().read(formula))
+        value = claim.with_definitions((interpreter or claim.interpreter()).read(formula))
     except InputError:
         return ()
     if is_matrix(value) and value.shape == (1, 1):

@@ -32,6 +32,7 @@ EARLIER_AND_LATER = (("omega_i", "omega_f"), ("theta_i", "theta_f"))
 
 MIDDLE, OUTER = ("theta",), ("phi", "psi", "varphi")
 """Names of the second of three Euler angles, and of the first or third."""
+ANGLES = {*MIDDLE, *OUTER}
 
 
 def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> bool:
@@ -39,20 +40,43 @@ def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> b
 
     With ``fixed``, axis 1 stays 1 or x; without, axes may be exchanged in a cycle.
     """
-    rates = [(quantity_of(known), quantity_of(new)) for known, new in renaming]
-    pairs = [pair if pair[1] != own[1] else own for pair, own in zip(rates, renaming, strict=True)]
+    pairs = [_pair_of_quantities(known, new) for known, new in renaming]
     if len({*pairs}) != len({known for known, _ in pairs}) or len({*pairs}) != len({new for _, new in pairs}):
         return False
     if not _keeps_time_order(dict(pairs)):
         return False
-    angles = [pair for pair in pairs if {*pair} <= {*MIDDLE, *OUTER}]
+    angles = [pair for pair in pairs if pair[0] in ANGLES and pair[1] in ANGLES]
     if len(angles) > 1 and any((known in MIDDLE) != (new in MIDDLE) for known, new in angles):
         return False
-    axes = [(axes_of(known), axes_of(new)) for known, new in pairs]
-    entries = [(ENTRY.fullmatch(known), ENTRY.fullmatch(new)) for known, new in pairs]
-    places = [(known.groups(), new.groups()) for known, new in entries if known and new]
     # if fixed, 1 becomes 1 or x; otherwise axes may be exchanged in a cycle, 1 to y, 2 to z, 3 to x
-    return any(_keeps(axes, order) and _keeps_entries(places, order) for order in CYCLIC[: 1 if fixed else None])
+    plain = transposed = frozenset(CYCLIC[: 1 if fixed else None])
+    for known, new in pairs:
+        orders, reversed_orders = _orders(known, new)
+        plain, transposed = plain & orders, transposed & reversed_orders
+        if not plain and not transposed:
+            return False
+    return True
+
+
+@cache
+def _pair_of_quantities(known: str, new: str) -> tuple[str, str]:
+    """Return (phi, psi) for ``dphi`` and ``diff(psi(t), t)``; a pair whose second name is no rate stays as it is."""
+    quantity = quantity_of(new)
+    return (quantity_of(known), quantity) if quantity != new else (known, new)
+
+
+@cache
+def _orders(known: str, new: str) -> tuple[frozenset[tuple[int, ...]], frozenset[tuple[int, ...]]]:
+    """Return the orders of the axes with which ``known`` may become ``new``, and those if matrices are transposed."""
+    axes, own = axes_of(known), axes_of(new)
+    moved_axes = {order: {order[axis - 1] if axis else 0 for axis in axes} for order in CYCLIC}
+    kept = [order for order in CYCLIC if not axes or not own or moved_axes[order] == own]
+    entry, new_entry = ENTRY.fullmatch(known), ENTRY.fullmatch(new)
+    if not entry or not new_entry:
+        return frozenset(kept), frozenset(kept)
+    moved = {order: tuple(str(order[int(place) - 1]) for place in entry.groups()) for order in kept}
+    plain = frozenset(order for order in kept if moved[order] == new_entry.groups())
+    return plain, frozenset(order for order in kept if moved[order][::-1] == new_entry.groups())
 
 
 def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
@@ -96,17 +120,3 @@ def axes_of(name: str) -> frozenset[int]:
         return frozenset({LETTERS[name]})
     index = re.fullmatch(r"(?:[A-Za-z]+?_?|\w+_)([0-3]|[xyz]|11|22|33|12|13|23|21|31|32|[xyz]{2})", name)
     return frozenset(AXIS[letter] for letter in index[1]) if index else frozenset()
-
-
-def _keeps_entries(places: Sequence[tuple[tuple[str, ...], tuple[str, ...]]], order: Sequence[int]) -> bool:
-    """Return whether all entries of a rotation matrix keep their rows and columns, or all are transposed."""
-    # places: pairs of (row, column), known and new; order: the permutation of the axes
-    moved = [(tuple(str(order[int(place) - 1]) for place in known), new) for known, new in places]
-    return all(old == new for old, new in moved) or all(old[::-1] == new for old, new in moved)
-
-
-def _keeps(axes: Sequence[tuple[frozenset[int], frozenset[int]]], order: Sequence[int]) -> bool:
-    """Return whether a permutation of the axes maps the axes in each known name to those in its new name."""
-    # a name without an axis does not matter
-    places = {0: 0, **dict(zip((1, 2, 3), order, strict=True))}
-    return all(not known or not new or {places[axis] for axis in known} == new for known, new in axes)

@@ -140,7 +140,8 @@ def offers(
             _same_terms(repair, original)
             or any(
                 _equal_renamed(mine, other)
-                for mine, other in product(_equations(repair, given), _equations(original, given_with_original))
+                for source in (original, _without_bold(original))
+                for mine, other in product(_equations(repair, given), _equations(source, given_with_original))
             )
         )
         for repair in repairs
@@ -193,6 +194,14 @@ def _claims(source: str, given: Sequence[str] = ()) -> list[Claim]:
                     links = [(first.relation[1], link.relation[2]) for link in others if link.relation is not None]
                     claims += [first.with_relation(("==", left, right)) for left, right in links]
     return claims
+
+
+def _without_bold(source: str) -> str:
+    """Return a LaTeX text without bold letters, which plain text does not have; a text with products of vectors stays
+    as it is.
+    """
+    has_products = re.search(r"\\times|\\cdot|\\tilde|\\hat|\^", source) is not None
+    return source if has_products else re.sub(r"\\(boldsymbol|mathbf|bm)\b", " ", source)
 
 
 def _direction(source: str) -> str:
