@@ -25,6 +25,7 @@ from symrot.checker.equivalents.aircraft_names import with_usual_letters
 from symrot.checker.equivalents.inertia_in_frames import on_inertia_in_frames
 from symrot.checker.equivalents.rotation_rates import tested_on_rotations
 from symrot.checker.equivalents.symmetry_axis import in_claim, with_axis_z
+from symrot.checker.named_bodies import of_named_body
 from symrot.checker.time_limit import TimeUp, processor_seconds
 from symrot.checker.units.check import check_dimensions
 from symrot.checker.verdict import Diagnosis, Verdict
@@ -196,7 +197,7 @@ def _on_name(
 
     with _place_of(claim):
         verdict = by_other_sizes(claim, named, judge(claim, named, repair), judge)
-        verdict = tested_on_rotations(claim, _on_motion(claim, verdict))
+        verdict = of_named_body(named.name, tested_on_rotations(claim, _on_motion(claim, verdict)))
         if repair:
             verdict = by_exchanged_letters(claim, named, verdict, judge_with_motion)
         if claim.hypotheses and verdict.verdict in ("false", "doubtful"):  # the context does not use the hypotheses
