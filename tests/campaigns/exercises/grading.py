@@ -191,7 +191,7 @@ def _faulty_formula(name: str, question: Question, source: Random) -> Case | Non
 def _differ(value: Expr, wrong: Expr, source: Random) -> bool:
     """Return whether two formulas differ at random points."""
     symbols = sorted(value.free_symbols | wrong.free_symbols, key=str)
-    first, second = (lambdify(symbols, each, "cmath") for each in (value, wrong))
+    first, second = (lambdify(symbols, each, [{"Abs": abs}, "cmath"]) for each in (value, wrong))
     for _ in range(POINTS):
         point = [source.uniform(0.3, 1.4) for _ in symbols]
         try:
