@@ -12,7 +12,7 @@ import sympy
 from mpmath import iv
 from sympy import Expr, S, pi
 
-from symrot.exact.operations import spend
+from symrot.exact.limits.operations import spend
 
 __all__ = ["DIGITS", "Undefined", "enclosure", "is_nonnegative_at", "surely_nonnegative_number"]
 
