@@ -23,8 +23,8 @@ DIGITS = 15
 """Digits to which the equations hold at each state; a double has nearly 16."""
 LIMIT = Decimal(10) ** -DIGITS
 PRECISION = 60  # digits of the numbers
-STATES = 5
-"""States at which they are checked: at two of them no axis is preferred, at three omega is near an axis."""
+STATES = 12
+"""States at which they are checked: at three of them no axis is preferred, at nine omega is near an axis."""
 LAW = "for dt = 0 the step is the identity, and its derivative by dt is the rates at its result"
 _TERMS = 60  # of the series of a sine or cosine of at most pi/4
 
@@ -167,13 +167,12 @@ _OWN: Mapping[str, tuple[str, Callable[..., Any]]] = {
 
 def _states(source: str, omega_scale: Fraction) -> list[_State]:
     """Return states and sizes of steps that follow from the hash of a text: (omega and unit quaternion, dt)."""
-    digest = sha256(source.encode()).digest()
     states = []
     for k in range(STATES):
-        a, b, c, d, *four = digest[8 * k % 24 : 8 * k % 24 + 8]
+        a, b, c, d, *four = sha256(f"{k} {source}".encode()).digest()[:8]
         omega = [Fraction(2 * x - 255 or 1, 256) for x in (a, b, c)]
-        if k >= 2:  # near a body axis
-            omega = [w / 16 if i != k - 2 else Fraction(1) + w / 4 for i, w in enumerate(omega)]
+        if k % 4:  # near a body axis
+            omega = [w / 16 if i != k % 4 - 1 else 1 + w / 4 for i, w in enumerate(omega)]
         p = [x + 1 for x in four]
         # the square of a quaternion with whole components has a whole norm
         norm = sum(x * x for x in p)

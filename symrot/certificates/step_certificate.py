@@ -52,6 +52,16 @@ TRUSTED = {
     "rates": "the formulas of the rates, which the certificate of the scene's own kernel proves",
     "C text": "that the compiler gives C its meaning: real numbers are rounded as IEEE 754 says, to nearest",
 }
+ELLIPTIC = {
+    "formula": "that equations which hold at the states to 15 digits hold at others: nothing is proven between them",
+    "C text": TRUSTED["C text"],
+}
+ELLIPTIC_BOUNDS = {
+    "arithmetic": "relative errors of sums of two doubles: 2^-102 of + - * / sqrt (proven in the sources that the C "
+    "text names), 2^-90 of its functions dd_rf, dd_agm and dd_exp, apart from the errors of their arguments",
+    "exact values": "ranges of the elliptic functions, modulus, quarter periods and phases; the theta series",
+}
+ELLIPTIC_NOT_STATED = {"not stated": "errors of rounding, and of truncation below 15 digits"}
 WHOLE_STATE = {"rates": "the formulas of the rates, which symrot derives from Euler's equations for the whole state"}
 NOT_STATED = {"not stated": "errors of rounding and truncation"}
 EVALUATIONS = 32
@@ -97,8 +107,13 @@ def step_certificate(step: StepUnderTest) -> str:
     )
 
 
-def trusted(method: str, has_bounds: bool) -> Data:
-    """Return the section ``trusted`` of a step's certificate: what it assumes, and which errors it does not state."""
+def trusted(method: str, has_bounds: bool, elliptic: bool = False) -> Data:
+    """Return the section ``trusted`` of a step's certificate: what it assumes, and which errors it does not state.
+
+    ``elliptic`` says whether it is an exact step with elliptic functions.
+    """
+    if elliptic:
+        return ELLIPTIC | (ELLIPTIC_BOUNDS if has_bounds else ELLIPTIC_NOT_STATED)
     # the scene's own kernel leaves out constant states, which an exact step has
     assumptions = TRUSTED | (WHOLE_STATE if method == SteadyRotations.name else {})
     return assumptions if has_bounds else assumptions | NOT_STATED
@@ -120,7 +135,7 @@ def is_step(data: object) -> bool:
 def with_bounds(data: Data, bounds: Data) -> Data:
     """Return the certificate ``data`` of a step with one more section: ``bounds`` of the errors of one step."""
     bare = {key: value for key, value in data.items() if key not in ("bounds", "trusted", "seal")}
-    return bare | {"bounds": bounds, "trusted": trusted(data["step"]["method"], has_bounds=True)}
+    return bare | {"bounds": bounds, "trusted": trusted(data["step"]["method"], True, "scene" in data)}
 
 
 def _rates_section(rates: Program, values: Sequence[float]) -> Data:

@@ -8,8 +8,6 @@ from contextlib import contextmanager
 from dataclasses import replace
 from time import perf_counter
 
-from symrot.checker import inverse_factor
-from symrot.checker.aircraft_names import with_usual_letters
 from symrot.checker.claim.claims import Claim, relation_text
 from symrot.checker.claim.differentiation import as_functions, is_rule
 from symrot.checker.claim.named_formula import (
@@ -22,15 +20,18 @@ from symrot.checker.claim.named_formula import (
 from symrot.checker.claim.values import decide_value
 from symrot.checker.decide.decision import decide_equation, for_positive_bases, is_large
 from symrot.checker.decide.ranges import condition_texts
-from symrot.checker.inertia_in_frames import on_inertia_in_frames
-from symrot.checker.rotation_rates import tested_on_rotations
-from symrot.checker.symmetry_axis import in_claim, with_axis_z
+from symrot.checker.equivalents import inverse_factor
+from symrot.checker.equivalents.aircraft_names import with_usual_letters
+from symrot.checker.equivalents.inertia_in_frames import on_inertia_in_frames
+from symrot.checker.equivalents.rotation_rates import tested_on_rotations
+from symrot.checker.equivalents.symmetry_axis import in_claim, with_axis_z
+from symrot.checker.named_bodies import of_named_body
 from symrot.checker.time_limit import TimeUp, processor_seconds
 from symrot.checker.units.check import check_dimensions
 from symrot.checker.verdict import Diagnosis, Verdict
 from symrot.errors import InputError
 from symrot.exact.decision import Decision
-from symrot.exact.operations import MOST_OPERATIONS, OutOfOperations, one_claim
+from symrot.exact.limits.operations import MOST_OPERATIONS, OutOfOperations, one_claim
 
 __all__ = ["check_claim", "check_readings", "is_unfinished", "unfinished", "verdict_of_decision", "within_limits"]
 
@@ -156,7 +157,7 @@ def _on_name(
     Return None for other claims.
     """
     if claim.context.sign_of_products == "plus":
-        from symrot.checker import product_signs
+        from symrot.checker.equivalents import product_signs
 
         result = _on_name(product_signs.with_minus_sign(claim), repair, formula_of)
         return result and (None, replace(product_signs.in_claim(result[1]), text=claim.text))
@@ -196,7 +197,7 @@ def _on_name(
 
     with _place_of(claim):
         verdict = by_other_sizes(claim, named, judge(claim, named, repair), judge)
-        verdict = tested_on_rotations(claim, _on_motion(claim, verdict))
+        verdict = of_named_body(named.name, tested_on_rotations(claim, _on_motion(claim, verdict)))
         if repair:
             verdict = by_exchanged_letters(claim, named, verdict, judge_with_motion)
         if claim.hypotheses and verdict.verdict in ("false", "doubtful"):  # the context does not use the hypotheses

@@ -22,7 +22,7 @@ from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.errors import InputError
 from symrot.exact.evidence import Counterexample
 from symrot.exact.intervals import enclosure
-from symrot.exact.operations import OutOfOperations
+from symrot.exact.limits.operations import OutOfOperations
 
 __all__ = ["OPPOSITE", "is_inequality", "verdict_on_inequality"]
 

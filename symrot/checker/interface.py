@@ -12,8 +12,8 @@ from symrot.checker.claim.source.text import functions_of_time, is_latex
 from symrot.checker.claim_verdict import check_claim, check_readings, unfinished, verdict_of_decision, within_limits
 from symrot.checker.context.context import Context, read_context
 from symrot.checker.decide.decision import Equation, decide_equation
+from symrot.checker.equivalents.inertia_in_frames import without_brackets
 from symrot.checker.frame_rates import verdict_on_rates, without_marks
-from symrot.checker.inertia_in_frames import without_brackets
 from symrot.checker.text import verdict_on_readings, verdict_on_text
 from symrot.checker.time_limit import TimeUp
 from symrot.checker.typed.copied_signs import with_plain_signs
@@ -22,7 +22,7 @@ from symrot.checker.units.conversion import measured_text, numbers_of_latex
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
 from symrot.exact.decision import flatten
-from symrot.exact.operations import OutOfOperations
+from symrot.exact.limits.operations import OutOfOperations
 from symrot.exact.printing import as_text
 
 __all__ = ["RefusedClaims", "check", "check_claim", "check_file", "check_readings", "verdicts_of_file"]

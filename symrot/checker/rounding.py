@@ -101,6 +101,8 @@ def _rounded(claim: Claim, verdict: Verdict, value: Node, digits: str, side: Nod
         note = f"to the digits given: the value rounds to {digits}"
         return Verdict("true", dimension=verdict.dimension, notes=(*verdict.notes, note), seconds=verdict.seconds)
     right = rounded_value(worked)
+    if not right and decision.verdict == "false":  # it has more digits than can be written here
+        return replace(verdict, verdict="false", counterexample=decision.counterexample, reason="")
     if not right:
         return verdict
     diagnosis = Diagnosis("digits", f"a decimal number has a wrong digit: the value rounds to {right}, not to {digits}")

@@ -22,9 +22,9 @@ from symrot.exact.domain.needs import fits_assumptions
 from symrot.exact.evidence import Counterexample
 from symrot.exact.floats import NoValue, float_at
 from symrot.exact.intervals import enclosure, is_nonnegative_at, surely_nonnegative_number
+from symrot.exact.limits.size import pieces
 from symrot.exact.ring.ratio import Ratio, TooLarge
 from symrot.exact.ring.ring import FormulaRing
-from symrot.exact.size import pieces
 
 __all__ = ["closed_form_witness", "rational_witness"]
 

@@ -11,7 +11,6 @@ from typing import Any
 from sympy import Expr, Ge, I, Integer, Matrix, Ne
 
 from symrot.errors import InputError
-from symrot.exact.budget import one_decision
 from symrot.exact.counterexample import closed_form_witness, rational_witness
 from symrot.exact.decision import (
     Case,
@@ -31,6 +30,7 @@ from symrot.exact.domain.everywhere import fails_everywhere
 from symrot.exact.domain.known_points import known_point
 from symrot.exact.domain.needs import Need, needs_of
 from symrot.exact.inverse_sums import vanishes
+from symrot.exact.limits.budget import one_decision
 from symrot.exact.ring.ring import FormulaRing, as_zero
 from symrot.exact.ring.roots import written
 

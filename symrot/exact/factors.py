@@ -10,8 +10,8 @@ import sympy
 from sympy import Expr, Integer, Mul, Pow, Rational, exp, preorder_traversal, sympify
 from sympy.polys.rings import PolyElement, sring
 
-from symrot.exact.operations import spend
-from symrot.exact.size import pieces
+from symrot.exact.limits.operations import spend
+from symrot.exact.limits.size import pieces
 
 __all__ = ["factor_list", "factored", "is_dear"]
 

@@ -8,7 +8,7 @@ from typing import Any
 import sympy
 from sympy import Expr, S, pi
 
-from symrot.exact.operations import spend
+from symrot.exact.limits.operations import spend
 
 __all__ = ["NoValue", "float_at", "seems_zero"]
 

@@ -12,7 +12,7 @@ import sympy
 from mpmath import iv
 from sympy import Expr, S, pi
 
-from symrot.exact.operations import spend
+from symrot.exact.limits.operations import spend
 
 __all__ = ["DIGITS", "Undefined", "enclosure", "is_nonnegative_at", "surely_nonnegative_number"]
 
@@ -122,7 +122,7 @@ def is_nonnegative_at(formula: Expr, values: Mapping[Expr, Any]) -> bool:
     return held is not None and bool(held.a >= 0)
 
 
-def enclosure(formula: Expr, values: Mapping[Expr, Any] | None = None) -> Any:
+def enclosure(formula: Expr, values: Mapping[Expr, Any] | None = None, digits: int = 0) -> Any:
     """Return a 50-digit interval that contains a closed-form real number, or a formula's value at a point, or None.
 
     Parameters
@@ -131,6 +131,8 @@ def enclosure(formula: Expr, values: Mapping[Expr, Any] | None = None) -> Any:
         The formula to evaluate.
     values : mapping, optional
         From symbols and functions of time to their values: numbers of SymPy, fractions, or intervals of mpmath.
+    digits : int
+        More digits than 50, if they are needed.
 
     Returns
     -------
@@ -138,7 +140,7 @@ def enclosure(formula: Expr, values: Mapping[Expr, Any] | None = None) -> Any:
         None if the formula is not proven to be real, if a function is unknown, or if too many digits would be needed.
         SymPy cancels terms such as ``log(x) - log(x)`` when it builds a formula; whether they are real is not checked.
     """
-    iv.dps = DIGITS
+    iv.dps = max(DIGITS, digits)
     try:
         return _interval(_value(formula, values or {}, {}))
     except (KeyError, ZeroDivisionError, ValueError, TypeError, OverflowError):  # unknown function, pole, not real

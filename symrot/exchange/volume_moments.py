@@ -157,13 +157,12 @@ def approximate_moments(surface: Surface, degree: int) -> VolumeMoments:
     lowest, highest = surface.vertices.min(axis=0), surface.vertices.max(axis=0)
     middle = lowest / 2 + highest / 2
     shift = frexp(float(np.max(highest - lowest)))[1]
-    points = np.ldexp(surface.vertices - middle, -shift)
     totals: dict[Exponents, list[float]] = {powers: [] for powers in exponents(degree)}
     sizes: dict[Exponents, list[float]] = {powers: [] for powers in exponents(degree)}
     for start in range(0, len(surface.triangles), CHUNK):
         triangles = surface.triangles[start : start + CHUNK]
-        a, b, c = (_columns(points[triangles[:, corner]]) for corner in range(3))
-        p, q, r = (surface.vertices[triangles[:, corner]] for corner in range(3))
+        p, q, r = (surface.vertices.take(triangles[:, corner], axis=0) for corner in range(3))
+        a, b, c = (_columns(np.ldexp(end - middle, -shift)) for end in (p, q, r))
         # Each triangle spans a tetrahedron with the middle of the bounding box. Edges instead of corners in the
         # determinant keep all digits of triangles that are small and far from the middle.
         first, second = (_columns(np.ldexp(end - p, -shift)) for end in (q, r))

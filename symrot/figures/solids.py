@@ -62,16 +62,17 @@ class Surface:
         seen = np.abs(area) > 1e-9
         corners, first, second, third, area = corners[seen], first[seen], second[seen], third[seen], area[seen]
         low, high = corners[:, :, :2].min(axis=1).T - 1e-9, corners[:, :, :2].max(axis=1).T + 1e-9
-        for number, place in enumerate(places):
-            px, py, depth = place
-            # a triangle hides only points inside the rectangle around its picture
-            near = np.flatnonzero((low[0] < px) & (px < high[0]) & (low[1] < py) & (py < high[1]))
-            a, u, v, size = first[near], second[near], third[near], area[near]
-            x, y = px - a[:, 0], py - a[:, 1]
-            b = (x * v[:, 1] - y * v[:, 0]) / size
-            c = (u[:, 0] * y - u[:, 1] * x) / size
-            before = a[:, 2] + b * u[:, 2] + c * v[:, 2] > depth + AHEAD
-            hidden[number] = bool(np.any((b > 1e-6) & (c > 1e-6) & (b + c < 1 - 1e-6) & before))
+        px, py, depth = places.T
+        # a triangle hides only points inside the rectangle around its picture
+        points_near, near = np.nonzero(
+            (low[0] < px[:, None]) & (px[:, None] < high[0]) & (low[1] < py[:, None]) & (py[:, None] < high[1])
+        )
+        a, u, v, size = first[near], second[near], third[near], area[near]
+        x, y = px[points_near] - a[:, 0], py[points_near] - a[:, 1]
+        b = (x * v[:, 1] - y * v[:, 0]) / size
+        c = (u[:, 0] * y - u[:, 1] * x) / size
+        before = a[:, 2] + b * u[:, 2] + c * v[:, 2] > depth[points_near] + AHEAD
+        hidden[points_near[(b > 1e-6) & (c > 1e-6) & (b + c < 1 - 1e-6) & before]] = True
         return hidden
 
 

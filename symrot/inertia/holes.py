@@ -114,22 +114,28 @@ def doubtful_holes(parts: Sequence[Filled | None], names: Sequence[str]) -> tupl
 def _is_within(hole: Filled, near: Sequence[Filled], radius: float) -> bool:
     """Return whether bounds prove that the density of the body is nowhere negative in a hole."""
     rounding = ROUNDING * radius
+    added = [part for part in near if not part.subtract]
     others = [part for part in near if part.subtract and not are_apart(hole.solid, part.solid, rounding)]
-    hosts = [part for part in near if not part.subtract and _carries(part, [hole, *others])]
-    if any(outside(hole.solid, part.solid) <= rounding for part in hosts):
+
+    def is_carried(piece: Solid3) -> bool:
+        return _carry([part for part in added if outside(piece, part.solid) <= rounding], [hole, *others])
+
+    if is_carried(hole.solid):
         return True
-    pieces = _pieces(hole.solid, [part.solid for part in hosts])
-    return bool(pieces) and all(any(outside(piece, part.solid) <= rounding for part in hosts) for piece in pieces)
+    pieces = _pieces(hole.solid, [part.solid for part in added])
+    return bool(pieces) and all(map(is_carried, pieces))
 
 
-def _carries(part: Filled, holes: Sequence[Filled]) -> bool:
-    """Return whether the density of a part is at least the sum of the densities of holes."""
-    if isinstance(part.density, Fraction):
-        densities = [hole.density for hole in holes]
-        if any(not isinstance(density, Fraction) for density in densities):
-            return False
-        return float(sum(densities)) <= float(part.density) * (1 + DENSITY)  # type: ignore[arg-type]
-    return len(holes) == 1 and holes[0].density == part.density and holes[0].solid.pose == part.solid.pose
+def _carry(parts: Sequence[Filled], holes: Sequence[Filled]) -> bool:
+    """Return whether the densities of parts at one place are together at least those of holes there."""
+    filled = sum(part.density for part in parts if isinstance(part.density, Fraction))
+    emptied = Fraction(0)
+    for hole in holes:
+        if not isinstance(hole.density, Fraction):  # a polynomial is compared with the same polynomial alone
+            same = [part for part in parts if (part.density, part.solid.pose) == (hole.density, hole.solid.pose)]
+            return len(holes) == 1 and bool(same)
+        emptied += hole.density
+    return float(emptied) <= float(filled) * (1 + DENSITY)
 
 
 _CUT = {

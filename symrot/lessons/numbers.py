@@ -8,6 +8,7 @@ from sympy import Expr, MatrixBase
 
 from symrot.catalogue import derivation
 from symrot.errors import InputError
+from symrot.exercises.exercise import Exercise
 from symrot.exercises.sheet import exercise
 from symrot.exercises.units import unit_latex
 from symrot.lessons.lesson import Lesson, Number
@@ -58,7 +59,7 @@ def value_of(page: Page, number: Number, scene: str) -> tuple[Expr, Expr]:
             )
         side = side[number.entry]
     expression = number.scale * side.subs(number.where, simultaneous=True) ** number.power
-    value = expression.subs(_floats(scene), simultaneous=True).evalf(PRECISION)
+    value = expression.xreplace(_floats(scene)).evalf(PRECISION)
     if value.free_symbols or not value.is_real:
         names = ", ".join(sorted(symbol.name for symbol in value.free_symbols))
         reason = f"the scene {scene} has no value for {names}" if names else f"its value is {value}"
@@ -118,9 +119,15 @@ def _quantity(value: Expr, unit: str) -> str:
     return text + unit_latex("" if unit == "1" else unit)
 
 
+@cache
+def _exercise(name: str) -> Exercise:
+    """Return the exercise of the template ``name`` with the seed 0."""
+    return exercise(name)[0]
+
+
 def _of_exercise(lesson: Lesson) -> Iterator[Passage]:
     """Yield the paragraphs of the exercise ``lesson.worked`` with its solution; every line of it is proven."""
-    problem = exercise(lesson.worked)[0]
+    problem = _exercise(lesson.worked)
     quantities = ", ".join(f"${each.latex} = {each.value}{unit_latex(each.unit)}$" for each in problem.data)
     asked = " ".join(question.prompt for question in problem.questions if question.kind == "number")
     yield Passage(f"{problem.statement} Let {quantities}. {asked}" if quantities else f"{problem.statement} {asked}")

@@ -13,7 +13,7 @@ from symrot.sweeps.chunk import Chunk, Job
 from symrot.sweeps.layout import Store
 from symrot.sweeps.optional import optional
 from symrot.sweeps.processes import IN_FLIGHT, Range, compute_packed, packed
-from symrot.sweeps.shared_store import Offer, Written, offered, stored
+from symrot.sweeps.stores.shared_store import Offer, Written, offered, stored
 
 __all__ = ["run_on_cluster"]
 

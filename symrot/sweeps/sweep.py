@@ -22,14 +22,14 @@ from symrot.sweeps.chunk import IMPOSSIBLE, STOPPED, Chunk, Job, prepared
 from symrot.sweeps.cluster import run_on_cluster
 from symrot.sweeps.design import Design, read_design
 from symrot.sweeps.layout import MESSAGE, STATUS, TIME, Header, Store, header_of
-from symrot.sweeps.memory_store import MemoryStore
 from symrot.sweeps.outputs import UNAVERAGED, SweepOutput, read_outputs, scene_for, variable_keys
-from symrot.sweeps.parquet_store import ParquetStore
 from symrot.sweeps.processes import cores, run_here
-from symrot.sweeps.shared_store import Written
 from symrot.sweeps.statistics import Statistic, read_statistics, statistics_of
+from symrot.sweeps.stores.memory_store import MemoryStore
+from symrot.sweeps.stores.parquet_store import ParquetStore
+from symrot.sweeps.stores.shared_store import Written
+from symrot.sweeps.stores.zarr_store import ZarrStore
 from symrot.sweeps.targets import OMEGA, Content, constants_of
-from symrot.sweeps.zarr_store import ZarrStore
 
 __all__ = ["STORES", "Sweep", "sweep"]
 

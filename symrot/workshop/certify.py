@@ -122,6 +122,11 @@ def audit_file(
 def _audit_step(
     path: Path, data: Data, object_file: Path | None, rerun: bool, coq: bool, progress: Callable[[str], object]
 ) -> list[str]:
+    if object_file is not None and "scene" in data:
+        raise InputError(
+            f"--object: expected a step without loops, got {path.name}: object code of a step with elliptic functions "
+            "cannot be compared"
+        )
     report = audit_step(path, data, rerun, progress)
     if object_file is not None:
         source = path.with_name(f"{data['kernel']}.c")

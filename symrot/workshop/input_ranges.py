@@ -11,7 +11,7 @@ from symrot.errors import InputError, nearest
 from symrot.formula import exact_numbers
 from symrot.formula.tree import names
 
-__all__ = ["input_box"]
+__all__ = ["input_box", "plain_box"]
 
 Ends = tuple[Fraction, Fraction]
 LARGEST = Fraction(float_info.max)
@@ -59,6 +59,17 @@ def input_box(kernel_problem: RoundingProblem, inputs: SceneInputs | None, range
             box[place] = parameter_range(name, formula, inputs.constants, constants)
             _check_finite(name, box[place], by_place[min(used)][0])
     return dict(box)
+
+
+def plain_box(ranges: Sequence[str]) -> dict[str, Ends]:
+    """Return the ranges ``NAME=LOW:HIGH`` by name, with ends that are doubles; raise InputError for two of a name."""
+    box: dict[str, Ends] = {}
+    for text in ranges:
+        name, (low, high) = _range(text)
+        if name in box:
+            raise InputError(f"--box {text[:60]}: expected one range of {name}, got two")
+        box[name] = Fraction(float(low)), Fraction(float(high))
+    return box
 
 
 def _range(text: str) -> tuple[str, Ends]:

@@ -261,7 +261,7 @@ def test_corrupted_c_files_are_refused(kernels, count):
     assert campaign.same.total() < count / 10 and len(campaign.tried) > 9
 
 
-@pytest.mark.parametrize("count", [24, COUNTS[1]])
+@pytest.mark.parametrize("count", [12, COUNTS[1]])
 def test_tampered_certificates_are_refused(kernels, count):
     assert tampered_certificates(list(kernels.values()), count, Random(12), sealed=False).survivors == []
     campaign = tampered_certificates(list(kernels.values()), count // 2, Random(13), sealed=True)

@@ -50,3 +50,10 @@ def test_a_wrong_number_is_set_against_the_decimal_digits_of_the_value():
     assert (witness.lhs, witness.rhs) == ("sqrt(2) = 1.41421356237..", "1.415")
     witness = symrot.check("1.415 = √2").counterexample
     assert (witness.lhs, witness.rhs) == ("1.415", "sqrt(2) = 1.41421356237..")
+
+
+def test_a_number_with_many_digits_is_compared_with_all_of_them():
+    pi = "3.141592653589793238462643383279502884197169399375105820974944592307816406286208998628"
+    assert symrot.check(f"pi == {pi}").verdict == "true"
+    assert symrot.check(f"pi == {pi[:-1]}7").verdict == "false"
+    assert symrot.check(f"1/3 == 0.{'3' * 62}").verdict == "true"

@@ -9,7 +9,7 @@ import pytest
 import symrot
 from symrot.checker import claim_verdict
 from symrot.checker.time_limit import TimeUp, processor_seconds
-from symrot.exact.operations import one_claim, operations_left
+from symrot.exact.limits.operations import one_claim, operations_left
 
 ENDLESS = 30.0  # seconds after which a test gives up waiting
 

@@ -107,7 +107,7 @@ def test_an_import_that_is_interrupted_ends_quietly(monkeypatch, capsys):
     assert __main__.main() == 130 and capsys.readouterr() == ("", "")
 
 
-@pytest.mark.parametrize("to_group", [True, False], ids=["group", "alone"])
+@pytest.mark.parametrize("to_group", [True, pytest.param(False, marks=pytest.mark.campaign)], ids=["group", "alone"])
 def test_a_hanging_compiler_is_killed(to_group, tmp_path):
     compiler = tmp_path / "cc"
     compiler.write_text(f"#!/bin/sh\necho $$ >> {tmp_path}/pids\nsleep 100\n")

@@ -41,6 +41,8 @@ HALVES = (part("box", (-1, 0, 0), a=2, b=2, c=2), part("box", (1, 0, 0), a=2, b=
     [BOX, hole("box", a=1, b=1, c=1), hole("box", (1, 0, 0), a=1, b=1, c=1)],
     [BOX, *(hole("box", (x, 0, 0), density=1, a=1, b=1, c=1) for x in (0, 0.5))],
     [BOX, hole("cylinder", radius=1, length=2), part("cylinder", radius=1, length=2, density=7)],
+    [BOX, hole("cylinder", radius=1, length=2), part("cylinder", radius=1, length=2, density=7),
+     hole("cylinder", radius="1/2", length=2, density=7)],
     [part("cone", radius=3, height=6), hole("cone", (0, 0, 4), radius=1, height=2)],
     [part("frustum", bottom=3, top=1, height=2), hole("sphere", (0, 0, 1), radius=1)],
     [part("ellipsoid", a=4, b=2, c=3), hole("ellipsoid", a=3, b=1, c=2)],

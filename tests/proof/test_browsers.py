@@ -9,6 +9,9 @@ from tests.viewer.firefox import FIREFOX, Firefox
 
 READY = "document.readyState == 'complete' && document.fonts.status == 'loaded'"
 BOX = "(e => e.height / 16.8 / 1.05)(document.querySelector('{}').getBoundingClientRect())"  # in heights of a letter
+CHILDREN = """Object.entries({msub: 2, msup: 2, msubsup: 3, munder: 2, mover: 2, munderover: 3, mfrac: 2, mroot: 2})
+.flatMap(([name, count]) => [...document.querySelectorAll(name)].filter(e => e.children.length != count))
+.map(element => element.outerHTML)"""  # elements with a wrong number of children
 FORMULAS = {
     "matrix": r"\left[\begin{matrix}a\\b\\c\end{matrix}\right]",
     "bar": r"\left. \frac{\partial U}{\partial \theta} \right|_0",
@@ -60,4 +63,5 @@ def test_formulas_have_the_heights_of_a_printed_book(browser, page):
         assert height("#prime math") < 1.3
         lines = running.evaluate("document.getElementById('text').getClientRects()[0].height / 16.8 / 1.55")
         assert lines == pytest.approx(round(lines), abs=0.3) and lines < 7
+        assert running.evaluate(CHILDREN) == []
         assert running.errors == []

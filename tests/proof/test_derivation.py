@@ -230,7 +230,7 @@ def test_equations_on_the_way_are_proven_and_shown_in_detail(page):
     page.step("It is.", x**2, x * x, because="of powers", via=[("First, with $x$:", x + x, 2 * x)])
     assert "First, with $x$" not in page.markdown()
     text = page.part(1, detail=True).markdown()
-    assert "First, with $x$:\n\n$$\n2 x = 2 x\n$$" in text and "both sides are this one expression" in text
+    assert "First, with $x$:\n\n$$\n= 2 x\n$$" in text and "both sides are the same expression" in text
     with pytest.raises(ProofError, match=r"It is not.*First.*does not hold"):
         page.step("It is not.", x, x, because="of nothing", via=[("First:", x, 2 * x)])
     assert len(page.steps) == 1

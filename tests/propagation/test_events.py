@@ -226,6 +226,19 @@ def test_directions_and_backward_motion():
 
 @needs_compiler
 @pytest.mark.parametrize("method", ["taylor", "dop853"])
+def test_a_kink_at_a_switch_within_the_error_of_the_motion_is_reported(method):
+    """Where a triangular wave touches zero, rounding decides what is listed; nothing was said."""
+    torque = [{"kind": "expression", "torque": ["0", "0", "where(mod(t, 1) < 1/2, 1, -1)"]}]
+    wave = scene((0, 0, 0), 5, body={"principal": [1, 1, 1]}, torque=torque)
+    near, far = run(wave, ["omega_3"], method, 1e-12), run(wave, ["omega_3 - 1/4", "omega_3 + 1/1000"], method, 1e-12)
+    listed = set(near.t_events[0][np.array(near.event_kinds[0]) == "touching"].round(9))
+    doubt = " differs from zero at t = "
+    assert listed >= {1.0, 2.0, 3.0, 4.0} or (len(near.warnings) == 1 and doubt in near.warnings[0])
+    assert far.warnings == () and [len(t) for t in far.t_events] == [10, 0]
+
+
+@needs_compiler
+@pytest.mark.parametrize("method", ["taylor", "dop853"])
 def test_events_of_a_motion_under_switches_that_runs_backward_only(method):
     """The part after the start, which has no length, ended in a traceback."""
     torque = [{"kind": "expression", "torque": ["0", "0", "where(mod(t, 1) < 1/2, 1, -1)"]}]

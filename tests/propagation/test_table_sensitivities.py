@@ -37,6 +37,7 @@ def test_derivatives_of_a_wheel_under_a_table_of_samples(frame):
     motion = symrot.propagate(scene(frame), t=times, sensitivities=names, events=["omega_3 == 1.1"])
     slopes = motion.sensitivities
     assert slopes.variables[:4] == (*(f"torque[0].moment[2]_{i}" for i in (1, 2, 3)), "torque[0].moment[5][2]")
+    assert slopes.units[:4] == ("N m",) * 4
     for name, place in ((names[0], 2), (names[1], 5)):
         unit = [float(k == place) for k in range(8)]
         exact = [impulse(unit, 0.25, t) / 4 for t in times]

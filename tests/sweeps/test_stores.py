@@ -14,7 +14,7 @@ import symrot
 from symrot.errors import InputError
 from symrot.sweeps.chunk import Chunk
 from symrot.sweeps.design import Draws
-from symrot.sweeps.zarr_store import ZarrStore
+from symrot.sweeps.stores.zarr_store import ZarrStore
 from tests.sweeps.scenes import OUTPUTS, sweep
 
 xarray, pandas = pytest.importorskip("xarray"), pytest.importorskip("pandas")
@@ -291,7 +291,7 @@ def test_workers_on_this_machine_write_their_chunks(whole, tmp_path, monkeypatch
 
 
 def test_a_worker_that_cannot_write_sends_its_chunk(whole, tmp_path, monkeypatch):
-    from symrot.sweeps import shared_store
+    from symrot.sweeps.stores import shared_store
 
     monkeypatch.setattr(shared_store, "_opened", lambda store, mark: 1 / 0)
     on_cluster(path=tmp_path / "a.zarr")
@@ -300,7 +300,7 @@ def test_a_worker_that_cannot_write_sends_its_chunk(whole, tmp_path, monkeypatch
 
 
 def test_a_worker_writes_only_for_its_own_client_while_that_runs(tmp_path):
-    from symrot.sweeps.shared_store import BOOT, Written, offered, stored
+    from symrot.sweeps.stores.shared_store import BOOT, Written, offered, stored
 
     if not BOOT.exists():
         pytest.skip("only on Linux")

@@ -27,7 +27,9 @@ ERRORS = """
 return Services.console.getMessageArray()
     .filter(entry => entry instanceof Ci.nsIScriptError && !(entry.flags & Ci.nsIScriptError.warningFlag))
     .filter(entry => entry.sourceName.startsWith("file:"))
-    .map(entry => entry.errorMessage);
+    .map(entry => entry.errorMessage)
+    // said of an element whose children are still being read
+    .filter(message => !message.includes("Incorrect number of children"));
 """
 
 

@@ -4,12 +4,15 @@ import ctypes
 import json
 import subprocess
 from dataclasses import replace
+from decimal import Context, Decimal, localcontext
 
 import mpmath
 import numpy as np
 import pytest
 
 import symrot
+from symrot.certificates import exact_law
+from symrot.certificates.c_machine.machine import Machine
 from symrot.certificates.certificate import certificate_json, seal
 from symrot.certificates.exact_law import law_section
 from symrot.certificates.step_certificate import formula_section
@@ -100,7 +103,7 @@ def elliptic(tmp_path_factory):
     """Return the folder and the certificate of the exact step of a heavy top, checked at one state."""
     folder = tmp_path_factory.mktemp("elliptic")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(exact, "STATES", 1)
+        patch.setattr(exact, "CHECKED", 1)
         yield folder, symrot.certify("heavy_top_loops", directory=folder, step="exact")
 
 
@@ -186,9 +189,89 @@ def test_forged_certificates_of_steps_with_elliptic_functions_are_refused(ellipt
         symrot.audit(next(tmp_path.glob("*.cert.json")))
 
 
-def test_boxes_of_steps_with_elliptic_functions_are_refused():
-    with pytest.raises(InputError, match="bounds no errors of a step with elliptic functions"):
-        symrot.certify("tumbling_prism", BOX, step="exact")
+WOBBLE = {"omega_1": (1, 1.2), "omega_2": (0.01, 0.1), "omega_3": (0.01, 0.1), "dt": (-1, 100)}
+
+
+@pytest.fixture(scope="module")
+def bounded(tmp_path_factory):
+    """Return the folder and the certificate of the exact step of a body that wobbles about the axis of least inertia."""
+    folder = tmp_path_factory.mktemp("bounded")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(exact, "CHECKED", 1)
+        yield folder, symrot.certify("tumbling_prism", WOBBLE, directory=folder, step="exact")
+
+
+def test_bounds_of_a_step_with_elliptic_functions_hold_at_random_states(bounded):
+    """In doubles with rounding as in C, against 60 digits."""
+    folder, certificate = bounded
+    bounds = certificate.data["bounds"]
+    most = np.array([float.fromhex(value) for value in bounds["rounding"].values()])
+    assert max(map(float.fromhex, bounds["truncation"].values())) < 1e-19 and most.max() < 1e-14
+    text = step_text("tumbling_prism", "exact")
+    subprocess.run(
+        ["cc", "-std=c99", "-Og", "-ffp-contract=off", "-fPIC", "-shared", f"{text.name}.c", "-lm", "-o", "step.so"],
+        cwd=folder, check=True,
+    )  # fmt: skip
+    compiled = getattr(ctypes.CDLL(str(folder / "step.so")), f"symrot_{text.name}")
+    numbers = np.ctypeslib.ndpointer(np.float64)
+    compiled.argtypes = [ctypes.c_double, numbers, numbers, ctypes.c_double, numbers]
+    machine, draw = Machine(text.c()[0], exact_law._number, exact_law._OWN), np.random.default_rng(4)
+    p, worst = np.array([float(value) for _, _, value in text.form.parameters]), np.zeros(7)
+    with localcontext(Context(prec=60)):
+        for _ in range(8):
+            omega, dt = [draw.uniform(low, high) for low, high in list(WOBBLE.values())[:3]], draw.uniform(-1, 100)
+            x, after = np.array([*omega, *draw.normal(size=4)]), np.empty(7)
+            compiled(0.0, x, p, dt, after)
+            result = [Decimal(0)] * 7
+            places = [([Decimal(float(number)) for number in numbers], 0) for numbers in (x, p)]
+            machine.call(f"symrot_{text.name}", Decimal(0), *places, Decimal(dt), (result, 0))
+            expected = [exact_law._slope(each).value for each in result]
+            worst = np.maximum(
+                worst, [abs(float(Decimal(a) - b)) for a, b in zip(after.tolist(), expected, strict=True)]
+            )
+    assert (worst <= most).all() and most.max() < 200 * worst.max()
+
+
+@pytest.mark.campaign
+def test_bounds_hold_on_a_box_with_the_axis_of_rotation():
+    """The components of omega across the axis have either sign, or are zero; the bounds are hardly larger."""
+    box = {"omega_1": (1, 1.2), "omega_2": (-0.1, 0.1), "omega_3": (-0.1, 0.1), "dt": (-1, 100)}
+    small, wide = (symrot.certify("tumbling_prism", each, step="exact").data["bounds"] for each in (WOBBLE, box))
+    for name, value in wide["rounding"].items():
+        assert float.fromhex(small["rounding"][name]) * 0.999 <= float.fromhex(value) < 1e-14
+
+
+@pytest.mark.parametrize(("change", "message"), [
+    (_sealed(lambda data: data["bounds"]["rounding"].update(q0=(1e-15).hex())), "the bounds that symrot computes"),
+    (_sealed(lambda data: data["bounds"]["box"].update(omega_1=[(0.9).hex(), (1.2).hex()])), "the bounds that symrot"),
+    (_sealed(lambda data: data["bounds"]["box"].update(omega_1=3)), "'box' in 'bounds'"),
+    (_sealed(lambda data: data["bounds"].update(meaning="")), "'bounds' as symrot prints it"),
+    (_sealed(lambda data: data["bounds"].pop("truncation")), "'truncation' in 'bounds'"),
+])  # fmt: skip
+def test_forged_bounds_of_steps_with_elliptic_functions_are_refused(bounded, tmp_path, monkeypatch, change, message):
+    monkeypatch.setattr(exact, "CHECKED", 1)
+    for path in bounded[0].iterdir():
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    (path,) = tmp_path.glob("*.cert.json")
+    if message == "'box' in 'bounds'":
+        assert (
+            "bounds of rounding and truncation are those that symrot computes"
+            in symrot.audit(path).statements[str(path)]
+        )
+    change(tmp_path)
+    with pytest.raises(CertificateError, match=message):
+        symrot.audit(path)
+
+
+@pytest.mark.parametrize(("scene", "box", "message"), [
+    ("tumbling_prism", BOX, "middle axis"), ("tumbling_prism", {"dt": (0, 1)}, "--box omega_1=LOW:HIGH"),
+    ("heavy_top_loops", BOX, "no errors of the exact step of a heavy top"),
+    ("tumbling_prism", {**WOBBLE, "omega_3": (1, 1.2), "omega_1": (0, 0)}, "middle axis"),
+])  # fmt: skip
+def test_boxes_without_bounds_are_refused(monkeypatch, scene, box, message):
+    monkeypatch.setattr(exact, "CHECKED", 1)
+    with pytest.raises(InputError, match=message):
+        symrot.certify(scene, box, step="exact")
 
 
 @pytest.mark.parametrize(

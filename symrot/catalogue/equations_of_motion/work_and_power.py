@@ -115,7 +115,7 @@ def _energy(d: Derivation) -> None:
         display=r"\tau \cdot \omega",
     )
     falling = pairs(symbols.velocity, FORCE / symbols.m)
-    d.notation({}, falling)
+    d.notation({"m": symbols.m}, falling)
     d.step(
         "The rate of the translational energy is the power of the force.",
         rate(HALF * symbols.m * squared(V), falling),
@@ -123,6 +123,10 @@ def _energy(d: Derivation) -> None:
         because=r"$m\,\dot v = F$",
         named=r"\frac{d}{dt}\,\tfrac12\,m\,|v|^2",
         display=r"F \cdot v",
+        board=(
+            ("The square of the speed is differentiated:", r"m\,v \cdot \dot v"),
+            (r"Newton's law, $m\,\dot v = F$:", r"F \cdot v"),
+        ),
     )
     d.step(
         "For rotation about a fixed axis under a constant torque, the work is the torque times the angle.",

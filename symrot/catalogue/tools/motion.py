@@ -6,6 +6,7 @@ from typing import Any
 from sympy import Add, Expr, Matrix, MatrixBase, Symbol
 
 from symrot import symbols
+from symrot.catalogue.tools.derivative import derivative
 from symrot.kinematics.quaternion import quaternion_rates
 
 __all__ = ["OMEGA", "TENSOR", "attitude_rates", "pairs", "rate", "squared"]
@@ -36,7 +37,7 @@ def rate(quantity: Any, rates: Mapping[Symbol, Expr]) -> Any:
     """Return d/dt of an expression or matrix ``quantity`` by the chain rule, with the rate of each variable."""
     if isinstance(quantity, MatrixBase):
         return quantity.applyfunc(lambda entry: rate(entry, rates))
-    return Add(*(quantity.diff(variable) * speed for variable, speed in rates.items() if quantity.has(variable)))
+    return Add(*(derivative(quantity, variable) * speed for variable, speed in rates.items()))
 
 
 def squared(vector: Matrix) -> Expr:

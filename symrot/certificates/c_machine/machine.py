@@ -120,6 +120,11 @@ class Machine:
         except (ArithmeticError, AttributeError, IndexError, RecursionError, TypeError, ValueError) as reason:
             raise CertificateError(f"expected C that symrot emits, got a text with a fault ({reason})") from None
 
+    def blank(self, struct: str) -> list[Any]:
+        """Return a structure of the C text with zeros in its fields."""
+        fields: list[Any] = self._blank(_Type("struct", struct))
+        return fields
+
     def call(self, name: str, *arguments: Any) -> Any:
         """Call a function with numbers, integers and pointers; return its result."""
         if name not in self.functions:
@@ -780,6 +785,10 @@ class Machine:
 
     def _own_call(self, name: str, arguments: list[_Value]) -> _Value:
         signature, function = self.own[name]
+        if name in self.functions:  # the text declares its types
+            declared = self.functions[name]
+            values = [self._converted(value, kind) for value, kind in zip(arguments, declared.parameters, strict=True)]
+            return _Value(declared.result, lambda f: function(*(run(f) for run in values)))
         kinds = {"r": REAL, "i": INT}
         if len(signature) != len(arguments) + 1:
             raise self._fail(f"{len(signature) - 1} arguments of {name}")

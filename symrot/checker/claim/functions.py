@@ -26,7 +26,7 @@ from symrot.checker.claim.size import (
 from symrot.checker.claim.tree import Node
 from symrot.errors import InputError
 from symrot.exact.intervals import enclosure
-from symrot.exact.size import pieces
+from symrot.exact.limits.size import pieces
 from symrot.kinematics.quaternion import quaternion_product, quaternion_to_dcm
 from symrot.kinematics.rotations import elementary_rotation, skew, vee
 

@@ -13,7 +13,7 @@ from symrot.checker.claim.scope import Scope, described, is_matrix
 from symrot.checker.claim.tree import Node
 from symrot.checker.decide.unordered import is_unordered
 from symrot.checker.typed.defined_functions import DISPUTED_NAMES, instead
-from symrot.exact.operations import spend
+from symrot.exact.limits.operations import spend
 
 __all__ = ["CONSTANTS", "Interpreter", "time"]
 

@@ -12,7 +12,7 @@ from symrot.checker.claim.size import MOST_NESTED, MOST_PIECES, nesting
 from symrot.checker.claim.tree import Node
 from symrot.errors import InputError, complaint
 from symrot.exact.intervals import enclosure
-from symrot.exact.size import pieces
+from symrot.exact.limits.size import pieces
 
 __all__ = ["Divisor", "Scope", "described", "is_matrix"]
 

@@ -15,6 +15,9 @@ from symrot.exact.printing import as_text
 
 __all__ = ["decide_value"]
 
+MORE_DIGITS = 30
+"""Digits beyond the printed ones to which a value is computed."""
+
 _DECIMAL = re.compile(r"\s*([+-]?)(\d*)(?:\.(\d*))?(?:[eE]([+-]?\d{1,3}))?\s*", re.ASCII)
 
 
@@ -38,9 +41,9 @@ def decide_value(claim: Claim) -> Decision:
         decision = decide_equation(Equation(value, value, (), divisors, (), tuple(interpreter.radicands)))
         if decision.verdict != "true":
             return Decision("undecided", reason=f"it is not known that {as_text(value)} is a real number")
-    if value.is_Rational and abs(Fraction(int(value.p), int(value.q)) - printed) == unit / 2:
+    if value.is_Rational and abs(Fraction(int(value.p), int(value.q)) - printed) <= unit / 2:
         return Decision("true")  # 4.905 rounds to 4.91 and, by another rule, to 4.90
-    interval = enclosure(value)
+    interval = enclosure(value, digits=len(claim.printed) + MORE_DIGITS)
     if interval is None:
         return Decision("undecided", reason=f"no interval is known that encloses {as_text(value)}")
     low, high = (iv.mpf(int(n.numerator)) / int(n.denominator) for n in (printed - unit / 2, printed + unit / 2))

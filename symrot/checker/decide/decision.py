@@ -24,7 +24,6 @@ from symrot.checker.decide.real_points import ATTEMPTS
 from symrot.checker.decide.squares_of_roots import is_square_of_roots
 from symrot.checker.decide.unordered import is_unordered
 from symrot.errors import InputError
-from symrot.exact.budget import one_decision
 from symrot.exact.counterexample import closed_form_witness, rational_witness
 from symrot.exact.decide import normal_form
 from symrot.exact.decision import (
@@ -50,6 +49,7 @@ from symrot.exact.domain.needs import Need, leaves_of, needs_of
 from symrot.exact.evidence import Counterexample, Requirement
 from symrot.exact.intervals import enclosure, is_nonnegative_at
 from symrot.exact.inverse_sums import lifts, principal
+from symrot.exact.limits.budget import one_decision
 from symrot.exact.printing import as_text
 from symrot.exact.ring.ratio import MOST_PRODUCTS, TooLarge
 from symrot.exact.ring.ring import FormulaRing, as_zero

@@ -19,10 +19,10 @@ from symrot.errors import InputError
 from symrot.exact.domain.everywhere import range_everywhere
 from symrot.exact.evidence import Requirement
 from symrot.exact.factors import is_dear
+from symrot.exact.limits.size import pieces
 from symrot.exact.plain_arguments import with_plain_arguments
 from symrot.exact.printing import as_text
 from symrot.exact.ring.roots import is_positive_where_defined
-from symrot.exact.size import pieces
 
 __all__ = ["condition_texts", "follow", "positive_symbols", "range_text", "with_domain"]
 

@@ -45,7 +45,7 @@ from symrot.checker.repair.rows import (
     times,
     transposed,
 )
-from symrot.exact.operations import spend
+from symrot.exact.limits.operations import spend
 from symrot.kinematics.hamilton import hamilton
 
 __all__ = ["Point", "UndefinedValue", "agree", "entries_of", "points"]

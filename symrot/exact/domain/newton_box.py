@@ -13,7 +13,7 @@ from sympy import Dummy, Expr
 
 from symrot.exact.floats import NoValue, float_at
 from symrot.exact.intervals import enclosure
-from symrot.exact.size import pieces
+from symrot.exact.limits.size import pieces
 
 __all__ = ["EquationSystem"]
 

@@ -15,7 +15,7 @@ from sympy.polys.domains import QQ
 from sympy.polys.rings import PolyElement, PolyRing
 
 from symrot.errors import InputError
-from symrot.exact.operations import spend
+from symrot.exact.limits.operations import spend
 
 __all__ = ["MOST_PRODUCTS", "Ratio", "Ratios", "TooLarge"]
 

@@ -11,7 +11,7 @@ from typing import Any
 from sympy.polys.domains import ZZ
 from sympy.polys.rings import PolyElement
 
-from symrot.exact.operations import spend
+from symrot.exact.limits.operations import spend
 from symrot.exact.ring.groebner import groebner_basis
 from symrot.exact.ring.ratio import TooLarge
 

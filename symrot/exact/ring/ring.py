@@ -29,9 +29,9 @@ from symrot.exact.angles.angles import (
 from symrot.exact.angles.constants import Number, cosine_number, root_number, vanishes
 from symrot.exact.angles.inverse import INVERSE, cosine_sine
 from symrot.exact.angles.known_angles import halved, is_bound, parts_of, unbound
-from symrot.exact.budget import remembered, spend_ring
 from symrot.exact.functions import REWRITTEN, TRIGONOMETRIC, is_function_of_time
-from symrot.exact.operations import spend
+from symrot.exact.limits.budget import remembered, spend_ring
+from symrot.exact.limits.operations import spend
 from symrot.exact.ring.logarithms import logarithms_in, product_of, sums_of_logarithms
 from symrot.exact.ring.radicands import Dependence, dependences, take_squares
 from symrot.exact.ring.ratio import Ratio, Ratios, TooLarge
@@ -98,7 +98,7 @@ class FormulaRing:
         If an expression contains a floating point number, an infinity, or a term that is not a scalar formula, if a
         divisor is zero everywhere, or if the hypotheses contradict each other.
     TooLarge
-        If the budget of the current decision is exhausted (:mod:`symrot.exact.budget`).
+        If the budget of the current decision is exhausted (:mod:`symrot.exact.limits.budget`).
     """
 
     def __init__(

@@ -148,13 +148,13 @@ def angle_between(random: Random) -> Problem:
     relative = quaternion_product(conjugate(second_quaternion), quaternion)[0]
     p = random.choice(UNITS)
     q = random.choice([each for each in UNITS if 0 < sum(map(mul, p, each)) < 100])
-    given = zip((*second_quaternion, *quaternion), (*p, *q), strict=True)
+    pairs = zip((*second_quaternion, *quaternion), (*p, *q), strict=True)
     return Problem(
         "The angle between two quaternions",
         "Two attitudes are the unit quaternions $p$ and $q$. The rotation from one to the other is $\\bar p q$. Its "
         "scalar part is positive, so that its angle $\\alpha$ is less than $180^\\circ$.",
         "The scalar part of a unit quaternion is the cosine of half the angle.",
-        tuple(quantity(symbol, str(tenths / 10), "", "component") for symbol, tenths in given),
+        tuple(quantity(symbol, str(tenths / 10), "", "component") for symbol, tenths in pairs),
         (Line("The scalar part of the relative quaternion.", relative, relative, r"\cos(\alpha/2)"),),
         (Asked(r"\cos(\alpha/2)", "the cosine of half the angle between the attitudes", relative, ""),),
     )

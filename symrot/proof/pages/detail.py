@@ -107,12 +107,16 @@ def _signs(step: Step) -> list[Passage]:
 
 def _detail(step: Step) -> list[Passage]:
     rewritings = chains(step.left, step.right, step.hypotheses)
-    passages = [Passage(words, ((left, right),)) for words, left, right in step.via]
+    # a value that comes out in the form in which it is printed, such as that of an integral, is printed once
+    passages = [
+        Passage(words, ((left, right) if formula(left) != formula(right) else ("", right),))
+        for words, left, right in step.via
+    ]
+    if not rewritings:
+        words = "For this reason, both sides are the same expression when they are written out:"
+        return [*passages, Passage(words, ((step.named or "", step.left),))]
     if isinstance(step.left, MatrixBase) and (step.named or step.display is not None):
         passages.append(Passage("The two sides as they were derived:", ((formula(step.left), formula(step.right)),)))
-    if not rewritings:
-        both = Passage("Written out, both sides are this one expression:", ((step.named or "", step.left),))
-        return [*passages, both]
     total = 1 if rewritings[0].entry is None else len(step.left)
     if total > len(rewritings):
         passages.append(

@@ -58,6 +58,9 @@ code { font-size: 0.9em; overflow-wrap: anywhere; }
 footer { margin-top: 3rem; border-top: 1px solid #8886; padding-top: 0.6rem; font-size: 0.9rem; }
 a { color: inherit; }
 @media print {
+  h2 { break-after: avoid; }
+  tr { break-inside: avoid; }
+  tr:first-child { break-after: avoid; }
   .display { overflow: visible; }
   .step { break-inside: avoid; }
   .wide { overflow: visible; font-size: 0.75em; }

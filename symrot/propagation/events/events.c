@@ -52,6 +52,7 @@ typedef struct {
     double missing[SYMROT_DISCS][3]; /* errors of the series and two derivatives, per bound on a disc */
     double from[SYMROT_DEPTH + 2], to[SYMROT_DEPTH + 2];
     int before[SYMROT_EVENTS + 1];   /* signs at the end of the previous piece */
+    double earlier[SYMROT_EVENTS + 1]; /* values shortly before it, 0 at the start */
 } symrot_search;
 
 static void symrot_states(const symrot_search *search, int event, double t, double *y)
@@ -441,7 +442,7 @@ static void symrot_enter(symrot_search *search)
 {
     const int event = (int)search->event;
     const double from = search->edges[search->piece], to = search->edges[search->piece + 1], after = nextafter(from, to);
-    double noise;
+    double noise, own_noise;
     search->row = search->rows + search->piece*(4 + search->terms*SYMROT_STATES);
     const double value = symrot_value(search, event, after, &noise);
     const int here = symrot_sign(value, noise);
@@ -452,12 +453,18 @@ static void symrot_enter(symrot_search *search)
         if (SYMROT_JUMPS || smooth)
             symrot_add(search, event, from, from, search->before[event], here);
     }
+    /* a kink where two pieces meet that the error of the motion may have moved past zero */
+    const double part = 1e-3*(to - from), own = symrot_value(search, event, from, &noise);
+    const double earlier = search->earlier[event], later = symrot_value(search, event, from + part, &own_noise);
+    if (earlier*later > 0.0 && own*earlier < fmin(earlier*earlier, later*earlier))
+        symrot_add_doubt(search, event, from, own, fmax(noise, own_noise));
+    search->earlier[event] = symrot_value(search, event, to - part, &own_noise);
     const double last = symrot_value(search, event, to, &noise);
     search->before[event] = symrot_sign(last, noise);
     search->from[0] = from;
     search->to[0] = to;
     search->depth = 1;
-    symrot_spend(search, 4);
+    symrot_spend(search, 7);
 }
 
 /* Return the numbers of states and of events, and the bytes of a search. */
@@ -498,7 +505,7 @@ SYMROT_EXPORT void symrot_events_begin(symrot_search *search, const double *rows
     search->doubt = doubt;
     search->piece = search->event = search->depth = 0;
     if (again) return;
-    for (int event = 0; event <= SYMROT_EVENTS; ++event) search->before[event] = 0;
+    for (int event = 0; event <= SYMROT_EVENTS; ++event) search->before[event] = 0, search->earlier[event] = 0.0;
     for (int i = 0; i < 2*SYMROT_DEGREE; ++i) search->cosine[i] = cos(i*(3.14159265358979323846/SYMROT_DEGREE));
     for (int disc = 0; disc < SYMROT_DISCS; ++disc) {
         /* coefficient k is below 2/rho^k on the ellipse with semi-axis SIZE; it is missing, and aliased to another */

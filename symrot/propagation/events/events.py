@@ -384,11 +384,12 @@ def search(
 
 
 def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: float) -> list[tuple[int, float]]:
-    """Return the extrema, (event, time), nearer to zero than the motion's error, without those at ``zeros``."""
+    """Return the extrema, (event, time), nearer to zero than the motion's error, without those that touch it."""
     # a doubt is an extremum so close to zero that the error of the motion matters
     settled: dict[int, list[float]] = {}
     for zero in zeros:
-        insort(settled.setdefault(zero.event, []), zero.t)
+        if zero.kind == "touching":
+            insort(settled.setdefault(zero.event, []), zero.t)
     own: list[tuple[int, float]] = []
     for event, t in sorted(doubts, key=lambda doubt: (doubt[0], abs(doubt[1] - t0))):
         times = settled.setdefault(event, [])

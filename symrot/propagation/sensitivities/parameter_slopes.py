@@ -5,9 +5,10 @@ from copy import copy
 from fractions import Fraction
 from typing import Any, Self
 
+from symrot.codegen.duals import Dual
 from symrot.dynamics.structure import Structure
 from symrot.errors import InputError
-from symrot.formula.tree import Node, names
+from symrot.formula.tree import Node, children, evaluate, names
 from symrot.planning.general_structure import constants_of
 from symrot.planning.scene_kernel import Parameters
 from symrot.propagation.binding import value_of
@@ -47,9 +48,20 @@ class ParameterSlopes:
     def slopes_of(self, parameters: Parameters, constants: Mapping[str, Fraction]) -> Rows:
         """Return the derivatives of parameters by the m variables, by name, if they depend on one of them."""
         rows: dict[str, list[float]] = {}
+        rational = {name for name, formula in parameters if not _has_calls(formula)}
+        moved = set[str]().union(*self._changes)
+        duals: dict[str, Any] = {
+            name: Dual(constants[name], {str(k): by[name] for k, by in enumerate(self._changes) if name in by})
+            for name in moved & constants.keys()
+        }
+        for name, formula in parameters:
+            if name in rational and names(formula) & moved:
+                value = evaluate(formula, {**constants, **duals})
+                own = value.slopes if isinstance(value, Dual) else {}
+                rows[name] = [float(own.get(str(k), 0)) for k in range(len(self.columns))]
         for k, column in enumerate(self.columns):
-            own, changes = set(self.depends(parameters, k)), self._changes[k]
-            moving = [(name, without_jumps(formula)) for name, formula in parameters if name in own]
+            depends, changes = set(self.depends(parameters, k)) - rational, self._changes[k]
+            moving = [(name, without_jumps(formula)) for name, formula in parameters if name in depends]
             if not moving:
                 continue
 
@@ -79,3 +91,8 @@ class ParameterSlopes:
                         f"sensitivities: expected {column.variable.name} with a value at which the equations have a "
                         f"derivative, but {label} has a kink or a jump there; change the value slightly"
                     )
+
+
+def _has_calls(node: Node) -> bool:
+    """Return whether a formula contains a function, such as sqrt or abs, which may have a kink."""
+    return node[0] == "call" or any(map(_has_calls, children(node)))

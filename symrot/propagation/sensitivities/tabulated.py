@@ -19,6 +19,7 @@ from symrot.errors import InputError, PropagationError
 from symrot.formula import exact_numbers as number
 from symrot.formula.float_functions import FLOAT_FUNCTIONS
 from symrot.formula.switches import STATES
+from symrot.formula.tree import names, parse
 from symrot.planning.general_structure import constants_of
 from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import EPOCH
@@ -51,19 +52,28 @@ KNOT = "table_knot"
 COEFFICIENTS = tuple(f"table_{axis}_{power}" for axis in (1, 2, 3) for power in (3, 2, 1, 0))
 """The constants of the polynomials, in the order of SciPy's coefficients for each component."""
 ZEROS = [0.0]
+MOST_BOUND = 5000  # intervals whose parameters are stored
 
 
-def _formula(axis: int) -> str:
+def _others_use_time(scene: Scene) -> bool:
+    """Return whether a torque of the scene other than the table depends on time."""
+    formulas = [parse(formula, switching=True) for torque in scene.torques for formula in torque.formulas]
+    return "gravity_gradient" in scene.torque_kinds or any("t" in names(formula) for formula in formulas)
+
+
+def _formula(axis: int, tau: str) -> str:
     third, second, first, constant = COEFFICIENTS[4 * axis : 4 * axis + 4]
-    tau = f"(t - {KNOT})"
     return f"{constant} + {tau}*({first} + {tau}*({second} + {tau}*{third}))"
 
 
 def _with_formulas(scene: Scene) -> Scene:
     """Return a scene in which a torque with formulas, whose coefficients are all 0, replaces the table."""
     assert scene.table is not None
-    values = dict.fromkeys((KNOT, *COEFFICIENTS), Fraction(0))
-    formulas = tuple(map(_formula, range(3)))
+    values = dict.fromkeys(COEFFICIENTS, Fraction(0))
+    # the clock of an interval shows 0 at its start; if other torques depend on time, its epoch is a constant
+    timed = _others_use_time(scene)
+    values |= {KNOT: Fraction(0)} if timed else {}
+    formulas = tuple(_formula(axis, f"(t - {KNOT})" if timed else "t") for axis in range(3))
     torque = Torque("expression", values, formulas, scene.table.frame)
     return replace(scene, table=None, torques=(*scene.torques, torque))
 
@@ -80,7 +90,8 @@ class TableEquations:
         self._columns = columns_of(own, moving)
         self.restartable = all(column.restartable for column in self._columns)
         structure = structure_of(own, self._columns)
-        self._plan = Plan(own, replace(structure, clock=EPOCH), ())
+        timed = _others_use_time(scene)
+        self._plan = Plan(own, replace(structure, clock=EPOCH) if timed else structure, ())
         self._rates, self._parameters = rates_of(self._plan)
         self._constants = {"pi": number.PI, **constants_of(own, structure)}
         self._table, self._pieces = scene.table, _Pieces(scene.table)
@@ -153,8 +164,8 @@ class TableEquations:
 
         for places, depends, library in self._libraries:
             slopes = [
-                [rows.get(name, ZEROS)[n if name in rows else 0] for name in names]
-                for n, names in zip(places, depends, strict=True)
+                [rows.get(name, ZEROS)[n if name in rows else 0] for name in moving]
+                for n, moving in zip(places, depends, strict=True)
             ]
             own = [fitting_unit(units[n], by[:, n]) for n in places]
             states, derivatives, used = follow_columns(
@@ -168,6 +179,8 @@ class TableEquations:
     def _numbers(self, k: int) -> tuple[dict[str, float], Rows]:
         """Return the values of the parameters in the interval number k, and their derivatives by the variables."""
         if k not in self._bound:
+            if len(self._bound) >= MOST_BOUND:
+                self._bound.clear()
             knot = Fraction(float(self._pieces.edges[k]))
             constants = {**self._constants, **self._pieces.coefficients(k), KNOT: knot, EPOCH: knot}
             values = {name: float(value_of(formula, constants)) for name, formula in self._parameters}

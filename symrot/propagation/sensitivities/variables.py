@@ -40,7 +40,13 @@ AGREEMENT = Fraction(1, 1 << 60)
 FALL = Fraction(9, 10)  # largest ratio of quotients of one and two steps whose limit is zero
 BEND = Fraction(21, 10)  # second differences of two steps and of one: 4 where a number is smooth, 2 at a kink
 ROUNDED = Fraction(1, 1 << 150)  # a smaller second difference, in units of the number, may be a rounding error
-UNITS = {**dict.fromkeys(RATES, "rad/s"), **dict.fromkeys(TENSOR, "kg m^2"), "mass": "kg", "density": "kg/m^3"}
+UNITS = {
+    **dict.fromkeys(RATES, "rad/s"),
+    **dict.fromkeys(TENSOR, "kg m^2"),
+    "mass": "kg",
+    "density": "kg/m^3",
+    "moment": "N m",
+}
 ANGLES = ("angle", "angles")
 LENGTHS = (
     "at",
@@ -173,7 +179,7 @@ def _number(key: str, value: Any) -> Fraction:
 
 def _unit(scene: Scene, key: str) -> str:
     """Return the SI unit of a key of :meth:`symrot.Scene.with_`: ``"kg"`` for ``"body.mass"``; empty if unknown."""
-    last = re.sub(r"\[\d+\]$", "", key.rpartition(".")[2])
+    last = re.sub(r"(\[\d+\])+$", "", key.rpartition(".")[2])
     if last in UNITS:
         return UNITS[last]
     if last in ANGLES:

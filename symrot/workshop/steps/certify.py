@@ -15,9 +15,10 @@ from symrot.certificates.rounding.scenes import scene_problem
 from symrot.certificates.step_certificate import bounds_of_step, rates_of, with_bounds
 from symrot.codegen.steps import step_signature
 from symrot.errors import InputError
-from symrot.workshop.input_ranges import input_box
+from symrot.workshop.input_ranges import input_box, plain_box
 from symrot.workshop.kernel_files import write_files
 from symrot.workshop.step_text import StepText, step_text
+from symrot.workshop.steps.exact import ExactStepText
 
 __all__ = ["certify_step", "lines", "proofs"]
 
@@ -50,11 +51,9 @@ def certify_step(
     printed = step_text(scene, step, order)
     progress("proving ..")
     text = printed.certificate()
-    if ranges and not isinstance(printed, StepText):
-        raise InputError(
-            f"--box: expected no ranges for the step exact of {scene}, because symrot bounds no errors of a step with "
-            f"elliptic functions, got {ranges[0]}; the step taylor of order 16 is close to it"
-        )
+    if ranges and isinstance(printed, ExactStepText):
+        progress("bounding ..")
+        text = certificate_json(with_bounds(json.loads(text), printed.bounds(plain_box(ranges))))
     if ranges and isinstance(printed, StepText):
         progress("bounding ..")
         data = json.loads(text)
@@ -122,7 +121,16 @@ def _law_rows(data: Data) -> list[tuple[str, str]]:
         )
         for name, law in data["formula"].items()
     ]
-    return [*rows, ("errors", "not bounded; `--step taylor --order 16 --box ..` bounds those of a step close to it")]
+    if "bounds" not in data:
+        return [
+            *rows,
+            ("errors", "not bounded; --box bounds those of a free body away from its middle axis"),
+        ]
+    for label in ("rounding", "truncation"):
+        errors = {state: float.fromhex(value) for state, value in data["bounds"][label].items()}
+        worst = max(errors, key=errors.__getitem__)
+        rows.append((label, f"at most {_up(errors[worst])} in one step on the box, in double precision ({worst})"))
+    return rows
 
 
 def _printed(data: Data, rows: Sequence[tuple[str, str]]) -> list[str]:

@@ -3,11 +3,13 @@
 import json
 from collections.abc import Mapping
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 from symrot.certificates.audit import LARGEST
-from symrot.certificates.certificate import Data
+from symrot.certificates.certificate import Data, certificate_json
 from symrot.certificates.exact_law import DIGITS, STATES
+from symrot.certificates.step_certificate import with_bounds
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
 from symrot.scene.file import shipped_names
@@ -15,6 +17,9 @@ from symrot.scene.scene import Scene, load_scene
 from symrot.workshop.steps.exact import ExactStepText, plain_content
 
 __all__ = ["audit_elliptic"]
+
+NEAR = 1 + 1e-6
+"""The factor within which bounds are the same; they are stated larger by more than this."""
 
 
 def audit_elliptic(path: Path, data: Data) -> list[str]:
@@ -49,16 +54,54 @@ def audit_elliptic(path: Path, data: Data) -> list[str]:
             )
     stated = step.statement
     _same(path, stated, {section: data.get(section) for section in stated})
-    own = step.certificate()
-    if read_input(path, LARGEST) != own.encode():
-        _same(path, json.loads(own), data)
+    own = json.loads(step.certificate())
+    if "bounds" in data:
+        own = json.loads(certificate_json(with_bounds(own, _bounds(path, step, data))))
+    if read_input(path, LARGEST) != certificate_json(own).encode():
+        _same(path, own, data)
         raise CertificateError(f"{path}: expected the layout of a certificate as symrot prints it, got another")
     return [
         f"{step.name}: {len(texts)} files are those that symrot prints for the scene in the certificate",
         f"the C text solves the equations of motion at {STATES} states to {DIGITS} digits; nothing is proven elsewhere",
         _of_scene(path, step.scene, data),
-        "no bounds of rounding and truncation",
+        "bounds of rounding and truncation are those that symrot computes"
+        if "bounds" in data
+        else "no bounds of rounding and truncation",
     ]
+
+
+def _box(path: Path, data: Data) -> dict[str, tuple[Fraction, Fraction]]:
+    """Return the box of the bounds in a certificate."""
+    try:
+        box = data["bounds"]["box"]
+        ends = {name: (float.fromhex(low), float.fromhex(high)) for name, (low, high) in box.items()}
+        return {name: (Fraction(low), Fraction(high)) for name, (low, high) in ends.items()}
+    except (AttributeError, KeyError, OverflowError, TypeError, ValueError) as reason:
+        raise CertificateError(
+            f"{path}: expected 'box' in 'bounds' as symrot prints it, got a fault ({reason})"
+        ) from None
+
+
+def _bounds(path: Path, step: ExactStepText, data: Data) -> Data:
+    """Return the section ``bounds`` of a certificate if its numbers are bounds; raise CertificateError if not."""
+    box = _box(path, data)
+    try:
+        own = step.bounds(box)
+    except InputError as reason:
+        raise CertificateError(f"{path}: {reason}") from None
+    stated = data["bounds"]
+    for kind in ("rounding", "truncation"):
+        for name, value in own[kind].items():
+            try:
+                bound = float.fromhex(stated[kind][name])
+            except (KeyError, TypeError, ValueError, OverflowError) as reason:
+                raise CertificateError(
+                    f"{path}: expected {kind!r} in 'bounds' as symrot prints it, got a fault ({reason})"
+                ) from None
+            # the last digits depend on the functions of the machine
+            if not float.fromhex(value) / NEAR <= bound <= float.fromhex(value) * NEAR:
+                raise CertificateError(f"{path}: expected the bounds that symrot computes on the box, got others")
+    return {key: stated[key] if key in ("rounding", "truncation") else own[key] for key in own}
 
 
 def _same(path: Path, own: Data, data: Data) -> None:

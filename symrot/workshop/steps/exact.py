@@ -12,12 +12,15 @@ from hashlib import sha256
 from typing import Any, NamedTuple
 
 from symrot.certificates.certificate import Data, KernelUnderTest, certificate_json
-from symrot.certificates.exact_law import STATES, law_section
-from symrot.certificates.step_certificate import SCHEMA
+from symrot.certificates.exact_bounds import TINY, free_body_bounds
+from symrot.certificates.exact_law import STATES as CHECKED
+from symrot.certificates.exact_law import law_section
+from symrot.certificates.step_certificate import SCHEMA, trusted
 from symrot.closed_form.build import joined
 from symrot.closed_form.registry import exact_form
 from symrot.codegen.printing.c_source import DOUBLE, FLOAT, Real
 from symrot.codegen.printing.parameters_header import parameters_file
+from symrot.codegen.steady_rotations import STATES
 from symrot.errors import CertificateError, InputError
 from symrot.formula.tree import text as formula_text
 from symrot.planning.plan import make_plan
@@ -28,12 +31,14 @@ from symrot.workshop.steps.whole_state import WholeState
 
 __all__ = ["ExactStepText", "plain_content"]
 
+SPARE = 1 + 2e-6  # by which bounds are stated larger than computed, since sine differs between machines
+BOXED = ("omega_1", "omega_2", "omega_3", "dt")
 METHOD = "closed form of the motion, elliptic functions"
-TRUSTED = {
-    "formula": "that equations which hold at the states to 15 digits hold at others: nothing is proven between them",
-    "not stated": "errors of rounding, and of truncation below 15 digits",
-    "C text": "that the compiler gives C its meaning: real numbers are rounded as IEEE 754 says, to nearest",
-}
+MEANING = (
+    "for each state after one step on the box: |computed - exact motion| <= rounding + truncation, from the same "
+    "floating-point start, size and parameters; the exact motion starts with the quaternion divided by its norm, and "
+    f"components of omega are 0 or at least {TINY:g} of the largest on the box"
+)
 SHARES = (Fraction(1, 16), Fraction(-3, 2), Fraction(5))  # sizes of the test vectors, in units of 1/|omega|
 Motions = Callable[[Sequence[Fraction], Sequence[Fraction]], Any]
 
@@ -195,9 +200,34 @@ class ExactStepText(StepFiles):
             f"symrot_{self.name}{suffix}": law_section(
                 source, f"symrot_{self.name}{suffix}", rates.program, exact, p, self._rate, count
             )
-            for suffix, count in (("", STATES), ("f", 1))
+            for suffix, count in (("", CHECKED), ("f", 1))
         }
-        return certificate_json(self.statement | {"formula": laws, "trusted": TRUSTED})
+        return certificate_json(self.statement | {"formula": laws, "trusted": trusted("exact", False, elliptic=True)})
+
+    def bounds(self, box: Mapping[str, tuple[Fraction, Fraction]]) -> Data:
+        """Return the section ``bounds`` of the certificate: rounding and truncation on a box of omega and dt.
+
+        Raises
+        ------
+        InputError
+            For a heavy top, a box without a range of omega or dt, or a box on which no bounds are known.
+        """
+        if self.form.library != "free_body":
+            raise InputError(
+                f"--box: expected no ranges for the step exact of {self.scene.name}, because symrot bounds no errors "
+                "of the exact step of a heavy top; the step taylor of order 16 is close to it"
+            )
+        if set(box) != set(BOXED):
+            ranges = " ".join(f"--box {name}=LOW:HIGH" for name in BOXED)
+            raise InputError(f"{self.name}: expected {ranges}, got {', '.join(box) or 'none'}")
+        moments = [float(value) for _, _, value in self.form.parameters]
+        rounding, truncation = free_body_bounds(self.c()[0], f"symrot_{self.name}", moments, box)
+        return {
+            "meaning": MEANING,
+            "box": {name: [float(end).hex() for end in box[name]] for name in BOXED},
+            "rounding": {name: (x * SPARE).hex() for name, x in zip(STATES, rounding, strict=True)},
+            "truncation": {name: (x * SPARE).hex() for name, x in zip(STATES, truncation, strict=True)},
+        }
 
     @property
     def statement(self) -> Data:

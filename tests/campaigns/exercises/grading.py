@@ -16,7 +16,24 @@ from math import pi
 from random import Random
 from typing import Any
 
-from sympy import Add, Expr, Mul, Pow, Symbol, cos, expand, factor, lambdify, powsimp, sin, sstr, tan, together
+from sympy import (
+    Add,
+    Expr,
+    Mul,
+    Pow,
+    Symbol,
+    cos,
+    expand,
+    factor,
+    lambdify,
+    nan,
+    powsimp,
+    sin,
+    sstr,
+    tan,
+    together,
+    zoo,
+)
 from sympy.parsing.sympy_parser import parse_expr
 
 import symrot
@@ -181,9 +198,8 @@ def _faulty_formula(name: str, question: Question, source: Random) -> Case | Non
     faults = _faults(value, source)
     kind = source.choice(sorted(faults))
     wrong = faults[kind]()
-    if (wrong.is_finite is not False and not wrong.free_symbols <= value.free_symbols) or not _differ(
-        value, wrong, source
-    ):
+    # exchanged symbols can make a denominator zero, which nobody answers
+    if wrong.has(zoo, nan) or not wrong.free_symbols <= value.free_symbols or not _differ(value, wrong, source):
         return None
     return Case(name, question, sstr(wrong), NAMED[kind])
 
@@ -191,7 +207,7 @@ def _faulty_formula(name: str, question: Question, source: Random) -> Case | Non
 def _differ(value: Expr, wrong: Expr, source: Random) -> bool:
     """Return whether two formulas differ at random points."""
     symbols = sorted(value.free_symbols | wrong.free_symbols, key=str)
-    first, second = (lambdify(symbols, each, "cmath") for each in (value, wrong))
+    first, second = (lambdify(symbols, each, [{"Abs": abs}, "cmath"]) for each in (value, wrong))
     for _ in range(POINTS):
         point = [source.uniform(0.3, 1.4) for _ in symbols]
         try:

@@ -11,8 +11,8 @@ from symrot.checker.claim.source.text import check_units, claim_of_relation, is_
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.claim.vectors import used_vectors
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
+from symrot.checker.equivalents.product_signs import sign_by_integral, with_sign
 from symrot.checker.latex.reader import latex_readings
-from symrot.checker.product_signs import sign_by_integral, with_sign
 from symrot.errors import InputError
 
 __all__ = ["claims_of_reading"]

@@ -3,7 +3,7 @@
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import Relation
 from symrot.checker.claim.tree import Node, number, product
-from symrot.checker.equivalent_claim import brought_back
+from symrot.checker.equivalents.equivalent_claim import brought_back
 from symrot.checker.verdict import Verdict
 
 __all__ = ["in_claim", "multiplied"]

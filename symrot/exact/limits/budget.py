@@ -10,7 +10,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from typing import Any
 
-from symrot.exact.operations import spend
+from symrot.exact.limits.operations import spend
 from symrot.exact.ring.ratio import TooLarge
 
 __all__ = ["MOST_RINGS", "one_decision", "remembered", "spend_ring"]
