@@ -16,6 +16,7 @@ from pathlib import Path
 import pytest
 
 import symrot
+from tests.syntax import import_statements
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "symrot"
@@ -213,7 +214,7 @@ def test_every_third_party_import_is_declared():
     dependencies = {re.split(r"[<>=]", each)[0] for each in project["dependencies"]}
     imports = set()
     for path in PACKAGE.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in import_statements(path):
             if isinstance(node, ast.Import):
                 imports |= {alias.name.partition(".")[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and node.module and not node.level:

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 import symrot
+from tests.syntax import import_statements
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "symrot"
@@ -62,7 +63,7 @@ def room_of(module):
 
 def imports_of(path):
     """Return the modules of symrot that a file imports anywhere: at its top, in functions, or for types alone."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in import_statements(path):
         if isinstance(node, ast.ImportFrom) and node.module:
             for name in node.names:
                 yield f"{node.module}.{name.name}" if f"{node.module}.{name.name}" in MODULES else node.module

@@ -205,9 +205,8 @@ class LargestBox:
     Examples
     --------
     >>> import symrot
-    >>> largest = symrot.largest_box("euler_zxz_body_rates", 1e-13, {"theta": (1, 2)}, variables=["theta"])
-    >>> largest.error <= largest.target
-    True
+    >>> symrot.LargestBox("euler_zxz_body_rates", 1e-13, 2.8, {"theta": (0.1, 2.9)}, 9.9e-14, {}).box["theta"]
+    (0.1, 2.9)
     """
 
     kernel: str

@@ -110,9 +110,14 @@ PULSE = {"kind": "expression", "torque": ["0", "0", "exp(-((t - 2)/w)**2)/w"], "
 AT_REST = {"initial": {"omega": [0, 0, 0]}, "span": {"t": [0, 5], "samples": 2}}
 
 
-@pytest.mark.thinned(2)
-@pytest.mark.parametrize("computed", [item[1] for item in REFERENCES if item[0] != "closed form"],
-                         ids=["taylor", "dop853", "midpoints"])  # fmt: skip
+@pytest.mark.parametrize(
+    "computed",
+    [
+        pytest.param(computed, id=name.split()[0], marks=[pytest.mark.campaign] * name.startswith("Taylor"))
+        for name, computed in REFERENCES
+        if name != "closed form"
+    ],
+)
 def test_no_reference_steps_over_a_pulse(computed):
     """A body at rest gets the momentum sqrt(pi), the area of the Gaussian pulse, and gets it only after the pulse."""
     problem = Problem(scene(torque=[PULSE], **AT_REST))

@@ -167,3 +167,11 @@ def test_dry_friction_and_quadratic_damping_stop_a_wheel():
     by_k = -time / 2 - 4 / (2 * 3)
     assert np.allclose(stop.slopes, [4 / 3, by_k], rtol=1e-12, atol=0)
     assert not motion.sensitivities.omega[0, 2].any()
+
+
+@needs_compiler
+def test_a_torque_with_an_infinite_slope_after_a_switch_is_refused():
+    content = scene(["0", "0", "where(t > c, sqrt(t - c), 0)"], {"c": 1}, (0, 0, 1))
+    with pytest.raises(PropagationError, match=r"after t = 1.0 s: the slope of the torque is not finite there"):
+        symrot.propagate(content, t=[2], sensitivities=["c"])
+    assert symrot.propagate(content, t=[2], sensitivities=["omega_3"]).sensitivities.omega[0, 2, 0] == 1.0

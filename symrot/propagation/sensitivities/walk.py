@@ -124,6 +124,8 @@ class Walk:
 
     def _label(self, interval: Interval) -> Callable[[PropagationError], PropagationError]:
         def named(error: PropagationError) -> PropagationError:
+            if isinstance(error, IntegrationStopped) and abs(error.t - interval.start) <= AT_SWITCH * self.length:
+                return self.guards.refusal(interval.begin, "the slope of the torque is not finite there")
             later = error.later(interval.zero.high) if isinstance(error, IntegrationStopped) else error
             return PropagationError(f"{self.scene.name}: sensitivities: {later}")
 

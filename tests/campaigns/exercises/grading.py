@@ -16,7 +16,24 @@ from math import pi
 from random import Random
 from typing import Any
 
-from sympy import Add, Expr, Mul, Pow, Symbol, cos, expand, factor, lambdify, powsimp, sin, sstr, tan, together
+from sympy import (
+    Add,
+    Expr,
+    Mul,
+    Pow,
+    Symbol,
+    cos,
+    expand,
+    factor,
+    lambdify,
+    nan,
+    powsimp,
+    sin,
+    sstr,
+    tan,
+    together,
+    zoo,
+)
 from sympy.parsing.sympy_parser import parse_expr
 
 import symrot
@@ -181,9 +198,8 @@ def _faulty_formula(name: str, question: Question, source: Random) -> Case | Non
     faults = _faults(value, source)
     kind = source.choice(sorted(faults))
     wrong = faults[kind]()
-    if (wrong.is_finite is not False and not wrong.free_symbols <= value.free_symbols) or not _differ(
-        value, wrong, source
-    ):
+    # exchanged symbols can make a denominator zero, which nobody answers
+    if wrong.has(zoo, nan) or not wrong.free_symbols <= value.free_symbols or not _differ(value, wrong, source):
         return None
     return Case(name, question, sstr(wrong), NAMED[kind])
 
