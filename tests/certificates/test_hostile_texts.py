@@ -165,7 +165,7 @@ def refused(kernels):
         files.restore()
 
 
-@pytest.mark.thinned(4)
+@pytest.mark.thinned(6)
 @pytest.mark.parametrize("what", HOSTILE)
 def test_a_text_that_c_reads_differently_is_refused(kernels, refused, what):
     name, old, new = HOSTILE[what]

@@ -40,3 +40,10 @@ def test_a_comma_between_arguments_is_no_separator_of_thousands():
 
 def test_words_after_where_that_define_nothing_are_not_read():
     assert symrot.check(r"T = \frac{1}{2} I \omega^2 where I is the moment of inertia").verdict == "recognised"
+
+
+def test_the_factorial_of_a_number_is_read_and_of_a_letter_is_refused():
+    assert symrot.check("10! = 3628800").verdict == "true"
+    assert symrot.check("5!/3! = 21").verdict == "false"
+    with pytest.raises(symrot.InputError, match="a factorial is read for numbers up to 30"):
+        symrot.check("n! = n (n - 1)!")

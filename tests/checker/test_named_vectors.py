@@ -71,7 +71,7 @@ def test_a_right_formula_is_recognised(claim, name):
     assert any(name in known.name for known in verdict.recognised_as)
 
 
-@pytest.mark.thinned(3)
+@pytest.mark.thinned(5)
 @pytest.mark.parametrize("claim", [
     "w = u cos phi + (e x u) sin phi + (1 + cos phi) (e . u) e", "w = u cos phi + (e x u) cos phi + (1 - cos phi) (e . u) e",
     "w = (2 q_0 - 1) v + 2 (q . v) q + 2 q_0 (q x v)", "w = (2 q_0^2 - 1) v + 2 (q . v) q + q_0 (q x v)",

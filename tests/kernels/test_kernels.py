@@ -53,7 +53,7 @@ def arguments(found, values):
     ]
 
 
-@pytest.mark.thinned(3)  # certificates prove the same laws for all kernels
+@pytest.mark.thinned(6)  # certificates prove the same laws for all kernels
 @pytest.mark.parametrize("name", kernel_names())
 def test_every_kernel_obeys_its_laws(name):
     """At random points of the box, each expression that vanishes by a law is as small as rounding."""

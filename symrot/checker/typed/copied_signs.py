@@ -6,6 +6,7 @@ definitions after "where" are moved to the front.
 
 import re
 import unicodedata
+from math import factorial
 
 __all__ = ["with_plain_signs"]
 
@@ -27,6 +28,10 @@ _FRACTION = re.compile("[½⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞]")
 _SUBSCRIPT = re.compile(r"_\{(\w+)\}")
 
 
+_FACTORIAL = re.compile(r"(?<![\w.])([12]?\d|30)!(?![=!])")
+"""The factorial of a number up to 30."""
+
+
 def with_plain_signs(source: str) -> str:
     r"""Return a copied text with plain signs, ``1500`` for ``1,500``; doubtful signs stay unchanged.
 
@@ -34,6 +39,8 @@ def with_plain_signs(source: str) -> str:
     --------
     >>> with_plain_signs("1,500 rpm = 157.08 rad/s"), with_plain_signs("sqrt(2) ≈ 1.41")
     ('1500 rpm = 157.08 rad/s', 'sqrt(2) = 1.41')
+    >>> with_plain_signs("10! = 3628800")
+    '3628800 = 3628800'
     >>> with_plain_signs("e^{i x} = cos x + i sin x")
     'e^(i x) = cos x + i sin x'
     >>> with_plain_signs(r"T = ½ m \dot x²")
@@ -43,6 +50,7 @@ def with_plain_signs(source: str) -> str:
     """
     text = _THOUSANDS.sub(lambda match: match[0].replace(",", ""), source)
     text = _ROUNDED.sub("=", text)
+    text = _FACTORIAL.sub(lambda match: str(factorial(int(match[1]))), text)
     if "\\" not in text and "$" not in text and "{" in text and (_FUNCTION.search(text) or "∫" in text):
         text = _SUBSCRIPT.sub(r"_\1", text).replace("{", "(").replace("}", ")")
     if "\\" in text or "$" in text:

@@ -80,6 +80,7 @@ _HINTS = {
     "Π": "write the factors of a product with *",
     "{": "write ( ) or [ ] for brackets", "}": "write ( ) or [ ] for brackets", "∞": "a claim is about finite numbers",
     "\u20d7": "write cross([ax, ay, az], [bx, by, bz]) for vectors",
+    "!": "a factorial is read for numbers up to 30; write other products with *",
     "%": "write /100", "∇": "write diff(f, x)", "\u00ad": "a soft hyphen: write - or delete it",
     "&": "write two claims, each on a line", "≈": "write = with the digits that you know",
     "→": "write =", "⇒": "write two claims, each on a line",
