@@ -226,3 +226,7 @@ def test_inverse_and_hyperbolic_functions_get_repairs(wrong, right):
     proven = [symrot.check(repair.text.partition(" with ")[0], repair=False).verdict for repair in verdict.repairs]
     assert set(proven) == {"true"}
     assert symrot.check(right, repair=False).verdict == "true"
+
+
+def test_a_product_of_long_numbers_beside_a_name_gets_a_verdict():
+    assert symrot.check("(2**521-1)*(2**607-1) == x").verdict == "definition"

@@ -249,6 +249,16 @@ def test_events_of_a_motion_under_switches_that_runs_backward_only(method):
     assert motion.t_events[0] == pytest.approx(np.arange(-4.75, 0, 0.5)) and list(motion.t_events[1]) == [0.0]
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_a_pendulum_that_starts_from_rest_turns_at_the_start(method):
+    """Polynomials fitted to the closed form gave it a velocity of 1e-17 rad/s at the start, and no event there."""
+    start = {"omega": [0, 0, 0], "attitude": {"axis": [1, 0, 0], "angle": 1}}
+    trajectory = run(pendulum(0, 10).with_(initial=start), ["omega_1"], method, 1e-12)
+    quarter = 3.3499878296
+    assert trajectory.t_events[0] == pytest.approx(quarter * np.arange(3), abs=1e-8)
+    assert trajectory.event_kinds[0] == ["falling", "rising", "falling"]
+
+
 def test_an_event_at_the_start_is_listed_and_ends_nothing():
     trajectory = run(pendulum(1), [symrot.Event("q1", terminal=True, direction=1)])
     assert trajectory.t_events[0][0] == 0.0 and len(trajectory.t_events[0]) == 2

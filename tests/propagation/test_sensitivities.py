@@ -315,7 +315,7 @@ def test_sensitivities_of_a_motion_that_starts_far_from_zero():
         ({"sensitivities": ["span.t"]}, "an initial value or a constant"),
         ({"sensitivities": ["body.about"]}, "expected a number or a vector"),
         ({"sensitivities": ["omega"], "state": "ZXZ"}, "expected state='quaternion'"),
-        ({"sensitivities": ["omega"], "torque": lambda t, w, q: (0, 0, 0)}, "expected torques with formulas"),
+        ({"sensitivities": ["omega"], "torque": lambda t, w, q: (0, 0, 0)}, "expected torques of the scene"),
         ({"sensitivities": ["omega"], "events": ["abs(omega_3) == 1"]}, "expected formulas without abs"),
     ],
 )
@@ -324,10 +324,9 @@ def test_what_has_no_sensitivities_is_refused_in_a_sentence(options, message):
         symrot.propagate(symrot.Scene.from_dict(TOP), **options)
 
 
-def test_a_transition_needs_formulas_and_finite_times():
-    table = {"kind": "table", "t": [0, 1, 2, 3], "moment": [[0, 0, 1]] * 4}
-    with pytest.raises(InputError, match="torques with formulas"):
-        symrot.propagate({**TOP, "torque": [table]}).transition(0, 1)
+def test_a_transition_needs_torques_of_the_scene_and_finite_times():
+    with pytest.raises(InputError, match="expected torques of the scene"):
+        symrot.propagate(TOP, t=[1], torque=lambda t, omega, q: (0, 0, 0), max_step=0.1).transition(0, 1)
     with pytest.raises(InputError, match="finite times"):
         symrot.propagate("t_handle").transition(0, inf)
 
@@ -346,6 +345,7 @@ def at_zero(formula, variable="c", **more):
 
 
 @needs_compiler
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize(
     "formula", ["abs(c)", "sqrt(c**2)*(1 + t)", "sqrt(1 - cos(c))", "sqrt(c**2 + d**2*omega_3**2)"]
 )
@@ -393,6 +393,7 @@ def test_derivatives_from_rest_under_quadratic_damping():
 
 
 @needs_compiler
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(
     "formula", ["-sqrt(omega_1**2 + omega_2**2)", "-sqrt(omega_1*omega_2)*omega_1", "-sqrt(q1**2 + q2**2)"]
 )

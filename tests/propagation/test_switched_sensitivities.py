@@ -128,6 +128,7 @@ def test_a_kink_at_rest_has_derivatives_if_both_sides_agree():
 
 
 @needs_compiler
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize(
     ("formula", "value", "label"),
     [

@@ -29,6 +29,7 @@ def impulse(values, start, stop):
 
 
 @needs_compiler
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("frame", ["body", "space"])
 def test_derivatives_of_a_wheel_under_a_table_of_samples(frame):
     """About a fixed axis ``C (omega_3 - 1)`` is the integral of the torque, linear in the samples."""
@@ -55,6 +56,7 @@ def test_derivatives_of_a_wheel_under_a_table_of_samples(frame):
 
 
 @needs_compiler
+@pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", ["torque[0].t[1]", "torque[0].switching_times[0]"])
 def test_the_times_of_samples_are_no_variables(name):
     """They are doubles, which hide the small changes by which exact numbers are differentiated."""

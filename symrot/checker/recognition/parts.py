@@ -332,7 +332,11 @@ def _of_exponent(node: Node, parent: str, values: Values, letters: Letters) -> I
             size = base if abs(power) == 1 else Node("power", None, (base, number(abs(power))))
             made = size if power > 0 else Node("inv", None, (size,))
             cost = COST["exponent"] + (0.0 if {power, exponent} == {1, 2} else COST["not_a_square"])
-            yield Variant(Change(made, "exponent", cost), tuple(value**power for value in bases))
+            try:
+                powers = tuple(value**power for value in bases)
+            except OverflowError:  # a number of hundreds of digits
+                continue
+            yield Variant(Change(made, "exponent", cost), powers)
 
 
 def _with_other_factor(base: Node, bases: Values, letters: Letters) -> Iterator[Variant]:

@@ -178,7 +178,7 @@ def _searched(
     if end == start:
         return SearchResult([], None, []), None
     try:
-        result = search(path, events, p, side.pieces, start, accuracy)
+        result = search(path, events, p, side.pieces, start, accuracy, side.states(np.array([start]))[0].tolist())
     except ZerosNotSeparated as early:
         return SearchResult(early.zeros, None, []), early
     if not side.broken or result.stop is not None:

@@ -475,7 +475,7 @@ SYMROT_EXPORT void symrot_events_sizes(int64_t sizes[3])
     sizes[2] = (int64_t)sizeof(symrot_search);
 }
 
-/* Return the sign of an event at a time inside a row; 0 if the value is within its rounding error. */
+/* Return the sign of an event at a time inside a row; 0 if the value is within its rounding error, 2 if it has none. */
 SYMROT_EXPORT int symrot_events_sign(int event, double t, const double *row, int64_t terms, const double *p)
 {
     symrot_search search;
@@ -484,7 +484,7 @@ SYMROT_EXPORT int symrot_events_sign(int event, double t, const double *row, int
     search.terms = terms;
     search.p = p;
     const double value = symrot_value(&search, event, t, &noise);
-    return symrot_sign(value, noise);
+    return value == value ? symrot_sign(value, noise) : 2;
 }
 
 /*

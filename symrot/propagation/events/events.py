@@ -301,11 +301,16 @@ class _Search:
 
     def sign(self, event: int, t: float, piece: Piece) -> int:
         """Return the sign of an event's formula at the time t in a piece; 0 if rounding errors are larger."""
+        sign = self.sign_or_none(event, t, piece)
+        return 0 if sign is None else sign
+
+    def sign_or_none(self, event: int, t: float, piece: Piece) -> int | None:
+        """Return :meth:`sign`, or None if the formula has no value at t, such as a root of a negative number."""
         edges, side = piece.edges, 1.0 if piece.edges[-1] >= piece.edges[0] else -1.0
         place = int(np.searchsorted(side * edges, side * t, "left")) - 1
         row = np.ascontiguousarray(piece.rows[min(max(place, 0), len(piece.rows) - 1)])
         value: int = self.library.sign(event, t, row.ctypes.data, self.terms(piece.rows), ctypes.addressof(self.p))
-        return value
+        return None if value == 2 else value
 
 
 class SearchResult(NamedTuple):
@@ -332,7 +337,7 @@ class SearchResult(NamedTuple):
 
 def search(
     path: Path | str, events: Sequence[Event], p: Sequence[float], pieces: Iterable[Piece], t0: float,
-    error: float = 0.0,
+    error: float = 0.0, y0: Sequence[float] | None = None,
 ) -> SearchResult:  # fmt: skip
     """Return the zeros of events along a motion, up to the terminal event if there is one.
 
@@ -348,6 +353,8 @@ def search(
     error : float
         Error of the states, relative to their sizes. An extremum is listed as a doubt if this error may move it past
         zero.
+    y0 : sequence of float, optional
+        The states at t0, if the polynomials of ``pieces`` have them only to rounding errors.
 
     Raises
     ------
@@ -369,6 +376,8 @@ def search(
                 entry[3] = _sign_before_end(searcher, int(entry[0]), previous)
                 searcher.arrived.add((int(entry[0]), entry[1]))
         last = float(piece.edges[-1])
+        if previous is None and y0 is not None:
+            entries += _zero_at_start(searcher, len(events), t0, y0, entries)
         whole, held = _merged(entries, last)
         # a zero at t0 is listed but does not end the motion; the sign just after it makes it rising or falling
         stop = _settled(searcher, piece, events, whole, t0, left, zeros)
@@ -383,12 +392,23 @@ def search(
     return SearchResult(zeros, stop, _open_doubts(searcher.doubts, zeros, t0), searcher.flat)
 
 
+def _zero_at_start(
+    searcher: _Search, count: int, t0: float, y0: Sequence[float], entries: Sequence[list[float]]
+) -> list[list[float]]:
+    """Return an interval [event, t0, t0, 0, 0] for each event that is zero at the start and not among ``entries``."""
+    # a fitted polynomial is zero there only up to rounding: a body at rest got a tiny velocity
+    still = Piece(np.array([t0, t0 + 1.0]), np.array([[t0, 1.0, 0.0, 1.0, *y0]]))
+    known = {int(entry[0]) for entry in entries if entry[1] == t0}
+    missing = [event for event in range(count) if event not in known and searcher.sign_or_none(event, t0, still) == 0]
+    return [[float(event), t0, t0, 0.0, 0.0] for event in missing]
+
+
 def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: float) -> list[tuple[int, float]]:
     """Return the extrema, (event, time), nearer to zero than the motion's error, without those that touch it."""
     # a doubt is an extremum so close to zero that the error of the motion matters
     settled: dict[int, list[float]] = {}
     for zero in zeros:
-        if zero.kind == "touching":
+        if zero.kind == "touching" or zero.t == t0:
             insort(settled.setdefault(zero.event, []), zero.t)
     own: list[tuple[int, float]] = []
     for event, t in sorted(doubts, key=lambda doubt: (doubt[0], abs(doubt[1] - t0))):
