@@ -70,13 +70,13 @@ def _orders(known: str, new: str) -> tuple[frozenset[tuple[int, ...]], frozenset
     """Return the orders of the axes with which ``known`` may become ``new``, and those if matrices are transposed."""
     axes, own = axes_of(known), axes_of(new)
     moved_axes = {order: {order[axis - 1] if axis else 0 for axis in axes} for order in CYCLIC}
-    kept = [order for order in CYCLIC if not axes or not own or moved_axes[order] == own]
+    possible = [order for order in CYCLIC if not axes or not own or moved_axes[order] == own]
     entry, new_entry = ENTRY.fullmatch(known), ENTRY.fullmatch(new)
     if not entry or not new_entry:
-        return frozenset(kept), frozenset(kept)
-    moved = {order: tuple(str(order[int(place) - 1]) for place in entry.groups()) for order in kept}
-    plain = frozenset(order for order in kept if moved[order] == new_entry.groups())
-    return plain, frozenset(order for order in kept if moved[order][::-1] == new_entry.groups())
+        return frozenset(possible), frozenset(possible)
+    moved = {order: tuple(str(order[int(place) - 1]) for place in entry.groups()) for order in possible}
+    plain = frozenset(order for order in possible if moved[order] == new_entry.groups())
+    return plain, frozenset(order for order in possible if moved[order][::-1] == new_entry.groups())
 
 
 def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
