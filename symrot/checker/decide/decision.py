@@ -60,6 +60,9 @@ __all__ = ["Equation", "decide_equation", "for_positive_bases", "is_large"]
 MUCH_LARGER = 5
 """The ratio of sizes from which on the larger formula certainly has the longer text."""
 
+LONG_SUM = 5
+"""The fewest terms of a sum inside a function for which a letter is tried."""
+
 MOST_ON_THE_CUT = 4
 """The most symbols of a claim with atan2 that is examined at points with simple coordinates."""
 
@@ -111,6 +114,8 @@ def decide_equation(equation: Equation) -> Decision:
             decision = _decide(equation)
             if decision.verdict == "undecided":
                 decision = _with_positive_symbols(equation, decision)
+            if decision.verdict == "undecided":
+                decision = _with_letters_for_sums(equation, decision)
         return _without_needless(decision, equation) if decision.verdict == "conditional" else decision
     except RecursionError:
         return Decision("undecided", reason="the formulas are nested too deeply to be read")
@@ -118,6 +123,30 @@ def decide_equation(equation: Equation) -> Decision:
         if is_unordered(reason):
             return Decision("undecided", reason="two numbers in the claim are too close to tell which is larger")
         raise
+
+
+def _with_letters_for_sums(equation: Equation, decision: Decision) -> Decision:
+    """Return "true" if an equation is proven, without conditions, for letters in place of long sums in its functions;
+    otherwise ``decision``.
+    """
+    # sin(a + b + .. + m)**2 + cos(a + b + .. + m)**2 == 1 is too long to be expanded
+    if equation.hypotheses or equation.divisors or equation.radicands or equation.bases:
+        return decision
+    entries = [*flatten(equation.left)[0], *flatten(equation.right)[0]]
+    functions = {node for entry in entries for node in preorder_traversal(entry) if node.is_Function}
+    sums = {argument for node in functions for argument in node.args if len(argument.args) >= LONG_SUM}
+    letters = {
+        argument: Symbol(f"sum_{place}", real=True)
+        for place, argument in enumerate(sorted(sums, key=str))
+        if argument.is_Add and argument.is_real
+    }
+    if not letters:
+        return decision
+    try:
+        shorter = _decide(Equation(*(side.xreplace(letters) for side in (equation.left, equation.right))))
+    except InputError:
+        return decision
+    return shorter if shorter.verdict == "true" and not shorter.conditions else decision
 
 
 def _with_positive_symbols(equation: Equation, decision: Decision) -> Decision:
