@@ -124,6 +124,9 @@ BODIES: tuple[Kind, ...] = (
     Kind("thin tube", ("cylindrical shell", "thin hollow cylinder", "thin-walled cylinder", "thin-walled tube",
                        "thin-walled hollow cylinder", "thin cylindrical shell"), ("a thin tube",), "cylinder"),
     Kind("annulus", ("annular disk",), ("a annulus",), "hollow_cylinder"),
+    Kind("elliptical disk", ("elliptic disk", "elliptical plate", "elliptic plate", "elliptical lamina",
+                             "elliptic lamina"), ("a elliptical disk",), "ellipsoid"),
+    Kind("elliptical cylinder", ("elliptic cylinder",), ("a elliptical cylinder",), "ellipsoid"),
     Kind("conical shell", ("hollow cone",), ("a conical shell",), "cone"),
     Kind("thin rod", ("rod", "slender rod", "bar", "thin bar", "slender bar", "stick", "thin stick",
                       "metre stick", "meter stick", "beam", "slender beam", "pole", "baton"), ("a rod",), "rod"),
@@ -217,7 +220,7 @@ _LINE = r"(?:(?:,? (?:and )?)?(?:axis |line )?(?:that is )?)?"
 _FACES = r"(?:it|plane|disk|ring|hoop|plate|lamina|surface|faces?|flat faces?|bases?|ends?|end faces?)\b"
 _OWN_AXIS = r"(?:axis of (?:symmetry|revolution)|(?:symmetry |own |figure |central |cylinder |longitudinal )?axis)\b"
 _ROUND = (*("cylinder", "hollow_cylinder", "cone", "frustum", "hemisphere", "torus"), "disk", "ring")
-_FLAT = ("disk", "ring", "annulus", "plate", "triangular plate", "flat body")
+_FLAT = ("disk", "ring", "annulus", "elliptical disk", "plate", "triangular plate", "flat body")
 ROD = "thin rod"
 _DIRECTIONS: tuple[tuple[tuple[str, ...], str, str], ...] = (
     ((ROD,), r"(?:perpendicular|normal) to (?:it|rod|bar|stick|length|axis)\b", "xy"),

@@ -213,7 +213,7 @@ def _has_line(body: Body, line: str) -> bool:
 
 
 def _described(meaning: Meaning) -> str:
-    body = f"of a {_described_body(meaning.body)}" if meaning.body else ""
+    body = re.sub("^of a (?=[aeio])", "of an ", f"of a {_described_body(meaning.body)}") if meaning.body else ""
     frame = f"in the {meaning.frame} frame" if meaning.frame else ""
     return " ".join(part for part in (meaning.quantity.title, body, meaning.place, frame) if part)
 

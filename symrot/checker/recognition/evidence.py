@@ -140,7 +140,7 @@ RATES_OF_TOPS = ("precession", "nutation", "frequency")
 OF_ANGLES = re.compile(r"angle rates of|angular velocity of [xyzXYZ]{3}\b")
 """Names of known formulas in Euler angles, two of which are not equal in a special case that books print."""
 
-RARE = ("annulus", "thin tube", "conical shell")
+RARE = ("annulus", "thin tube", "conical shell", "elliptical")
 """Bodies whose moments a faulty formula is unlikely to mean."""
 
 AXES = ("x1Ap", "y2Bq", "z3Cr")
