@@ -191,6 +191,7 @@ def test_the_python_page_lists_every_public_name():
 
 OPTIONAL = {
     "argcomplete",
+    "dask",
     "matplotlib",
     "mpl_toolkits",
     "PIL",

@@ -22,7 +22,7 @@ def test_a_page_computes_its_motion_in_firefox(browser, tmp_path):
     trust = browser.evaluate("document.getElementById('trust').textContent")
     assert float(re.search(r"Agrees with the motion that symrot computed to ([\d.e-]+)\.", trust)[1]) < 1e-12
     browser.size(390, 844)
-    assert browser.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    browser.wait("document.documentElement.scrollWidth <= innerWidth")
     assert browser.errors == []
 
 

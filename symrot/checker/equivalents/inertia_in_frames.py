@@ -18,6 +18,8 @@ from symrot.kinematics.rotations import elementary_rotation
 __all__ = ["on_inertia_in_frames", "without_brackets"]
 
 INERTIA = re.compile(r"(?P<stem>[IJ]|mathbf[IJ])(?:_(?P<frame>\w+))?(?P<mark>_prime|_bar|_tilde)?")
+ROTATION = re.compile(r"(?:math(?:bf|cal|rm))?[A-Z]\w*")
+"""The name of a matrix, in capitals; n^T I n, with a vector, is a moment about its axis."""
 CONDITION = "{} takes components in the frame of {} to those in the frame of {}"
 
 
@@ -51,11 +53,13 @@ def on_inertia_in_frames(claim: Claim) -> Verdict | None:
         into = last == Node("transpose", None, (first,)) and first.kind == "name"
         back = first == Node("transpose", None, (last,)) and last.kind == "name"
         names = INERTIA.fullmatch(str(side.value)), INERTIA.fullmatch(str(tensor.value))
-        if not (into or back) or None in names or side == tensor or names[0]["stem"] != names[1]["stem"]:  # type: ignore[index]
+        matrix = first if into else last
+        if not (into or back) or not ROTATION.fullmatch(str(matrix.value)):
+            continue
+        if None in names or side == tensor or names[0]["stem"] != names[1]["stem"]:  # type: ignore[index]
             continue
         if not _energy_is_the_same():
             return None
-        matrix = first if into else last
         inner, outer = tensor.value, side.value
         condition = CONDITION.format(matrix.value, *((inner, outer) if into else (outer, inner)))
         note = f"{inner} and {outer} are one tensor of inertia in two frames: the kinetic energy is the same in both"
