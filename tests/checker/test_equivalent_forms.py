@@ -39,8 +39,10 @@ def test_a_prime_that_would_name_the_rate_of_another_angle_does_not_hide_a_wrong
 
 
 @pytest.mark.parametrize(("text", "verdict"), [
-    ("Ṙ = [ω]× R", "recognised"), ("Ṙ = R [ω]×", "recognised"), ("Ṙ = -[ω]× R", "recognised"),
-    ("Ṙ = [ω]× R^T", "doubtful"), ("R' = R^T [ω]×", "doubtful"), (r"\dot R = R^T [\omega]_\times", "doubtful"),
+    ("Ṙ = R [ω]×", "recognised"), ("Ṙ = -[ω]× R", "recognised"), ("Ṙ = [ω]× R^T", "doubtful"),
+    pytest.param("R' = R^T [ω]×", "doubtful", marks=pytest.mark.campaign),
+    pytest.param(r"\dot R = R^T [\omega]_\times", "doubtful", marks=pytest.mark.campaign),
+    pytest.param("Ṙ = [ω]× R", "recognised", marks=pytest.mark.campaign),
 ])  # fmt: skip
 def test_the_matrix_on_the_left_of_its_rate_is_the_one_on_the_right(text, verdict):
     """``R^T [ω]×`` is the rate of the transposed matrix, and of no other."""

@@ -1,7 +1,11 @@
-"""The verdicts on the four documents: each as reviewed by hand, and the page of errata as printed."""
+"""The verdicts on the four documents: each as reviewed by hand, and the page of errata as printed.
+
+By default one document is checked; `pytest -m campaign` checks all four, and so does `.ci/run`.
+"""
 
 import tomllib
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -22,9 +26,19 @@ pytestmark = pytest.mark.first  # the survey takes seconds
 REVIEWED = tomllib.loads((TESTS / "reference" / "textbook.toml").read_text(encoding="utf-8"))
 
 
+@cache
+def survey_of(names):
+    return errata.survey(names)
+
+
+@pytest.fixture(scope="module", params=["chen", pytest.param("all", marks=pytest.mark.campaign)])
+def survey(request):
+    return survey_of(tuple(DOCUMENTS) if request.param == "all" else (request.param,))
+
+
 @pytest.fixture(scope="module")
-def survey():
-    return errata.survey()
+def whole():
+    return survey_of(tuple(DOCUMENTS))
 
 
 def test_a_verdict_that_flips_is_noticed(survey):
@@ -33,10 +47,11 @@ def test_a_verdict_that_flips_is_noticed(survey):
         assert {item.claim["id"]: item.outcome for item in found if item.outcome != "holds"} == REVIEWED[source.name]
 
 
-def test_there_are_hundreds_of_claims_and_every_one_is_decided(survey):
-    assert [source.name for source, _ in survey] == list(DOCUMENTS)
-    assert sum(len(found) for _, found in survey) >= 300
-    assert all(item.outcome in OUTCOMES and item.outcome != "undecided" for _, found in survey for item in found)
+@pytest.mark.campaign
+def test_there_are_hundreds_of_claims_and_every_one_is_decided(whole):
+    assert [source.name for source, _ in whole] == list(DOCUMENTS)
+    assert sum(len(found) for _, found in whole) >= 300
+    assert all(item.outcome in OUTCOMES and item.outcome != "undecided" for _, found in whole for item in found)
 
 
 def test_what_does_not_hold_has_a_right_form_and_a_reason(survey):
@@ -49,13 +64,14 @@ def test_what_does_not_hold_has_a_right_form_and_a_reason(survey):
                 assert all(repair.proven for repair in item.verdict.repairs)
 
 
-def test_every_error_has_one_entry_and_every_entry_shows_an_error(survey):
+@pytest.mark.campaign
+def test_every_error_has_one_entry_and_every_entry_shows_an_error(whole):
     """The claims of the errata are the claims that do not hold, each once."""
     described = [formula.claim for erratum in errata_of_documents() for formula in erratum.formulas]
     assert len(described) == len(set(described))
-    failing = {item.claim["id"] for _, items in survey for item in items if item.outcome == "fails"}
+    failing = {item.claim["id"] for _, items in whole for item in items if item.outcome == "fails"}
     assert set(described) == failing
-    assert len(errata_of_documents()) == sum(len(entries(items)) for _, items in survey)
+    assert len(errata_of_documents()) == sum(len(entries(items)) for _, items in whole)
 
 
 def test_every_entry_has_a_corrected_formula_that_differs_from_the_printed_one(survey):
@@ -92,8 +108,9 @@ def test_a_correction_is_derived_where_the_search_finds_none():
     assert item.right.startswith("J = Matrix([[sin(psi(t))*csc(theta(t)), cos(psi(t))*csc(theta(t)), 0],")
 
 
-def test_few_corrections_are_proposals(survey):
-    origins = Counter(item.origin for _, items in survey for item in items if item.corrected)
+@pytest.mark.campaign
+def test_few_corrections_are_proposals(whole):
+    origins = Counter(item.origin for _, items in whole for item in items if item.corrected)
     assert origins["proposal"] <= 4 < origins["derivation"] < origins["search"]
 
 
@@ -130,10 +147,11 @@ def test_a_condition_is_told_in_the_words_of_a_book():
     assert condition_words("x >= 0") == r"$x \ge 0$"
 
 
-def test_formulas_that_hold_under_a_condition_on_an_angle_are_listed(survey):
-    conditional = [item for _, items in survey for item in items if item.outcome == "conditional"]
+@pytest.mark.campaign
+def test_formulas_that_hold_under_a_condition_on_an_angle_are_listed(whole):
+    conditional = [item for _, items in whole for item in items if item.outcome == "conditional"]
     assert conditional and all(item.conditions for item in conditional)
-    assert page(survey).count("### Conditions left out") == 3
+    assert page(whole).count("### Conditions left out") == 3
     assert {item.verdict.verdict for item in conditional} == {"true", "conditional", "false"}
     proposed = {condition.claim for condition in conditions()}
     assert {item.claim["id"] for item in conditional if item.words} == proposed
@@ -152,14 +170,16 @@ def test_a_condition_under_which_a_claim_is_not_proven_is_refused():
         finding_of(source.claims[claim.id], claim, True, None, Condition(claim.id, ("cos(f) == 0",), ""))
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("suffix", ["md", "html"])
-def test_the_errata_are_as_printed(survey, suffix):
-    text = {"md": page, "html": html}[suffix](survey)
+def test_the_errata_are_as_printed(whole, suffix):
+    text = {"md": page, "html": html}[suffix](whole)
     assert text == (TESTS.parent / "generated" / f"errata.{suffix}").read_text(encoding="utf-8")
 
 
-def test_the_page_for_a_browser_is_self_contained_and_typeset(survey):
-    text = html(survey)
+@pytest.mark.campaign
+def test_the_page_for_a_browser_is_self_contained_and_typeset(whole):
+    text = html(whole)
     assert "<script" not in text and "http" not in text.replace("http://www.w3.org/1998/Math/MathML", "")
     assert text.count("<math") > 100 and '<mrow class="mark">' in text
     assert "color-scheme: light dark" in text and "prefers-color-scheme: dark" in text
