@@ -59,6 +59,8 @@ def named_formula(claim: Claim) -> NamedFormula | None:
     """
     assert claim.relation is not None
     _, left, right = claim.relation
+    if claim.has_double_equals and _compares_rates(left, right):
+        return None
     others = [side for relation in claim.hypotheses for side in relation[1:]] + [tree for _, tree in claim.define]
     known, defined = _known(claim), dict(claim.define)
     # the quantity may be a symbol, a function of time or its derivative, and must occur nowhere else
@@ -179,6 +181,8 @@ def claims_identity(claim: Claim) -> bool:
     if claim.relation is None or not claim.has_double_equals:
         return False
     sides = claim.relation[1:]
+    if _compares_rates(*sides):
+        return True
     for side, other in (sides, sides[::-1]):
         own = _quantities(side)
         # 2*k**2 and cos(theta) name k and theta; m*a names nothing
@@ -194,6 +198,14 @@ def claims_identity(claim: Claim) -> bool:
         return False
     motion = _with_highest_rate(*sides)
     return motion is None or any(node.kind == "call" for _, node in walk(motion[1]))
+
+
+def _compares_rates(left: Node, right: Node) -> bool:
+    """Return whether x and a formula with x are differentiated by t, as in ``diff(2*x, t) == diff(x, t)``."""
+    derivatives = [node for side in (left, right) for _, node in walk(side) if is_derivative(node)]
+    arguments = [node.args[0] for node in derivatives if all(each.value == "t" for each in node.args[1:])]
+    quantities = {each.value for each in arguments if each.kind == "name"}
+    return any(node.value in quantities for each in arguments if each.kind != "name" for _, node in walk(each))
 
 
 def _has_hidden_zero(claim: Claim, left: Node, right: Node) -> bool:
