@@ -170,6 +170,9 @@ def _principal_multiple(ring: FormulaRing, factor: PolyElement, names: dict[int,
             if further is not None:
                 # the angle w = 3*asin(x) must lie in [-pi/2, pi/2]; bounds of w are bounds of x
                 bounds = sorted([(least - shift) / factor_of_inner, (most - shift) / factor_of_inner])
+                _, smallest, largest = _PRINCIPAL[type(inner)]
+                if bounds[1] < smallest or bounds[0] > largest:
+                    continue  # no x has such a w: asin(x) is never 5*pi/2 - acos(x)
                 ends = _ends_of_argument(inner, *bounds)
                 inside, edge = (ends, ()) if isinstance(leaf, atan) else ((), ends)
                 return PrincipalValueProof(edge, inside, (other, *further))

@@ -335,3 +335,12 @@ def test_normal_forms_of_new_functions_have_their_values():
     for formula in (sin(3 * atan(x)), cos(asin(x / 4) / 2 + y), tanh(x) ** 2 + exp(-y), sin(x + pi / 7) * cos(pi / 9)):
         point = {x: mp.mpf("0.7"), y: mp.mpf("-1.3")}
         assert abs(value(formula, point) - value(normal_form(formula), point)) < TINY
+
+
+@pytest.mark.parametrize(
+    "claim", ["asin(y) == 5*pi/2 - acos(y)", "acos(y) == 2*pi + acos(y)", "asin(y) == 2*pi - asin(-y)"]
+)
+def test_an_inverse_function_is_never_an_angle_beyond_its_range(claim):
+    import symrot
+
+    assert symrot.check(claim, repair=False).verdict == "false"
