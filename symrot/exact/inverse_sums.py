@@ -170,10 +170,9 @@ def _principal_multiple(ring: FormulaRing, factor: PolyElement, names: dict[int,
             if further is not None:
                 # the angle w = 3*asin(x) must lie in [-pi/2, pi/2]; bounds of w are bounds of x
                 bounds = sorted([(least - shift) / factor_of_inner, (most - shift) / factor_of_inner])
-                _, smallest, largest = _PRINCIPAL[type(inner)]
-                if bounds[1] < smallest or bounds[0] > largest:
-                    continue  # no x has such a w: asin(x) is never 5*pi/2 - acos(x)
                 ends = _ends_of_argument(inner, *bounds)
+                if ends is None:
+                    continue
                 inside, edge = (ends, ()) if isinstance(leaf, atan) else ((), ends)
                 return PrincipalValueProof(edge, inside, (other, *further))
     return None
@@ -195,9 +194,13 @@ def _principal_sum(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr
     return None
 
 
-def _ends_of_argument(inner: Expr, low: Expr, high: Expr) -> tuple[Expr, ...]:
-    """Return formulas that are nonnegative where the asin, acos or atan ``inner`` lies in [low, high]."""
+def _ends_of_argument(inner: Expr, low: Expr, high: Expr) -> tuple[Expr, ...] | None:
+    """Return formulas that are nonnegative where the asin, acos or atan ``inner`` lies in [low, high]; None if it never
+    does.
+    """
     function, least, most = _PRINCIPAL[type(inner)]
+    if high < least or low > most:
+        return None  # acos(x) never lies in [2*pi, 3*pi]
     sign = -1 if isinstance(inner, acos) else 1  # acos decreases
     ends = []
     # an end of the function's own range bounds nothing

@@ -341,6 +341,4 @@ def test_normal_forms_of_new_functions_have_their_values():
     "claim", ["asin(y) == 5*pi/2 - acos(y)", "acos(y) == 2*pi + acos(y)", "asin(y) == 2*pi - asin(-y)"]
 )
 def test_an_inverse_function_is_never_an_angle_beyond_its_range(claim):
-    import symrot
-
     assert symrot.check(claim, repair=False).verdict == "false"
