@@ -329,16 +329,16 @@ class SwitchedRun(RunState):
 
     def _crosses(self, regime: Regime, guard: Guard, *places: tuple[float, Floats]) -> bool:
         """Return whether a function (sign, floor, ..) switches between two points (time, states) of the motion."""
-        try:
-            before, after = (
-                float(evaluate(parse(guard.formula), self._values(regime, place), FLOAT_FUNCTIONS, float))
-                for place in places
-            )
-        except (ArithmeticError, ValueError, IntegrationStopped):
-            # the formula has no value at a point
-            return False
+        before, after = (self._oriented(regime, guard, place) for place in places)
         # the guard falls from >= 0 to <= 0
         return before >= 0.0 >= after and before > after
+
+    def _oriented(self, regime: Regime, guard: Guard, place: tuple[float, Floats]) -> float:
+        """Return the value of a guard's formula, which falls through zero at a switch; NaN if it has no value."""
+        try:
+            return float(evaluate(parse(guard.formula), self._values(regime, place), FLOAT_FUNCTIONS, float))
+        except (ArithmeticError, ValueError, IntegrationStopped):
+            return math.nan
 
     def _chunk(self, start: float, stop: float, states: Callable[[Floats], Floats], piece: Piece) -> Chunk:
         return Chunk(self._at(start), self._at(stop), self.zero, states, piece)
@@ -397,14 +397,11 @@ class SwitchedRun(RunState):
         """Return whether the guard is at most zero at the start of ``piece`` and rises until it is positive."""
         # The state was located where the guard is zero, to the rounding errors of a longer piece: it may be slightly
         # negative still. Values at doubled distances tell rising from falling, which is a switch back or sliding.
-        formula, start, end = parse(guard.formula), float(piece.edges[0]), float(piece.edges[-1])
+        start, end = float(piece.edges[0]), float(piece.edges[-1])
         times = np.concatenate([[start], start + (end - start) * np.ldexp(1.0, range(-RISE_BITS, 1))])
         before = -math.inf
         for t, y in zip(times.tolist(), states(times), strict=True):
-            try:
-                value = float(evaluate(formula, self._values(regime, (t, y)), FLOAT_FUNCTIONS, float))
-            except (ArithmeticError, ValueError, IntegrationStopped):
-                return False
+            value = self._oriented(regime, guard, (t, y))
             if not before <= value <= 0.0:
                 return value > 0.0 and before > -math.inf
             before = value
