@@ -9,12 +9,15 @@ def main() -> int:
     Ctrl-C ends the program without a traceback, even while modules are still being imported.
     """
     try:
-        from symrot.cli.interrupt import repeat_lost_interrupts
+        from symrot.cli.interrupt import end_quietly, repeat_lost_interrupts
 
         repeat_lost_interrupts()
         from symrot.cli import main as cli
 
-        return cli.main()
+        code = cli.main()
+        if code == 130:
+            end_quietly()
+        return code
     except KeyboardInterrupt:
         return 130
 

@@ -10,7 +10,7 @@ import sys
 from threading import Timer, main_thread
 from typing import Any
 
-__all__ = ["repeat_lost_interrupts"]
+__all__ = ["end_quietly", "repeat_lost_interrupts"]
 
 SECONDS = 0.02  # enough time for the interrupted callback to return
 
@@ -29,6 +29,11 @@ def repeat_lost_interrupts() -> None:
             previous(discarded)
 
     sys.unraisablehook = hook
+
+
+def end_quietly() -> None:
+    """Discard exceptions that Python raises at its exit, which may find the pipe of a killed process closed."""
+    sys.unraisablehook = lambda discarded: None
 
 
 def _interrupt_later() -> None:

@@ -140,5 +140,4 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         _stop_compilers()
         progress("")
-        sys.unraisablehook = lambda discarded: None  # Python's exit may find the pipe of a killed process closed
         return INTERRUPTED
