@@ -9,7 +9,7 @@ from functools import cache, cached_property
 from symrot.checker.context.quantities import meaningful_words, place_of_words, plain_words
 from symrot.inertia.shapes import SHAPES, Dimension
 
-__all__ = ["BODIES", "Body", "Kind", "bodies_of_formula", "body_of_words"]
+__all__ = ["BODIES", "Body", "Kind", "bodies_of_formula", "body_of_words", "with_article"]
 
 
 @dataclass(frozen=True)
@@ -249,6 +249,11 @@ _ALONG = re.compile(
 
 
 @cache
+def with_article(words: str) -> str:
+    """Return ``an ellipsoid`` for ``ellipsoid``, and ``a unit vector`` for ``unit vector``."""
+    return f"an {words}" if words[0] in "aeio" else f"a {words}"
+
+
 def bodies_of_formula(name: str) -> frozenset[str]:
     """Return the bodies that the ``name`` of a derived formula mentions, as phrases such as "a hollow cylinder"."""
     phrases: set[str] = set()

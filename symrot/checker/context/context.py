@@ -11,7 +11,7 @@ from fractions import Fraction
 
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, is_derivative, walk
-from symrot.checker.context.bodies import BODIES, Body, body_of_words
+from symrot.checker.context.bodies import BODIES, Body, body_of_words, with_article
 from symrot.checker.context.quantities import (
     AMBIGUOUS,
     LINES,
@@ -213,7 +213,7 @@ def _has_line(body: Body, line: str) -> bool:
 
 
 def _described(meaning: Meaning) -> str:
-    body = re.sub("^of a (?=[aeio])", "of an ", f"of a {_described_body(meaning.body)}") if meaning.body else ""
+    body = f"of {with_article(_described_body(meaning.body))}" if meaning.body else ""
     frame = f"in the {meaning.frame} frame" if meaning.frame else ""
     return " ".join(part for part in (meaning.quantity.title, body, meaning.place, frame) if part)
 

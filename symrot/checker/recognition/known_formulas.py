@@ -11,6 +11,7 @@ from typing import Any
 from sympy import Expr, ImmutableMatrix, Integer, Matrix, Mul, Symbol, diag
 
 from symrot import catalogue, symbols
+from symrot.checker.context.bodies import with_article
 from symrot.checker.recognition.fingerprint import NotInField, fingerprint
 from symrot.checker.recognition.formulas.bodies import bodies
 from symrot.checker.recognition.formulas.kinematics import GYROSCOPE, OF_ONE_ENTRY, along_axes, rotations, vectors
@@ -162,15 +163,11 @@ PLACES = {
 """Shape -> (name, position) of special points, in the axes and symbols of the shape."""
 
 
-def _with_article(words: str) -> str:
-    return f"an {words}" if words[0] in "aeio" else f"a {words}"
-
-
 def _solids() -> Iterator[Named]:
     for name, shape in SHAPES.items():
         if shape.kind == "points":
             continue
-        body, title = solid(name), _with_article(name.replace("_", " "))
+        body, title = solid(name), with_article(name.replace("_", " "))
         places = [("its centre of mass", tuple(body.center_of_mass))]
         if any(body.center_of_mass):
             origin = shape.axes.partition(",")[0].removeprefix("origin at ")
@@ -219,7 +216,7 @@ def _thin_bodies() -> Iterator[Named]:
         ),
     ):
         for place, axis in enumerate("xyz"):
-            yield f"moment of inertia of {_with_article(title)}, {axis} axis", origin, matrix[place, place]
+            yield f"moment of inertia of {with_article(title)}, {axis} axis", origin, matrix[place, place]
 
 
 def _mechanics() -> Iterator[Named]:
