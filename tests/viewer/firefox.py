@@ -11,8 +11,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import monotonic, sleep
 
+from tests.viewer.browser import LONGEST, Browser
+
 FIREFOX = next((path for name in ("firefox-esr", "firefox") if (path := shutil.which(name))), None)
-LONGEST = 60.0  # s, of a wait
 PREFERENCES = {
     "marionette.port": 0,  # a free port, which Firefox writes into its profile
     "app.update.enabled": False,
@@ -133,13 +134,7 @@ class Firefox:
         script = f"return (async () => ({expression}))();"
         return self.ask("WebDriver:ExecuteScript", script=script, args=[], sandbox=None)["value"]
 
-    def wait(self, condition, longest=LONGEST):
-        """Wait until a JavaScript expression is true."""
-        end = monotonic() + longest
-        while not self.evaluate(f"Boolean({condition})"):
-            if monotonic() > end:
-                raise TimeoutError(f"{condition} is not true after {longest} s; errors: {self.errors}")
-            sleep(0.05)
+    wait = Browser.wait
 
     def screenshot(self, full=False):
         """Return a PNG of what is seen of the page, or of all of it."""
