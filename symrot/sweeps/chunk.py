@@ -73,9 +73,12 @@ class _Inputs:
         return {"omega": self.omega[rows], "quaternion": attitudes, "parameters": parameters}
 
 
-def compute(job: Job, start: int, stop: int) -> Chunk:
-    """Return the outputs, status and messages of the trajectories ``start`` to ``stop - 1`` of a sweep."""
-    draws, n = job.design.draws(start, stop), stop - start
+def compute(job: Job, start: int, stop: int, draws: Draws | None = None) -> Chunk:
+    """Return the outputs, status and messages of the trajectories ``start`` to ``stop - 1`` of a sweep.
+
+    ``draws`` are their varied values, if these are known already.
+    """
+    draws, n = job.design.draws(start, stop) if draws is None else draws, stop - start
     samples = sample_times(job.outputs, job.times)
     shapes = {output.name: (n, len(job.times)) if output.is_series else (n,) for output in job.outputs}
     outputs = {name: np.full(shape, np.nan) for name, shape in shapes.items()}

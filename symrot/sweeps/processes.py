@@ -22,6 +22,7 @@ from typing import Any
 
 from symrot.errors import PropagationError
 from symrot.sweeps.chunk import Chunk, Job, compute
+from symrot.sweeps.design import Draws
 
 __all__ = ["compute_packed", "cores", "packed", "run_here"]
 
@@ -51,10 +52,13 @@ def _import(text: bytes) -> None:
     _unpacked(text)
 
 
-def compute_packed(text: bytes, start: int, stop: int) -> Chunk:
-    """Return the chunk of the trajectories ``start`` to ``stop - 1``; ``text`` is the job from :func:`packed`."""
+def compute_packed(text: bytes, start: int, stop: int, draws: Draws | None = None) -> Chunk:
+    """Return the chunk of the trajectories ``start`` to ``stop - 1``; ``text`` is the job from :func:`packed`.
+
+    ``draws`` are their varied values, if these are known already.
+    """
     # called in a process of run_here, which unpacks a job only once
-    return compute(_unpacked(text), start, stop)
+    return compute(_unpacked(text), start, stop, draws)
 
 
 def run_here(job: Job, ranges: Sequence[Range], workers: int) -> Iterator[Chunk]:
@@ -88,8 +92,10 @@ def run_here(job: Job, ranges: Sequence[Range], workers: int) -> Iterator[Chunk]
             while missing or running:
                 while missing and len(running) < IN_FLIGHT * workers:
                     each = missing.popleft()
+                    # drawn here: a new process would take 0.2 to 1 s to import the distributions of scipy
+                    draws = job.design.draws(*each)
                     with _without_main():
-                        running[pool.submit(compute_packed, text, *each)] = each
+                        running[pool.submit(compute_packed, text, *each, draws)] = each
                 for future in wait(running, return_when=FIRST_COMPLETED).done:
                     chunk = future.result()
                     del running[future]
