@@ -94,7 +94,8 @@ def ways(value: Formulas, chained: Formulas, base: Program, entries: Entries, gr
     every = [chained]
     if not set(base.operations()) & set(DERIVATIVES):
         every.append(explicit)
-        for formulas in (Formulas.of(base), Formulas.of(_single_operations(base))):
+        own = Formulas.of(base)
+        for formulas in (own, Formulas.of(_single_operations(base)), _with_coefficients(own, entries)):
             every += [_forward(formulas, entries), _backward(formulas, entries)]
     linear = _linear_outputs(explicit, entries, groups)
     yield from every
@@ -233,6 +234,30 @@ def _symbol(named: list[tuple[Symbol, Expr]], name: str, slope: Expr) -> Expr:
     symbol = Symbol(f"{ANONYMOUS}{name.replace(ANONYMOUS, '')}", real=True)
     named.append((symbol, slope))
     return symbol
+
+
+def _with_coefficients(value: Formulas, entries: Entries) -> Formulas:
+    """Return formulas in which the constant factors of each term of an output are one temporary.
+
+    ``(a*b*x + c*y)/d`` with the variables x and y becomes ``e*x + f*y`` with ``e = a*b/d`` and ``f = c/d``. Derivatives
+    have the same coefficients, so that these are computed once, and no division of the sum is left.
+    """
+    varying = {variable for _, variable in entries}
+    for symbol, formula in value.named:
+        if varying & _symbols(formula).keys():
+            varying.add(str(symbol))
+    named, outputs = list(value.named), []
+    for name, formula in value.outputs:
+        above, below = formula.as_numer_denom()
+        if varying & _symbols(below).keys():
+            outputs.append((name, formula))
+            continue
+        terms = []
+        for k, term in enumerate(Add.make_args(above)):
+            constant, rest = term.as_independent(*(s for s in term.free_symbols if str(s) in varying), as_Add=False)
+            terms.append(_symbol(named, f"{name}_coefficient_{k}", constant / below) * rest)
+        outputs.append((name, Add(*terms)))
+    return Formulas(tuple(outputs), tuple(named))
 
 
 Linear = dict[str, tuple[tuple[str, Symbol], ...]]  # output -> names of derivatives, each with the input of its term

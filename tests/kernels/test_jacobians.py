@@ -130,6 +130,14 @@ def test_fewer_operations_than_differences():
     assert plain < derived < 2 * plain < inf
 
 
+def test_divisors_of_values_and_derivatives_are_shared():
+    """Each moment divides once: values and derivatives of the heavy top use its inverse."""
+    counts = kernel_program("heavy_top_by_omega_by_q").operations()
+    assert counts["div"] == 3
+    # CasADi needs 110, from symrot's own program of the values
+    assert counts.total() - counts["neg"] <= 110
+
+
 @pytest.mark.parametrize(
     ("kernel", "variables", "words"),
     [
