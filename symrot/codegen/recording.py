@@ -19,6 +19,7 @@ __all__ = ["Recorded", "Recorder", "is_exactly"]
 
 ANONYMOUS = "#"  # first letter of temporaries that get their names later
 MOST_LEVELS = 200  # of operations inside each other in one formula, which functions over trees call one by one
+LEAST, LARGEST = Fraction(1, 10**290), Fraction(10) ** 290  # factors that are doubles with all their digits
 
 
 class Recorder:
@@ -28,11 +29,16 @@ class Recorder:
     """
 
     def __init__(self) -> None:
+        self.operations: list[Operation] = []
         self.known: dict[Operation, int] = {}
 
     def add(self, kind: str, *operands: int, value: Any = None) -> "Recorded":
         # equal operations have one entry
-        return Recorded(self, self.known.setdefault(Operation(kind, operands, value), len(self.known)))
+        operation = Operation(kind, operands, value)
+        index = self.known.setdefault(operation, len(self.operations))
+        if index == len(self.operations):
+            self.operations.append(operation)
+        return Recorded(self, index)
 
     def symbol(self, name: str) -> "Recorded":
         return self.add("symbol", value=name)
@@ -43,13 +49,22 @@ class Recorder:
     def index(self, value: Any) -> int:
         return value.index if isinstance(value, Recorded) else self.add("number", value=Fraction(value)).index
 
+    def multiple(self, factor: Fraction, index: int) -> "Recorded":
+        """Record ``factor`` times the result of the operation ``index``; two times two times x becomes 4 x."""
+        kind, operands, _ = self.operations[index]
+        if kind == "*" and self.operations[operands[0]].kind == "number":
+            both: Fraction = factor * self.operations[operands[0]].value
+            if LEAST < abs(both) < LARGEST:
+                return Recorded(self, operands[1]) * both
+        return self.add("*", self.index(factor), index)
+
     def function(self, name: str) -> Callable[..., "Recorded"]:
         return lambda *arguments: self.add(f"call {name}", *(self.index(argument) for argument in arguments))
 
     def program(self, signature: Signature, outputs: Mapping[str, Any]) -> Program:
         """Return the straight-line program that computes ``outputs``, a mapping from names to recorded numbers."""
         roots = {name: self.index(value) for name, value in outputs.items()}
-        operations = list(self.known)
+        operations = self.operations
         uses = Counter(roots.values())
         # operations that no output needs are left out
         needed = set(roots.values())
@@ -103,7 +118,9 @@ class Recorded:
     def __mul__(self, other: Any) -> Any:
         if isinstance(other, Recorded):
             return self._operation("*", self, other)
-        return 0 if other == 0 else self if other == 1 else -self if other == -1 else self._operation("*", other, self)
+        if other in (0, 1, -1):
+            return 0 if other == 0 else self if other == 1 else -self
+        return self.recorder.multiple(Fraction(other), self.index)
 
     __rmul__ = __mul__
 
