@@ -1,5 +1,11 @@
 """What the shell completes, and what a mistyped word is told."""
 
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 
 from symrot.cli.main import COMMANDS, _parser, main
@@ -31,6 +37,21 @@ def test_a_shell_completes_commands_options_and_names(line, word):
 def test_a_shell_completes_nothing_that_does_not_fit():
     assert "t_handle" not in completions("symrot run heavy")
     assert completions("symrot run --zzz") == []
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="needs bash")
+def test_bash_completes_the_command_that_is_installed(tmp_path):
+    """The line of docs/commands.md completes words at the Tab key: bash then starts symrot without arguments."""
+    pytest.importorskip("argcomplete")
+    symrot = tmp_path / "symrot"
+    symrot.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m symrot "$@"\n', encoding="utf-8")
+    symrot.chmod(0o755)
+    environment = {**os.environ, "PATH": os.pathsep.join([str(tmp_path), str(Path(sys.executable).parent), os.environ["PATH"]])}
+    press_tab = """eval "$(register-python-argcomplete symrot)"
+        COMP_LINE="symrot run t_h" COMP_POINT=14 COMP_TYPE=9 COMP_WORDS=(symrot run t_h) COMP_CWORD=2
+        _python_argcomplete symrot t_h run; echo "${COMPREPLY[@]}" """
+    done = subprocess.run(["bash", "-c", press_tab], capture_output=True, text=True, env=environment, timeout=60)
+    assert done.stdout.split() == ["t_handle"]
 
 
 @pytest.mark.parametrize(("words", "hint"), [
