@@ -29,6 +29,8 @@ def completions(line):
     ("symrot run t_handle --method ta", "taylor"), ("symrot derive poin", "poinsot"),
     ("symrot emit euler_zxz_body_r", "euler_zxz_body_rates"), ("symrot exercise heavy", "heavy_tops"),
     ("symrot check --textbook bro", "brown"), ("symrot emit x --target nu", "numpy"),
+    ("symrot emit t_handle --step ta", "taylor"), ("symrot sweep t_handle --sampling la", "latin"),
+    ("symrot sweep t_handle --statistics per", "percentiles"), ("symrot run t_handle --state zyx", "zyx"),
 ])  # fmt: skip
 def test_a_shell_completes_commands_options_and_names(line, word):
     assert word in completions(line)
@@ -37,6 +39,7 @@ def test_a_shell_completes_commands_options_and_names(line, word):
 def test_a_shell_completes_nothing_that_does_not_fit():
     assert "t_handle" not in completions("symrot run heavy")
     assert completions("symrot run --zzz") == []
+    assert set(completions("symrot run t_handle --method ")) == {"auto", "exact", "taylor", "dop853", "scipy"}
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="needs bash")
