@@ -49,7 +49,8 @@ def test_bash_completes_the_command_that_is_installed(tmp_path):
     symrot = tmp_path / "symrot"
     symrot.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m symrot "$@"\n', encoding="utf-8")
     symrot.chmod(0o755)
-    environment = {**os.environ, "PATH": os.pathsep.join([str(tmp_path), str(Path(sys.executable).parent), os.environ["PATH"]])}
+    folders = [str(tmp_path), str(Path(sys.executable).parent), os.environ["PATH"]]
+    environment = {**os.environ, "PATH": os.pathsep.join(folders)}
     press_tab = """eval "$(register-python-argcomplete symrot)"
         COMP_LINE="symrot run t_h" COMP_POINT=14 COMP_TYPE=9 COMP_WORDS=(symrot run t_h) COMP_CWORD=2
         _python_argcomplete symrot t_h run; echo "${COMPREPLY[@]}" """
