@@ -9,7 +9,7 @@ from tests.sweeps.scenes import DAMPED_TOP
 
 pytestmark = pytest.mark.usefixtures("quick_compiler")
 
-SCENE = DAMPED_TOP | {"span": {"t": [0, 2], "samples": 3}, "accuracy": {}}
+SCENE = DAMPED_TOP | {"span": {"t": [0, 2], "samples": 3}, "accuracy": {"tolerance": "1e-10"}}
 
 
 def ensemble(parameters, scene=SCENE):
