@@ -319,3 +319,14 @@ def test_letters_that_say_something_else_are_neither_recognised_nor_accused(clai
 def test_letters_that_say_the_same_are_recognised(claim, name):
     verdict = symrot.check(claim)
     assert verdict.verdict == "recognised" and name in verdict.recognised_as[0].name
+
+
+@pytest.mark.parametrize(("claim", "note"), [
+    ("atan2(R_21, R_11) == psi", "for -pi < psi <= pi: atan2 gives only these angles"),
+    (r"\phi = 2\arccos(q_0)", "for 0 <= phi <= 2*pi: acos gives only these angles"),
+    (r"\theta = -\arcsin(R_{31})", "for -pi/2 <= theta <= pi/2: asin gives only these angles"),
+])  # fmt: skip
+def test_an_inverse_function_limits_the_angle(claim, note):
+    """The verdict names the range in which the inverse function gives the angle."""
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "recognised" and note in verdict.notes
