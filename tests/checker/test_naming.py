@@ -329,3 +329,14 @@ def test_a_recognised_formula_has_no_repairs():
 
 def test_the_radius_of_a_body_is_no_side_of_a_box():
     assert symrot.check("I_x = 1/12 m(r²+h²)").repairs[0].text == "I_x = m*(3*r^2 + h^2)/12"
+
+
+@pytest.mark.parametrize(("claim", "note"), [
+    ("atan2(R_21, R_11) == psi", "for -pi < psi <= pi: atan2 gives only these angles"),
+    (r"\phi = 2\arccos(q_0)", "for 0 <= phi <= 2*pi: acos gives only these angles"),
+    (r"\theta = -\arcsin(R_{31})", "for -pi/2 <= theta <= pi/2: asin gives only these angles"),
+])  # fmt: skip
+def test_an_inverse_function_limits_the_angle(claim, note):
+    """The verdict names the range in which the inverse function gives the angle."""
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "recognised" and note in verdict.notes

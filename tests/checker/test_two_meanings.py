@@ -28,6 +28,12 @@ def test_the_power_zero_of_zero_is_a_convention():
     assert not symrot.check("2^0 = 1").notes
 
 
+def test_i_beside_powers_of_e_is_no_real_letter():
+    """i**i is exp(-pi/2); with a positive i it was false."""
+    with pytest.raises(symrot.InputError, match="power of a complex number"):
+        symrot.check("i^i = e^(-pi/2)")
+
+
 @pytest.mark.parametrize(("text", "verdict"), [
     ("K = ½ · 2 kg · (3 m/s)² = 8 J", "false"), ("a = (20 m/s)²/50 m = 8 m/s²", "definition"),
     ("T = 2π sqrt(1 m/(9.81 m/s²)) = 2.06 s", "false"),

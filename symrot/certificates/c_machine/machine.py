@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from symrot.certificates.c_machine.preprocessor import Token, tokens_of
-from symrot.errors import CertificateError
+from symrot.errors import CertificateError, InputError
 
 __all__ = ["Machine"]
 
@@ -132,6 +132,8 @@ class Machine:
         self.steps = 0
         try:
             return self._called(self.functions[name], arguments)
+        except InputError:  # from a function in ``own``
+            raise
         except (ArithmeticError, AttributeError, IndexError, RecursionError, TypeError, ValueError) as reason:
             raise CertificateError(f"{name}: expected a C text that runs, got a fault ({reason})") from None
 

@@ -7,7 +7,7 @@ states each word of this name. It is true if it equals such a formula, false if 
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice, permutations, zip_longest
+from itertools import islice, pairwise, permutations, zip_longest
 from typing import Any
 
 from sympy import Dummy, Expr, Function, Rational, Symbol, cancel, sqrt
@@ -306,7 +306,11 @@ def _with_guesses(context: Context, verdict: Verdict, stated: str) -> Verdict:
     readings = sorted(verdict.recognised_as, key=lambda known: len(guesses(context, known.name, stated)))
     verdict, likeliest = replace(verdict, recognised_as=tuple(readings)), readings[0]
     # a guess is a word in the formula's name that neither the context nor the claim's quantity states
-    what = " ".join([*guesses(context, likeliest.name, stated), likeliest.how]).strip()
+    words = guesses(context, likeliest.name, stated)
+    # words that follow each other are one phrase: "yaw, rotation matrix" of "yaw angle of a rotation matrix"
+    follow = [f"{first} {second}" in likeliest.name for first, second in pairwise(words)]
+    phrases = "".join(word + (" " if joined else ", ") for word, joined in zip(words, [*follow, False], strict=True))
+    what = ", ".join(filter(None, [phrases.removesuffix(", "), likeliest.how]))
     return replace(verdict, notes=(*verdict.notes, f"guessed, not stated: {what}")) if what else verdict
 
 

@@ -90,7 +90,8 @@ def with_domain(requirement: Requirement, conditions: Iterable[Any]) -> Requirem
         return requirement
     alone = _texts(_Conditions.of(signs))
     joined = [text for text in _texts(_Conditions.of([*requirement.conditions, *signs])) if text not in alone]
-    return replace(requirement, text=" and ".join(joined)) if joined else requirement
+    strict = tuple(sign for sign in requirement.signs if follow([(sign, "> 0")], [*requirement.conditions, *signs]))
+    return replace(requirement, text=" and ".join(joined), strict=strict) if joined else requirement
 
 
 def _signs(conditions: Iterable[Any]) -> list[Sign]:
