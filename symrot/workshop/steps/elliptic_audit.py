@@ -145,4 +145,4 @@ def _of_scene(path: Path, name: str, data: Data, scene: SceneSource | None) -> s
     own = load_scene(name if scene is None else scene)
     if plain_content(own.to_dict()) != data["scene"]["content"]:
         raise CertificateError(f"{path}: expected 'scene' to be the scene {own.name}, got other content")
-    return f"the scene in the certificate is the scene {own.name}"
+    return f"the scene in the certificate is the scene {own.name}{' of symrot' if scene is None else ''}"
