@@ -58,7 +58,7 @@ def _proven_statement(data: Data, own: SceneSource | None = None) -> Data | None
         jacobian = re.search(r" --jacobian ([\w,]+) ", str(data["regenerate"]))
         text = kernel_text(load_scene(own), jacobian[1].split(",") if jacobian else ())
         if text.name != data["kernel"]:
-            raise CertificateError(f"{data['kernel']}: expected the certificate of {text.name}, the kernel of the scene")
+            raise CertificateError(f"{data['kernel']}: expected the certificate of {text.name}, of the scene")
         return proven_statement(text.under_test(data.get("rounding")))
     name = data["kernel"]
     scene = str(data["regenerate"]).removeprefix("symrot emit ").removesuffix(" --target c")
