@@ -80,8 +80,8 @@ def mesh(path: str | Path, *, mass: Any = None, density: Any = None, scale: Any 
     Raises
     ------
     InputError
-        If the file is not a mesh, or if the mesh has holes, normals that point inwards, no volume, or triangles that
-        cross, as far as the tests detect this.
+        If trimesh is not installed, if the file is not a mesh, or if the mesh has holes, normals that point inwards,
+        no volume, or triangles that cross, as far as the tests detect this.
 
     Examples
     --------

@@ -1,30 +1,26 @@
-"""Reading of mesh files: vertices and triangles as arrays, and one clear error for each unusable file."""
+"""Reading of mesh files by trimesh: vertices and triangles as arrays, and one clear error for each unusable file."""
 
-from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from symrot.errors import InputError
-from symrot.exchange.glb_file import read_glb
-from symrot.exchange.obj_file import read_obj
-from symrot.exchange.ply_file import read_ply
-from symrot.exchange.stl_file import read_stl
-from symrot.exchange.surface import MOST_TRIANGLES, Surface, merge
+from symrot.exchange.mesh_format import TRIANGLES_IN
+from symrot.exchange.obj_file import read_plain_obj, refers_backwards
+from symrot.exchange.surface import Surface, merge
 from symrot.files.reading import read_input
 from symrot.formula.exact_numbers import show
 
 __all__ = ["SUFFIXES", "read_surface"]
 
-_READERS: dict[str, Callable[[bytes], tuple[Any, Any]]] = {
-    ".stl": read_stl, ".obj": read_obj, ".ply": read_ply, ".glb": read_glb
-}  # fmt: skip
-SUFFIXES = tuple(_READERS)
+SUFFIXES = (".stl", ".obj", ".ply", ".glb")
 LARGEST_FILE = 500_000_000
 """Largest size, in bytes, of a mesh file."""
 
 LARGEST_COORDINATE = 1e30
+MOST_TRIANGLES = 20_000_000
 
 
 def read_surface(path: Path, where: str) -> Surface:
@@ -40,7 +36,8 @@ def read_surface(path: Path, where: str) -> Surface:
     Raises
     ------
     InputError
-        If the file cannot be read, has no triangles, or has coordinates that are not finite or beyond 1e30.
+        If trimesh is not installed, or if the file cannot be read, has no triangles, or has coordinates that are not
+        finite or beyond 1e30.
     """
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
@@ -53,17 +50,73 @@ def read_surface(path: Path, where: str) -> Surface:
             f"{where}: expected a readable mesh file of at most {limit}, got {reason.strerror or reason}"
         ) from None
     try:
-        mesh = _READERS[suffix](content)
+        mesh = read_plain_obj(content) if suffix == ".obj" else None
+        if mesh is None and suffix == ".obj" and refers_backwards(content):
+            # trimesh counts them from the end of the file
+            raise InputError(
+                "expected positive numbers of vertices in an OBJ file whose lines differ in form, got a line such as "
+                "f -3 -2 -1; save the mesh again with positive numbers or with triangles alone"
+            )
+        if mesh is None:
+            trimesh, count = _trimesh(), TRIANGLES_IN[suffix](content)
+            mesh = _load(trimesh, content, suffix[1:])
+            if count not in (None, len(mesh[1])):
+                raise InputError(
+                    f"expected the {count} triangles of the file, but trimesh reads {len(mesh[1])}; save the mesh "
+                    "again as triangles alone"
+                )
     except InputError as reason:
         raise InputError(f"{where}: {reason}") from None
     except MemoryError:
         raise InputError(f"{where}: expected a mesh that fits in memory, got a larger one") from None
-    except Exception:  # hostile values, of any kind, where the format has others
+    except ImportError:  # a reader of trimesh looks for the encoding of a file that is no text
+        form = suffix[1:].upper()
         raise InputError(
-            f"{where}: expected a mesh in the format {suffix[1:].upper()}, got a file of another format or one that "
-            "ends early"
+            f"{where}: expected a mesh in the format {form}, got a file of another format or one that ends early"
         ) from None
+    except Exception as reason:  # a broken file raises errors of many kinds in the readers of trimesh
+        fault = " ".join(str(reason).split())[:80] or type(reason).__name__
+        raise InputError(f"{where}: expected a mesh in the format {suffix[1:].upper()}, got a fault: {fault}") from None
     return _checked(mesh, where)
+
+
+def _trimesh() -> Any:
+    """Return the module trimesh; raise InputError if it is not installed."""
+    try:
+        import trimesh
+    except ImportError:
+        raise InputError(
+            "expected trimesh, which reads meshes, but it is not installed; install it with pip install 'symrot[mesh]'"
+        ) from None
+    return trimesh
+
+
+def _load(trimesh: Any, content: bytes, kind: str) -> tuple[Any, Any]:
+    """Return the vertices and triangles of a file's ``content``; all bodies in it, at their positions, form
+    one mesh.
+    """
+    options: dict[str, Any] = {"process": False, "maintain_order": True}
+    if kind in ("obj", "glb"):
+        options["skip_materials"] = True
+    scene = trimesh.load_scene(BytesIO(content), file_type=kind, **options)
+    vertices, faces, count = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], 0
+    for node in scene.graph.nodes_geometry:
+        transform, name = scene.graph[node]
+        geometry = scene.geometry[name]
+        if not hasattr(geometry, "faces"):
+            continue
+        points = np.asarray(geometry.vertices, dtype=np.float64).reshape(-1, 3)
+        if not np.array_equal(transform, np.eye(4)):
+            points = points @ transform[:3, :3].T + transform[:3, 3]
+        corners = np.asarray(geometry.faces, dtype=np.int64).reshape(-1, 3)
+        if np.linalg.det(transform[:3, :3]) < 0:  # a reflection reverses the orientation
+            corners = corners[:, ::-1]
+        vertices.append(points)
+        faces.append(corners + count)
+        count += len(points)
+    if len(vertices) == 2:
+        return vertices[1], faces[1]
+    return np.concatenate(vertices), np.concatenate(faces)
 
 
 def _checked(mesh: tuple[Any, Any], where: str) -> Surface:

@@ -1,67 +1,32 @@
-"""Reading of OBJ files: vertices and polygons; files whose lines have one common form are read fast."""
+"""Fast reading of OBJ files of the common form: lines of vertices and of triangles, each line like the others.
+
+Other files, such as those with polygons or lines that go on, are left to trimesh, which reads each line by itself.
+"""
 
 import re
+import warnings
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.errors import InputError
-from symrot.exchange.surface import fans
-from symrot.exchange.text_numbers import numbers_of
-from symrot.formula.exact_numbers import show
-
-__all__ = ["read_obj", "read_plain_obj"]
-
-Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]
+__all__ = ["read_plain_obj", "refers_backwards"]
 
 _SPACE, _NEWLINE, _SLASH = 32, 10, 47
 _IGNORED = np.zeros(256, bool)  # first letters of lines without geometry: blank, comment, o, g, usemtl, mtllib
 _IGNORED[list(b"\n\r#ogum")] = True
-_OTHER_SURFACES = {"surf": "a free-form surface", "call": "a reference to another file"}
-_FLOAT = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf)", re.ASCII)
+_BACKWARDS = re.compile(rb"^[ \t]*f[ \t](?:[^\n#]*[ \t])?(?:-\d|0+(?![\d.]))", re.MULTILINE)
 
 
-def read_obj(content: bytes) -> Mesh:
-    """Return the vertices of an OBJ file, and its polygons as triangles: each polygon is a fan about its first corner.
+def refers_backwards(content: bytes) -> bool:
+    """Return whether a polygon of an OBJ file has a corner with a number that is not positive, such as ``f -3 -2 -1``.
 
-    Raises
-    ------
-    InputError
-        If a line of a vertex or polygon has other text, or if the file has free-form surfaces or calls other files.
+    Such numbers count vertices backwards from the line of the polygon.
     """
-    content = content.removeprefix(b"\xef\xbb\xbf")  # mark of UTF-8
-    plain = read_plain_obj(content)
-    if plain is not None:
-        return plain
-    text = content.decode("latin-1").replace("\r\n", "\n").replace("\r", "\n").replace("\\\n", " ")
-    vertices: list[list[float]] = []
-    counts, corners = [], []
-    for number, line in enumerate(text.split("\n"), 1):
-        key, *words = line.partition("#")[0].split() or [""]
-        if key == "v":
-            if len(words) < 3 or not all(map(_FLOAT.fullmatch, words[:3])):
-                raise InputError(f"expected three numbers of a vertex in line {number}, got {show(line.strip())}")
-            vertices.append([float(word) for word in words[:3]])
-        elif key in ("f", "fo"):
-            counts.append(len(words))
-            corners += [_corner(word, len(vertices), number) for word in words]
-        elif key in _OTHER_SURFACES:
-            raise InputError(f"expected a mesh of polygons, got {_OTHER_SURFACES[key]} in line {number}, {show(key)}")
-    points = np.array(vertices, np.float64).reshape(-1, 3)
-    return points, fans(np.array(counts, np.int64), np.array(corners, np.int64))
+    return _BACKWARDS.search(content.replace(b"\r\n", b"\n").replace(b"\\\n", b"")) is not None
 
 
-def _corner(word: str, above: int, line: int) -> int:
-    """Return the index, from 0, of a corner such as ``7/2/3``; ``above`` is the number of vertices above its line."""
-    text = word.partition("/")[0]
-    if not re.fullmatch(r"-?\d{1,18}", text, re.ASCII) or not int(text) or int(text) < -above:
-        raise InputError(f"expected the numbers of vertices of a polygon in line {line}, got {show(word)}")
-    # a negative number counts backwards from the last vertex above the line
-    return int(text) - 1 if int(text) > 0 else above + int(text)
-
-
-def read_plain_obj(content: bytes) -> Mesh | None:
+def read_plain_obj(content: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64]] | None:
     """Return the vertices and the triangles, as indices from 0, of an OBJ file; None if its form is not the common one.
 
     The numbers of a vertex line are x, y, z; those of a triangle may carry texture and normal: ``f 1/4/2 3/1/2 2/2/2``.
@@ -88,10 +53,8 @@ def read_plain_obj(content: bytes) -> Mesh | None:
     if vertices is None or corners is None or vertices.shape[1] != 1:
         return None
     triangles = corners[:, 0].reshape(-1, 3)
-    if (triangles <= 0).any():
+    if (triangles <= 0).any():  # a negative number counts backwards from the last vertex above the line
         above = np.cumsum(is_vertex)[is_triangle][:, None]
-        if (triangles == 0).any() or (triangles < -above).any():
-            return None
         triangles = np.where(triangles < 0, above + triangles + 1, triangles)
     return vertices.reshape(-1, 3), triangles - 1
 
@@ -119,8 +82,11 @@ def _numbers(lines: NDArray[np.uint8], letter: bytes, kind: Any) -> NDArray[Any]
             return None
     if text.count(letter) != count:
         return None
-    numbers = numbers_of(text.translate(bytes.maketrans(letter + b"/", b"  ")), kind)
-    # As no line has more than three items, none has fewer if there are as many as three on each.
-    if numbers is None or len(numbers) != 3 * count * columns:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", DeprecationWarning)  # of text that is no number
+            numbers = np.fromstring(text.translate(bytes.maketrans(letter + b"/", b"  ")), dtype=kind, sep=" ")
+    except (ValueError, DeprecationWarning):
         return None
-    return numbers.reshape(-1, columns)
+    # As no line has more than three items, none has fewer if there are as many as three on each.
+    return numbers.reshape(-1, columns) if len(numbers) == 3 * count * columns else None

@@ -7,12 +7,11 @@ from numpy.typing import NDArray
 
 from symrot.errors import InputError
 
-__all__ = ["MOST_TRIANGLES", "Surface", "fans", "merge", "require_closed", "shells"]
+__all__ = ["Surface", "merge", "require_closed", "shells"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-MOST_TRIANGLES = 20_000_000
 CHUNK = 1 << 14  # points at a time, so that arrays stay in the cache of the processor
 _MIXERS = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9)  # odd constants of hash functions
 
@@ -54,19 +53,6 @@ def merge(vertices: Floats, triangles: Indices) -> Surface:
     if not all(np.array_equal(merged[number[part]], points[part]) for part in parts):  # two positions with one hash
         merged, number = np.unique(points, axis=0, return_inverse=True)
     return Surface(merged, number.reshape(-1)[triangles])
-
-
-def fans(counts: Indices, corners: Indices) -> Indices:
-    """Return the triangles of polygons, each divided into a fan about its first corner.
-
-    ``counts`` are the numbers of corners of the polygons, ``corners`` all their corners, one polygon after the other.
-    """
-    # the areas of a fan add up with their signs, so that a plane polygon that is not convex is right too
-    numbers = np.maximum(counts - 2, 0)
-    first = np.repeat(np.cumsum(counts) - counts, numbers)
-    step = np.arange(len(first)) - np.repeat(np.cumsum(numbers) - numbers, numbers)
-    triangles: Indices = corners[np.column_stack([first, first + step + 1, first + step + 2])]
-    return triangles
 
 
 def _hashes(points: Floats) -> NDArray[np.uint64]:

@@ -2,7 +2,7 @@
 
     python -m symrot.bench.comparison.meshes [--triangles 1000000] [--rounds 3]
 
-The mesh is an ellipsoid, written by trimesh (``pip install trimesh``) and read by :func:`symrot.mesh`. The
+The mesh is an ellipsoid, written by trimesh (``pip install 'symrot[mesh]'``) and read by :func:`symrot.mesh`. The
 rounding error is measured on a mesh with a hundredth of the triangles, where exact integrals are quick.
 """
 
