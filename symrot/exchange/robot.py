@@ -318,8 +318,8 @@ def _pose(pose: Element | None) -> tuple[tuple[Fraction, ...], Tensor | None]:
 
 
 _CHANGING = {
-    "inertiafromgeom": ("auto", "false"), "balanceinertia": ("false",), "fusestatic": ("false",), "coordinate": ("local",),
-    "boundmass": ("0",), "boundinertia": ("0",), "settotalmass": ("-1",),
+    "inertiafromgeom": ("auto", "false"), "balanceinertia": ("false",), "fusestatic": ("false",),
+    "coordinate": ("local",), "boundmass": ("0",), "boundinertia": ("0",), "settotalmass": ("-1",),
 }  # fmt: skip
 """Attributes of <compiler> with which MuJoCo changes inertials -> values with which it does not; numbers have an effect
 if they are positive.
