@@ -27,7 +27,7 @@ def from_sympy(value: Any, frame: ReferenceFrame | None = None) -> Any:
     value : RigidBody, Inertia, Dyadic or ReferenceFrame
     frame : ReferenceFrame, optional
         For a dyadic, the frame of the components; for a reference frame, the frame relative to which it is oriented,
-        the space frame.
+        the space frame; none for a rigid body.
 
     Returns
     -------
@@ -40,7 +40,8 @@ def from_sympy(value: Any, frame: ReferenceFrame | None = None) -> Any:
     Raises
     ------
     InputError
-        For another value, a missing frame, a rigid body with symbols, or frames that are not connected.
+        For another value, a missing frame, a frame or symbols in addition to a rigid body, or frames that are not
+        connected.
 
     Examples
     --------
@@ -51,6 +52,8 @@ def from_sympy(value: Any, frame: ReferenceFrame | None = None) -> Any:
     3
     """
     if isinstance(value, RigidBody):
+        if frame is not None:
+            raise InputError(f"from_sympy: frame: expected none for a RigidBody, which has its own, got {frame}")
         return _table(value)
     if not isinstance(value, Inertia | Dyadic | ReferenceFrame):
         raise InputError(

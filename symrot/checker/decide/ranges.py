@@ -558,6 +558,8 @@ def _range_text(quantity: Expr, own: _Range) -> str:
         least, most = (None if bound is None else bound - 1 for bound in (least, most))
     below, above = "<=" if own.low_closed else "<", "<=" if own.high_closed else "<"
     text = as_text(quantity)
+    if least is not None and least == most and own.low_closed and own.high_closed:
+        return _one_sided(quantity, least, "==")
     if least is not None and most is not None:
         return f"{as_text(least)} {below} {text} {above} {as_text(most)}"
     if least is not None:
