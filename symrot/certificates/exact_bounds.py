@@ -15,7 +15,8 @@ from math import ceil, cos, exp, floor, frexp, inf, ldexp, pi, sin, sqrt, ulp
 from typing import Any
 
 from symrot.certificates.bounded_number import DOUBLE, PAIR, Bounded, UndecidedError, point
-from symrot.certificates.c_machine.machine import Machine, Place
+from symrot.certificates.c_machine.machine import Machine
+from symrot.certificates.c_machine.values import Place, called
 from symrot.errors import CertificateError, InputError
 
 __all__ = ["free_body_bounds"]
@@ -241,7 +242,7 @@ class _Context:
 
     def _canonical(self, inertia: Place, omega: Place, differences: Place, defect: Any, c: Place) -> None:
         machine = self.machine
-        machine._called(machine.functions["canonical_plain"], (inertia, omega, differences, defect, c))
+        called(machine.functions["canonical_plain"], (inertia, omega, differences, defect, c))
         fields, names = c[0][c[1]], machine.structs["canonical_motion"].names
 
         def clip(name: str, low: float, high: float) -> Bounded:
