@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from fractions import Fraction
+from sys import float_info
 
 import mpmath
 import numpy as np
@@ -18,6 +19,7 @@ from symrot.codegen.steps import RK4, TaylorSeries, stepped
 from symrot.errors import CertificateError, InputError
 from symrot.formula.tree import FUNCTIONS
 from symrot.workshop.step_text import step_text
+from symrot.workshop.steps.certify import certify_step
 
 BOX = {"omega_1": (-1, 1), "omega_2": (-1, 1), "omega_3": (-1, 1), "dt": (0, "1/100")}
 QUATERNION = {f"q{i}": (Fraction(-1), Fraction(1)) for i in range(4)}
@@ -188,10 +190,31 @@ def test_series_of_functions_contain_their_derivatives(name):
         assert float(interval.delta) < 1e-10
 
 
+def test_ranges_of_single_numbers_have_bounds():
+    """A component that starts at one number moves, though its range has no width by which it could grow."""
+    rates, method, _, box = problem("tumbling_prism", "rk4", (Fraction(0), Fraction(1, 10000)))
+    bounds = truncation_bounds(rates, method, box | {"omega_2": (Fraction(1, 2), Fraction(1, 2))})
+    assert max(bounds.values()) <= max(truncation_bounds(rates, method, box).values()) < 1e-20
+
+
 def test_steps_too_large_for_a_bound_are_refused():
     rates, method, _, box = problem("tumbling_prism", "rk4", (Fraction(0), Fraction(10)))
     with pytest.raises(InputError, match="got sizes dt up to 10 s; take smaller dt"):
         truncation_bounds(rates, method, box)
+
+
+def test_bounds_on_the_largest_range_of_time_hold_at_all_times():
+    """A range of all doubles is no sign that an input is not used."""
+    scene = symrot.Scene.from_dict(
+        {"schema": 1, "initial": {"omega": [0, 0, 1]}, "span": {"t": [0, 1]}, "body": {"principal": [2, 2, 2]},
+         "torque": [{"kind": "expression", "torque": ["0", "0", "sin(t)**4"]}]}
+    )  # fmt: skip
+    box, largest = ["omega_2=0:0", "omega_3=0:1", "dt=0:1/2"], float_info.max
+    everywhere, once, at_zero = (
+        float.fromhex(certify_step(scene, "taylor", 2, [*box, f"t={t}"])[0]["bounds"]["truncation"]["omega_3"])
+        for t in (f"{-largest!r}:{largest!r}", "0:7", "0:0")
+    )
+    assert everywhere >= once > 2 * at_zero
 
 
 @pytest.fixture(scope="module")
@@ -301,3 +324,23 @@ def test_a_quotient_of_whole_numbers_is_enclosed():
     assert truncation._over(0, 3) == 0 and truncation._over(6, 3) == 2
     third = truncation._over(1, 3)
     assert third.a < third.b and 1 in 3 * third
+
+
+@pytest.mark.parametrize("words", [[], ["--jacobian", "omega"], ["--step", "rk4"], ["--step", "exact"]], ids=" ".join)
+def test_an_audit_compares_with_the_scene_of_the_user(tmp_path, capsys, words):
+    """Kernel and steps of a scene outside the package are those of its file, and not those of a file with another moment."""
+    text = symrot.load_scene("tumbling_prism").with_(principal=[1, 2, "5/2"]).to_toml()
+    (tmp_path / "own.toml").write_text(text, encoding="utf-8")
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "own.toml").write_text(text.replace("5/2", "9/4"), encoding="utf-8")
+    assert "9/4" in (tmp_path / "other" / "own.toml").read_text(encoding="utf-8")
+    assert main(["emit", str(tmp_path / "own.toml"), *words, "-o", str(tmp_path)]) == 0
+    (certificate,) = tmp_path.glob("*.cert.json")
+    capsys.readouterr()
+    assert main(["audit", str(certificate)]) == 0 and "pass " in capsys.readouterr().out
+    assert main(["audit", str(certificate), "--scene", str(tmp_path / "own.toml")]) == 0
+    out = capsys.readouterr().out
+    assert "not compared" not in out and ("the scene own" in out or "equal those that symrot derives" in out)
+    assert main(["audit", str(certificate), "--scene", str(tmp_path / "other" / "own.toml")]) == 1
+    assert "expected" in capsys.readouterr().err
+    assert main(["audit", str(certificate), "--scene", "t_handle"]) == 1

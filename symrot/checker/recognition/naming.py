@@ -28,7 +28,7 @@ from symrot.checker.recognition.evidence import (
     RARE,
     fits_context,
     fits_quantity,
-    has_diameter,
+    has_other_length,
     has_terms,
     has_word,
     is_evident,
@@ -424,7 +424,11 @@ def _is_norm(side: Node, other: Node) -> bool:
 def _nearby(claim: Claim, named: NamedFormula) -> list[Near]:
     """Return the known formulas for the claim's quantity that differ from its formula in one part, likeliest first."""
     words, plain = words_of(named), quantity_name(named)
-    nearby = near_formulas(claim, named, lambda known: has_word(known.name, words))
+    nearby = [
+        near
+        for near in near_formulas(claim, named, lambda known: has_word(known.name, words))
+        if not has_other_length(near.known.name, near.renaming)
+    ]
     nearby.sort(key=lambda near: near.cost + PER_NAME * near.renamed + PER_PLACE * misfit_of(plain, near.known.name))
     return nearby
 
@@ -556,6 +560,8 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
     for edit in (*_edits(claim, named.formula), *_with_all_terms_added(named)):
         if names_in(edit.tree) < letters or edit.code == "extra_term":  # the formula may be a more general one
             continue
+        if edit.code == "two_faults":
+            continue  # two changes alone are no evidence of a fault
         all_readings = _readings(claim, named, edit.tree, least, interpreter)
         readings = tuple(known for known in all_readings if not any(body in known.name for body in RARE))
         is_growth = re.fullmatch("lambda|sigma|s", named.name) is not None
@@ -710,7 +716,7 @@ def _readings_of_formula(
             ending_of(known.name) == ending
             and fits_quantity(named, known, is_matrix(value))
             and fits_context(claim.context, named, replace(known, name=known.name.removesuffix(ending)), letters)
-            and not has_diameter(known)
+            and not has_other_length(known.name, known.mapping.items())
         )
 
     is_named = words_of(named) is not None

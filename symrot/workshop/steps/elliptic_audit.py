@@ -10,10 +10,11 @@ from symrot.certificates.audit import LARGEST
 from symrot.certificates.certificate import Data, certificate_json
 from symrot.certificates.exact_law import DIGITS, STATES
 from symrot.certificates.step_certificate import with_bounds
+from symrot.codegen.steady_rotations import STATES as STATE_NAMES
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
 from symrot.scene.file import shipped_names
-from symrot.scene.scene import Scene, load_scene
+from symrot.scene.scene import Scene, SceneSource, load_scene
 from symrot.workshop.steps.exact import ExactStepText, plain_content
 
 __all__ = ["audit_elliptic"]
@@ -22,7 +23,7 @@ NEAR = 1 + 1e-6
 """The factor within which bounds are the same; they are stated larger by more than this."""
 
 
-def audit_elliptic(path: Path, data: Data) -> list[str]:
+def audit_elliptic(path: Path, data: Data, scene: SceneSource | None = None) -> list[str]:
     """Audit the certificate of an exact step with elliptic functions; return the statements that hold, one line each.
 
     Parameters
@@ -31,6 +32,8 @@ def audit_elliptic(path: Path, data: Data) -> list[str]:
         NAME.cert.json, in the folder with the files that it names.
     data : mapping
         Its content.
+    scene : Scene, str, Path or dict, optional
+        The scene whose step this should be; by default a shipped scene of the name in the certificate.
 
     Raises
     ------
@@ -63,7 +66,7 @@ def audit_elliptic(path: Path, data: Data) -> list[str]:
     return [
         f"{step.name}: {len(texts)} files are those that symrot prints for the scene in the certificate",
         f"the C text solves the equations of motion at {STATES} states to {DIGITS} digits; nothing is proven elsewhere",
-        _of_scene(path, step.scene, data),
+        _of_scene(path, step.scene.name, data, scene),
         "bounds of rounding and truncation are those that symrot computes"
         if "bounds" in data
         else "no bounds of rounding and truncation",
@@ -75,6 +78,8 @@ def _box(path: Path, data: Data) -> dict[str, tuple[Fraction, Fraction]]:
     try:
         box = data["bounds"]["box"]
         ends = {name: (float.fromhex(low), float.fromhex(high)) for name, (low, high) in box.items()}
+        if not all(low <= high for low, high in ends.values()):
+            raise ValueError("a range whose smaller value is not first")
         return {name: (Fraction(low), Fraction(high)) for name, (low, high) in ends.items()}
     except (AttributeError, KeyError, OverflowError, TypeError, ValueError) as reason:
         raise CertificateError(
@@ -85,23 +90,27 @@ def _box(path: Path, data: Data) -> dict[str, tuple[Fraction, Fraction]]:
 def _bounds(path: Path, step: ExactStepText, data: Data) -> Data:
     """Return the section ``bounds`` of a certificate if its numbers are bounds; raise CertificateError if not."""
     box = _box(path, data)
+    stated = {kind: _numbers(path, data["bounds"], kind) for kind in ("rounding", "truncation")}
     try:
         own = step.bounds(box)
     except InputError as reason:
         raise CertificateError(f"{path}: {reason}") from None
-    stated = data["bounds"]
-    for kind in ("rounding", "truncation"):
+    for kind, numbers in stated.items():
         for name, value in own[kind].items():
-            try:
-                bound = float.fromhex(stated[kind][name])
-            except (KeyError, TypeError, ValueError, OverflowError) as reason:
-                raise CertificateError(
-                    f"{path}: expected {kind!r} in 'bounds' as symrot prints it, got a fault ({reason})"
-                ) from None
             # the last digits depend on the functions of the machine
-            if not float.fromhex(value) / NEAR <= bound <= float.fromhex(value) * NEAR:
+            if not float.fromhex(value) / NEAR <= numbers[name] <= float.fromhex(value) * NEAR:
                 raise CertificateError(f"{path}: expected the bounds that symrot computes on the box, got others")
-    return {key: stated[key] if key in ("rounding", "truncation") else own[key] for key in own}
+    return own | {kind: {name: x.hex() for name, x in numbers.items()} for kind, numbers in stated.items()}
+
+
+def _numbers(path: Path, bounds: Data, kind: str) -> dict[str, float]:
+    """Return the bound of each state that the part ``kind`` of the section ``bounds`` of a certificate states."""
+    try:
+        return {name: float.fromhex(bounds[kind][name]) for name in STATE_NAMES}
+    except (KeyError, TypeError, ValueError, OverflowError) as reason:
+        raise CertificateError(
+            f"{path}: expected {kind!r} in 'bounds' as symrot prints it, got a fault ({reason})"
+        ) from None
 
 
 def _same(path: Path, own: Data, data: Data) -> None:
@@ -126,10 +135,14 @@ def _step(path: Path, data: Data) -> ExactStepText:
         ) from None
 
 
-def _of_scene(path: Path, scene: Scene, data: Data) -> str:
-    """Compare the scene in a certificate with the shipped scene of its name; return the result as a sentence."""
-    if scene.name not in shipped_names():
-        return "the scene in the certificate was not compared, because symrot has no scene of its name"
-    if plain_content(load_scene(scene.name).to_dict()) != data["scene"]["content"]:
-        raise CertificateError(f"{path}: expected 'scene' to be the scene {scene.name} of symrot, got other content")
-    return f"the scene in the certificate is the scene {scene.name} of symrot"
+def _of_scene(path: Path, name: str, data: Data, scene: SceneSource | None) -> str:
+    """Compare the scene in a certificate with the user's, or with the shipped scene ``name``; return a sentence."""
+    if scene is None and name not in shipped_names():
+        return (
+            "the scene in the certificate was not compared, because symrot has no scene of its name; pass yours by "
+            "--scene"
+        )
+    own = load_scene(name if scene is None else scene)
+    if plain_content(own.to_dict()) != data["scene"]["content"]:
+        raise CertificateError(f"{path}: expected 'scene' to be the scene {own.name}, got other content")
+    return f"the scene in the certificate is the scene {own.name}{' of symrot' if scene is None else ''}"
