@@ -11,6 +11,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from symrot.closed_form.arithmetic.double_double import two_sum
 from symrot.errors import InputError
@@ -24,6 +25,7 @@ from symrot.propagation.events.polynomials import Piece
 from symrot.propagation.motion import Motion
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Floats
+from symrot.propagation.switched.domains import excess
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.regimes import Guard, Modes, Regime
 from symrot.propagation.switched.run_state import CHATTER, RunState
@@ -40,6 +42,7 @@ NEARBY, MOST_ULPS = 1e-6, 64.0  # part of the time since the last switch; units 
 RISE_BITS = 40  # a guard is followed from 2 to this negative power of a piece on, to see whether it rises
 PERTURBATION, PARALLEL = 1e-6, 1e-6  # of time and states, for slopes; relative difference of parallel slopes
 ERRORS = 100.0  # largest error of a motion, in tolerances
+PROBES = 8  # times in each step at which arguments of switching functions must have a value
 SHORT = 1e-9  # part of the span: distance beyond an instant without rates at which formulas are evaluated
 CHATTERING = 1e-9  # part of the span: CHATTER switches within it count as infinitely many
 Consumer = Callable[["Chunk"], None]
@@ -172,6 +175,7 @@ class SwitchedRun(RunState):
         source = smooth_pieces(self, regime, rates)
         start, passed = self.t, [self.t]
         violated: list[Guard] = []
+        lost: list[IntegrationStopped] = []  # not empty if an argument has no value from there on
         left: list[bool] = []  # not empty if a guard left zero: the motion is followed again from there
 
         def watched() -> Generator[Piece, None, None]:
@@ -196,7 +200,10 @@ class SwitchedRun(RunState):
                         self.t, self.y = passed[-1], states(np.array(passed[-1:]))[0]
                         self._forget_changes()
                     return
-                consume(self._chunk(passed[-1], float(piece.edges[-1]), states, piece))
+                chunk = self._chunk(passed[-1], float(piece.edges[-1]), states, piece)
+                if (no_value := self._pass_on(consume, regime, active, chunk)) is not None:
+                    lost.append(no_value)
+                    return
                 passed.append(float(piece.edges[-1]))
 
         current: list[tuple[Piece, Callable[[Floats], Floats]]] = []
@@ -231,6 +238,8 @@ class SwitchedRun(RunState):
         finally:
             watching.close()
             self.cost += source.cost()
+        if lost:
+            raise lost[0]
         if violated:  # an argument that jumped with another function is corrected before others cross zero
             return min(violated, key=lambda guard: not self._inside(guard.mode) & set(self.order))
         if left:
@@ -246,7 +255,9 @@ class SwitchedRun(RunState):
         if abs(stop) > abs(passed[-1]):
             rows = int((np.abs(piece.edges[:-1]) < abs(stop)).sum())
             part = Piece(np.append(piece.edges[:rows], stop), piece.rows[:rows])
-            consume(Chunk(self._at(passed[-1]), instant, self.zero, states, part))
+            chunk = Chunk(self._at(passed[-1]), instant, self.zero, states, part)
+            if (no_value := self._pass_on(consume, regime, active, chunk)) is not None:
+                raise no_value
         self.y = states(np.array([stop]))[0]
         self.t = stop
         self._arrive(instant)
@@ -339,6 +350,16 @@ class SwitchedRun(RunState):
             return float(evaluate(parse(guard.formula), self._values(regime, place), FLOAT_FUNCTIONS, float))
         except (ArithmeticError, ValueError, IntegrationStopped):
             return math.nan
+
+    def _has_no_value(self, regime: Regime, mode: str, times: Floats, states: Floats) -> NDArray[np.bool_]:
+        """Return at which times a guard has no value, even if the states changed by the error of the motion."""
+        columns = self._columns(times, states)
+        rate = np.sqrt(sum(columns[f"omega_{i}"] ** 2 for i in (1, 2, 3)))
+        sizes = {name: rate if name.startswith("omega") else np.ones_like(times) for name in columns}
+        numbers = {name: np.array(value) for name, value in regime.values(self.modes, self.zero).items()}
+        with np.errstate(all="ignore"):
+            outside = excess(regime.formulas[mode], {**columns, **numbers, "t": times}, sizes)
+        return np.broadcast_to(outside > ERRORS * self.motion.tolerance, times.shape)
 
     def _chunk(self, start: float, stop: float, states: Callable[[Floats], Floats], piece: Piece) -> Chunk:
         return Chunk(self._at(start), self._at(stop), self.zero, states, piece)
@@ -471,11 +492,44 @@ class SwitchedRun(RunState):
     def _values(self, regime: Regime, place: tuple[float, Floats]) -> dict[str, float]:
         """Return the values, by name, of all names in switching functions' arguments, at ``place`` = (time, states)."""
         t, y = place
+        values = {name: float(column[0]) for name, column in self._columns(np.array([t]), y[None]).items()}
+        return {**values, **regime.values(self.modes, self.zero), "t": t}
+
+    def _columns(self, times: Floats, states: Floats) -> dict[str, Floats]:
+        """Return the values of omega_1..3 and, if the scene has an attitude, of q0..3 at the rows of ``states``."""
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure.attitude else []
-        quantities = self.motion.evaluate(np.array([t]), y[None], names)[0].tolist()
-        values = {name.removesuffix(" of t"): value for name, value in zip(names, quantities, strict=True)}
-        return {**values, **regime.values(self.modes, self.zero), "t": t}
+        quantities = self.motion.evaluate(times, states, names)
+        return {name.removesuffix(" of t"): column for name, column in zip(names, quantities.T, strict=True)}
+
+    def _pass_on(
+        self, consume: Consumer, regime: Regime, active: list[bool], chunk: Chunk
+    ) -> IntegrationStopped | None:
+        """Pass ``chunk`` to ``consume``, up to where an argument of sign, floor, .. has no value; return that error."""
+        modes = {guard.mode for guard, on in zip(regime.guards, active, strict=True) if on} - self.held
+        partial = [mode for mode in sorted(modes) if mode in regime.may_lose_value]
+        if not partial:
+            consume(chunk)
+            return None
+        edges = chunk.own_piece.edges
+        steps = np.append(edges[:1], edges[:-1, None] + np.diff(edges)[:, None] * np.arange(1, PROBES + 1) / PROBES)
+        for mode in partial:
+            times = steps
+            for _ in range(8):  # the first time without a value is enclosed more and more closely
+                outside = self._has_no_value(regime, mode, times, chunk.own_states(times))
+                if not outside.any():
+                    break
+                first = max(int(outside.argmax()), 1)
+                times = np.linspace(times[first - 1], times[first], 65)
+            if len(times) == 65:
+                last = float(times[0])
+                if last != edges[0]:
+                    rows = int((np.abs(edges[:-1] - edges[0]) < abs(last - edges[0])).sum())
+                    part = Piece(np.append(edges[:rows], last), chunk.own_piece.rows[:rows])
+                    consume(chunk._replace(stop=self._at(last), own_piece=part))
+                return IntegrationStopped(last, f"{self._name(mode)} has no value there", self.end)
+        consume(chunk)
+        return None
 
     def _switch(self, regime: Regime, guard: Guard) -> None:
         """Change the value of the function (sign, floor, ..) whose guard has become zero, or hold its guard at zero."""
