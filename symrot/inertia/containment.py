@@ -8,14 +8,18 @@ function is largest on the hull. Lengths are doubles, in m; callers allow for ro
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any, NamedTuple
 
-__all__ = ["Pose", "Solid3", "are_apart", "center", "directions", "excess", "farthest", "height", "outside", "size"]
+__all__ = [
+    "Pose", "Solid3", "are_apart", "center", "corners", "directions", "excess", "farthest", "height", "is_convex",
+    "outside", "size",
+]  # fmt: skip
 
 Vec = tuple[float, float, float]
 Dimensions = Mapping[str, Any]  # lengths; vertices of a tetrahedron
 
+MERIDIANS = 16  # of a polyhedron around a ball, a multiple of 4
 CORNERS = 64  # of a polygon around a circle, where no exact bound is at hand
 PARALLEL = 1e-12
 
@@ -241,6 +245,44 @@ def _around(disk: _Disk) -> list[Vec]:
     return [_plus(_plus(disk.center, first, radius * math.cos(t)), second, radius * math.sin(t)) for t in turns]
 
 
+def corners(solid: Solid3) -> list[Vec]:
+    """Return points whose convex hull contains a shape; none for a torus."""
+    points: list[Vec] = []
+    for piece in solid.hull:
+        if isinstance(piece, _Disk) and not piece.ball:
+            points += _around(piece)
+        elif isinstance(piece, _Disk) and piece.radius:
+            return []
+        elif isinstance(piece, _Dome):
+            first = _unit(_cross(piece.axis, _AXES[min(range(3), key=lambda k: abs(piece.axis[k]))]))
+            axes = (first, _cross(piece.axis, first), piece.axis)
+            half = [point for point in _ball() if point[2] >= 0]
+            points += [_combined(piece.center, axes, point, piece.radius) for point in half]
+        elif isinstance(piece, _Disk):
+            points += [_plus(piece.center, point, piece.ball) for point in _ball()]
+        else:
+            points += [_combined(piece.center, piece.axes, point, 1.0) for point in _ball()]
+    return points
+
+
+def _combined(center: Vec, axes: tuple[Vec, Vec, Vec], shares: Vec, factor: float) -> Vec:
+    for axis, share in zip(axes, shares, strict=True):
+        center = _plus(center, axis, factor * share)
+    return center
+
+
+@cache
+def _ball() -> list[Vec]:
+    """Return the corners of a polyhedron that contains the ball of radius 1; the equator z = 0 has corners."""
+    # the planes of its faces are nearer to the centre than the corners by the cosines of half their two angles
+    step = math.pi / MERIDIANS
+    radius = 1 / math.cos(step) ** 2
+    rings = [(radius * math.cos(k * 2 * step), radius * math.sin(k * 2 * step) if k else 0.0)
+             for k in range(-MERIDIANS // 4 + 1, MERIDIANS // 4)]  # fmt: skip
+    around = [(math.cos(2 * step * n), math.sin(2 * step * n)) for n in range(MERIDIANS)]
+    return [(0.0, 0.0, -radius), *((r * x, r * y, z) for r, z in rings for x, y in around), (0.0, 0.0, radius)]
+
+
 # --- walls: each returns by how much a hull reaches beyond it, in m; at most 0 if the hull is inside ------------------
 
 Wall = Callable[[list[Piece]], float]
@@ -446,6 +488,11 @@ _EXCESS: dict[str, Callable[[Dimensions, Vec], float]] = {
     "spherical_shell": lambda d, p: abs(_length(p) - d["radius"]),
     "ring": lambda d, p: math.hypot(math.hypot(p[0], p[1]) - d["radius"], p[2]),
 }
+
+
+def is_convex(solid: Solid3) -> bool:
+    """Return whether a shape contains all points between its points."""
+    return solid.shape not in _EXCESS
 
 
 def excess(solid: Solid3, point: Vec) -> float:
