@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from typing import Any, NamedTuple
 
+from symrot.inertia.tensor import cross, dot
+
 __all__ = [
     "Pose", "Solid3", "are_apart", "center", "corners", "directions", "excess", "farthest", "height", "is_convex",
     "outside", "size",
@@ -24,16 +26,8 @@ CORNERS = 64  # of a polygon around a circle, where no exact bound is at hand
 PARALLEL = 1e-12
 
 
-def _dot(a: Vec, b: Vec) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
 def _plus(a: Vec, b: Vec, factor: float = 1.0) -> Vec:
     return a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]
-
-
-def _cross(a: Vec, b: Vec) -> Vec:
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 def _length(a: Vec) -> float:
@@ -53,7 +47,7 @@ class Pose(NamedTuple):
 
     def turn(self, v: Vec) -> Vec:
         """Return a vector in the axes of the body, from its components in the axes of the shape."""
-        x, y, z = (_dot(row, v) for row in self.rotation)
+        x, y, z = (dot(row, v) for row in self.rotation)
         return x, y, z
 
     def turn_back(self, v: Vec) -> Vec:
@@ -164,11 +158,11 @@ def _moved(piece: Piece, pose: Pose) -> Piece:
 
 def _reach(piece: Piece, direction: Vec) -> float:
     """Return the largest n x for points x of a piece, with the unit vector n = ``direction``."""
-    base = _dot(piece.center, direction)
+    base: float = dot(piece.center, direction)
     if isinstance(piece, _Ellipsoid):
-        return base + math.hypot(*(_dot(axis, direction) for axis in piece.axes))
+        return base + math.hypot(*(dot(axis, direction) for axis in piece.axes))
     axis = piece.normal if isinstance(piece, _Disk) else piece.axis
-    along = _dot(axis, direction)
+    along: float = dot(axis, direction)
     if isinstance(piece, _Disk):
         return base + piece.radius * math.sqrt(max(0.0, 1 - along * along)) + piece.ball
     return base + piece.radius * (1.0 if along >= 0 else math.sqrt(max(0.0, 1 - along * along)))
@@ -185,14 +179,14 @@ def _round(piece: Piece) -> _Disk:
 def _farthest_along(piece: Piece, direction: Vec) -> Vec:
     """Return a point of a piece with the largest n x, with the unit vector n = ``direction``."""
     if isinstance(piece, _Ellipsoid):
-        shares = [_dot(axis, direction) for axis in piece.axes]
+        shares = [dot(axis, direction) for axis in piece.axes]
         length = math.hypot(*shares) or 1.0
         point = piece.center
         for axis, share in zip(piece.axes, shares, strict=True):
             point = _plus(point, axis, share / length)
         return point
     axis = piece.normal if isinstance(piece, _Disk) else piece.axis
-    along = _dot(axis, direction)
+    along = dot(axis, direction)
     across = _plus(direction, axis, -along)
     rim = _plus(piece.center, _unit(across), piece.radius if _length(across) > PARALLEL else 0.0)
     if isinstance(piece, _Disk):
@@ -203,7 +197,7 @@ def _farthest_along(piece: Piece, direction: Vec) -> Vec:
 def farthest(solid: Solid3, direction: Vec) -> Vec:
     """Return a point of a shape with the largest n x, with a unit vector n = ``direction`` in the axes of the body."""
     points = [_farthest_along(piece, direction) for piece in solid.hull]
-    return max(points, key=lambda point: _dot(point, direction))
+    return max(points, key=lambda point: dot(point, direction))
 
 
 def height(solid: Solid3, direction: Vec) -> float:
@@ -229,8 +223,8 @@ _AXES: tuple[Vec, Vec, Vec] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 def _farthest(disk: _Disk, point: Vec) -> float:
     """Return the largest distance of a point of an inflated disk from ``point``."""
     offset = _plus(disk.center, point, -1.0)
-    along = _dot(offset, disk.normal)
-    across = math.sqrt(max(0.0, _dot(offset, offset) - along * along))
+    along = dot(offset, disk.normal)
+    across = math.sqrt(max(0.0, dot(offset, offset) - along * along))
     return math.hypot(along, across + disk.radius) + disk.ball
 
 
@@ -238,8 +232,8 @@ def _around(disk: _Disk) -> list[Vec]:
     """Return the corners of a polygon that contains a disk."""
     if not disk.radius:
         return [disk.center]
-    first = _unit(_cross(disk.normal, _AXES[min(range(3), key=lambda k: abs(disk.normal[k]))]))
-    second = _cross(disk.normal, first)
+    first = _unit(cross(disk.normal, _AXES[min(range(3), key=lambda k: abs(disk.normal[k]))]))
+    second = cross(disk.normal, first)
     radius = disk.radius / math.cos(math.pi / CORNERS)
     turns = [2 * math.pi * k / CORNERS for k in range(CORNERS)]
     return [_plus(_plus(disk.center, first, radius * math.cos(t)), second, radius * math.sin(t)) for t in turns]
@@ -254,8 +248,8 @@ def corners(solid: Solid3) -> list[Vec]:
         elif isinstance(piece, _Disk) and piece.radius:
             return []
         elif isinstance(piece, _Dome):
-            first = _unit(_cross(piece.axis, _AXES[min(range(3), key=lambda k: abs(piece.axis[k]))]))
-            axes = (first, _cross(piece.axis, first), piece.axis)
+            first = _unit(cross(piece.axis, _AXES[min(range(3), key=lambda k: abs(piece.axis[k]))]))
+            axes = (first, cross(piece.axis, first), piece.axis)
             half = [point for point in _ball() if point[2] >= 0]
             points += [_combined(piece.center, axes, point, piece.radius) for point in half]
         elif isinstance(piece, _Disk):
@@ -319,7 +313,7 @@ def _ellipsoid_wall(a: float, b: float, c: float) -> Wall:
     def reach(piece: Piece) -> float:
         if isinstance(piece, _Ellipsoid):
             axes = [scaled(axis) for axis in piece.axes]
-            crossed = max(abs(_dot(axes[i], axes[j])) for i, j in ((0, 1), (0, 2), (1, 2)))
+            crossed = max(abs(dot(axes[i], axes[j])) for i, j in ((0, 1), (0, 2), (1, 2)))
             lengths = [_length(axis) for axis in axes]
             spread = max(lengths) if crossed < PARALLEL else math.hypot(*lengths)
             return _length(scaled(piece.center)) + spread
@@ -354,10 +348,10 @@ def _faces(d: Dimensions) -> list[Wall]:
     walls = []
     for k in range(4):
         a, b, c = (d["vertices"][i] for i in range(4) if i != k)
-        normal = _unit(_cross(_plus(b, a, -1.0), _plus(c, a, -1.0)))
-        if _dot(normal, _plus(d["vertices"][k], a, -1.0)) > 0:
+        normal = _unit(cross(_plus(b, a, -1.0), _plus(c, a, -1.0)))
+        if dot(normal, _plus(d["vertices"][k], a, -1.0)) > 0:
             normal = _plus((0.0, 0.0, 0.0), normal, -1.0)
-        walls.append(_plane(normal, _dot(normal, a)))
+        walls.append(_plane(normal, dot(normal, a)))
     return walls
 
 
@@ -449,7 +443,7 @@ def directions(solid: Solid3) -> list[Vec]:
     if solid.shape == "tetrahedron":
         v = solid.dimensions["vertices"]
         faces = ((0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3))
-        normals += [_unit(_cross(_plus(v[j], v[i], -1.0), _plus(v[k], v[i], -1.0))) for i, j, k in faces]
+        normals += [_unit(cross(_plus(v[j], v[i], -1.0), _plus(v[k], v[i], -1.0))) for i, j, k in faces]
     return [solid.pose.turn(normal) for normal in normals]
 
 
@@ -457,7 +451,7 @@ def are_apart(first: Solid3, second: Solid3, rounding: float) -> bool:
     """Return whether a plane separates the hulls of two shapes, which may overlap by the length ``rounding``, m."""
     offset = _plus(center(second), center(first), -1.0)
     axes = [solid.pose.turn(_Z) for solid in (first, second)]
-    across = [_unit(_plus(offset, axis, -_dot(offset, axis))) for axis in axes]
+    across = [_unit(_plus(offset, axis, -dot(offset, axis))) for axis in axes]
     # tried in turn: the line of the centres, lines across the axes, normals of faces
     for normal in (_unit(offset), *across, *directions(first), *directions(second)):
         back = _plus((0.0, 0.0, 0.0), normal, -1.0)
