@@ -10,7 +10,7 @@ from symrot.formula.switches import CHANGING, hold
 from symrot.formula.tree import names, parse
 from symrot.propagation.events.events import signs_at_ends
 from symrot.propagation.events.polynomials import Piece
-from symrot.propagation.motion import Motion
+from symrot.propagation.motions.motion import Motion
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import Floats
 from symrot.propagation.switched.guards import MOST_ULPS, Guards

@@ -18,7 +18,7 @@ from symrot.propagation import progress
 from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.events import ZerosNotSeparated, search, signs_at_ends
 from symrot.propagation.events.polynomials import Piece
-from symrot.propagation.motion import Motion
+from symrot.propagation.motions.motion import Motion
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Floats
 from symrot.propagation.switched.instant import Instant

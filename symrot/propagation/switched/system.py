@@ -19,7 +19,7 @@ from symrot.formula.switches import STATES, Switch, between_sides, chosen, hold,
 from symrot.formula.tree import Node, names, parse, rename, text
 from symrot.planning.plan import Plan
 from symrot.propagation.method import Choice
-from symrot.propagation.motion import on_own_clock
+from symrot.propagation.motions.make import on_own_clock
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.switched.regimes import Modes, Regime
 
