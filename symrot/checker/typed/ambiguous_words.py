@@ -1,7 +1,7 @@
 """Words of a text that are several names, short forms or names with an index: ``mgl``, ``cθ`` and ``ωp``."""
 
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from functools import cached_property
 from itertools import pairwise
 
@@ -64,6 +64,7 @@ class WordReader:
         short = {self.tokens[form.place].text for form in shorthands_of_letters(self.tokens)}
         alone = {*alone} | ({"x", "y", "z"} if any(token.text == "∫" for token in self.tokens) else set())
         first = {token.text: token.start for token in reversed(self.tokens) if token.kind == "name"}
+        named = set(_beside_quantities(self.tokens))
         for word, start in sorted(first.items(), key=lambda item: item[1]):
             if word in BUILT_IN or word in self.declared.symbols or word in self.declared.functions:
                 continue
@@ -80,6 +81,7 @@ class WordReader:
             pieces, usual = pieces_of_word(word, alone)
             if not pieces:
                 continue
+            usual = usual and (pieces[0], word) not in named
             if self.declared.symbols and all(piece in self.declared.symbols or piece.isdigit() for piece in pieces):
                 words[word] = pieces  # the claim says which names it has
                 continue
@@ -158,6 +160,19 @@ class WordReader:
         alone = {second.text for first, second in pairs if not second.tight or first.kind != "name"}
         # if i or f is a name of its own, ωi is probably ω times i
         return {*FIRST_AND_LAST} <= after and not alone & {*FIRST_AND_LAST}
+
+
+def _beside_quantities(tokens: Sequence[Token]) -> Iterator[tuple[str, str]]:
+    """Yield (I, Ic) for each word after ``I =`` in one equation: in ``I = Ic + m d^2`` the quantity I is no factor."""
+    quantity = ""
+    for before, token, after in zip((None, *tokens), tokens, (*tokens[1:], tokens[-1]), strict=False):
+        if before is None or token.breaks or token.text in (";", ","):
+            quantity = ""
+        starts = before is None or token.breaks or before.text in (";", ",")
+        if starts and token.kind == "name" and after.text in ("=", "=="):
+            quantity = token.text
+        elif quantity and token.kind == "name":
+            yield quantity, token.text
 
 
 def _in_words(pieces: Sequence[str]) -> str:
