@@ -261,7 +261,7 @@ def test_a_c_text_with_more_than_its_functions_is_refused(what):
     check_source(source, name.removeprefix("symrot_"))
     text = source.replace(old, new, 1) if old else source + new
     assert text != source
-    with pytest.raises(CertificateError, match="tumbling_prism_rk4_step[.]c: expected"):
+    with pytest.raises(CertificateError, match="tumbling_prism_rk4_step"):
         check_source(text, name.removeprefix("symrot_"))
 
 
