@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 import pytest
-from sympy import Float, Matrix, Rational, cos, diff, eye, sin, solve, sqrt, symbols, zeros
+from sympy import Float, Matrix, Rational, cos, diff, eye, pi, sin, solve, sqrt, symbols, sympify, zeros
 from sympy.physics.mechanics import (
     KanesMethod,
     LagrangesMethod,
@@ -163,6 +163,20 @@ def test_a_scene_takes_matrices_and_expressions_of_sympy():
 def test_what_has_no_meaning_is_refused(value, frame, sentence):
     with pytest.raises(symrot.InputError, match=sentence):
         symrot.from_sympy(value, frame)
+
+
+def test_the_tensor_of_a_body_is_moved_to_its_centre_and_rotated_to_its_frame():
+    frame = N.orientnew("B", "Axis", (pi / 6, N.x))
+    origin = Point("O")
+    center = origin.locatenew("G", 2 * frame.x + 3 * N.y)
+    rows = symrot.from_sympy(RigidBody("b", center, frame, 2, (inertia(N, 50, 60, 70), origin)))["inertia"]
+    turn = Matrix([[1, 0, 0], [0, sqrt(3) / 2, Rational(1, 2)], [0, -Rational(1, 2), sqrt(3) / 2]])
+    offset = Matrix([2, 3 * sqrt(3) / 2, -Rational(3, 2)])
+    tensor = turn * Matrix.diag(50, 60, 70) * turn.T - 2 * (offset.dot(offset) * eye(3) - offset * offset.T)
+    assert all(abs(float(sympify(rows[i][j]) - tensor[i, j])) < 1e-13 for i in range(3) for j in range(3))
+    loose = RigidBody("b", center, frame, 2, (inertia(ReferenceFrame("C"), 1, 1, 1), center))
+    with pytest.raises(symrot.InputError, match="expected a body whose points and frames are connected"):
+        symrot.from_sympy(loose)
 
 
 def test_a_body_without_mass_is_refused():

@@ -7,7 +7,7 @@ continuity does not either.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from sympy import Abs, Expr, Poly, atan2, pi
+from sympy import Abs, Expr, Function, Poly, atan2, cos, pi, sin
 
 from symrot.checker.decide.definite import surely_nonnegative
 from symrot.checker.decide.ranges import range_text
@@ -52,12 +52,14 @@ def branch_cuts(formulas: Sequence[Expr]) -> Iterator[BranchCut]:
     known = set()
     for jump in jumps:
         zero, negative = _without_content(jump.args[0]), jump.args[1]
-        if zero.is_number or surely_nonnegative(negative) or (zero, negative) in known:
+        # no point is found where another function, such as an exponential, is zero
+        is_easy = zero.is_polynomial() or zero.atoms(Function) == zero.atoms(sin, cos)
+        if zero.is_number or not is_easy or surely_nonnegative(negative) or (zero, negative) in known:
             continue
         known.add((zero, negative))
         values = {}
         for other in jumps:
-            if normal_form(other.args[0], [zero]) == 0:
+            if other is jump or normal_form(other.args[0], [zero]) == 0:
                 second = other.args[1]
                 # 0 if the second argument is positive, pi if it is negative
                 values[other] = pi * (1 - second / Abs(second)) / 2
