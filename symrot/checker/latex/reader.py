@@ -9,21 +9,14 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, ClassVar
 
-from symrot.checker.claim.reader import (
-    Chain,
-    Reading,
-    Relation,
-    distinct_readings,
-    each_reading,
-    read_expression,
-    read_relation,
-)
+from symrot.checker.claim.reader import read_expression, read_relation
 from symrot.checker.claim.tree import TIME, Node, is_derivative, sum_of, text, walk
 from symrot.checker.claim.vectors import Vector, used_vectors, without_marks
 from symrot.checker.latex.calculus import DOTS, CalculusPart
 from symrot.checker.latex.cursor import JOINTS, UPRIGHT, Names, is_letter
 from symrot.checker.latex.names import NAME_MARKS, OPERATORS, VECTOR_MARKS
 from symrot.checker.latex.sums import FUNCTIONS, SIGNS
+from symrot.checker.typed.readings import Chain, Reading, Relation, distinct_readings, each_reading
 from symrot.errors import InputError
 from symrot.latex import tree
 
