@@ -13,9 +13,11 @@ from typing import Any
 
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import TIME, Node, number
+from symrot.checker.claim.vectors import length, may_be_mixed, on_direction
 from symrot.checker.typed.copied_text import without_surroundings
 from symrot.checker.typed.cursor import (
     DEEPEST_NESTING,
+    SHARED,
     Doubt,
     Vocabulary,
     is_cross_letter,
@@ -170,6 +172,7 @@ class _Text:
             Whether the text is a formula without a relation.
         """
         marked = frozenset(_marked(self.tokens))
+        marked |= _dotted(self.tokens, {*marked, *_crossed(self.tokens, marked, flips)})
         alone = {*_alone(self.tokens, marked), *self.declared.symbols}
         tokens, notes, doubts = list(self.tokens), list[str](), list[Doubt]()
         if not whole:
@@ -180,11 +183,16 @@ class _Text:
             units = [after.text for before, after in pairs if before.kind == "number" and after.text in UNITS]
             notes += [f"{unit} is read as a name, not as a unit" for unit in units]
             alone |= set(_alone(tokens, marked))
+        hats = {name.text for name, mark in pairwise(tokens) if mark.kind == "hat"}
+        bare = {name.text for name, mark in pairwise(tokens) if mark.kind != "hat"}
+        mixed = frozenset(filter(may_be_mixed, hats & bare))
+        notes += map(on_direction, sorted(mixed))
         vocabulary = Vocabulary(
             frozenset(self.declared.symbols),
             frozenset(self.declared.functions),
             frozenset(alone),
             frozenset([*_crossed(tokens, marked, flips), *marked]),
+            mixed,
         )
         lines, plain = [], not self.source.isascii() or not whole
         timed, differentiated = set[str]() if whole else {*self.declared.functions}, set[str]()
@@ -216,8 +224,8 @@ class _Text:
             Chain(tuple(signs), tuple(_finished(side, timed, vocabulary.vectors) for side in sides), both_signs)
             for signs, sides, both_signs in lines
         )
-        hats = {name.text for name, mark in pairwise(tokens) if mark.kind == "hat"}
         typed = {t.text: without_dots(self.source[t.start : t.end]) for t in tokens if t.kind == "name"}
+        typed |= {name: typed[name].replace("\N{COMBINING CIRCUMFLEX ACCENT}", "") for name in mixed}
         spelling = {name: word for name, word in typed.items() if word not in ("", name)}
         flipped = tuple(dict.fromkeys(doubt.excerpt for doubt in doubts if doubt.key in flips))
         return Reading(
@@ -227,7 +235,7 @@ class _Text:
             tuple(dict.fromkeys(notes)),
             spelling,
             frozenset(timed),
-            {name: name in hats for name in sorted(vocabulary.vectors)},
+            {name: name in hats - mixed for name in sorted(vocabulary.vectors)},
             flipped,
         )
 
@@ -489,7 +497,10 @@ def _marked(tokens: Sequence[Token]) -> Iterator[str]:
     triples = list(zip(tokens, tokens[1:], tokens[2:], strict=False))
     yield from _by_angle(tokens)
     lengths = {name.text for left, name, right in triples if left.text == right.text == "|" and name.kind == "name"}
-    # a·b = |a| |b| cos x: names whose lengths occur
+    norms = [place for place, token in enumerate(tokens) if token.text == "‖"]
+    for start, end in zip(norms[::2], norms[1::2], strict=False):
+        lengths |= {token.text for token in tokens[start:end] if token.kind == "name"} - {"q", "p"}  # no quaternions
+    # a·b = |a| |b| cos x, ‖a + b‖² = ‖a‖² + 2 a·b + ‖b‖²: names whose lengths occur
     for left, dot, right in triples:
         if dot.text == "·" and {left.text, right.text} <= lengths:
             yield from (left.text, right.text)
@@ -512,6 +523,23 @@ def _marked(tokens: Sequence[Token]) -> Iterator[str]:
             or (_is_dot(before) and name.spaced)
         ):
             yield name.text
+
+
+def _dotted(tokens: Sequence[Token], vectors: Collection[str]) -> set[str]:
+    """Return the usual names of vectors at a dot beside one of ``vectors`` or beside a cross product: v in ``n·v``."""
+    names: set[str] = set()
+    for place, dot in enumerate(tokens):
+        if dot.text != "·" or not 0 < place < len(tokens) - 1:
+            continue
+        before, after = tokens[place - 1], tokens[place + 1]
+        owner = tokens[place - 2] if before.kind == "hat" else before
+        is_crossed = before.text == ")" and "×" in [
+            token.text for token in tokens[max(place - 4, 0) : place]
+        ]  # (a × b)·c
+        is_left = owner.text in vectors or is_crossed
+        names |= {token.text for token, beside in ((after, is_left), (before, after.text in vectors)) if beside}
+    usual = {name for name in names if is_usual_vector(name) or name == "g"}
+    return usual - {*vectors, *SHARED}
 
 
 SCALARS = ("m", "I", "J", "t")
@@ -567,6 +595,8 @@ def _finished(node: Node, timed: Collection[str], vectors: Collection[str], pare
     if node.kind == "power" and node.args[0].value in vectors and node.args[1] == number(2):
         own = _finished(node.args[0], timed, vectors)
         return Node("call", "dot", (own, own), node.span)
+    if node.kind == "power" and node.args[0].value in vectors and node.args[1].kind == "number":
+        return replace(node, args=(length(_finished(node.args[0], timed, vectors)), node.args[1]))
     nested = parent == "transpose" and node.kind == "list" and node.args[0].kind == "list"
     if node.kind == "list" and (parent not in ("call", "list", "transpose", "index") or nested):
         if len(node.args) == 1:

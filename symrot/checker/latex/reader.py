@@ -19,7 +19,7 @@ from symrot.checker.claim.reader import (
     read_relation,
 )
 from symrot.checker.claim.tree import TIME, Node, is_derivative, sum_of, text, walk
-from symrot.checker.claim.vectors import Vector, used_vectors, without_marks
+from symrot.checker.claim.vectors import Vector, may_be_mixed, used_vectors, without_marks
 from symrot.checker.latex.calculus import DOTS, CalculusPart
 from symrot.checker.latex.cursor import JOINTS, UPRIGHT, Names, is_letter
 from symrot.checker.latex.names import NAME_MARKS, OPERATORS, VECTOR_MARKS
@@ -130,20 +130,27 @@ def _read(
 ) -> "tuple[list[Line], _Interpreter]":  # fmt: skip
     """Return the lines that ``read`` parses from a LaTeX text, and the interpreter that parsed them."""
     # if a name without a mark turns out to be a vector only late in the text, the text is parsed again
-    crossed: frozenset[str] = frozenset()
+    # so it is if a vector turns out to occur with and without a hat
+    crossed, mixed = frozenset[str](), frozenset[str]()
     while True:
         # flips are keys of ambiguous parts; if it is None, an ambiguous text is refused
         # upper chooses the upper or lower signs of \pm
         reader = _Interpreter(source, where, names, flips, upper)
-        reader.crossed = set(crossed)
+        reader.crossed, reader.mixed = set(crossed), mixed
         try:
             lines = read(reader)
         except InputError:
             if reader.crossed == crossed:
                 raise
         else:
-            if reader.crossed == crossed:
+            names_in_lines = {node.value for _, sides in lines for side in sides for _, node in walk(side)}
+            found = frozenset(filter(may_be_mixed, reader.hatted & ({*+reader.bare} | names_in_lines)))
+            if reader.crossed == crossed and found == mixed:
+                reader.notes += [
+                    f"{name} with a hat is {name}/|{name}|, since the text has {name} too" for name in mixed
+                ]
                 return lines, reader
+            mixed = found
         crossed = frozenset(reader.crossed)
 
 
