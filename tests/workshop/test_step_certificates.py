@@ -324,3 +324,23 @@ def test_a_quotient_of_whole_numbers_is_enclosed():
     assert truncation._over(0, 3) == 0 and truncation._over(6, 3) == 2
     third = truncation._over(1, 3)
     assert third.a < third.b and 1 in 3 * third
+
+
+@pytest.mark.parametrize("words", [[], ["--jacobian", "omega"], ["--step", "rk4"], ["--step", "exact"]], ids=" ".join)
+def test_an_audit_compares_with_the_scene_of_the_user(tmp_path, capsys, words):
+    """Kernel and steps of a scene outside the package are those of its file, and not those of a file with another moment."""
+    text = symrot.load_scene("tumbling_prism").with_(principal=[1, 2, "5/2"]).to_toml()
+    (tmp_path / "own.toml").write_text(text, encoding="utf-8")
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "own.toml").write_text(text.replace("5/2", "9/4"), encoding="utf-8")
+    assert "9/4" in (tmp_path / "other" / "own.toml").read_text(encoding="utf-8")
+    assert main(["emit", str(tmp_path / "own.toml"), *words, "-o", str(tmp_path)]) == 0
+    (certificate,) = tmp_path.glob("*.cert.json")
+    capsys.readouterr()
+    assert main(["audit", str(certificate)]) == 0 and "pass " in capsys.readouterr().out
+    assert main(["audit", str(certificate), "--scene", str(tmp_path / "own.toml")]) == 0
+    out = capsys.readouterr().out
+    assert "not compared" not in out and ("the scene own" in out or "equal those that symrot derives" in out)
+    assert main(["audit", str(certificate), "--scene", str(tmp_path / "other" / "own.toml")]) == 1
+    assert "expected" in capsys.readouterr().err
+    assert main(["audit", str(certificate), "--scene", "t_handle"]) == 1

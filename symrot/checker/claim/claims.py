@@ -89,6 +89,8 @@ class Claim:
         components.
     context : Context
         Statements in words about the names of the claim and about the body, such as ``"rod"``.
+    written : tuple of (Node, Node)
+        Formulas in ``relation``, each with the short form that the text has for it, such as an exponential.
     """
 
     id: str = ""
@@ -108,6 +110,7 @@ class Claim:
     editable: tuple[str, ...] = SIDES
     has_parts: bool = False
     context: Context = NO_CONTEXT
+    written: tuple[tuple[Node, Node], ...] = ()
 
     @property
     def has_double_equals(self) -> bool:

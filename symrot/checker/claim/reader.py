@@ -251,6 +251,7 @@ class _Text:
         short = {self.tokens[form.place].text for form in shorthands_of_letters(self.tokens)}
         alone = {*alone} | ({"x", "y", "z"} if any(token.text == "∫" for token in self.tokens) else set())
         first = {token.text: token.start for token in reversed(self.tokens) if token.kind == "name"}
+        named = set(_beside_quantities(self.tokens))
         for word, start in sorted(first.items(), key=lambda item: item[1]):
             if word in BUILT_IN or word in self.declared.symbols or word in self.declared.functions:
                 continue
@@ -266,6 +267,7 @@ class _Text:
             pieces, usual = pieces_of_word(word, alone)
             if not pieces:
                 continue
+            usual = usual and (pieces[0], word) not in named
             if self.declared.symbols and all(piece in self.declared.symbols or piece.isdigit() for piece in pieces):
                 words[word] = pieces  # the claim says which names it has
                 continue
@@ -432,6 +434,19 @@ def _alone(tokens: Sequence[Token], vectors: Collection[str]) -> Iterator[str]:
         # the x of a cross product is a sign, no name
         if token.kind == "name" and after.text != "(" and not _is_cross(before, token, after, own, vectors):
             yield token.text
+
+
+def _beside_quantities(tokens: Sequence[Token]) -> Iterator[tuple[str, str]]:
+    """Yield (I, Ic) for each word after ``I =`` in one equation: in ``I = Ic + m d^2`` the quantity I is no factor."""
+    quantity = ""
+    for before, token, after in zip((None, *tokens), tokens, (*tokens[1:], tokens[-1]), strict=False):
+        if before is None or token.breaks or token.text in (";", ","):
+            quantity = ""
+        starts = before is None or token.breaks or before.text in (";", ",")
+        if starts and token.kind == "name" and after.text in ("=", "=="):
+            quantity = token.text
+        elif quantity and token.kind == "name":
+            yield quantity, token.text
 
 
 def _is_cross(before: Token | None, token: Token, after: Token, factor: Token, vectors: Collection[str]) -> bool:

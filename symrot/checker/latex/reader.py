@@ -286,11 +286,13 @@ class _Interpreter(CalculusPart):
         r"""Parse the left side of a definition of a matrix, ``R(\phi) =``, and return the name R; else None."""
         # brackets around it, as in [M_3(\theta)] =, are left out
         opened = 1 if self.at("[") else 0
+        item = self.peek(opened)
+        letter = tree.alone(item.inside) if isinstance(item, tree.Font) else item
         named = 2 if isinstance(self.peek(opened + 1), tree.Script) else 1
         first = self.index + opened + named
         texts = [item.text for item in self.items[first:]]
         end = texts.index(")") if ")" in texts else 0
-        if texts[:1] != ["("] or not is_letter(self.peek(opened)) or texts[1 : end + 1] == ["t", ")"]:
+        if texts[:1] != ["("] or not is_letter(letter) or texts[1 : end + 1] == ["t", ")"]:
             return None
         if texts[end + 1 : end + 2 + opened] != [*"]"[:opened], "="]:
             return None
@@ -303,11 +305,10 @@ class _Interpreter(CalculusPart):
         # otherwise R(\phi) is a product
         if not (is_matrix or (letters and {*letters} <= rest)):
             return None
-        self.index += opened
-        item = self.next()
+        self.index += opened + 1
         subscript = self.script("_")
         self.index += end + 1 + opened
-        name = item.text.removeprefix("\\")
+        name = letter.text.removeprefix("\\")
         name = self.resolved(name, self.subscript(subscript)) if subscript else name
         self.notes.append(f"{name}(..) is read as the name {name}")
         return Node("name", name)

@@ -340,6 +340,8 @@ class SumsPart(Cursor):
             return matrix
         bars, self.open_bars = self.open_bars, ()
         inner = self.expression()
+        if opening.text == "(" and "\\otimes" in self.source and self.take(","):  # a quaternion (0, v)
+            inner = Node("list", ("(", ")"), (inner, self.expression()))
         inner = self.paired(inner, "-" if opening.text == "[" else "+") if opening.text in ("[", "\\{") else inner
         crossed = opening.text == "[" and self.take("\\times")
         self.expect(CLOSING[opening.text])

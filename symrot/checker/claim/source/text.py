@@ -172,6 +172,7 @@ def claim_of_relation(
         sources=sources,
         units={**_units_of_directions(vectors), **check_units(dict(units or {}), used, "claim")},
         has_parts=unit is not None or bool(on_indices),
+        written=with_matrices.written,
         notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
     )
 
