@@ -144,13 +144,13 @@ def _read(
                 raise
         else:
             names_in_lines = {node.value for _, sides in lines for side in sides for _, node in walk(side)}
-            found = frozenset(filter(may_be_mixed, reader.hatted & ({*+reader.bare} | names_in_lines)))
-            if reader.crossed == crossed and found == mixed:
+            both = frozenset(filter(may_be_mixed, reader.hatted & ({*+reader.bare} | names_in_lines)))
+            if reader.crossed == crossed and both == mixed:
                 reader.notes += [
                     f"{name} with a hat is {name}/|{name}|, since the text has {name} too" for name in mixed
                 ]
                 return lines, reader
-            mixed = found
+            mixed = both
         crossed = frozenset(reader.crossed)
 
 
