@@ -14,7 +14,7 @@ from symrot.checker.arrays.matrices import as_rotations, matrices_of_entries
 from symrot.checker.claim.claims import Claim, relation_text
 from symrot.checker.claim.named_formula import named_formula
 from symrot.checker.claim.notation import Notation, TypedNotation, notation_of
-from symrot.checker.claim.reader import Declared, Reading, Relation, read_relation, readings_of
+from symrot.checker.claim.reader import read_relation, readings_of
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.source.lines import claims_of_reading
 from symrot.checker.claim.source.text import ON_PAULI, claim_of_relation, functions_of_time
@@ -28,6 +28,7 @@ from symrot.checker.open_equation import as_equation
 from symrot.checker.recognition.together import fit_together, misplaced
 from symrot.checker.rounding import with_rounding
 from symrot.checker.special_cases import for_complex_numbers, for_special_directions
+from symrot.checker.typed.readings import Declared, Reading, Relation
 from symrot.checker.units.conversion import (
     ONE_PER_SECOND,
     STANDARD_GRAVITY,

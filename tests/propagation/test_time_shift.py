@@ -18,7 +18,9 @@ from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import evaluate, parse
 from symrot.planning.scene_kernel import EXACT_FUNCTIONS, bind
 from symrot.propagation import time_shift as epoch
-from symrot.propagation.motion import SteppedMotion, SteppedSetup, on_clock
+from symrot.propagation.motions.methods import SteppedMotion
+from symrot.propagation.motions.motion import on_clock
+from symrot.propagation.motions.setup import SteppedSetup
 from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers import dop853
 from symrot.propagation.steppers.stepping import MAX_STEPS

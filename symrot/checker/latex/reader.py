@@ -9,21 +9,14 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, ClassVar
 
-from symrot.checker.claim.reader import (
-    Chain,
-    Reading,
-    Relation,
-    distinct_readings,
-    each_reading,
-    read_expression,
-    read_relation,
-)
+from symrot.checker.claim.reader import read_expression, read_relation
 from symrot.checker.claim.tree import TIME, Node, is_derivative, sum_of, text, walk
-from symrot.checker.claim.vectors import Vector, may_be_mixed, used_vectors, without_marks
+from symrot.checker.claim.vectors import Vector, may_be_mixed, on_direction, used_vectors, without_marks
 from symrot.checker.latex.calculus import DOTS, CalculusPart
 from symrot.checker.latex.cursor import JOINTS, UPRIGHT, Names, is_letter
 from symrot.checker.latex.names import NAME_MARKS, OPERATORS, VECTOR_MARKS
 from symrot.checker.latex.sums import FUNCTIONS, SIGNS
+from symrot.checker.typed.readings import Chain, Reading, Relation, distinct_readings, each_reading
 from symrot.errors import InputError
 from symrot.latex import tree
 
@@ -146,9 +139,7 @@ def _read(
             names_in_lines = {node.value for _, sides in lines for side in sides for _, node in walk(side)}
             both = frozenset(filter(may_be_mixed, reader.hatted & ({*+reader.bare} | names_in_lines)))
             if reader.crossed == crossed and both == mixed:
-                reader.notes += [
-                    f"{name} with a hat is {name}/|{name}|, since the text has {name} too" for name in mixed
-                ]
+                reader.notes += map(on_direction, sorted(mixed))
                 return lines, reader
             mixed = both
         crossed = frozenset(reader.crossed)

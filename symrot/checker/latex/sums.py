@@ -10,12 +10,11 @@ from symrot.checker.arrays.index_notation import component_of_cross
 from symrot.checker.arrays.pauli import commutator
 from symrot.checker.arrays.quaternions import CONJUGATE, quaternion_product
 from symrot.checker.claim.functions import BUILT_IN
-from symrot.checker.claim.reader import DEEPEST_NESTING
 from symrot.checker.claim.tree import Node, is_derivative, negated, number, product, sum_of
 from symrot.checker.claim.vectors import MARK
 from symrot.checker.latex.cursor import CLOSING, UPRIGHT, Cursor, is_d, is_letter
 from symrot.checker.latex.macros import INSTEAD
-from symrot.checker.typed.cursor import SHARED, is_usual_vector
+from symrot.checker.typed.cursor import DEEPEST_NESTING, SHARED, is_usual_vector
 from symrot.checker.typed.defined_functions import DEFINED
 from symrot.checker.typed.words import ALIASES
 from symrot.latex import tree
