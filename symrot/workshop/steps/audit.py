@@ -9,7 +9,7 @@ from pathlib import Path
 
 from symrot.certificates.audit import LARGEST
 from symrot.certificates.certificate import Data, certificate_json, seal
-from symrot.certificates.readback.header import check_header
+from symrot.certificates.readback.header import check_header, check_source
 from symrot.certificates.readback.readback import read_kernel
 from symrot.certificates.rounding.bounds import check_section
 from symrot.certificates.step_certificate import (
@@ -98,6 +98,7 @@ def audit_step(
             f"them ({reason}); print the certificate again"
         ) from None
     source = texts[f"{name}.c"]
+    check_source(source, name)
     check_header(texts[f"{name}.h"], source, name)
     # files, C text and bounds are compared with the rates that the certificate states
     rates = rates_of(data)
