@@ -1,6 +1,7 @@
 """Certificates of steps: bounds of rounding and truncation hold, wrong steps and edited certificates are refused."""
 
 import json
+import re
 from dataclasses import replace
 from fractions import Fraction
 from hashlib import sha256
@@ -202,8 +203,14 @@ def test_ranges_of_single_numbers_have_bounds():
 
 def test_steps_too_large_for_a_bound_are_refused():
     rates, method, _, box = problem("tumbling_prism", "rk4", (Fraction(0), Fraction(10)))
-    with pytest.raises(InputError, match="got sizes dt up to 10 s; take smaller dt"):
+    with pytest.raises(
+        InputError, match=r"got sizes dt up to 10 s; take dt up to [\d.]+ s, or a smaller box"
+    ) as refusal:
         truncation_bounds(rates, method, box)
+    advice = Fraction(re.findall(r"[\d.]+", str(refusal.value))[-1])
+    assert all(map(np.isfinite, truncation_bounds(rates, method, box | {"dt": (Fraction(0), advice)}).values()))
+    with pytest.raises(InputError, match="take smaller dt or a smaller box"):
+        truncation_bounds(rates, method, box | {"dt": (Fraction(8), Fraction(10))})
 
 
 def test_bounds_on_the_largest_range_of_time_hold_at_all_times():
