@@ -8,6 +8,7 @@ from symrot.exchange.inertial import Inertial
 from symrot.exchange.orientation import quaternion_of
 from symrot.exchange.robot import Link
 from symrot.inertia.principal import principal_axes
+from symrot.report.layout import fields
 from symrot.scene.content import toml_text
 
 __all__ = ["facts", "lines", "link_facts", "link_lines", "table_text"]
@@ -48,8 +49,7 @@ def lines(inertial: Inertial) -> list[str]:
             ("error", f"at most {table['error']:.1e}, relative" if table["error"] else "none: exact arithmetic")
         )
         rows.append(("surface", table["checks"]))
-    width = max(len(name) for name, _ in rows)
-    return [f"{inertial.name}, about its centre of mass", *(f"  {name:{width}}  {text}" for name, text in rows)]
+    return [f"{inertial.name}, about its centre of mass", *fields((f"  {name}", text) for name, text in rows)]
 
 
 def table_text(inertial: Inertial, fixed_point: str | None = None) -> str:
