@@ -91,6 +91,8 @@ class Claim:
         Statements in words about the names of the claim and about the body, such as ``"rod"``.
     written : tuple of (Node, Node)
         Formulas in ``relation``, each with the short form that the text has for it, such as an exponential.
+    unsplit : (str, Relation) or None
+        The imaginary unit of a complex equation, and the equation before its split into real and imaginary parts.
     """
 
     id: str = ""
@@ -111,6 +113,7 @@ class Claim:
     has_parts: bool = False
     context: Context = NO_CONTEXT
     written: tuple[tuple[Node, Node], ...] = ()
+    unsplit: tuple[str, Relation] | None = None
 
     @property
     def has_double_equals(self) -> bool:
