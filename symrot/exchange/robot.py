@@ -49,19 +49,24 @@ class Link(NamedTuple):
 
 
 class Format(NamedTuple):
-    """A format of robot files: its name, the tag of a link, the path to all links, and the reader of an inertial."""
+    """A format of robot files: its name, the tag of a link, the path to all links, and the reader of an inertial.
+
+    ``other`` is the path to elements of the same tag that are no links.
+    """
 
     name: str
     tag: str
-    paths: tuple[str, ...]
+    path: str
     read: Callable[[Element, Element], Inertial]
+    other: str = ""
 
     def elements(self, root: Element) -> list[Element]:
         """Return the elements of all links in the XML tree ``root``.
 
         Elements with the same tag at other places, as in plugins, are not links.
         """
-        return [element for path in self.paths for element in root.findall(path)]
+        others = set(root.findall(self.other)) if self.other else set()
+        return [element for element in root.findall(self.path) if element not in others]
 
 
 def links(path: str | Path) -> tuple[Link, ...]:
@@ -385,8 +390,9 @@ def _read_mjcf(element: Element, root: Element) -> Inertial:
 
 
 FORMATS = {
-    "robot": Format("URDF", "link", ("link",), _read_urdf),
-    "sdf": Format("SDF", "link", (".//model/link",), _read_sdf),
-    "mujoco": Format("MJCF", "body", ("worldbody//body",), _read_mjcf),
+    "robot": Format("URDF", "link", "link", _read_urdf),
+    # the state of a world has the places of its links
+    "sdf": Format("SDF", "link", ".//model/link", _read_sdf, ".//state//link"),
+    "mujoco": Format("MJCF", "body", "worldbody//body", _read_mjcf),
 }
 """Tag of the root element -> format."""

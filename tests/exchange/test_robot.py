@@ -269,6 +269,19 @@ def test_links_of_plugins_are_no_links(tmp_path):
     assert empty.read_text() == before
 
 
+def test_places_of_links_in_the_state_of_a_world_are_no_links(tmp_path):
+    model = SDF.format(attributes="", rotation="0 0 0").partition("<model")[2].partition("</model>")[0]
+    state = '<state><model name="m"><link name="arm"><pose>1 2 3 0 0 0</pose></link></model></state>'
+    for parts in ((state, model), (model, state)):
+        inner = "".join(part if part == state else f"<model{part}</model>" for part in parts)
+        path = robot(tmp_path, f'<sdf version="1.9"><world name="w">{inner}</world></sdf>')
+        assert [each.name for each in symrot.links(path)] == ["arm"]
+        assert symrot.link(path).mass == Fraction(5, 2)
+        ball = Inertial("x", Fraction(1), (0, 0, 0), ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
+        symrot.write_link(path, "arm", ball)
+        assert symrot.link(path, "arm").inertia == ball.inertia
+
+
 def test_a_folder_and_a_missing_file_are_refused(tmp_path):
     for path, reason in ((tmp_path, "a folder"), (tmp_path / "none.urdf", "No such file")):
         with pytest.raises(InputError, match=reason):
