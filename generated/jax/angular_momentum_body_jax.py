@@ -17,15 +17,8 @@ import jax.numpy as jnp
 
 
 def angular_momentum_body(inertia, omega):
-    I_xx = inertia[0]
-    I_yy = inertia[1]
-    I_zz = inertia[2]
-    I_xy = inertia[3]
-    I_xz = inertia[4]
-    I_yz = inertia[5]
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
+    I_xx, I_yy, I_zz, I_xy, I_xz, I_yz = inertia
+    omega_1, omega_2, omega_3 = omega
     momentum = jnp.stack([
         I_xx*omega_1 + I_xy*omega_2 + I_xz*omega_3,
         omega_1*I_xy + omega_2*I_yy + omega_3*I_yz,

@@ -16,10 +16,9 @@ import jax.numpy as jnp
 
 
 def euler_equations_spherical(inertia, omega, torque):
-    A = inertia[0]
-    tau_1 = torque[0]
-    tau_2 = torque[1]
-    tau_3 = torque[2]
+    (A,) = inertia
+    _, _, _ = omega
+    tau_1, tau_2, tau_3 = torque
     inv_A = 1.0/A
     domega = jnp.stack([
         tau_1*inv_A,

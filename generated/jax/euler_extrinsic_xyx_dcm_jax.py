@@ -16,9 +16,7 @@ import jax.numpy as jnp
 
 
 def euler_extrinsic_xyx_dcm(angles):
-    phi = angles[0]
-    theta = angles[1]
-    psi = angles[2]
+    phi, theta, psi = angles
     cos_theta = jnp.cos(theta)
     sin_phi = jnp.sin(phi)
     sin_theta = jnp.sin(theta)

@@ -16,8 +16,7 @@ import jax.numpy as jnp
 
 
 def euler_extrinsic_xzy_space_jacobian(angles):
-    theta = angles[1]
-    psi = angles[2]
+    _, theta, psi = angles
     cos_psi = jnp.cos(psi)
     cos_theta = jnp.cos(theta)
     sin_psi = jnp.sin(psi)

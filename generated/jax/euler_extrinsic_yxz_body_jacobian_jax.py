@@ -16,8 +16,7 @@ import jax.numpy as jnp
 
 
 def euler_extrinsic_yxz_body_jacobian(angles):
-    phi = angles[0]
-    theta = angles[1]
+    phi, theta, _ = angles
     cos_phi = jnp.cos(phi)
     sin_phi = jnp.sin(phi)
     cos_theta = jnp.cos(theta)

@@ -18,10 +18,7 @@ def _select_ge(a, b, x, y):
 
 
 def euler_extrinsic_yzx_of_quaternion(q):
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
+    q0, q1, q2, q3 = q
     q1_minus_q2 = q1 - q2
     q0_plus_q3 = q0 + q3
     phi_angle_1 = jnp.arctan2(q1_minus_q2, q0_plus_q3)

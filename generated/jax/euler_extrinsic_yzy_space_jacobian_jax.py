@@ -16,8 +16,7 @@ import jax.numpy as jnp
 
 
 def euler_extrinsic_yzy_space_jacobian(angles):
-    theta = angles[1]
-    psi = angles[2]
+    _, theta, psi = angles
     sin_theta = jnp.sin(theta)
     cos_psi = jnp.cos(psi)
     sin_psi = jnp.sin(psi)

@@ -16,11 +16,8 @@ import jax.numpy as jnp
 
 
 def euler_extrinsic_zxz_body_rates(angles, omega):
-    phi = angles[0]
-    theta = angles[1]
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
+    phi, theta, _ = angles
+    omega_1, omega_2, omega_3 = omega
     sin_phi = jnp.sin(phi)
     cos_phi = jnp.cos(phi)
     sin_theta = jnp.sin(theta)

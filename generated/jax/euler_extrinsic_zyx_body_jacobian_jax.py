@@ -16,8 +16,7 @@ import jax.numpy as jnp
 
 
 def euler_extrinsic_zyx_body_jacobian(angles):
-    phi = angles[0]
-    theta = angles[1]
+    phi, theta, _ = angles
     sin_phi = jnp.sin(phi)
     cos_phi = jnp.cos(phi)
     cos_theta = jnp.cos(theta)

@@ -16,11 +16,8 @@ import jax.numpy as jnp
 
 
 def euler_extrinsic_zyx_space_rates(angles, omega):
-    theta = angles[1]
-    psi = angles[2]
-    omega_x = omega[0]
-    omega_y = omega[1]
-    omega_z = omega[2]
+    _, theta, psi = angles
+    omega_x, omega_y, omega_z = omega
     sin_psi = jnp.sin(psi)
     cos_psi = jnp.cos(psi)
     cos_theta = jnp.cos(theta)

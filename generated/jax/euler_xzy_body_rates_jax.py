@@ -15,11 +15,8 @@ import jax.numpy as jnp
 
 
 def euler_xzy_body_rates(angles, omega):
-    theta = angles[1]
-    psi = angles[2]
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
+    _, theta, psi = angles
+    omega_1, omega_2, omega_3 = omega
     cos_psi = jnp.cos(psi)
     sin_psi = jnp.sin(psi)
     cos_theta = jnp.cos(theta)

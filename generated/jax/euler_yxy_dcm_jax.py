@@ -16,9 +16,7 @@ import jax.numpy as jnp
 
 
 def euler_yxy_dcm(angles):
-    phi = angles[0]
-    theta = angles[1]
-    psi = angles[2]
+    phi, theta, psi = angles
     cos_phi = jnp.cos(phi)
     cos_psi = jnp.cos(psi)
     outer_1 = cos_phi*cos_psi

@@ -16,8 +16,7 @@ import jax.numpy as jnp
 
 
 def euler_zxz_space_jacobian(angles):
-    phi = angles[0]
-    theta = angles[1]
+    phi, theta, _ = angles
     cos_phi = jnp.cos(phi)
     sin_phi = jnp.sin(phi)
     sin_theta = jnp.sin(theta)

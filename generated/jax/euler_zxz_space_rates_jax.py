@@ -15,11 +15,8 @@ import jax.numpy as jnp
 
 
 def euler_zxz_space_rates(angles, omega):
-    phi = angles[0]
-    theta = angles[1]
-    omega_x = omega[0]
-    omega_y = omega[1]
-    omega_z = omega[2]
+    phi, theta, _ = angles
+    omega_x, omega_y, omega_z = omega
     sin_phi = jnp.sin(phi)
     cos_phi = jnp.cos(phi)
     sin_theta = jnp.sin(theta)

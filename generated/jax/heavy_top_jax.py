@@ -19,19 +19,10 @@ import jax.numpy as jnp
 
 
 def heavy_top(inertia, W, center_of_mass, omega, q):
-    A = inertia[0]
-    B = inertia[1]
-    C = inertia[2]
-    c_1 = center_of_mass[0]
-    c_2 = center_of_mass[1]
-    c_3 = center_of_mass[2]
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
+    A, B, C = inertia
+    c_1, c_2, c_3 = center_of_mass
+    omega_1, omega_2, omega_3 = omega
+    q0, q1, q2, q3 = q
     two_W = 2.0*W
     moment_of_weight_3 = c_3*two_W
     half_vertical_2 = q0*q1 + q2*q3

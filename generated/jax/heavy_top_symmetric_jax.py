@@ -22,15 +22,9 @@ import jax.numpy as jnp
 
 
 def heavy_top_symmetric(inertia, W, h, omega, q):
-    A = inertia[0]
-    C = inertia[1]
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
+    A, C = inertia
+    omega_1, omega_2, omega_3 = omega
+    q0, q1, q2, q3 = q
     moment_of_weight_3 = 2.0*W*h
     half_vertical_2 = q0*q1 + q2*q3
     domega_1_term_1 = (A - C)*omega_3

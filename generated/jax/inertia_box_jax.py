@@ -20,9 +20,7 @@ import jax.numpy as jnp
 
 
 def inertia_box(m, dimensions):
-    a = dimensions[0]
-    b = dimensions[1]
-    c = dimensions[2]
+    a, b, c = dimensions
     b_sq = b*b
     c_sq = c*c
     m_over_12 = 0.08333333333333333*m

@@ -21,9 +21,7 @@ import jax.numpy as jnp
 
 
 def inertia_frustum(m, dimensions):
-    R_1 = dimensions[0]
-    R_2 = dimensions[1]
-    h = dimensions[2]
+    R_1, R_2, h = dimensions
     R_1_sq = R_1*R_1
     R_1_pow_4 = R_1_sq*R_1_sq
     R_2_sq = R_2*R_2

@@ -21,9 +21,7 @@ import jax.numpy as jnp
 
 
 def inertia_hollow_cylinder(m, dimensions):
-    R_1 = dimensions[0]
-    R_2 = dimensions[1]
-    L = dimensions[2]
+    R_1, R_2, L = dimensions
     R_1_sq_plus_R_2_sq = R_1*R_1 + R_2*R_2
     I_xx_term_1 = 0.08333333333333333*(L*L + 3.0*R_1_sq_plus_R_2_sq)*m
     inertia = jnp.stack([

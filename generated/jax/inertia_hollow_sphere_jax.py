@@ -19,8 +19,7 @@ import jax.numpy as jnp
 
 
 def inertia_hollow_sphere(m, dimensions):
-    R_1 = dimensions[0]
-    R_2 = dimensions[1]
+    R_1, R_2 = dimensions
     R_1_sq = R_1*R_1
     R_2_sq = R_2*R_2
     R_1_R_2 = R_1*R_2

@@ -19,8 +19,7 @@ import jax.numpy as jnp
 
 
 def inertia_plate(m, dimensions):
-    a = dimensions[0]
-    b = dimensions[1]
+    a, b = dimensions
     b_sq = b*b
     m_over_12 = 0.08333333333333333*m
     a_sq = a*a

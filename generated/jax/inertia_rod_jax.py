@@ -18,7 +18,7 @@ import jax.numpy as jnp
 
 
 def inertia_rod(m, dimensions):
-    L = dimensions[0]
+    (L,) = dimensions
     L_sq_m_over_12 = 0.08333333333333333*L*L*m
     inertia = jnp.stack([
         L_sq_m_over_12,

@@ -21,16 +21,8 @@ import jax.numpy as jnp
 
 
 def inertia_rotated(q, inertia):
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
-    I_xx = inertia[0]
-    I_yy = inertia[1]
-    I_zz = inertia[2]
-    I_xy = inertia[3]
-    I_xz = inertia[4]
-    I_yz = inertia[5]
+    q0, q1, q2, q3 = q
+    I_xx, I_yy, I_zz, I_xy, I_xz, I_yz = inertia
     twice_3 = 2.0*q3
     two_q3_sq = q3*twice_3
     twice_2 = 2.0*q2

@@ -18,7 +18,7 @@ import jax.numpy as jnp
 
 
 def inertia_sphere(m, dimensions):
-    R = dimensions[0]
+    (R,) = dimensions
     I_xx_term_1 = 0.4*R*R*m
     inertia = jnp.stack([
         I_xx_term_1,

@@ -18,7 +18,7 @@ import jax.numpy as jnp
 
 
 def inertia_spherical_shell(m, dimensions):
-    R = dimensions[0]
+    (R,) = dimensions
     two_thirds_R_sq_m = 0.6666666666666666*R*R*m
     inertia = jnp.stack([
         two_thirds_R_sq_m,

@@ -23,18 +23,7 @@ import jax.numpy as jnp
 
 
 def inertia_tetrahedron(m, dimensions):
-    x_1 = dimensions[0]
-    y_1 = dimensions[1]
-    z_1 = dimensions[2]
-    x_2 = dimensions[3]
-    y_2 = dimensions[4]
-    z_2 = dimensions[5]
-    x_3 = dimensions[6]
-    y_3 = dimensions[7]
-    z_3 = dimensions[8]
-    x_4 = dimensions[9]
-    y_4 = dimensions[10]
-    z_4 = dimensions[11]
+    x_1, y_1, z_1, x_2, y_2, z_2, x_3, y_3, z_3, x_4, y_4, z_4 = dimensions
     I_xx_term_1 = y_1*y_1 + y_2*y_2 + (y_3*y_3 + y_4*y_4)
     I_xx_term_2 = z_1*z_1 + z_2*z_2 + (z_3*z_3 + z_4*z_4)
     I_xx_term_3 = y_2*y_4 + y_3*y_4 + (y_1*y_2 + y_1*y_3 + (y_1*y_4 + y_2*y_3))

@@ -20,8 +20,7 @@ import jax.numpy as jnp
 
 
 def inertia_torus(m, dimensions):
-    R = dimensions[0]
-    r = dimensions[1]
+    R, r = dimensions
     four_R_sq = 4.0*R*R
     r_sq = r*r
     I_xx_term_1 = 0.125*(four_R_sq + 5.0*r_sq)*m

@@ -23,9 +23,7 @@ import jax.numpy as jnp
 
 
 def inertia_triangular_plate(m, dimensions):
-    b = dimensions[0]
-    h = dimensions[1]
-    e = dimensions[2]
+    b, h, e = dimensions
     h_sq = h*h
     m_over_18 = 0.05555555555555555*m
     b_e_minus_b_sq_plus_e_sq = b*e - (b*b + e*e)

@@ -15,12 +15,8 @@ import jax.numpy as jnp
 
 
 def mrp_body_rates(parameters, omega):
-    s1 = parameters[0]
-    s2 = parameters[1]
-    s3 = parameters[2]
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
+    s1, s2, s3 = parameters
+    omega_1, omega_2, omega_3 = omega
     half_1 = 0.5*omega_1
     square = s1*s1 + s2*s2 + s3*s3
     ds1_term_1 = 0.5*(1.0 - square)

@@ -18,10 +18,7 @@ def _select_ge(a, b, x, y):
 
 
 def mrp_of_quaternion(q):
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
+    q0, q1, q2, q3 = q
     s1_choice_1 = _select_ge(q0, 0.0, 1.0, -1.0)
     s1_term_1 = s1_choice_1/(1.0 + q0*s1_choice_1)
     parameters = jnp.stack([

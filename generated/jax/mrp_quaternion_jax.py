@@ -14,9 +14,7 @@ import jax.numpy as jnp
 
 
 def mrp_quaternion(parameters):
-    s1 = parameters[0]
-    s2 = parameters[1]
-    s3 = parameters[2]
+    s1, s2, s3 = parameters
     s3_sq_plus_s1_sq_plus_s2_sq = s3*s3 + (s1*s1 + s2*s2)
     q0_term_1 = 1.0/(1.0 + s3_sq_plus_s1_sq_plus_s2_sq)
     two_q0_term_1 = 2.0*q0_term_1

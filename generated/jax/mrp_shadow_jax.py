@@ -18,9 +18,7 @@ def _select_ge(a, b, x, y):
 
 
 def mrp_shadow(parameters):
-    s1 = parameters[0]
-    s2 = parameters[1]
-    s3 = parameters[2]
+    s1, s2, s3 = parameters
     s1_sq_plus_s2_sq_plus_s3_sq = s1*s1 + s2*s2 + s3*s3
     inv_s1_sq_plus_s2_sq_plus_s3_sq = 1.0/s1_sq_plus_s2_sq_plus_s3_sq
     turned_1_choice_1 = _select_ge(1.0, s1_sq_plus_s2_sq_plus_s3_sq, s1, -(s1*inv_s1_sq_plus_s2_sq_plus_s3_sq))

@@ -15,12 +15,8 @@ import jax.numpy as jnp
 
 
 def mrp_space_rates(parameters, omega):
-    s1 = parameters[0]
-    s2 = parameters[1]
-    s3 = parameters[2]
-    omega_x = omega[0]
-    omega_y = omega[1]
-    omega_z = omega[2]
+    s1, s2, s3 = parameters
+    omega_x, omega_y, omega_z = omega
     half_1 = 0.5*omega_x
     square = s1*s1 + s2*s2 + s3*s3
     ds1_term_1 = 0.5*(1.0 - square)

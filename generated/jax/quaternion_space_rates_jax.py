@@ -15,13 +15,8 @@ import jax.numpy as jnp
 
 
 def quaternion_space_rates(q, omega):
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
-    omega_x = omega[0]
-    omega_y = omega[1]
-    omega_z = omega[2]
+    q0, q1, q2, q3 = q
+    omega_x, omega_y, omega_z = omega
     half_1 = 0.5*omega_x
     half_2 = 0.5*omega_y
     half_3 = 0.5*omega_z

@@ -15,13 +15,8 @@ import jax.numpy as jnp
 
 
 def quaternion_to_space(q, vector):
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
-    vector_1 = vector[0]
-    vector_2 = vector[1]
-    vector_3 = vector[2]
+    q0, q1, q2, q3 = q
+    vector_1, vector_2, vector_3 = vector
     twice_cross_1 = 2.0*(q2*vector_3 - q3*vector_2)
     twice_cross_3 = 2.0*(vector_2*q1 - q2*vector_1)
     twice_cross_2 = (-2.0)*(vector_3*q1 - q3*vector_1)

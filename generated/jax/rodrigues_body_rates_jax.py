@@ -15,12 +15,8 @@ import jax.numpy as jnp
 
 
 def rodrigues_body_rates(parameters, omega):
-    g1 = parameters[0]
-    g2 = parameters[1]
-    g3 = parameters[2]
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
+    g1, g2, g3 = parameters
+    omega_1, omega_2, omega_3 = omega
     half_1 = 0.5*omega_1
     half_2 = 0.5*omega_2
     half_3 = 0.5*omega_3

@@ -15,9 +15,7 @@ import jax.numpy as jnp
 
 
 def rodrigues_dcm(parameters):
-    g1 = parameters[0]
-    g2 = parameters[1]
-    g3 = parameters[2]
+    g1, g2, g3 = parameters
     norm = 1.0 + g1*g1 + g2*g2 + g3*g3
     two_over_norm = 2.0/norm
     twice_3 = g3*two_over_norm

@@ -14,9 +14,7 @@ import jax.numpy as jnp
 
 
 def rodrigues_quaternion(parameters):
-    g1 = parameters[0]
-    g2 = parameters[1]
-    g3 = parameters[2]
+    g1, g2, g3 = parameters
     q0_root_1 = jnp.sqrt(1.0 + g1*g1 + g2*g2 + g3*g3)
     inv_q0_root_1 = 1.0/q0_root_1
     q = jnp.stack([

@@ -15,12 +15,8 @@ import jax.numpy as jnp
 
 
 def rodrigues_space_rates(parameters, omega):
-    g1 = parameters[0]
-    g2 = parameters[1]
-    g3 = parameters[2]
-    omega_x = omega[0]
-    omega_y = omega[1]
-    omega_z = omega[2]
+    g1, g2, g3 = parameters
+    omega_x, omega_y, omega_z = omega
     half_1 = 0.5*omega_x
     half_2 = 0.5*omega_y
     half_3 = 0.5*omega_z

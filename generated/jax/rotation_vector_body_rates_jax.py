@@ -46,12 +46,8 @@ def _tangent_bend(x):
 
 
 def rotation_vector_body_rates(v, omega):
-    v1 = v[0]
-    v2 = v[1]
-    v3 = v[2]
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
+    v1, v2, v3 = v
+    omega_1, omega_2, omega_3 = omega
     cross_1 = v2*omega_3 - v3*omega_2
     cross_2 = v3*omega_1 - v1*omega_3
     cross_3 = v1*omega_2 - v2*omega_1

@@ -45,9 +45,7 @@ def _tangent_bend(x):
 
 
 def rotation_vector_dcm(v):
-    v1 = v[0]
-    v2 = v[1]
-    v3 = v[2]
+    v1, v2, v3 = v
     v2_sq = v2*v2
     v3_sq = v3*v3
     v1_sq = v1*v1

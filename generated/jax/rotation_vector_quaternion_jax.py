@@ -45,9 +45,7 @@ def _tangent_bend(x):
 
 
 def rotation_vector_quaternion(v):
-    v1 = v[0]
-    v2 = v[1]
-    v3 = v[2]
+    v1, v2, v3 = v
     angle = jnp.sqrt(v1*v1 + v2*v2 + v3*v3)
     half_angle = 0.5*angle
     cos_half_angle = jnp.cos(half_angle)

@@ -15,9 +15,7 @@ import jax.numpy as jnp
 
 
 def torque_constant_body(torque):
-    torque_1 = torque[0]
-    torque_2 = torque[1]
-    torque_3 = torque[2]
+    torque_1, torque_2, torque_3 = torque
     torque_b = jnp.stack([
         torque_1,
         torque_2,

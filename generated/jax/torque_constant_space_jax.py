@@ -16,13 +16,8 @@ import jax.numpy as jnp
 
 
 def torque_constant_space(q, torque):
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
-    torque_1 = torque[0]
-    torque_2 = torque[1]
-    torque_3 = torque[2]
+    q0, q1, q2, q3 = q
+    torque_1, torque_2, torque_3 = torque
     torque_2_q1_minus_torque_1_q2 = torque_2*q1 - torque_1*q2
     torque_3_q1_minus_torque_1_q3 = torque_3*q1 - torque_1*q3
     q2_torque_3_minus_q3_torque_2 = q2*torque_3 - q3*torque_2

@@ -16,9 +16,7 @@ import jax.numpy as jnp
 
 
 def torque_damping_quadratic(omega, quadratic):
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
+    omega_1, omega_2, omega_3 = omega
     tau_1_root_1 = jnp.sqrt(omega_1*omega_1 + omega_2*omega_2 + omega_3*omega_3)
     quadratic_tau_1_root_1 = quadratic*tau_1_root_1
     torque_b = jnp.stack([

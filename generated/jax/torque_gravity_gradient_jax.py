@@ -20,16 +20,8 @@ import jax.numpy as jnp
 
 
 def torque_gravity_gradient(t, inertia, q, mean_motion):
-    I_xx = inertia[0]
-    I_yy = inertia[1]
-    I_zz = inertia[2]
-    I_xy = inertia[3]
-    I_xz = inertia[4]
-    I_yz = inertia[5]
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
+    I_xx, I_yy, I_zz, I_xy, I_xz, I_yz = inertia
+    q0, q1, q2, q3 = q
     mean_motion_t = mean_motion*t
     cos_mean_motion_t = jnp.cos(mean_motion_t)
     cos_mean_motion_t_q3 = cos_mean_motion_t*q3

@@ -22,12 +22,8 @@ import jax.numpy as jnp
 
 
 def torque_rotor(omega, angular_momentum):
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
-    angular_momentum_1 = angular_momentum[0]
-    angular_momentum_2 = angular_momentum[1]
-    angular_momentum_3 = angular_momentum[2]
+    omega_1, omega_2, omega_3 = omega
+    angular_momentum_1, angular_momentum_2, angular_momentum_3 = angular_momentum
     torque_b = jnp.stack([
         angular_momentum_2*omega_3 - angular_momentum_3*omega_2,
         angular_momentum_3*omega_1 - omega_3*angular_momentum_1,

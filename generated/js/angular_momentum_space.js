@@ -16,6 +16,9 @@
  */
 
 export function angular_momentum_space(inertia, omega, q, momentum) {
+    if (inertia.length !== 6) throw new RangeError(`inertia: expected 6 numbers, got ${inertia.length}`);
+    if (omega.length !== 3) throw new RangeError(`omega: expected 3 numbers, got ${omega.length}`);
+    if (q.length !== 4) throw new RangeError(`q: expected 4 numbers, got ${q.length}`);
     const I_xx = inertia[0];
     const I_yy = inertia[1];
     const I_zz = inertia[2];

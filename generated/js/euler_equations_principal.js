@@ -14,6 +14,9 @@
  */
 
 export function euler_equations_principal(inertia, omega, torque, domega) {
+    if (inertia.length !== 3) throw new RangeError(`inertia: expected 3 numbers, got ${inertia.length}`);
+    if (omega.length !== 3) throw new RangeError(`omega: expected 3 numbers, got ${omega.length}`);
+    if (torque.length !== 3) throw new RangeError(`torque: expected 3 numbers, got ${torque.length}`);
     const A = inertia[0];
     const B = inertia[1];
     const C = inertia[2];

@@ -15,6 +15,9 @@
  */
 
 export function euler_equations_symmetric(inertia, omega, torque, domega) {
+    if (inertia.length !== 2) throw new RangeError(`inertia: expected 2 numbers, got ${inertia.length}`);
+    if (omega.length !== 3) throw new RangeError(`omega: expected 3 numbers, got ${omega.length}`);
+    if (torque.length !== 3) throw new RangeError(`torque: expected 3 numbers, got ${torque.length}`);
     const A = inertia[0];
     const C = inertia[1];
     const omega_1 = omega[0];

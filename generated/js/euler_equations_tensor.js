@@ -16,6 +16,9 @@
  */
 
 export function euler_equations_tensor(inertia, omega, torque, domega) {
+    if (inertia.length !== 6) throw new RangeError(`inertia: expected 6 numbers, got ${inertia.length}`);
+    if (omega.length !== 3) throw new RangeError(`omega: expected 3 numbers, got ${omega.length}`);
+    if (torque.length !== 3) throw new RangeError(`torque: expected 3 numbers, got ${torque.length}`);
     const I_xx = inertia[0];
     const I_yy = inertia[1];
     const I_zz = inertia[2];

@@ -14,6 +14,7 @@
  */
 
 export function euler_extrinsic_xyx_space_jacobian(angles, jacobian) {
+    if (angles.length !== 3) throw new RangeError(`angles: expected 3 numbers, got ${angles.length}`);
     const theta = angles[1];
     const psi = angles[2];
     const cos_theta = Math.cos(theta);

@@ -14,6 +14,8 @@
  */
 
 export function euler_extrinsic_xyz_space_rates(angles, omega, dangles) {
+    if (angles.length !== 3) throw new RangeError(`angles: expected 3 numbers, got ${angles.length}`);
+    if (omega.length !== 3) throw new RangeError(`omega: expected 3 numbers, got ${omega.length}`);
     const theta = angles[1];
     const psi = angles[2];
     const omega_x = omega[0];

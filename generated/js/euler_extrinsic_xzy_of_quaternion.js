@@ -16,6 +16,7 @@ function select_ge(a, b, x, y) {
 }
 
 export function euler_extrinsic_xzy_of_quaternion(q, angles) {
+    if (q.length !== 4) throw new RangeError(`q: expected 4 numbers, got ${q.length}`);
     const q0 = q[0];
     const q1 = q[1];
     const q2 = q[2];

@@ -12,6 +12,7 @@
  */
 
 export function euler_xyx_quaternion(angles, q) {
+    if (angles.length !== 3) throw new RangeError(`angles: expected 3 numbers, got ${angles.length}`);
     const phi = angles[0];
     const theta = angles[1];
     const psi = angles[2];

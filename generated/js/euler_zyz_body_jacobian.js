@@ -14,6 +14,7 @@
  */
 
 export function euler_zyz_body_jacobian(angles, jacobian) {
+    if (angles.length !== 3) throw new RangeError(`angles: expected 3 numbers, got ${angles.length}`);
     const theta = angles[1];
     const psi = angles[2];
     const sin_theta = Math.sin(theta);

@@ -14,6 +14,7 @@
  */
 
 export function euler_zyz_space_jacobian(angles, jacobian) {
+    if (angles.length !== 3) throw new RangeError(`angles: expected 3 numbers, got ${angles.length}`);
     const phi = angles[0];
     const theta = angles[1];
     const sin_phi = Math.sin(phi);

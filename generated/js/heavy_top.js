@@ -17,6 +17,10 @@
  */
 
 export function heavy_top(inertia, W, center_of_mass, omega, q, domega, dq) {
+    if (inertia.length !== 3) throw new RangeError(`inertia: expected 3 numbers, got ${inertia.length}`);
+    if (center_of_mass.length !== 3) throw new RangeError(`center_of_mass: expected 3 numbers, got ${center_of_mass.length}`);
+    if (omega.length !== 3) throw new RangeError(`omega: expected 3 numbers, got ${omega.length}`);
+    if (q.length !== 4) throw new RangeError(`q: expected 4 numbers, got ${q.length}`);
     const A = inertia[0];
     const B = inertia[1];
     const C = inertia[2];

@@ -20,6 +20,9 @@
  */
 
 export function heavy_top_symmetric(inertia, W, h, omega, q, domega, dq) {
+    if (inertia.length !== 2) throw new RangeError(`inertia: expected 2 numbers, got ${inertia.length}`);
+    if (omega.length !== 3) throw new RangeError(`omega: expected 3 numbers, got ${omega.length}`);
+    if (q.length !== 4) throw new RangeError(`q: expected 4 numbers, got ${q.length}`);
     const A = inertia[0];
     const C = inertia[1];
     const omega_1 = omega[0];

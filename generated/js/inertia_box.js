@@ -18,6 +18,7 @@
  */
 
 export function inertia_box(m, dimensions, inertia, center_of_mass) {
+    if (dimensions.length !== 3) throw new RangeError(`dimensions: expected 3 numbers, got ${dimensions.length}`);
     const a = dimensions[0];
     const b = dimensions[1];
     const c = dimensions[2];

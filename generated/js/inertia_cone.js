@@ -18,6 +18,7 @@
  */
 
 export function inertia_cone(m, dimensions, inertia, center_of_mass) {
+    if (dimensions.length !== 2) throw new RangeError(`dimensions: expected 2 numbers, got ${dimensions.length}`);
     const R = dimensions[0];
     const h = dimensions[1];
     const R_sq = R*R;

@@ -19,6 +19,7 @@
  */
 
 export function inertia_ellipsoid(m, dimensions, inertia, center_of_mass) {
+    if (dimensions.length !== 3) throw new RangeError(`dimensions: expected 3 numbers, got ${dimensions.length}`);
     const a = dimensions[0];
     const b = dimensions[1];
     const c = dimensions[2];

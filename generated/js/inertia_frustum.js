@@ -19,6 +19,7 @@
  */
 
 export function inertia_frustum(m, dimensions, inertia, center_of_mass) {
+    if (dimensions.length !== 3) throw new RangeError(`dimensions: expected 3 numbers, got ${dimensions.length}`);
     const R_1 = dimensions[0];
     const R_2 = dimensions[1];
     const h = dimensions[2];

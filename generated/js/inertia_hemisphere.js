@@ -17,6 +17,7 @@
  */
 
 export function inertia_hemisphere(m, dimensions, inertia, center_of_mass) {
+    if (dimensions.length !== 1) throw new RangeError(`dimensions: expected 1 number, got ${dimensions.length}`);
     const R = dimensions[0];
     const m_R_sq = m*(R*R);
     const I_xx_term_1 = 0.259375*m_R_sq;

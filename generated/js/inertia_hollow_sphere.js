@@ -17,6 +17,7 @@
  */
 
 export function inertia_hollow_sphere(m, dimensions, inertia, center_of_mass) {
+    if (dimensions.length !== 2) throw new RangeError(`dimensions: expected 2 numbers, got ${dimensions.length}`);
     const R_1 = dimensions[0];
     const R_2 = dimensions[1];
     const R_1_sq = R_1*R_1;

@@ -21,6 +21,8 @@
  */
 
 export function inertia_parallel_axis(inertia, m, offset, moved) {
+    if (inertia.length !== 6) throw new RangeError(`inertia: expected 6 numbers, got ${inertia.length}`);
+    if (offset.length !== 3) throw new RangeError(`offset: expected 3 numbers, got ${offset.length}`);
     const I_xx = inertia[0];
     const I_yy = inertia[1];
     const I_zz = inertia[2];

@@ -17,6 +17,7 @@
  */
 
 export function inertia_plate(m, dimensions, inertia, center_of_mass) {
+    if (dimensions.length !== 2) throw new RangeError(`dimensions: expected 2 numbers, got ${dimensions.length}`);
     const a = dimensions[0];
     const b = dimensions[1];
     const b_sq = b*b;

@@ -16,6 +16,7 @@
  */
 
 export function inertia_ring(m, dimensions, inertia, center_of_mass) {
+    if (dimensions.length !== 1) throw new RangeError(`dimensions: expected 1 number, got ${dimensions.length}`);
     const R = dimensions[0];
     const m_R_sq = m*(R*R);
     const half_m_R_sq = 0.5*m_R_sq;

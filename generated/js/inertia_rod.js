@@ -16,6 +16,7 @@
  */
 
 export function inertia_rod(m, dimensions, inertia, center_of_mass) {
+    if (dimensions.length !== 1) throw new RangeError(`dimensions: expected 1 number, got ${dimensions.length}`);
     const L = dimensions[0];
     const L_sq_m_over_12 = 0.08333333333333333*L*L*m;
     inertia[0] = L_sq_m_over_12;

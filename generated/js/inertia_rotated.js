@@ -19,6 +19,8 @@
  */
 
 export function inertia_rotated(q, inertia, rotated) {
+    if (q.length !== 4) throw new RangeError(`q: expected 4 numbers, got ${q.length}`);
+    if (inertia.length !== 6) throw new RangeError(`inertia: expected 6 numbers, got ${inertia.length}`);
     const q0 = q[0];
     const q1 = q[1];
     const q2 = q[2];

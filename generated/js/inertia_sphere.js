@@ -16,6 +16,7 @@
  */
 
 export function inertia_sphere(m, dimensions, inertia, center_of_mass) {
+    if (dimensions.length !== 1) throw new RangeError(`dimensions: expected 1 number, got ${dimensions.length}`);
     const R = dimensions[0];
     const I_xx_term_1 = 0.4*R*R*m;
     inertia[0] = I_xx_term_1;

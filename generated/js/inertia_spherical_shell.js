@@ -16,6 +16,7 @@
  */
 
 export function inertia_spherical_shell(m, dimensions, inertia, center_of_mass) {
+    if (dimensions.length !== 1) throw new RangeError(`dimensions: expected 1 number, got ${dimensions.length}`);
     const R = dimensions[0];
     const two_thirds_R_sq_m = 0.6666666666666666*R*R*m;
     inertia[0] = two_thirds_R_sq_m;

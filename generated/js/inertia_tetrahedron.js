@@ -21,6 +21,7 @@
  */
 
 export function inertia_tetrahedron(m, dimensions, inertia, center_of_mass) {
+    if (dimensions.length !== 12) throw new RangeError(`dimensions: expected 12 numbers, got ${dimensions.length}`);
     const x_1 = dimensions[0];
     const y_1 = dimensions[1];
     const z_1 = dimensions[2];

@@ -18,6 +18,7 @@
  */
 
 export function inertia_torus(m, dimensions, inertia, center_of_mass) {
+    if (dimensions.length !== 2) throw new RangeError(`dimensions: expected 2 numbers, got ${dimensions.length}`);
     const R = dimensions[0];
     const r = dimensions[1];
     const four_R_sq = 4.0*R*R;

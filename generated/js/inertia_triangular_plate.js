@@ -21,6 +21,7 @@
  */
 
 export function inertia_triangular_plate(m, dimensions, inertia, center_of_mass) {
+    if (dimensions.length !== 3) throw new RangeError(`dimensions: expected 3 numbers, got ${dimensions.length}`);
     const b = dimensions[0];
     const h = dimensions[1];
     const e = dimensions[2];

@@ -22,6 +22,7 @@
  */
 
 export function inertia_triangular_prism(m, dimensions, inertia, center_of_mass) {
+    if (dimensions.length !== 4) throw new RangeError(`dimensions: expected 4 numbers, got ${dimensions.length}`);
     const b = dimensions[0];
     const h = dimensions[1];
     const e = dimensions[2];

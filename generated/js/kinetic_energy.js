@@ -14,6 +14,8 @@
  */
 
 export function kinetic_energy(inertia, omega, energy) {
+    if (inertia.length !== 6) throw new RangeError(`inertia: expected 6 numbers, got ${inertia.length}`);
+    if (omega.length !== 3) throw new RangeError(`omega: expected 3 numbers, got ${omega.length}`);
     const I_xx = inertia[0];
     const I_yy = inertia[1];
     const I_zz = inertia[2];

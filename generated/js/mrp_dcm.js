@@ -13,6 +13,7 @@
  */
 
 export function mrp_dcm(parameters, dcm) {
+    if (parameters.length !== 3) throw new RangeError(`parameters: expected 3 numbers, got ${parameters.length}`);
     const s1 = parameters[0];
     const s2 = parameters[1];
     const s3 = parameters[2];

@@ -16,6 +16,7 @@ function select_ge(a, b, x, y) {
 }
 
 export function mrp_shadow(parameters, switched) {
+    if (parameters.length !== 3) throw new RangeError(`parameters: expected 3 numbers, got ${parameters.length}`);
     const s1 = parameters[0];
     const s2 = parameters[1];
     const s3 = parameters[2];

@@ -13,6 +13,8 @@
  */
 
 export function mrp_space_rates(parameters, omega, rates) {
+    if (parameters.length !== 3) throw new RangeError(`parameters: expected 3 numbers, got ${parameters.length}`);
+    if (omega.length !== 3) throw new RangeError(`omega: expected 3 numbers, got ${omega.length}`);
     const s1 = parameters[0];
     const s2 = parameters[1];
     const s3 = parameters[2];

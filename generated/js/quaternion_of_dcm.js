@@ -17,6 +17,7 @@ function select_ge(a, b, x, y) {
 }
 
 export function quaternion_of_dcm(dcm, q) {
+    if (dcm.length !== 9) throw new RangeError(`dcm: expected 9 numbers, got ${dcm.length}`);
     const R_11 = dcm[0];
     const R_12 = dcm[1];
     const R_13 = dcm[2];

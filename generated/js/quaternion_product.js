@@ -13,6 +13,8 @@
  */
 
 export function quaternion_product(left, right, product) {
+    if (left.length !== 4) throw new RangeError(`left: expected 4 numbers, got ${left.length}`);
+    if (right.length !== 4) throw new RangeError(`right: expected 4 numbers, got ${right.length}`);
     const p0 = left[0];
     const p1 = left[1];
     const p2 = left[2];

@@ -13,6 +13,8 @@
  */
 
 export function quaternion_space_rates(q, omega, dq) {
+    if (q.length !== 4) throw new RangeError(`q: expected 4 numbers, got ${q.length}`);
+    if (omega.length !== 3) throw new RangeError(`omega: expected 3 numbers, got ${omega.length}`);
     const q0 = q[0];
     const q1 = q[1];
     const q2 = q[2];

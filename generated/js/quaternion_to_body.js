@@ -13,6 +13,8 @@
  */
 
 export function quaternion_to_body(q, vector, turned) {
+    if (q.length !== 4) throw new RangeError(`q: expected 4 numbers, got ${q.length}`);
+    if (vector.length !== 3) throw new RangeError(`vector: expected 3 numbers, got ${vector.length}`);
     const q0 = q[0];
     const q1 = q[1];
     const q2 = q[2];

@@ -17,6 +17,10 @@
  */
 
 export function rigid_body_principal(inertia, omega, q, torque, domega, dq) {
+    if (inertia.length !== 3) throw new RangeError(`inertia: expected 3 numbers, got ${inertia.length}`);
+    if (omega.length !== 3) throw new RangeError(`omega: expected 3 numbers, got ${omega.length}`);
+    if (q.length !== 4) throw new RangeError(`q: expected 4 numbers, got ${q.length}`);
+    if (torque.length !== 3) throw new RangeError(`torque: expected 3 numbers, got ${torque.length}`);
     const A = inertia[0];
     const B = inertia[1];
     const C = inertia[2];

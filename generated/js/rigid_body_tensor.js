@@ -19,6 +19,10 @@
  */
 
 export function rigid_body_tensor(inertia, omega, q, torque, domega, dq) {
+    if (inertia.length !== 6) throw new RangeError(`inertia: expected 6 numbers, got ${inertia.length}`);
+    if (omega.length !== 3) throw new RangeError(`omega: expected 3 numbers, got ${omega.length}`);
+    if (q.length !== 4) throw new RangeError(`q: expected 4 numbers, got ${q.length}`);
+    if (torque.length !== 3) throw new RangeError(`torque: expected 3 numbers, got ${torque.length}`);
     const I_xx = inertia[0];
     const I_yy = inertia[1];
     const I_zz = inertia[2];

@@ -12,6 +12,7 @@
  */
 
 export function rodrigues_of_quaternion(q, parameters) {
+    if (q.length !== 4) throw new RangeError(`q: expected 4 numbers, got ${q.length}`);
     const q0 = q[0];
     const q1 = q[1];
     const q2 = q[2];

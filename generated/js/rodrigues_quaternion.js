@@ -12,6 +12,7 @@
  */
 
 export function rodrigues_quaternion(parameters, q) {
+    if (parameters.length !== 3) throw new RangeError(`parameters: expected 3 numbers, got ${parameters.length}`);
     const g1 = parameters[0];
     const g2 = parameters[1];
     const g3 = parameters[2];

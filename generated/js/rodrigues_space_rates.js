@@ -13,6 +13,8 @@
  */
 
 export function rodrigues_space_rates(parameters, omega, rates) {
+    if (parameters.length !== 3) throw new RangeError(`parameters: expected 3 numbers, got ${parameters.length}`);
+    if (omega.length !== 3) throw new RangeError(`omega: expected 3 numbers, got ${omega.length}`);
     const g1 = parameters[0];
     const g2 = parameters[1];
     const g3 = parameters[2];

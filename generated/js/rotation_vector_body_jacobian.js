@@ -22,6 +22,7 @@ function sine_gap(x) {
 }
 
 export function rotation_vector_body_jacobian(v, jacobian) {
+    if (v.length !== 3) throw new RangeError(`v: expected 3 numbers, got ${v.length}`);
     const v1 = v[0];
     const v2 = v[1];
     const v3 = v[2];

@@ -23,6 +23,8 @@ function tangent_gap(x) {
 }
 
 export function rotation_vector_body_rates(v, omega, dv) {
+    if (v.length !== 3) throw new RangeError(`v: expected 3 numbers, got ${v.length}`);
+    if (omega.length !== 3) throw new RangeError(`omega: expected 3 numbers, got ${omega.length}`);
     const v1 = v[0];
     const v2 = v[1];
     const v3 = v[2];

@@ -20,6 +20,7 @@ function arc_ratio(s, c) {
 }
 
 export function rotation_vector_of_quaternion(q, v) {
+    if (q.length !== 4) throw new RangeError(`q: expected 4 numbers, got ${q.length}`);
     const q0 = q[0];
     const q1 = q[1];
     const q2 = q[2];

@@ -13,6 +13,7 @@
  */
 
 export function torque_constant_body(torque, torque_b) {
+    if (torque.length !== 3) throw new RangeError(`torque: expected 3 numbers, got ${torque.length}`);
     const torque_1 = torque[0];
     const torque_2 = torque[1];
     const torque_3 = torque[2];

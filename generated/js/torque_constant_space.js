@@ -14,6 +14,8 @@
  */
 
 export function torque_constant_space(q, torque, torque_b) {
+    if (q.length !== 4) throw new RangeError(`q: expected 4 numbers, got ${q.length}`);
+    if (torque.length !== 3) throw new RangeError(`torque: expected 3 numbers, got ${torque.length}`);
     const q0 = q[0];
     const q1 = q[1];
     const q2 = q[2];

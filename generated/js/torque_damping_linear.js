@@ -13,6 +13,8 @@
  */
 
 export function torque_damping_linear(omega, linear, torque_b) {
+    if (omega.length !== 3) throw new RangeError(`omega: expected 3 numbers, got ${omega.length}`);
+    if (linear.length !== 3) throw new RangeError(`linear: expected 3 numbers, got ${linear.length}`);
     const omega_1 = omega[0];
     const omega_2 = omega[1];
     const omega_3 = omega[2];

@@ -14,6 +14,7 @@
  */
 
 export function torque_damping_quadratic(omega, quadratic, torque_b) {
+    if (omega.length !== 3) throw new RangeError(`omega: expected 3 numbers, got ${omega.length}`);
     const omega_1 = omega[0];
     const omega_2 = omega[1];
     const omega_3 = omega[2];

@@ -20,6 +20,9 @@
  */
 
 export function torque_gravity(q, weight, center_of_mass, direction, torque_b) {
+    if (q.length !== 4) throw new RangeError(`q: expected 4 numbers, got ${q.length}`);
+    if (center_of_mass.length !== 3) throw new RangeError(`center_of_mass: expected 3 numbers, got ${center_of_mass.length}`);
+    if (direction.length !== 3) throw new RangeError(`direction: expected 3 numbers, got ${direction.length}`);
     const q0 = q[0];
     const q1 = q[1];
     const q2 = q[2];

@@ -20,6 +20,8 @@
  */
 
 export function torque_rotor(omega, angular_momentum, torque_b) {
+    if (omega.length !== 3) throw new RangeError(`omega: expected 3 numbers, got ${omega.length}`);
+    if (angular_momentum.length !== 3) throw new RangeError(`angular_momentum: expected 3 numbers, got ${angular_momentum.length}`);
     const omega_1 = omega[0];
     const omega_2 = omega[1];
     const omega_3 = omega[2];

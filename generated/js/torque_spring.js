@@ -17,6 +17,8 @@
  */
 
 export function torque_spring(q, stiffness, attitude, torque_b) {
+    if (q.length !== 4) throw new RangeError(`q: expected 4 numbers, got ${q.length}`);
+    if (attitude.length !== 4) throw new RangeError(`attitude: expected 4 numbers, got ${attitude.length}`);
     const q0 = q[0];
     const q1 = q[1];
     const q2 = q[2];

@@ -16,15 +16,9 @@ import numpy as np
 
 
 def euler_equations_principal(inertia, omega, torque):
-    A = inertia[0]
-    B = inertia[1]
-    C = inertia[2]
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
-    tau_1 = torque[0]
-    tau_2 = torque[1]
-    tau_3 = torque[2]
+    A, B, C = inertia
+    omega_1, omega_2, omega_3 = omega
+    tau_1, tau_2, tau_3 = torque
     domega = np.empty((3, *np.shape(inertia)[1:]))
     domega[0] = (tau_1 + (B - C)*omega_2*omega_3)/A
     domega[1] = (tau_2 + (C - A)*omega_3*omega_1)/B

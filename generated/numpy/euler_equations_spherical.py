@@ -16,10 +16,9 @@ import numpy as np
 
 
 def euler_equations_spherical(inertia, omega, torque):
-    A = inertia[0]
-    tau_1 = torque[0]
-    tau_2 = torque[1]
-    tau_3 = torque[2]
+    (A,) = inertia
+    _, _, _ = omega
+    tau_1, tau_2, tau_3 = torque
     inv_A = 1.0/A
     domega = np.empty((3, *np.shape(inertia)[1:]))
     domega[0] = tau_1*inv_A

@@ -17,14 +17,9 @@ import numpy as np
 
 
 def euler_equations_symmetric(inertia, omega, torque):
-    A = inertia[0]
-    C = inertia[1]
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
-    tau_1 = torque[0]
-    tau_2 = torque[1]
-    tau_3 = torque[2]
+    A, C = inertia
+    omega_1, omega_2, omega_3 = omega
+    tau_1, tau_2, tau_3 = torque
     domega_1_term_1 = (A - C)*omega_3
     inv_A = 1.0/A
     domega = np.empty((3, *np.shape(inertia)[1:]))

@@ -16,8 +16,7 @@ import numpy as np
 
 
 def euler_extrinsic_xyx_space_jacobian(angles):
-    theta = angles[1]
-    psi = angles[2]
+    _, theta, psi = angles
     cos_theta = np.cos(theta)
     sin_psi = np.sin(psi)
     sin_theta = np.sin(theta)

@@ -16,8 +16,7 @@ import numpy as np
 
 
 def euler_extrinsic_xzx_body_jacobian(angles):
-    phi = angles[0]
-    theta = angles[1]
+    phi, theta, _ = angles
     cos_theta = np.cos(theta)
     sin_phi = np.sin(phi)
     sin_theta = np.sin(theta)

@@ -16,11 +16,8 @@ import numpy as np
 
 
 def euler_extrinsic_yxz_space_rates(angles, omega):
-    theta = angles[1]
-    psi = angles[2]
-    omega_x = omega[0]
-    omega_y = omega[1]
-    omega_z = omega[2]
+    _, theta, psi = angles
+    omega_x, omega_y, omega_z = omega
     sin_psi = np.sin(psi)
     cos_psi = np.cos(psi)
     cos_theta = np.cos(theta)

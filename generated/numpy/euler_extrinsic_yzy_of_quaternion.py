@@ -19,10 +19,7 @@ def _select_ge(a, b, x, y):
 
 
 def euler_extrinsic_yzy_of_quaternion(q):
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
+    q0, q1, q2, q3 = q
     phi_angle_1 = np.arctan2(q1, q3)
     phi_angle_2 = np.arctan2(q2, q0)
     phi_angle_1_minus_phi_angle_2 = phi_angle_1 - phi_angle_2

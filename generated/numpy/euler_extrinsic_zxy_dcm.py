@@ -16,9 +16,7 @@ import numpy as np
 
 
 def euler_extrinsic_zxy_dcm(angles):
-    phi = angles[0]
-    theta = angles[1]
-    psi = angles[2]
+    phi, theta, psi = angles
     cos_phi = np.cos(phi)
     cos_psi = np.cos(psi)
     outer_1 = cos_phi*cos_psi

@@ -16,9 +16,7 @@ import numpy as np
 
 
 def euler_extrinsic_zyz_dcm(angles):
-    phi = angles[0]
-    theta = angles[1]
-    psi = angles[2]
+    phi, theta, psi = angles
     sin_phi = np.sin(phi)
     sin_psi = np.sin(psi)
     outer_1 = sin_phi*sin_psi

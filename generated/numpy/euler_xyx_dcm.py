@@ -16,9 +16,7 @@ import numpy as np
 
 
 def euler_xyx_dcm(angles):
-    phi = angles[0]
-    theta = angles[1]
-    psi = angles[2]
+    phi, theta, psi = angles
     cos_theta = np.cos(theta)
     sin_psi = np.sin(psi)
     sin_theta = np.sin(theta)

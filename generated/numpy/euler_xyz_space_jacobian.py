@@ -16,8 +16,7 @@ import numpy as np
 
 
 def euler_xyz_space_jacobian(angles):
-    phi = angles[0]
-    theta = angles[1]
+    phi, theta, _ = angles
     sin_theta = np.sin(theta)
     cos_phi = np.cos(phi)
     sin_phi = np.sin(phi)

@@ -16,8 +16,7 @@ import numpy as np
 
 
 def euler_xzy_space_jacobian(angles):
-    phi = angles[0]
-    theta = angles[1]
+    phi, theta, _ = angles
     sin_theta = np.sin(theta)
     sin_phi = np.sin(phi)
     cos_phi = np.cos(phi)

@@ -15,11 +15,8 @@ import numpy as np
 
 
 def euler_yzx_space_rates(angles, omega):
-    phi = angles[0]
-    theta = angles[1]
-    omega_x = omega[0]
-    omega_y = omega[1]
-    omega_z = omega[2]
+    phi, theta, _ = angles
+    omega_x, omega_y, omega_z = omega
     cos_phi = np.cos(phi)
     sin_phi = np.sin(phi)
     cos_theta = np.cos(theta)

@@ -16,8 +16,7 @@ import numpy as np
 
 
 def euler_yzy_body_jacobian(angles):
-    theta = angles[1]
-    psi = angles[2]
+    _, theta, psi = angles
     sin_theta = np.sin(theta)
     cos_psi = np.cos(psi)
     sin_psi = np.sin(psi)

@@ -14,9 +14,7 @@ import numpy as np
 
 
 def euler_yzy_quaternion(angles):
-    phi = angles[0]
-    theta = angles[1]
-    psi = angles[2]
+    phi, theta, psi = angles
     half_phi = 0.5*phi
     cos_half_phi = np.cos(half_phi)
     half_psi = 0.5*psi

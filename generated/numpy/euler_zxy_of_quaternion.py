@@ -19,10 +19,7 @@ def _select_ge(a, b, x, y):
 
 
 def euler_zxy_of_quaternion(q):
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
+    q0, q1, q2, q3 = q
     q2_minus_q3 = q2 - q3
     q0_minus_q1 = q0 - q1
     phi_angle_1 = np.arctan2(-q2_minus_q3, q0_minus_q1)

@@ -16,8 +16,7 @@ import numpy as np
 
 
 def euler_zxy_space_jacobian(angles):
-    phi = angles[0]
-    theta = angles[1]
+    phi, theta, _ = angles
     cos_phi = np.cos(phi)
     sin_phi = np.sin(phi)
     cos_theta = np.cos(theta)

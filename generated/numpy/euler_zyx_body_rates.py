@@ -15,11 +15,8 @@ import numpy as np
 
 
 def euler_zyx_body_rates(angles, omega):
-    theta = angles[1]
-    psi = angles[2]
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
+    _, theta, psi = angles
+    omega_1, omega_2, omega_3 = omega
     sin_psi = np.sin(psi)
     cos_psi = np.cos(psi)
     cos_theta = np.cos(theta)

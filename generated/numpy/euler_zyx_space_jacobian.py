@@ -16,8 +16,7 @@ import numpy as np
 
 
 def euler_zyx_space_jacobian(angles):
-    phi = angles[0]
-    theta = angles[1]
+    phi, theta, _ = angles
     sin_phi = np.sin(phi)
     cos_phi = np.cos(phi)
     cos_theta = np.cos(theta)

@@ -20,8 +20,7 @@ import numpy as np
 
 
 def inertia_cone(m, dimensions):
-    R = dimensions[0]
-    h = dimensions[1]
+    R, h = dimensions
     R_sq = R*R
     I_xx_term_1 = 0.0375*(4.0*R_sq + h*h)*m
     inertia = np.empty((6, *np.shape(dimensions)[1:]))

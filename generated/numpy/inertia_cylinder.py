@@ -19,8 +19,7 @@ import numpy as np
 
 
 def inertia_cylinder(m, dimensions):
-    R = dimensions[0]
-    L = dimensions[1]
+    R, L = dimensions
     R_sq = R*R
     I_xx_term_1 = 0.08333333333333333*(L*L + 3.0*R_sq)*m
     inertia = np.empty((6, *np.shape(dimensions)[1:]))

@@ -18,7 +18,7 @@ import numpy as np
 
 
 def inertia_disk(m, dimensions):
-    R = dimensions[0]
+    (R,) = dimensions
     m_R_sq = m*(R*R)
     quarter_m_R_sq = 0.25*m_R_sq
     inertia = np.empty((6, *np.shape(dimensions)[1:]))

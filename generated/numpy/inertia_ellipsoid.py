@@ -21,9 +21,7 @@ import numpy as np
 
 
 def inertia_ellipsoid(m, dimensions):
-    a = dimensions[0]
-    b = dimensions[1]
-    c = dimensions[2]
+    a, b, c = dimensions
     b_sq = b*b
     c_sq = c*c
     m_over_5 = 0.2*m

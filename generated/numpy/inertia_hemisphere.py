@@ -19,7 +19,7 @@ import numpy as np
 
 
 def inertia_hemisphere(m, dimensions):
-    R = dimensions[0]
+    (R,) = dimensions
     m_R_sq = m*(R*R)
     I_xx_term_1 = 0.259375*m_R_sq
     inertia = np.empty((6, *np.shape(dimensions)[1:]))

@@ -23,15 +23,8 @@ import numpy as np
 
 
 def inertia_parallel_axis(inertia, m, offset):
-    I_xx = inertia[0]
-    I_yy = inertia[1]
-    I_zz = inertia[2]
-    I_xy = inertia[3]
-    I_xz = inertia[4]
-    I_yz = inertia[5]
-    d_x = offset[0]
-    d_y = offset[1]
-    d_z = offset[2]
+    I_xx, I_yy, I_zz, I_xy, I_xz, I_yz = inertia
+    d_x, d_y, d_z = offset
     mass_times_d_y = m*d_y
     d_y_sq_m = d_y*mass_times_d_y
     mass_times_d_z = m*d_z

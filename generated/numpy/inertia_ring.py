@@ -18,7 +18,7 @@ import numpy as np
 
 
 def inertia_ring(m, dimensions):
-    R = dimensions[0]
+    (R,) = dimensions
     m_R_sq = m*(R*R)
     half_m_R_sq = 0.5*m_R_sq
     inertia = np.empty((6, *np.shape(dimensions)[1:]))

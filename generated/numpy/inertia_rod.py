@@ -18,7 +18,7 @@ import numpy as np
 
 
 def inertia_rod(m, dimensions):
-    L = dimensions[0]
+    (L,) = dimensions
     L_sq_m_over_12 = 0.08333333333333333*L*L*m
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
     inertia[0] = L_sq_m_over_12

@@ -18,7 +18,7 @@ import numpy as np
 
 
 def inertia_sphere(m, dimensions):
-    R = dimensions[0]
+    (R,) = dimensions
     I_xx_term_1 = 0.4*R*R*m
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
     inertia[0] = I_xx_term_1

@@ -18,7 +18,7 @@ import numpy as np
 
 
 def inertia_spherical_shell(m, dimensions):
-    R = dimensions[0]
+    (R,) = dimensions
     two_thirds_R_sq_m = 0.6666666666666666*R*R*m
     inertia = np.empty((6, *np.shape(dimensions)[1:]))
     inertia[0] = two_thirds_R_sq_m

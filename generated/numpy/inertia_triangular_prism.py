@@ -24,10 +24,7 @@ import numpy as np
 
 
 def inertia_triangular_prism(m, dimensions):
-    b = dimensions[0]
-    h = dimensions[1]
-    e = dimensions[2]
-    L = dimensions[3]
+    b, h, e, L = dimensions
     three_L_sq = 3.0*L*L
     h_sq = h*h
     m_over_36 = 0.027777777777777776*m

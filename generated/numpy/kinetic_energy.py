@@ -16,15 +16,8 @@ import numpy as np
 
 
 def kinetic_energy(inertia, omega):
-    I_xx = inertia[0]
-    I_yy = inertia[1]
-    I_zz = inertia[2]
-    I_xy = inertia[3]
-    I_xz = inertia[4]
-    I_yz = inertia[5]
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
+    I_xx, I_yy, I_zz, I_xy, I_xz, I_yz = inertia
+    omega_1, omega_2, omega_3 = omega
     energy = np.empty((1, *np.shape(inertia)[1:]))
     energy[0] = 0.5*((omega_1*I_xx + I_xy*omega_2 + I_xz*omega_3)*omega_1 + (omega_1*I_xy + omega_2*I_yy + omega_3*I_yz)*omega_2 + (omega_1*I_xz + omega_2*I_yz + omega_3*I_zz)*omega_3)
     return energy

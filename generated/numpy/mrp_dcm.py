@@ -15,9 +15,7 @@ import numpy as np
 
 
 def mrp_dcm(parameters):
-    s1 = parameters[0]
-    s2 = parameters[1]
-    s3 = parameters[2]
+    s1, s2, s3 = parameters
     square = s1*s1 + s2*s2 + s3*s3
     norm = square + 1.0
     inv_norm = 1.0/norm

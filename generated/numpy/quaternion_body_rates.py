@@ -15,13 +15,8 @@ import numpy as np
 
 
 def quaternion_body_rates(q, omega):
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
+    q0, q1, q2, q3 = q
+    omega_1, omega_2, omega_3 = omega
     half_1 = 0.5*omega_1
     half_2 = 0.5*omega_2
     half_3 = 0.5*omega_3

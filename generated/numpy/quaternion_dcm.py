@@ -14,10 +14,7 @@ import numpy as np
 
 
 def quaternion_dcm(q):
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
+    q0, q1, q2, q3 = q
     twice_3 = 2.0*q3
     two_q3_sq = q3*twice_3
     twice_2 = 2.0*q2

@@ -20,15 +20,7 @@ def _select_ge(a, b, x, y):
 
 
 def quaternion_of_dcm(dcm):
-    R_11 = dcm[0]
-    R_12 = dcm[1]
-    R_13 = dcm[2]
-    R_21 = dcm[3]
-    R_22 = dcm[4]
-    R_23 = dcm[5]
-    R_31 = dcm[6]
-    R_32 = dcm[7]
-    R_33 = dcm[8]
+    R_11, R_12, R_13, R_21, R_22, R_23, R_31, R_32, R_33 = dcm
     one_plus_R_11 = 1.0 + R_11
     R_22_plus_R_33 = R_22 + R_33
     q0_term_1 = one_plus_R_11 + R_22_plus_R_33

@@ -15,14 +15,8 @@ import numpy as np
 
 
 def quaternion_product(left, right):
-    p0 = left[0]
-    p1 = left[1]
-    p2 = left[2]
-    p3 = left[3]
-    q0 = right[0]
-    q1 = right[1]
-    q2 = right[2]
-    q3 = right[3]
+    p0, p1, p2, p3 = left
+    q0, q1, q2, q3 = right
     product = np.empty((4, *np.shape(left)[1:]))
     product[0] = p0*q0 - p1*q1 - p2*q2 - p3*q3
     product[1] = p0*q1 + q0*p1 + p2*q3 - q2*p3

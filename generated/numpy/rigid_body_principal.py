@@ -19,19 +19,10 @@ import numpy as np
 
 
 def rigid_body_principal(inertia, omega, q, torque):
-    A = inertia[0]
-    B = inertia[1]
-    C = inertia[2]
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
-    tau_1 = torque[0]
-    tau_2 = torque[1]
-    tau_3 = torque[2]
+    A, B, C = inertia
+    omega_1, omega_2, omega_3 = omega
+    q0, q1, q2, q3 = q
+    tau_1, tau_2, tau_3 = torque
     half_1 = 0.5*omega_1
     half_2 = 0.5*omega_2
     half_3 = 0.5*omega_3

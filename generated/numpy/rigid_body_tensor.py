@@ -21,22 +21,10 @@ import numpy as np
 
 
 def rigid_body_tensor(inertia, omega, q, torque):
-    I_xx = inertia[0]
-    I_yy = inertia[1]
-    I_zz = inertia[2]
-    I_xy = inertia[3]
-    I_xz = inertia[4]
-    I_yz = inertia[5]
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
-    tau_1 = torque[0]
-    tau_2 = torque[1]
-    tau_3 = torque[2]
+    I_xx, I_yy, I_zz, I_xy, I_xz, I_yz = inertia
+    omega_1, omega_2, omega_3 = omega
+    q0, q1, q2, q3 = q
+    tau_1, tau_2, tau_3 = torque
     cofactor_1 = I_yy*I_zz - I_yz*I_yz
     L_2 = omega_1*I_xy + omega_2*I_yy + omega_3*I_yz
     L_3 = omega_1*I_xz + omega_2*I_yz + omega_3*I_zz

@@ -14,10 +14,7 @@ import numpy as np
 
 
 def rodrigues_of_quaternion(q):
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
+    q0, q1, q2, q3 = q
     inv_q0 = 1.0/q0
     parameters = np.empty((3, *np.shape(q)[1:]))
     parameters[0] = q1*inv_q0

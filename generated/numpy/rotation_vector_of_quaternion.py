@@ -19,10 +19,7 @@ def _arc_ratio(s, c):
 
 
 def rotation_vector_of_quaternion(q):
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
+    q0, q1, q2, q3 = q
     length = np.sqrt(q1*q1 + q2*q2 + q3*q3)
     cosine = np.abs(q0)
     v1_arc_ratio_1 = _arc_ratio(length, cosine)

@@ -27,12 +27,8 @@ def _tangent_gap(x):
 
 
 def rotation_vector_space_rates(v, omega):
-    v1 = v[0]
-    v2 = v[1]
-    v3 = v[2]
-    omega_x = omega[0]
-    omega_y = omega[1]
-    omega_z = omega[2]
+    v1, v2, v3 = v
+    omega_x, omega_y, omega_z = omega
     cross_1 = v2*omega_z - v3*omega_y
     cross_2 = v3*omega_x - v1*omega_z
     cross_3 = v1*omega_y - v2*omega_x

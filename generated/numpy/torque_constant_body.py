@@ -15,9 +15,7 @@ import numpy as np
 
 
 def torque_constant_body(torque):
-    torque_1 = torque[0]
-    torque_2 = torque[1]
-    torque_3 = torque[2]
+    torque_1, torque_2, torque_3 = torque
     torque_b = np.empty((3, *np.shape(torque)[1:]))
     torque_b[0] = torque_1
     torque_b[1] = torque_2

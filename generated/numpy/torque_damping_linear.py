@@ -15,12 +15,8 @@ import numpy as np
 
 
 def torque_damping_linear(omega, linear):
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
-    linear_1 = linear[0]
-    linear_2 = linear[1]
-    linear_3 = linear[2]
+    omega_1, omega_2, omega_3 = omega
+    linear_1, linear_2, linear_3 = linear
     torque_b = np.empty((3, *np.shape(omega)[1:]))
     torque_b[0] = -(linear_1*omega_1)
     torque_b[1] = -(linear_2*omega_2)

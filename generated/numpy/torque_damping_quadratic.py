@@ -16,9 +16,7 @@ import numpy as np
 
 
 def torque_damping_quadratic(omega, quadratic):
-    omega_1 = omega[0]
-    omega_2 = omega[1]
-    omega_3 = omega[2]
+    omega_1, omega_2, omega_3 = omega
     tau_1_root_1 = np.sqrt(omega_1*omega_1 + omega_2*omega_2 + omega_3*omega_3)
     quadratic_tau_1_root_1 = quadratic*tau_1_root_1
     torque_b = np.empty((3, *np.shape(omega)[1:]))

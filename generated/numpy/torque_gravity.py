@@ -22,16 +22,9 @@ import numpy as np
 
 
 def torque_gravity(q, weight, center_of_mass, direction):
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
-    center_of_mass_1 = center_of_mass[0]
-    center_of_mass_2 = center_of_mass[1]
-    center_of_mass_3 = center_of_mass[2]
-    direction_1 = direction[0]
-    direction_2 = direction[1]
-    direction_3 = direction[2]
+    q0, q1, q2, q3 = q
+    center_of_mass_1, center_of_mass_2, center_of_mass_3 = center_of_mass
+    direction_1, direction_2, direction_3 = direction
     tau_1_term_1 = direction_1*q2 - direction_2*q1
     tau_1_term_2 = direction_1*q3 - direction_3*q1
     tau_1_term_3 = direction_2*q3 - direction_3*q2

@@ -19,14 +19,8 @@ import numpy as np
 
 
 def torque_spring(q, stiffness, attitude):
-    q0 = q[0]
-    q1 = q[1]
-    q2 = q[2]
-    q3 = q[3]
-    attitude_0 = attitude[0]
-    attitude_1 = attitude[1]
-    attitude_2 = attitude[2]
-    attitude_3 = attitude[3]
+    q0, q1, q2, q3 = q
+    attitude_0, attitude_1, attitude_2, attitude_3 = attitude
     tau_1_term_1 = 2.0*((attitude_0*q0 + attitude_1*q1 + attitude_2*q2 + attitude_3*q3)*stiffness)
     torque_b = np.empty((3, *np.shape(q)[1:]))
     torque_b[0] = (q0*attitude_1 + attitude_2*q3 - attitude_0*q1 - q2*attitude_3)*tau_1_term_1

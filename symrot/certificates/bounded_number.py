@@ -15,6 +15,7 @@ DOUBLE = 2.0**-53
 PAIR = 2.0**-102
 """Relative error of one operation on sums of two doubles; the proven ones are below 13*2^-106 (double_double.h)."""
 _UNDER = 2.0**-1060  # above the error of a result too small for all its digits
+_SMALL = 2.0**-900  # above numbers whose sums of two doubles lack digits
 _GROW = 1 + 2.0**-40  # more than the rounding errors of a computed bound
 
 
@@ -95,9 +96,10 @@ class Bounded:
         for a, b in ((self, other), (other, self)):
             if a.is_exact and a.low == 0:
                 return point(0.0)
-            if a.is_exact and _is_power(a.low):
-                ends = sorted((b.low * a.low, b.high * a.low))
-                return Bounded(ends[0], ends[1], b.error * abs(a.low), b.relative)
+            has_digits = all(end == 0 or abs(end * a.low) > _SMALL for end in (b.low, b.high))
+            if a.is_exact and _is_power(a.low) and has_digits:
+                low, high = sorted((b.low * a.low, b.high * a.low))
+                return Bounded(low, high, b.error * abs(a.low) + (_UNDER if b.error else 0.0), b.relative)
         ends = [_product(x, y) for x in (self.low, self.high) for y in (other.low, other.high)]
         error = _product(self.most, other.error) + _product(other.most, self.error) + _product(self.error, other.error)
         relative = self.relative + other.relative + _product(self.relative, other.relative)
@@ -117,16 +119,21 @@ class Bounded:
         ends = [x / y for x in (self.low, self.high) for y in (other.low, other.high)]
         error = inf
         if other.error < other.least:
-            above = _product(self.error, other.most) + _product(self.most, other.error)
-            error = above / (other.least * (other.least - other.error))
+            # x'/y' - x/y = (x' - x - (y' - y) x/y)/y'
+            above = self.error + _product(max(map(abs, ends)), other.error) + _UNDER
+            error = above / (other.least - other.error)
+        # the rest of a quotient of two sums, which is a product too small for all its digits
+        relative += _UNDER / self.least if self.least > 0 else inf
         return _inexact(Bounded(_down(min(ends)), _up(max(ends)), error * _GROW, relative * _GROW), unit)
 
     def root(self, unit: float) -> "Bounded":
         """Return the square root of a number that is not negative."""
+        if self.is_exact and self.low == 0:
+            return self
         low, high = max(self.low, 0.0), max(self.high, 0.0)
         # sqrt(1 + r) differs from 1 by at most |r| for |r| <= 1
-        relative = self.relative if self.relative <= 1 else inf
-        error = self.error / sqrt(low) if low > 0 else sqrt(self.error)
+        relative = self.relative + (_UNDER / low if low > 0 else inf) if self.relative <= 1 else inf
+        error = (self.error + _UNDER) / sqrt(low) if low > 0 else sqrt(self.error + _UNDER)
         return _inexact(Bounded(_down(sqrt(low)) if low else 0.0, _up(sqrt(high)), error * _GROW, relative), unit)
 
     # --- as a double of the C text ------------------------------------------------------------------------------------

@@ -15,6 +15,7 @@ from typing import Any
 from sympy import Expr, Function, Symbol
 
 from symrot.build import cache as proof_cache
+from symrot.build.code_digest import code_digest
 from symrot.certificates.coq.library import coq_section
 from symrot.certificates.flags import flags_section
 from symrot.certificates.laws.equality import FUNCTIONS_WITH_LIMIT, Equality, prove_equal
@@ -130,10 +131,10 @@ PROVERS = (
 
 @cache
 def _prover_digest() -> str:
-    """Return the SHA-256 of the source files that make the proofs."""
+    """Return the SHA-256 of the source files that make the proofs, without docstrings and comments."""
     here = Path(__file__).parent
     # part of the key of each proof in the cache, so that a proof by other sources is not used
-    return sha256(b"".join((here / f"{name}.py").read_bytes() for name in PROVERS)).hexdigest()
+    return code_digest((here / f"{name}.py").read_text(encoding="utf-8") for name in PROVERS)
 
 
 def unproven_statement(kernel: KernelUnderTest) -> Data:

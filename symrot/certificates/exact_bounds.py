@@ -11,11 +11,12 @@ in the nome q are cut after q^15, with an error below 40 q^16 of the elliptic fu
 
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
-from math import ceil, cos, exp, floor, frexp, inf, pi, sin, sqrt
+from math import ceil, cos, exp, floor, frexp, inf, ldexp, pi, sin, sqrt, ulp
 from typing import Any
 
 from symrot.certificates.bounded_number import DOUBLE, PAIR, Bounded, UndecidedError, point
-from symrot.certificates.c_machine.machine import Machine, Place
+from symrot.certificates.c_machine.machine import Machine
+from symrot.certificates.c_machine.values import Place, called
 from symrot.errors import CertificateError, InputError
 
 __all__ = ["free_body_bounds"]
@@ -28,6 +29,9 @@ TINY = 1e-100  # smaller components of omega, relative to the largest, are not c
 CELLS = 64  # parts of the phase of a period
 MOST_PARTS = 600  # of the box of omega
 LONGEST = 2.0**20  # revolutions of a phase
+SIZES = 1e298  # products of dt and the scale of omega, of which the C text computes rounding errors without overflow
+LEAST_POWER, LARGEST_POWER = -1000, 1000  # of the scale of omega in the C text
+SMALL = 1e-250  # smaller numbers lose digits in sums of two doubles
 SMALL_MODULUS = 0.7
 SLACK = 1e-12  # relative error of intervals computed with doubles from <math.h>
 
@@ -100,6 +104,8 @@ def _carlson(x: float, y: float, z: float) -> float:
 
 
 def _rf(x: Bounded, y: Bounded, z: Bounded) -> Bounded:
+    if any(each.high > 0 and each.low < SMALL and not each.is_exact for each in (x, y, z)):
+        raise UndecidedError
     if z.is_exact and z.low == 1:  # of squares of cn and dn
         x, y = x.clipped(0.0, 1.0), y.clipped(0.0, 1.0)
     # decreasing in each argument; homogeneous of degree -1/2, so that relative errors are at most halved
@@ -116,7 +122,7 @@ def _exponential(x: Bounded) -> Bounded:
         1.01 * x.relative * max(1.0, abs(x.high) * high if x.high > 0 else 0.0) if x.relative < 1e-3 else inf
     )
     error = min(from_relative, high * 1.01 * x.error if x.error < 1e-3 else inf) + high * ELLIPTIC + 1e-300
-    relative = 1.01 * x.error + ELLIPTIC if x.error < 1e-3 and x.low > -740 else inf
+    relative = 1.01 * x.error + ELLIPTIC if x.error < 1e-3 and low > SMALL else inf
     return Bounded(*_widened(low, high), error, relative)
 
 
@@ -231,13 +237,12 @@ class _Context:
         if count == 4:  # a quaternion, which is divided by its norm
             return point(1.0)
         if all(each.is_exact for each in numbers):
-            largest = max(each.most for each in numbers)
-            return point(2.0 ** frexp(largest)[1] if largest else 1.0)
+            return point(_power_near(max(each.most for each in numbers)))
         return point(self.scale)
 
     def _canonical(self, inertia: Place, omega: Place, differences: Place, defect: Any, c: Place) -> None:
         machine = self.machine
-        machine._called(machine.functions["canonical_plain"], (inertia, omega, differences, defect, c))
+        called(machine.functions["canonical_plain"], (inertia, omega, differences, defect, c))
         fields, names = c[0][c[1]], machine.structs["canonical_motion"].names
 
         def clip(name: str, low: float, high: float) -> Bounded:
@@ -268,12 +273,15 @@ class _Context:
         turns = rate.most * size.most
         if not (slope.is_exact and slope.low == 0 and turns <= LONGEST):
             raise InputError(f"expected steps of at most {LONGEST:.0f} revolutions of a phase, got {turns:.3g}")
-        # the error of the phase: of its rate and start, and of the roundings in `phase_rest`
+        if not size.most <= SIZES:
+            raise InputError(f"expected dt times |omega| of at most {SIZES}, got {size.most:.3g}")
+        # the error of the phase: of its rate and start, and of the roundings in `phase_rest`. Where `small` moves the
+        # phase beyond 1/8, one more, 2^-56, makes 3*2^-57; sine and cosine, with slopes of 0.708, have 0.1327*2^-53
         error = (
             size.most * rate.error
             + turns * 2.0**-104
             + start.error
-            + DOUBLE * (0.1251 + 4 * (turns * 2.0**-52 + 2.0**-54))
+            + DOUBLE * (0.1327 + 4 * (turns * 2.0**-52 + 2.0**-54))
         )
         # of the polynomials in `sincos_quarters`: rounding, coefficients and the rest of the series
         both = 2 * pi * error * (1 + SLACK) + self.series_error
@@ -355,8 +363,9 @@ def _put_quaternion(rows: Place, count: int, *columns: Any) -> None:
     the rounding of the matrix to doubles makes an error of at most 2^-53 of terms that sum to 1 in squares.
     """
     *vector, q = columns
+    before = 2 * max((x.pair or x).error for row in rows[0] for x in row)  # of the matrix, before it was rounded
     for i in range(count):
-        error = sqrt(sum(each[0][each[1] + i].error ** 2 for each in vector)) + 5.1 * DOUBLE
+        error = sqrt(sum(each[0][each[1] + i].error ** 2 for each in vector)) + 5.1 * DOUBLE + before
         for k in range(4):
             q[0][q[1] + 4 * i + k] = Bounded(-1.0, 1.0, error, inf)
 
@@ -386,12 +395,17 @@ _Part = tuple[tuple[float, float], ...]  # the range of each component of omega
 def _signed(box: Box) -> Iterator[_Part]:
     """Yield the parts of a box of omega in which each component is negative, zero or positive."""
     ends = [(float(low), float(high)) for low, high in (box[f"omega_{i}"] for i in (1, 2, 3))]
-    least = max(max(abs(low), abs(high)) for low, high in ends) * TINY
+    least = max(max(max(abs(low), abs(high)) for low, high in ends) * TINY, ulp(0.0))
     choices = []
-    for low, high in ends:
+    for i, (low, high) in enumerate(ends, start=1):
         parts = [(0.0, 0.0)] if low <= 0 <= high else []
         parts += [(max(low, least), high)] if high >= least else []
         parts += [(low, min(high, -least))] if low <= -least else []
+        if not parts:
+            raise InputError(
+                f"expected a range of omega_{i} with numbers that are 0 or at least {TINY:g} of the largest |omega| in "
+                f"the box, got {low:g} to {high:g}"
+            )
         choices.append(parts)
     for first in choices[0]:
         for second in choices[1]:
@@ -410,10 +424,20 @@ def _shells(part: _Part) -> Iterator[tuple[float, _Part]]:
     if last - first > 8:
         raise InputError(f"{MIDDLE}, got one that contains omega = 0, or nearly")
     for exponent in range(first, last + 1):
-        scale = 2.0**exponent
-        clipped = tuple((max(low, -scale), min(high, scale)) for low, high in part)
-        if all(low <= high for low, high in clipped) and max(max(abs(a), abs(b)) for a, b in clipped) >= scale / 2:
-            yield scale, clipped
+        most = ldexp(1.0, exponent) if exponent < 1024 else inf
+        clipped = tuple((max(low, -most), min(high, most)) for low, high in part)
+        largest = max(max(abs(a), abs(b)) for a, b in clipped)
+        if all(low <= high for low, high in clipped) and largest >= ldexp(1.0, exponent - 1):
+            yield _power(exponent), clipped
+
+
+def _power(exponent: int) -> float:
+    """Return the power of two by which the C text divides numbers whose largest has an exponent."""
+    return 2.0 ** min(max(exponent, LEAST_POWER), LARGEST_POWER)
+
+
+def _power_near(largest: float) -> float:
+    return _power(frexp(largest)[1]) if largest else 1.0
 
 
 def _halves(part: _Part) -> tuple[_Part, _Part]:

@@ -12,7 +12,8 @@ from hashlib import sha256
 from math import copysign, frexp
 from typing import Any
 
-from symrot.certificates.c_machine.machine import Machine, Place
+from symrot.certificates.c_machine.machine import Machine
+from symrot.certificates.c_machine.values import Place
 from symrot.errors import CertificateError
 from symrot.formula.exact_numbers import PI
 from symrot.formula.program import Program

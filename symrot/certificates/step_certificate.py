@@ -16,7 +16,7 @@ from symrot.certificates.readback.operations import Operations
 from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.certificates.residues import POINTS, RANDOM, Residue, digest_number, exact, probability
 from symrot.certificates.rounding.bounds import rounding_section
-from symrot.certificates.rounding.scenes import ANY
+from symrot.certificates.rounding.output_graph import output_graph
 from symrot.certificates.truncation import DEFECT, truncation_bounds
 from symrot.codegen.steady_rotations import STATES
 from symrot.codegen.steps import (
@@ -217,10 +217,11 @@ def bounds_of_step(
     """
     rounding = rounding_section(operations, None, box, budget=EVALUATIONS, fresh=fresh)
     symbols = _symbols_by_place(step_signature(rates, operations.name))
+    used = {place for _, index in operations.outputs for place in output_graph(operations, index).places}
     ranges = {}
     for place, ends in rounding["box"].items():
-        low, high = (Fraction(float.fromhex(end)) for end in ends)
-        ranges[symbols[place]] = (low, high) if (low, high) != ANY else (Fraction(0), Fraction(0))  # it is not used
+        low, high = (Fraction(float.fromhex(end)) if place in used else Fraction(0) for end in ends)
+        ranges[symbols[place]] = low, high
     errors = truncation_bounds(rates, _with_intended_constants(rates, method), ranges)
     return {
         "meaning": "for each state after one step on the box: |computed - exact motion| <= rounding + truncation, from "

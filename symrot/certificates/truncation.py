@@ -557,7 +557,8 @@ class _Problem:
             # start + span f(ranges) lies in the ranges, so every motion stays inside them (Picard and Lindelof)
             if all(image[name] in around[name] for name in self.states):
                 return dict(around) | image
-            for name in self.states:
+            # ranges that already contain their image would grow without need, and the images of others with them
+            for name in (name for name in self.states if image[name] not in around[name]):
                 low, high = min(image[name].a, around[name].a), max(image[name].b, around[name].b)
                 spare = (high - low) * _number(GROWTH)
                 around[name] = iv.mpf([(low - spare).a, (high + spare).b])

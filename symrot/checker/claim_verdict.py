@@ -25,7 +25,6 @@ from symrot.checker.equivalents.aircraft_names import with_usual_letters
 from symrot.checker.equivalents.inertia_in_frames import on_inertia_in_frames
 from symrot.checker.equivalents.rotation_rates import tested_on_rotations
 from symrot.checker.equivalents.symmetry_axis import in_claim, with_axis_z
-from symrot.checker.named_bodies import of_named_body
 from symrot.checker.time_limit import TimeUp, processor_seconds
 from symrot.checker.units.check import check_dimensions
 from symrot.checker.verdict import Diagnosis, Verdict
@@ -89,7 +88,7 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
             if other_verdict is None and repair and decision is not None:
                 verdict = _diagnosed(claim, decision, verdict)
             is_open = is_false and claim.implied and not (named and _was_near_relation(claim))
-            if other_verdict is None and repair and is_open and not verdict.repairs:
+            if other_verdict is None and repair and is_open and verdict.verdict == "false" and not verdict.repairs:
                 verdict = _near_relation(claim, verdict)
     except (OutOfOperations, TimeUp) as limit:
         other_verdict = None
@@ -179,6 +178,7 @@ def _on_name(
         return None
     # such a claim can be recognised, but not decided: None stands in place of a decision, here and below
     from symrot.checker.context.exchanged_letters import by_exchanged_letters
+    from symrot.checker.context.named_bodies import of_named_body
     from symrot.checker.context.sizes import by_other_sizes
     from symrot.checker.recognition.naming import verdict_on_name
 
@@ -192,12 +192,15 @@ def _on_name(
             verdict = in_context(one, own, verdict)
         return verdict
 
+    def judge_in_full(one: Claim, own: NamedFormula) -> Verdict:
+        return by_other_sizes(one, own, judge(one, own, repair), judge)
+
     def judge_with_motion(one: Claim, own: NamedFormula) -> Verdict:
         return _on_motion(one, judge(one, own))
 
     with _place_of(claim):
-        verdict = by_other_sizes(claim, named, judge(claim, named, repair), judge)
-        verdict = of_named_body(named.name, tested_on_rotations(claim, _on_motion(claim, verdict)))
+        verdict = tested_on_rotations(claim, _on_motion(claim, judge_in_full(claim, named)))
+        verdict = of_named_body(claim, named, verdict, judge_in_full)
         if repair:
             verdict = by_exchanged_letters(claim, named, verdict, judge_with_motion)
         if claim.hypotheses and verdict.verdict in ("false", "doubtful"):  # the context does not use the hypotheses

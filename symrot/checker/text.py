@@ -62,12 +62,15 @@ CALLS_FOR_ARRAYS = ("qmul(", "eye(", "⊗", "\\otimes")
 ROTATION = re.compile(r"[RCQ](_\w+)?")
 """The names of matrices that are rotations in most books."""
 
+MASS_OR_INERTIA = re.compile(r"[mM](_?\w)?|[IJ]_\w+|rho")
+"""Names in a formula for a tensor of inertia."""
+
 AS_TYPED = ("degrees",)
 """The codes of repairs that are written in the notation of the input already."""
 
 DECIDED = ("true", "false", "conditional", "undecided")
-CAPITAL = re.compile(r"[A-Z](_?[0-9])?")
-"""Names that are often matrices."""
+ARRAY = re.compile(r"[A-Zpq](_?[0-9])?")
+"""Names that are often matrices or quaternions."""
 
 UNUSED_CONTEXT = "the context is not used, since the formulas of the claim decide it"
 
@@ -152,7 +155,7 @@ def verdict_on_readings(
     if _is_unknown(verdicts[0]) and not first:
         wrong = [other.verdict == "doubtful" or _is_false_by_context(other, stated) for _, other in verdicts]
         first = wrong.index(True) if any(wrong) else 0
-    if _is_unknown(verdicts[0]) or (first and verdicts[0][1].verdict == "doubtful"):
+    if _is_unknown(verdicts[0]) or (first and verdicts[0][1].verdict == "doubtful" and not stated):
         verdicts.insert(0, verdicts.pop(first))  # a known formula is likelier than one near it or an unknown one
     (usual, verdict), *others = verdicts
     notes = list(verdict.notes)
@@ -410,10 +413,26 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Ve
 
 
 def _on_inertia_matrix(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return "definition" for ``I = [A, 0, 0; 0, B, 0; 0, 0, C]``, false if I is the unit matrix; else ``verdict``."""
+    """Return the verdict with I as a tensor of inertia for ``I = -m [r]^2``, which is false for the unit matrix I.
+
+    Return ``verdict`` for other equations.
+    """
     sides = claim.relation[1:] if claim.relation else ()
-    kinds = [side.kind if side.kind != "call" else str(side.value) for side in sides]
-    if sorted(kinds) not in (["eye", "list"], ["Matrix", "eye"]):
+    units = [side for side in sides if side.value == "eye"]
+    if len(units) != 1 or not re.search(r"\bI\b", claim.text):
+        return verdict
+    assert claim.relation is not None
+    sign, left, right = claim.relation
+    tensor = Node("name", "I")
+    renamed = (sign, tensor, right) if left is units[0] else (sign, left, tensor)
+    other = check_claim(replace(claim.with_relation(renamed), symbols=tuple({*claim.symbols, "I"})))
+    if other.verdict not in ("definition", "false"):
+        note = "I by itself is a tensor of inertia; if it is the unit matrix, the equation is false"
+        return replace(other, notes=(*other.notes, note))
+    (formula,) = (side for side in sides if side is not units[0])
+    names = {str(node.value) for _, node in walk(formula) if node.kind == "name"}
+    is_matrix = formula.kind == "list" or formula.value in ("Matrix", "diag")
+    if not is_matrix and not any(MASS_OR_INERTIA.fullmatch(name) for name in names):
         return verdict
     reason = "I is the unit matrix or a tensor of inertia: the first is another matrix, the second is not known here"
     return Verdict("definition", reason=reason, notes=verdict.notes, dimension=verdict.dimension)
@@ -455,7 +474,7 @@ def _on_numbers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
         return ()
     known = {*dict(claim.define), *claim.symbols}
     orders = [
-        [str(factor.value) for factor in node.args if factor.kind == "name" and CAPITAL.fullmatch(str(factor.value))]
+        [str(factor.value) for factor in node.args if factor.kind == "name" and ARRAY.fullmatch(str(factor.value))]
         for side in claim.relation[1:]
         for _, node in walk(side)
         if node.kind == "product"

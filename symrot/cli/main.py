@@ -110,16 +110,16 @@ def main(argv: Sequence[str] | None = None) -> int:
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # characters that the terminal cannot show must not cause a failure
     try:
+        if "_ARGCOMPLETE" in os.environ:  # the shell asks for the words that may follow, and passes no arguments
+            from symrot.cli.completion import complete
+
+            complete(_parser())
         if not arguments:
             _parser().print_help(sys.stderr)
             return USAGE_ERROR
         _check_command(arguments)
         command = arguments[0] if arguments[0] in COMMANDS else ""
         parser = _parser(command)
-        if "_ARGCOMPLETE" in os.environ:  # the shell asks for words that may follow
-            from symrot.cli.completion import complete
-
-            complete(parser)
         options, unknown = parser.parse_known_args(arguments)
         _check_unknown(command, unknown)
         code: int = options.function(options)

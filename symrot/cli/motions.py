@@ -160,7 +160,8 @@ def _run_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument("--sensitivities", metavar="NAME,..", help="also compute the derivatives of the motion by "
                         "these initial values and constants, such as omega,weight; --out writes them")  # fmt: skip
-    parser.add_argument("--out", type=Path, metavar="FILE", help="write the output quantities: FILE.npz or FILE.csv")
+    parser.add_argument("-o", "--out", type=Path, metavar="FILE",
+                        help="write the output quantities: FILE.npz or FILE.csv")  # fmt: skip
     parser.add_argument("--plot", type=Path, metavar="FILE",
                         help="draw the motion: FILE.png, .pdf or .svg, or FILE.html for an animated page")  # fmt: skip
     json_option(parser)
@@ -168,7 +169,7 @@ def _run_arguments(parser: ArgumentParser) -> None:
 
 def _show_arguments(parser: ArgumentParser) -> None:
     scene_options(parser)
-    parser.add_argument("-o", "--output", type=Path, metavar="FILE",
+    parser.add_argument("-o", "--out", "--output", dest="output", type=Path, metavar="FILE",
                         help="file to write: FILE.html, or a film, FILE.gif or .mp4 (default: SCENE.html)")  # fmt: skip
     json_option(parser)
 

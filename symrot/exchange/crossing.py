@@ -26,6 +26,11 @@ MOST_PAIRS = 5_000_000
 MOST_SEARCHED = 200_000
 """Number of triangles up to which a search of pairs is tried."""
 
+MOST_ANGLES = 5_000_000
+"""Number of solid angles of triangles; it limits the number of contacts that are tested."""
+
+DIRECTIONS = 64  # of the points that are tested around a contact
+DISTANCE = 1e-3  # of these points from it, relative to the size of the mesh
 MOST_SHELLS = 1000
 NEAR = 1e-12  # distance, relative to the size of the mesh, below which two crossings of a line count as one place
 THIN = 1e-14  # area, relative to the size squared, below which a line may pass through an edge
@@ -66,9 +71,13 @@ def require_boundary(surface: Surface, where: str) -> str:
     boxes = _Boxes(corners.min(axis=0), corners.max(axis=0))
     chosen = _chosen(corners, numbers, count)
     lines = sum(_passes(corners, boxes, int(triangle), where, surface) for triangle in chosen)
-    searched = len(surface.triangles) <= MOST_SEARCHED and _search_pairs(surface, boxes, where)
+    contacts = _search_pairs(surface, boxes, where) if len(surface.triangles) <= MOST_SEARCHED else None
     parts = f"{count} shells" if count > 1 else "one shell"
-    pairs = "no two triangles cross" if searched else "pairs of triangles were not searched for crossings"
+    pairs = "pairs of triangles were not searched for crossings"
+    if contacts is not None:
+        tested = _require_contacts(surface, contacts, where)
+        pairs = "no two triangles cross"
+        pairs += f"; triangles touch at {len(contacts)} points, {tested} of them tested" if len(contacts) else ""
     return (
         f"the surface is closed ({parts}); {lines} of {len(chosen)} straight lines cross it alternately inwards and "
         f"outwards, as is right, and the others meet an edge and test nothing; {pairs}"
@@ -154,15 +163,18 @@ def _refuse(winding: int, target: Floats, axis: int, depths: Floats, index: int,
 # --- pairs of triangles -----------------------------------------------------------------------------------------------
 
 
-def _search_pairs(surface: Surface, boxes: _Boxes, where: str) -> bool:
-    """Raise InputError if two triangles cross; return False if there are too many pairs to examine, otherwise True."""
+def _search_pairs(surface: Surface, boxes: _Boxes, where: str) -> Floats | None:
+    """Return the points where an edge of a triangle meets the boundary of another; None if there are too many pairs.
+
+    Raise InputError if two triangles cross.
+    """
     low, high = boxes
     axis = int(np.argmin((high - low).mean(axis=1)))
     order = np.argsort(low[axis], kind="stable")
     last = np.searchsorted(low[axis, order], high[axis, order], side="right")
     counts = last - np.arange(len(order)) - 1
     if int(counts.sum()) > MOST_PAIRS:
-        return False
+        return None
     first = np.repeat(np.arange(len(order)), counts)
     starts = np.repeat(np.cumsum(counts) - counts, counts)
     second = first + 1 + np.arange(len(first)) - starts
@@ -172,40 +184,81 @@ def _search_pairs(surface: Surface, boxes: _Boxes, where: str) -> bool:
         if other != axis:
             overlap &= (low[other, i] <= high[other, j]) & (low[other, j] <= high[other, i])
     i, j = i[overlap], j[overlap]
-    # A proper crossing: an edge passes through the interior of a triangle without a common vertex. Triangles that only
-    # touch, up to rounding errors, do not cross.
+    # A proper crossing: an edge passes through the interior of a triangle without a common vertex. An edge that passes
+    # through the boundary of a triangle, up to rounding errors, may belong to bodies that only touch.
     shared = (surface.triangles[i][:, :, None] == surface.triangles[j][:, None, :]).any(axis=(1, 2))
     i, j = i[~shared], j[~shared]
+    contacts = []
     for one, other in ((i, j), (j, i)):
-        crossings = _pierces(surface, one, other)
-        if crossings is not None:
-            point = ", ".join(f"{x:.6g}" for x in surface.vertices[surface.triangles[crossings]].mean(axis=0))
-            raise InputError(
-                f"{where}: expected a surface that does not cross itself, got triangles that cross near ({point}); "
-                "join the parts by a Boolean union in your mesh program"
-            )
-    return True
+        for k in range(3):
+            crossings, points = _pierces(surface, one, other, k)
+            if crossings is not None:
+                point = ", ".join(f"{x:.6g}" for x in surface.vertices[surface.triangles[crossings]].mean(axis=0))
+                raise InputError(
+                    f"{where}: expected a surface that does not cross itself, got triangles that cross near ({point}); "
+                    "join the parts by a Boolean union in your mesh program"
+                )
+            contacts.append(points)
+    return np.unique(np.concatenate(contacts), axis=0)
 
 
-def _pierces(surface: Surface, edges_of: NDArray[np.int64], through: NDArray[np.int64]) -> int | None:
-    """Return the first triangle in ``edges_of`` that has an edge through the triangle at the same index of ``through``.
-
-    None if there is no such triangle.
+def _pierces(
+    surface: Surface, edges_of: NDArray[np.int64], through: NDArray[np.int64], k: int
+) -> tuple[int | None, Floats]:
+    """Return the first triangle in ``edges_of`` whose edge ``k`` passes through the interior of the triangle at the
+    same index of ``through``, or None; and the points where such edges pass through the boundary of a triangle.
     """
     corners = surface.triangles
-    a, b, c = (corners[through, k] for k in range(3))
-    heights = [_sides(surface, a, b, c, corners[edges_of, k]) for k in range(3)]
-    for k in range(3):
-        m = (k + 1) % 3
-        split = np.flatnonzero(heights[k] * heights[m] < 0)
-        if not len(split):
-            continue
-        p, q = corners[edges_of[split], k], corners[edges_of[split], m]
-        signs = [_sides(surface, p, q, x[split], y[split]) for x, y in ((a, b), (b, c), (c, a))]
-        within = (signs[0] == signs[1]) & (signs[1] == signs[2]) & (signs[0] != 0)
-        if within.any():
-            return int(edges_of[split[int(within.argmax())]])
-    return None
+    a, b, c = (corners[through, n] for n in range(3))
+    p, q = corners[edges_of, k], corners[edges_of, (k + 1) % 3]
+    above, below = _sides(surface, a, b, c, p), _sides(surface, a, b, c, q)
+    split = np.flatnonzero(above * below < 0)
+    a, b, c, p, q = a[split], b[split], c[split], p[split], q[split]
+    signs = np.stack([_sides(surface, p, q, x, y) for x, y in ((a, b), (b, c), (c, a))])
+    within = ~((signs > 0).any(axis=0) & (signs < 0).any(axis=0))
+    inside = within & (signs != 0).all(axis=0)
+    if inside.any():
+        return int(edges_of[split[int(inside.argmax())]]), np.empty((0, 3))
+    a, b, c, p, q = (surface.vertices[index[within]] for index in (a, b, c, p, q))
+    normal = np.cross(b - a, c - a)
+    first, second = ((normal * (end - a)).sum(axis=1) for end in (p, q))
+    share = np.divide(first, first - second, out=np.full(len(first), 0.5), where=first != second)[:, None]
+    return None, p + share * (q - p)
+
+
+def _require_contacts(surface: Surface, contacts: Floats, where: str) -> int:
+    """Return the number of contacts around which all winding numbers are 0 or 1; raise InputError if one is not."""
+    size = float(np.ptp(surface.vertices, axis=0).max())
+    corners = (surface.vertices - surface.vertices.min(axis=0))[surface.triangles] / size
+    most = max(1, MOST_ANGLES // (DIRECTIONS * len(corners)))
+    chosen = contacts[np.unique(np.linspace(0, len(contacts) - 1, min(len(contacts), most)).astype(np.int64))]
+    height = 1 - (2 * np.arange(DIRECTIONS) + 1) / DIRECTIONS  # directions spread evenly along a spiral
+    angle, radius = 1 + 2.39996323 * np.arange(DIRECTIONS), np.sqrt(1 - height**2)
+    around = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)
+    for contact in chosen:
+        points = (contact - surface.vertices.min(axis=0)) / size + DISTANCE * around
+        numbers = _windings(corners, points)
+        wrong = np.flatnonzero((numbers != 0) & (numbers != 1))
+        if len(wrong):
+            depths = points[wrong[0], 2:]
+            _refuse(int(numbers[wrong[0]]), points[wrong[0]], 2, depths, 0, where, surface)
+    return len(chosen)
+
+
+def _windings(corners: Floats, points: Floats) -> Floats:
+    """Return the winding number of a surface about each point, the sum of the solid angles of its triangles / 4 pi.
+
+    It is 0 for a point on the surface.
+    """
+    # Source: van Oosterom & Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125.
+    a, b, c = (corners[None, :, k] - points[:, None] for k in range(3))
+    lengths = [np.sqrt((end * end).sum(axis=2)) for end in (a, b, c)]
+    products = [(x * y).sum(axis=2) for x, y in ((b, c), (c, a), (a, b))]
+    below = lengths[0] * lengths[1] * lengths[2] + sum(d * n for d, n in zip(products, lengths, strict=True))
+    angles: Floats = 2 * np.arctan2((a * np.cross(b, c)).sum(axis=2), below)
+    is_on_surface = np.abs(angles).max(axis=1) > 2 * np.pi - 1e-6
+    windings: Floats = np.where(is_on_surface, 0, np.round(angles.sum(axis=1) / (4 * np.pi)))
+    return windings
 
 
 def _sides(surface: Surface, a: Any, b: Any, c: Any, d: Any) -> NDArray[np.int64]:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from symrot.errors import InputError
+from symrot.exchange.mesh_format import TRIANGLES_IN
 from symrot.exchange.obj_file import read_plain_obj, refers_backwards
 from symrot.exchange.surface import Surface, merge
 from symrot.files.reading import read_input
@@ -53,13 +54,19 @@ def read_surface(path: Path, where: str) -> Surface:
         if mesh is None and suffix == ".obj" and refers_backwards(content):
             # trimesh counts them from the end of the file
             raise InputError(
-                f"{where}: expected positive numbers of vertices in an OBJ file whose lines differ in form, got a line "
-                "such as f -3 -2 -1; save the mesh again with positive numbers or with triangles alone"
+                "expected positive numbers of vertices in an OBJ file whose lines differ in form, got a line such as "
+                "f -3 -2 -1; save the mesh again with positive numbers or with triangles alone"
             )
         if mesh is None:
-            mesh = _load(_trimesh(where), content, suffix[1:])
-    except InputError:
-        raise
+            trimesh, count = _trimesh(), TRIANGLES_IN[suffix](content)
+            mesh = _load(trimesh, content, suffix[1:])
+            if count not in (None, len(mesh[1])):
+                raise InputError(
+                    f"expected the {count} triangles of the file, but trimesh reads {len(mesh[1])}; save the mesh "
+                    "again as triangles alone"
+                )
+    except InputError as reason:
+        raise InputError(f"{where}: {reason}") from None
     except MemoryError:
         raise InputError(f"{where}: expected a mesh that fits in memory, got a larger one") from None
     except ImportError:  # a reader of trimesh looks for the encoding of a file that is no text
@@ -73,14 +80,13 @@ def read_surface(path: Path, where: str) -> Surface:
     return _checked(mesh, where)
 
 
-def _trimesh(where: str) -> Any:
+def _trimesh() -> Any:
     """Return the module trimesh; raise InputError if it is not installed."""
     try:
         import trimesh
     except ImportError:
         raise InputError(
-            f"{where}: expected trimesh, which reads meshes, but it is not installed; install it with "
-            "pip install 'symrot[mesh]'"
+            "expected trimesh, which reads meshes, but it is not installed; install it with pip install 'symrot[mesh]'"
         ) from None
     return trimesh
 

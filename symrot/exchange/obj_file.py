@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 __all__ = ["read_plain_obj", "refers_backwards"]
 
 _SPACE, _NEWLINE, _SLASH = 32, 10, 47
-_IGNORED = np.zeros(256, bool)  # first letters of lines without geometry: blank, comment, o, g, s, usemtl, mtllib
-_IGNORED[list(b"\n\r#ogsum")] = True
+_IGNORED = np.zeros(256, bool)  # first letters of lines without geometry: blank, comment, o, g, usemtl, mtllib
+_IGNORED[list(b"\n\r#ogum")] = True
 _BACKWARDS = re.compile(rb"^[ \t]*f[ \t](?:[^\n#]*[ \t])?(?:-\d|0+(?![\d.]))", re.MULTILINE)
 
 
@@ -43,8 +43,9 @@ def read_plain_obj(content: bytes) -> tuple[NDArray[np.float64], NDArray[np.int6
     first, second = data[starts], data[np.minimum(starts + 1, len(data) - 1)]
     is_vertex = (first == ord("v")) & (second == _SPACE)
     is_triangle = (first == ord("f")) & (second == _SPACE)
-    is_normal = (first == ord("v")) & ((second == ord("n")) | (second == ord("t")))
-    if not np.all(is_vertex | is_triangle | is_normal | _IGNORED[first]):
+    is_other = (first == ord("v")) & ((second == ord("n")) | (second == ord("t")))  # a normal or a texture
+    is_other |= (first == ord("s")) & (second == _SPACE)  # smoothing
+    if not np.all(is_vertex | is_triangle | is_other | _IGNORED[first]):
         return None
     lengths = np.diff(ends, prepend=-1)
     vertices = _numbers(data[np.repeat(is_vertex, lengths)], b"v", np.float64)

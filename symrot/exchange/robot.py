@@ -318,10 +318,20 @@ def _pose(pose: Element | None) -> tuple[tuple[Fraction, ...], Tensor | None]:
 
 
 _CHANGING = {
-    "inertiafromgeom": ("auto", "false"), "balanceinertia": ("false",), "boundmass": ("0",), "boundinertia": ("0",),
-    "settotalmass": ("-1",), "coordinate": ("local",),
+    "inertiafromgeom": ("auto", "false"), "balanceinertia": ("false",), "fusestatic": ("false",),
+    "coordinate": ("local",), "boundmass": ("0",), "boundinertia": ("0",), "settotalmass": ("-1",),
 }  # fmt: skip
-"""Attributes of <compiler> with which MuJoCo changes inertials -> values with which it does not."""
+"""Attributes of <compiler> with which MuJoCo changes inertials -> values with which it does not; numbers have an effect
+if they are positive.
+"""
+
+
+def _changes(key: str, text: str) -> bool:
+    """Return whether MuJoCo changes inertials if an attribute of <compiler> has this value."""
+    values = _CHANGING[key]
+    if _NUMBER.fullmatch(values[0]):
+        return _numbers(text, 1, f"compiler.{key}")[0] > 0
+    return text not in values
 
 
 def _read_mjcf(element: Element, root: Element) -> Inertial:
@@ -335,7 +345,7 @@ def _read_mjcf(element: Element, root: Element) -> Inertial:
     for compiler in root.iter("compiler"):
         settings |= compiler.attrib
     for key, values in _CHANGING.items():
-        if settings.get(key, values[0]) not in values:
+        if key in settings and _changes(key, settings[key]):
             raise InputError(
                 f"compiler: expected {key} = {values[-1]!r}, got {show(settings[key])}, with which MuJoCo changes the "
                 "mass properties in <inertial>; set the value as expected, and the mass properties as you need them"

@@ -7,7 +7,7 @@ the cache contains the structure of the plan and the version of symrot's files, 
 import json
 import os
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -214,13 +214,13 @@ def formula_deviations(plan: Plan, kernel: SceneKernel) -> "Callable[[Mapping[st
         return None
     from symrot.codegen.enclosure.terms import enclosure
     from symrot.codegen.taylor.recurrences import recurrences
-    from symrot.propagation.enclosures.step_limit import deviations_of
+    from symrot.propagation.enclosures.step_limit import Deviations
 
     try:
         terms = enclosure(recurrences(kernel.rates))
     except InputError:  # no Taylor series, for example of abs
         return None
-    return None if terms is None else deviations_of(terms)
+    return None if terms is None else partial(Deviations, terms)
 
 
 def enclosure_text(plan: Plan, rates: Callable[[], Program], edges: Sequence[int]) -> str:

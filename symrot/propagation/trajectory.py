@@ -410,6 +410,9 @@ class Trajectory(MotionSamples):
         """Write the motion as one offline page of HTML that plays it, by default NAME.html; see :func:`symrot.show`."""
         return symrot.show(self, path)
 
-    def _repr_html_(self) -> str:
+    def _repr_html_(self) -> str | None:
         """Return HTML that shows the animated page of the motion in a notebook, inside an iframe."""
-        return symrot.in_notebook(self)
+        try:
+            return symrot.in_notebook(self)
+        except InputError:  # no page can play it, such as a motion at a single time: a notebook then shows the text
+            return None

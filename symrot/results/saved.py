@@ -24,8 +24,8 @@ from symrot.results.sensitivity import Sensitivities, event_time_items, restored
 __all__ = ["SavedTrajectory", "load"]
 
 Floats = NDArray[np.float64]
-UNREADABLE = (OSError, ValueError, EOFError, LookupError, TypeError, AttributeError, NotImplementedError, RuntimeError,
-              zipfile.BadZipFile, zlib.error)  # fmt: skip
+_ARCHIVE_FAULTS = (OSError, EOFError, NotImplementedError, RuntimeError, zipfile.BadZipFile, zlib.error)
+_CONTENT_FAULTS = (ValueError, LookupError, TypeError, AttributeError)  # as of metadata without a name or a list
 
 
 class SavedTrajectory(Samples):
@@ -160,7 +160,7 @@ def load(path: str | Path) -> SavedTrajectory:
             raise ValueError("it is no archive of arrays")
         with np.load(path, allow_pickle=False) as content:
             return _saved(content)
-    except UNREADABLE as reason:
+    except (*_ARCHIVE_FAULTS, *_CONTENT_FAULTS) as reason:
         why = getattr(reason, "strerror", None) or str(reason) or type(reason).__name__
         _refuse(path, why.partition("\n")[0])
 

@@ -1,6 +1,7 @@
 """The content of a scene: the keys and values of its file, converted from Python values and printed as TOML.
 
-Standard library only. NumPy arrays and rotations of SciPy are recognised by their methods, so neither is imported.
+Standard library only. NumPy arrays, rotations of SciPy and values of SymPy are recognised by their attributes, so none
+of these packages is imported.
 """
 
 import re
@@ -23,7 +24,9 @@ _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def plain(value: Any, where: str, depth: int = 0) -> Any:
-    """Convert a Python value to the form of a scene file: an array to a list, a rotation of SciPy to a quaternion.
+    """Convert a Python value to the form of a scene file.
+
+    An array or a matrix of SymPy becomes a list, a rotation of SciPy a quaternion, an expression of SymPy a formula.
 
     Raises
     ------
@@ -38,8 +41,12 @@ def plain(value: Any, where: str, depth: int = 0) -> Any:
         return [plain(item, where, depth + 1) for item in value]
     if hasattr(value, "as_quat") and hasattr(value, "as_matrix"):
         return {"quaternion": _scalar_first(value, where)}
+    if getattr(value, "is_Matrix", False):  # of SymPy
+        return plain(list(value) if 1 in value.shape else value.tolist(), where, depth + 1)
     if hasattr(value, "tolist") and hasattr(value, "dtype"):
         return plain(value.tolist(), where, depth + 1)
+    if getattr(value, "free_symbols", None):  # an expression of SymPy; 17 digits keep the value of a double
+        return str(value.replace(lambda part: part.is_Float, lambda part: part.func(part, 17)))
     return value
 
 

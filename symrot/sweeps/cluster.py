@@ -9,6 +9,7 @@ from contextlib import ExitStack
 from typing import Any
 
 from symrot.errors import InputError, PropagationError
+from symrot.formula.exact_numbers import show
 from symrot.sweeps.chunk import Chunk, Job
 from symrot.sweeps.layout import Store
 from symrot.sweeps.optional import optional
@@ -21,8 +22,20 @@ SECONDS = 30  # longest wait for the scheduler and for its first worker
 RETRIES = 3
 
 
-def _client(address: str) -> Any:
-    make = optional("distributed", "--scheduler", "cluster").Client
+def _address(scheduler: object) -> str:
+    """Return the address of a scheduler from its text, or from a client or a cluster of Dask."""
+    owner = getattr(scheduler, "scheduler", None)
+    address = scheduler if isinstance(scheduler, str) else getattr(owner, "address", None)
+    if not isinstance(address, str):
+        raise InputError(
+            "--scheduler: expected the address of a Dask scheduler, such as tcp://host:8786, or a client or cluster of "
+            f"Dask, got {show(scheduler)}"
+        )
+    return address
+
+
+def _client(scheduler: object) -> Any:
+    make, address = optional("distributed", "--scheduler", "cluster").Client, _address(scheduler)
     try:
         if not address.startswith(
             "inproc:"
@@ -53,11 +66,11 @@ def compute_and_store(text: bytes, start: int, stop: int, offer: Offer | None) -
     return chunk if offer is None else stored(chunk, offer)
 
 
-def run_on_cluster(job: Job, ranges: Sequence[Range], address: str, store: Store) -> Iterator[Chunk | Written]:
+def run_on_cluster(job: Job, ranges: Sequence[Range], scheduler: object, store: Store) -> Iterator[Chunk | Written]:
     """Yield the chunks of a job, as each is complete, computed by the workers of a Dask cluster.
 
     A chunk that a worker has written into ``store`` comes as its range. ``ranges``: (start, stop) per chunk;
-    ``address``: the scheduler.
+    ``scheduler``: its address, or a client or cluster of Dask.
 
     Raises
     ------
@@ -66,7 +79,7 @@ def run_on_cluster(job: Job, ranges: Sequence[Range], address: str, store: Store
     PropagationError
         If the cluster fails to compute a chunk.
     """
-    client = _client(address)
+    client = _client(scheduler)
     in_order = optional("distributed", "--scheduler", "cluster").as_completed
     with ExitStack() as stack:
         stack.callback(client.close)

@@ -132,8 +132,10 @@ def read_design(
     random = attitudes == "uniform" or any(isinstance(axis.law, Distribution) for axis in axes)
     if not random and sampling != "random":
         raise InputError(f"sampling: leave it out unless values are drawn from distributions, got {show(sampling)}")
-    number = _count(count, points, random)
-    return Design(axes, attitudes, sampling, number, _whole(seed, "seed", 0, 2**64))
+    number, first = _count(count, points, random), _whole(seed, "seed", 0, 2**64)
+    if not random and first:
+        raise InputError(f"seed: leave it out unless values are drawn from distributions, got {show(seed)}")
+    return Design(axes, attitudes, sampling, number, first)
 
 
 def _choice(value: object, known: Sequence[str], where: str) -> None:

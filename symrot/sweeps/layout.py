@@ -12,7 +12,7 @@ from symrot.sweeps.chunk import Chunk, Job
 
 __all__ = [
     "COMPONENT", "LABELS", "MESSAGE", "NOT_COMPUTED", "STATUS", "TIME", "TRAJECTORY", "Header", "Store", "Table",
-    "Variable", "arrays_of", "difference", "header_of", "messages_of",
+    "Variable", "arrays_of", "data_frame", "difference", "frame_labels", "header_of", "messages_of",
 ]  # fmt: skip
 
 TRAJECTORY, TIME = "trajectory", "time"
@@ -47,6 +47,13 @@ class Variable:
         # xarray writes long_name at the axes of its plots
         labels = {"units": self.unit, "long_name": self.name, "description": self.meaning, "frame": self.frame}
         return {key: value for key, value in labels.items() if value}
+
+    @property
+    def columns(self) -> list[str]:
+        """The names of its columns in a data frame: its own, or those of the four components of an attitude."""
+        if COMPONENT[0] not in self.dimensions:
+            return [self.name]
+        return [f"{self.name.rpartition('_')[0]}_{part}" for part in COMPONENT[1]]
 
 
 @dataclass(frozen=True)
@@ -176,3 +183,33 @@ def messages_of(chunk: Chunk) -> NDArray[Any]:
     for row, message in chunk.messages.items():
         texts[row] = message
     return texts
+
+
+def frame_labels(header: Header) -> dict[str, Any]:
+    """Return unit, frame and meaning of each column of a data frame, as its ``attrs``."""
+    by_column = {column: variable for variable in header.variables for column in variable.columns}
+    return {
+        "units": {"t": "s"} | {name: variable.unit for name, variable in by_column.items()},
+        "frames": {name: variable.frame for name, variable in by_column.items()},
+        "meanings": {name: variable.meaning for name, variable in by_column.items()},
+        "scene": header.scene,
+    }
+
+
+def data_frame(dataset: Any, header: Header) -> Any:
+    """Return the values in an xarray Dataset as a pandas DataFrame, without statistics.
+
+    The index is ``(trajectory, t)``, or ``trajectory`` if no output is stored at all times.
+    """
+    columns: dict[str, Any] = {}
+    for variable in header.variables:
+        if variable.name in dataset:  # the values of outputs are removed if only statistics are kept
+            array = dataset[variable.name]
+            parts = [array] if len(variable.columns) == 1 else [array[:, k].drop_vars(COMPONENT[0]) for k in range(4)]
+            columns |= dict(zip(variable.columns, parts, strict=True))
+    values = dataset.assign(columns)[[*columns, STATUS, MESSAGE]]
+    if TIME in values.dims:
+        values = values.rename({TIME: "t"})
+    frame = values.to_dataframe(dim_order=[TRAJECTORY, *(["t"] if "t" in values.dims else [])])
+    frame.attrs |= frame_labels(header)
+    return frame

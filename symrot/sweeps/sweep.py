@@ -21,7 +21,7 @@ from symrot.scene.tables import read_tolerance
 from symrot.sweeps.chunk import IMPOSSIBLE, STOPPED, Chunk, Job, prepared
 from symrot.sweeps.cluster import run_on_cluster
 from symrot.sweeps.design import Design, read_design
-from symrot.sweeps.layout import MESSAGE, STATUS, TIME, Header, Store, header_of
+from symrot.sweeps.layout import MESSAGE, STATUS, TIME, Header, Store, data_frame, header_of
 from symrot.sweeps.outputs import UNAVERAGED, SweepOutput, read_outputs, scene_for, variable_keys
 from symrot.sweeps.processes import cores, run_here
 from symrot.sweeps.statistics import Statistic, read_statistics, statistics_of
@@ -48,7 +48,7 @@ def _silent(text: str) -> None:
     """Do nothing with a message about progress: the default of ``note`` in :func:`sweep`."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Sweep:
     """The result of :func:`sweep`: inputs, outputs, status and statistics of all trajectories.
 
@@ -119,10 +119,19 @@ class Sweep:
         return self._store.dataset()
 
     def to_dataframe(self) -> Any:
-        """Return the results as a pandas DataFrame, which has all values in memory."""
-        if isinstance(self._store, ParquetStore):
-            return self._store.dataset()
-        return self._store.dataset().to_dataframe()
+        """Return inputs, outputs and status as a pandas DataFrame, which has all values in memory.
+
+        The index is ``(trajectory, t)``, or ``trajectory`` if no output is stored at all times. ``attrs["units"]`` has
+        the units.
+        """
+        dataset = self._store.dataset()
+        return dataset if isinstance(self._store, ParquetStore) else data_frame(dataset, self._store.header)
+
+    def __repr__(self) -> str:
+        numbers = {"stopped early": self.stopped, "impossible": self.impossible}
+        failures = "".join(f", {number} {what}" for what, number in numbers.items() if number)
+        place = "in memory" if self.path is None else f"in {self.path}"
+        return f"<Sweep of {self._store.header.scene}: {self.count} trajectories{failures}, {place}>"
 
 
 def sweep(
@@ -141,7 +150,7 @@ def sweep(
     method: str = "auto",
     tolerance: float | None = None,
     workers: int | None = None,
-    scheduler: str | None = None,
+    scheduler: object = None,
     chunk: int | None = None,
     table_folders: str | Path | Sequence[str | Path] = (),
     progress: Callable[[int, int], None] | None = None,
@@ -187,8 +196,9 @@ def sweep(
         As for :func:`symrot.propagate_ensemble`.
     workers : int, optional
         Number of processes on this machine; default: the number of cores.
-    scheduler : str, optional
-        Address of a Dask scheduler, such as ``"tcp://host:8786"``, whose workers compute instead of processes here.
+    scheduler : str, Client or cluster of Dask, optional
+        Address of a Dask scheduler, such as ``"tcp://host:8786"``, or a client or cluster with this scheduler, whose
+        workers compute instead of processes here.
     chunk : int, optional
         Number of trajectories in a chunk; it does not change the results.
     table_folders
@@ -272,7 +282,7 @@ def _require_averages(statistics: Sequence[Statistic], outputs: Sequence[SweepOu
 
 
 def _chunks(
-    job: Job, pending: list[tuple[int, int]], workers: int, scheduler: str | None, store: Store
+    job: Job, pending: list[tuple[int, int]], workers: int, scheduler: object, store: Store
 ) -> Iterator[Chunk | Written]:
     """Yield for each range of trajectories in ``pending`` its chunk, or that a worker has stored it."""
     if not pending:

@@ -8,8 +8,9 @@ from importlib.metadata import version
 from itertools import repeat
 from pathlib import Path
 
-import symrot
 from symrot.build import cache as build_cache
+from symrot.build.code_digest import code_without_prose
+from symrot.build.sources import PACKAGE
 from symrot.certificates.audit import LARGEST, audit, operations_of
 from symrot.certificates.certificate import Data, proven_statement, with_sections
 from symrot.errors import CertificateError, InputError, nearest
@@ -70,13 +71,21 @@ def _proven_statement(data: Data) -> Data | None:
 
 @cache
 def _programs() -> str:
-    """Return the SHA-256 of all source files of symrot and of the version of SymPy, for keys of the cache."""
-    # after any change of the programs that prove statements, stored statements are no longer used
-    root = Path(symrot.__file__).parent
-    digest = sha256(version("sympy").encode())
-    for path in sorted(source for source in root.rglob("*") if source.suffix in (".py", ".toml", ".v", ".c")):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()
+    """Return the SHA-256 of symrot's source files, without docstrings and comments, and of the version of SymPy."""
+    # part of keys of the cache: after any change of the programs that prove statements, stored ones are no longer used
+    paths = sorted(path for path in PACKAGE.rglob("*") if path.suffix in (".py", ".toml", ".v", ".c"))
+    texts = {path: path.read_text(encoding="utf-8") for path in paths}
+    key = f"code in {_sha256([version('sympy'), *texts.values()])}"
+    digest = build_cache.fetch(key)  # it takes half a second to compute
+    if digest is None:
+        code = (code_without_prose(text) if path.suffix == ".py" else text for path, text in texts.items())
+        digest = _sha256([version("sympy"), *code])
+        build_cache.store(key, digest)
+    return digest
+
+
+def _sha256(texts: Iterable[str]) -> str:
+    return sha256("\0".join(texts).encode()).hexdigest()
 
 
 def audit_file(

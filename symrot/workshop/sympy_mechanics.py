@@ -27,7 +27,7 @@ def from_sympy(value: Any, frame: ReferenceFrame | None = None) -> Any:
     value : RigidBody, Inertia, Dyadic or ReferenceFrame
     frame : ReferenceFrame, optional
         For a dyadic, the frame of the components; for a reference frame, the frame relative to which it is oriented,
-        the space frame.
+        the space frame; none for a rigid body.
 
     Returns
     -------
@@ -40,7 +40,8 @@ def from_sympy(value: Any, frame: ReferenceFrame | None = None) -> Any:
     Raises
     ------
     InputError
-        For another value, a missing frame, a rigid body with symbols, or frames that are not connected.
+        For another value, a missing frame, a frame or symbols in addition to a rigid body, or frames that are not
+        connected.
 
     Examples
     --------
@@ -51,7 +52,15 @@ def from_sympy(value: Any, frame: ReferenceFrame | None = None) -> Any:
     3
     """
     if isinstance(value, RigidBody):
-        return _table(value)
+        if frame is not None:
+            raise InputError(f"from_sympy: frame: expected none for a RigidBody, which has its own, got {frame}")
+        try:
+            tensor = value.central_inertia.to_matrix(value.frame)
+        except ValueError as reason:
+            raise InputError(
+                f"from_sympy: expected a body whose points and frames are connected, got {reason}"
+            ) from None
+        return _table(value, tensor)
     if not isinstance(value, Inertia | Dyadic | ReferenceFrame):
         raise InputError(
             f"from_sympy: expected a RigidBody, Inertia, Dyadic or ReferenceFrame, got {type(value).__name__}"
@@ -67,12 +76,11 @@ def from_sympy(value: Any, frame: ReferenceFrame | None = None) -> Any:
         raise InputError(f"from_sympy: expected frames with a known orientation to each other, got {reason}") from None
 
 
-def _table(body: RigidBody) -> dict[str, Any]:
+def _table(body: RigidBody, tensor: Any) -> dict[str, Any]:
     """Return the table ``body`` of a scene (name, mass, inertia) from a SymPy rigid body with numbers.
 
-    InputError is raised for symbols.
+    ``tensor`` is its inertia about the centre of mass. InputError is raised for symbols.
     """
-    tensor = body.central_inertia.to_matrix(body.frame)
     rows = [[_number(tensor[i, j], f"inertia[{i}][{j}]") for j in range(3)] for i in range(3)]
     return {"name": str(body.name), "mass": _number(body.mass, "mass"), "inertia": rows}
 

@@ -26,7 +26,7 @@ from symrot.certificates.rounding.bounds_text import bounds_sentence, library_se
 from symrot.certificates.rounding.library import largest_box, library_problem, operations_of, prepare, resized
 from symrot.certificates.rounding.output_graph import output_graph
 from symrot.certificates.rounding.region import Region
-from symrot.certificates.rounding.store import TABLE, code_without_prose, method, printed_table, table
+from symrot.certificates.rounding.store import TABLE, method, printed_table, table
 from symrot.cli.main import main
 from symrot.errors import CertificateError, InputError
 from symrot.formula.exact_numbers import PI
@@ -360,46 +360,6 @@ def test_the_table_is_of_this_method_and_holds_the_library():
     bounds = {key: STORE.get(key) for key in table()["bounds"]}
     assert printed_table(bounds.items()) == TABLE.read_text(encoding="utf-8")
     assert all(each.pointwise <= each.bound < float("inf") for each in bounds.values())
-
-
-SOURCE = '''"""Sums of numbers."""
-
-import math  # for pi
-
-
-class Angle:
-    """An angle."""
-
-    def plus(self, x):
-        """Return self + x.
-
-        In radians.
-        """
-        # no remainder modulo 2*pi
-        text = "# no comment"
-        return self + x
-'''
-
-
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        ('"""Sums of numbers."""', '"""Sums of numbers,\n\nor of angles."""'),
-        ('"""An angle."""', "'One angle.'  # in radians"),
-        ("In radians.\n", "In degrees.\n\n\n"),
-        ("  # for pi", ""),
-        ("        # no remainder modulo 2*pi\n", ""),
-    ],
-)
-def test_docstrings_and_comments_are_no_part_of_the_method(old, new):
-    assert old in SOURCE
-    assert code_without_prose(SOURCE.replace(old, new)) == code_without_prose(SOURCE)
-
-
-@pytest.mark.parametrize(("old", "new"), [("self + x\n", "self - x\n"), ("# no comment", "# a comment")])
-def test_operators_and_texts_are_parts_of_the_method(old, new):
-    assert old in SOURCE
-    assert code_without_prose(SOURCE.replace(old, new)) != code_without_prose(SOURCE)
 
 
 def test_a_docstring_of_the_method_keeps_its_hash_and_an_operator_does_not(monkeypatch):

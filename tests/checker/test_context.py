@@ -1,11 +1,12 @@
 """Claims with a context in words: what names mean, the body, the frame, the sequence of angles."""
 
 import re
+from itertools import chain
 
 import pytest
 
 import symrot
-from symrot.checker.context.bodies import BODIES, body_of_words
+from symrot.checker.context.bodies import BODIES, bodies_of_formula, body_of_words
 from symrot.checker.context.context import read_context
 from symrot.checker.context.quantities import QUANTITIES
 from symrot.checker.recognition.known_formulas import by_fingerprint
@@ -291,6 +292,18 @@ def test_every_shape_is_a_body_and_every_body_has_formulas():
     for kind in BODIES:
         assert any(phrase in name for phrase in kind.formulas for name in names), kind.title
         assert body_of_words(kind.title).kind == kind
+
+
+def test_every_moment_of_a_body_is_of_a_body_that_words_can_name():
+    """Otherwise a formula of this body would fit any body that a context states."""
+    names = {
+        known.name
+        for known in chain.from_iterable(by_fingerprint().values())
+        if re.match("(moment of inertia|radius of gyration) of an? ", known.name)
+    }
+    assert len(names) > 100 and all(map(bodies_of_formula, names))
+    rod = symrot.check("I = M L^2/3", where=["I = moment of inertia about the centre of mass"], body="thin rod")
+    assert [repair.text for repair in rod.repairs] == ["I = M*L^2/12"]
 
 
 def test_every_quantity_is_read_from_its_phrases():

@@ -158,14 +158,27 @@ def test_an_inverse_function_undoes_its_function_for_principal_values(claim, con
 @pytest.mark.parametrize(("claim", "point"), [
     ("atan2(-y, x) == -atan2(y, x)", {"x": "-1", "y": "0"}), ("atan2(-x, y) + atan2(x, y) == 0", {"x": "0", "y": "-1"}),
     ("atan2(-x**2, -1) == -atan2(x**2, -1)", {"x": "0"}), ("atan2(1 - y, x) == -atan2(y - 1, x)", {"x": "-1", "y": "1"}),
-    ("atan2(7 - 3*y, x)*z == -atan2(3*y - 7, x)*z", {"x": "-1", "y": "7/3", "z": "-1"}),
+    ("atan2(7 - 3*y, x)*z == -atan2(3*y - 7, x)*z", {"x": "-1/3", "y": "7/3", "z": "-1"}),
     ("Matrix([x, atan2(-y, x)]) == Matrix([x, -atan2(y, x)])", {"x": "-1", "y": "0"}),
+    ("a*b*c + atan2(-y, x) == a*b*c - atan2(y, x)", {"a": "1", "b": "1", "c": "1", "x": "-1", "y": "0"}),
+    ("atan2(-sin(x), cos(x)) == -atan2(sin(x), cos(x))", {"x": "pi"}),
+    ("atan2(2 - x**2, -1) == -atan2(x**2 - 2, -1)", {"x": "-sqrt(2)"}), ("atan2(sqrt(2) - x, -1) == -atan2(x - sqrt(2), -1)", {"x": "sqrt(2)"}),
 ])  # fmt: skip
 def test_a_claim_that_fails_on_the_cut_of_atan2_is_conditional(claim, point):
     """atan2(-0, -1) = pi but -atan2(0, -1) = -pi; only there is the denominator of the proof zero."""
     found = symrot.check(claim)
     assert found.verdict == "conditional" and found.counterexample.values == point
     assert found.diagnosis.code == "principal_value"
+
+
+@pytest.mark.parametrize(("claim", "given", "condition"), [
+    ("atan2(-y, x) == -atan2(y, x)", "x**2 + y**2 == 1", "y != 0 or x > 0"), ("atan2(-y, x) == -atan2(y, x)", "z == 1", "y != 0 or x > 0"),
+    ("atan2(-y, -x) == atan2(y, x) + pi", "z == 1", "y <= 0 and (y != 0 or x > 0)"),
+    ("atan2(k*y, k*x) == atan2(y, x)", "k > 0", None), ("atan2(-y, x) == -atan2(y, x)", "y > 0", None), ("atan2(-y, x) == -atan2(y, x)", "y != 0", None),
+])  # fmt: skip
+def test_a_hypothesis_holds_on_the_cut_of_atan2_too(claim, given, condition):
+    found = symrot.check(claim, assume=[given], repair=False)
+    assert (found.verdict, found.requires) == (("conditional", (condition,)) if condition else ("true", ()))
 
 
 @pytest.mark.parametrize("claim", [

@@ -62,11 +62,3 @@ def test_a_tensor_of_inertia_in_two_frames_is_right_for_one_direction_of_the_mat
 def test_a_matrix_with_the_name_of_the_unit_matrix_may_be_a_tensor_of_inertia():
     assert symrot.check("I = [1, 0, 0; 0, 2, 0; 0, 0, 3]").verdict == "definition"
     assert symrot.check("I = [1, 0, 0; 0, 1, 0; 0, 0, 1]").verdict == "true"
-
-
-@pytest.mark.parametrize(("text", "verdict"), [
-    ("I_rod = m l²/12", "recognised"), ("I_rod = m l²/2", "definition"), ("I_disc = 1/2 m r²", "recognised"),
-    ("I_sphere = 1/2 m r²", "definition"),
-])  # fmt: skip
-def test_a_name_that_names_a_body_is_recognised_for_that_body_only(text, verdict):
-    assert symrot.check(text, repair=False).verdict == verdict

@@ -303,6 +303,7 @@ def test_wrong_relations_and_formulas_are_not_recognised(claim):
     "e = mc^2", "x = m r^2", "ω₂ = I₁ω₁/I₂", "T = ω·L", "H = I α", "I_G = I_O + m d²", "k_G² = k_O² + d²",
     "R_11 = 1 - 2(q_1² + q_2²)", "φ̇ = (L_3 - L_z cos θ)/(I_1 sin²θ)", r"x^* = \bar x", r"\theta' = \omega",
     "I_1 ω̇_1 = (I_1 - I_3) ω_3 ω_2", "C ω̇_3 = 0",
+    "I = I_cm + M L²/4", "I_end = I_cm + M L²/4", "k² = k_G² + L²/4", "I = 1/2 m L²",
     "T = 2π √((I_G + m d²)/(m g d))", "λ² = (I_2 - I_1)(I_3 - I_2) ω²/(I_1 I_3)", "M = (C - A) ω² sin β cos β", "I_G = I_O - m d²",
 ])  # fmt: skip
 def test_letters_that_say_something_else_are_neither_recognised_nor_accused(claim):
@@ -319,3 +320,23 @@ def test_letters_that_say_something_else_are_neither_recognised_nor_accused(clai
 def test_letters_that_say_the_same_are_recognised(claim, name):
     verdict = symrot.check(claim)
     assert verdict.verdict == "recognised" and name in verdict.recognised_as[0].name
+
+
+def test_a_recognised_formula_has_no_repairs():
+    verdict = symrot.check("2T = I1ω1² + I2ω2² + I3ω3²")
+    assert (verdict.verdict, verdict.repairs, verdict.diagnosis.code) == ("recognised", (), "none")
+
+
+def test_the_radius_of_a_body_is_no_side_of_a_box():
+    assert symrot.check("I_x = 1/12 m(r²+h²)").repairs[0].text == "I_x = m*(3*r^2 + h^2)/12"
+
+
+@pytest.mark.parametrize(("claim", "note"), [
+    ("atan2(R_21, R_11) == psi", "for -pi < psi <= pi: atan2 gives only these angles"),
+    (r"\phi = 2\arccos(q_0)", "for 0 <= phi <= 2*pi: acos gives only these angles"),
+    (r"\theta = -\arcsin(R_{31})", "for -pi/2 <= theta <= pi/2: asin gives only these angles"),
+])  # fmt: skip
+def test_an_inverse_function_limits_the_angle(claim, note):
+    """The verdict names the range in which the inverse function gives the angle."""
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "recognised" and note in verdict.notes

@@ -54,6 +54,7 @@ def test_conditions_are_written_as_a_book_writes_them(text, signs):
     ("sin(x/2) = ±√((1 - cos x)/2)", "sin(x/2) <= 0 for the lower sign"),
     ("3*asin(x) == asin(3*x - 4*x**3)", "-1/2 <= x <= 1/2"), ("3*acos(x) == acos(4*x**3 - 3*x)", "1/2 <= x <= 1"),
     ("asin x + asin y = asin(x sqrt(1 - y^2) + y sqrt(1 - x^2))", "-pi/2 <= asin(x) + asin(y) <= pi/2"),
+    ("asin(y) == acos(y) - 3*pi/2", "y == -1"), ("asin x = arccos x - 3π/2", "x = -1"),
 ])  # fmt: skip
 def test_a_conditional_claim_states_its_range_in_its_own_notation(claim, condition):
     verdict = symrot.check(claim, repair=False)

@@ -28,6 +28,12 @@ def test_the_power_zero_of_zero_is_a_convention():
     assert not symrot.check("2^0 = 1").notes
 
 
+def test_i_beside_powers_of_e_is_no_real_letter():
+    """i**i is exp(-pi/2); with a positive i it was false."""
+    with pytest.raises(symrot.InputError, match="power of a complex number"):
+        symrot.check("i^i = e^(-pi/2)")
+
+
 @pytest.mark.parametrize(("text", "verdict"), [
     ("K = ½ · 2 kg · (3 m/s)² = 8 J", "false"), ("a = (20 m/s)²/50 m = 8 m/s²", "definition"),
     ("T = 2π sqrt(1 m/(9.81 m/s²)) = 2.06 s", "false"),
@@ -66,3 +72,32 @@ def test_numbers_put_into_a_formula_are_no_identity(text, verdict):
 ])  # fmt: skip
 def test_an_entry_of_the_matrix_of_a_stated_sequence(text, sequence, verdict):
     assert symrot.check(text, sequence=sequence, repair=False).verdict == verdict
+
+
+@pytest.mark.parametrize(("text", "verdict"), [
+    ("I = -m [r]×^2", "recognised"), ("I = m (|r|² I - r r^T)", "recognised"), (r"\mathbf I = -m[\mathbf r]_\times^2", "recognised"),
+    ("I = R I_B R^T", "conditional"), ("I = diag(A, B, C)", "definition"), ("I = m r r^T", "definition"), ("[n]× [n]× = I", "false"),
+])  # fmt: skip
+def test_the_unit_matrix_is_no_tensor_of_inertia(text, verdict):
+    assert symrot.check(text, repair=False).verdict == verdict
+
+
+@pytest.mark.parametrize(("text", "formula"), [
+    ("R v = v cos θ + (n × v) sin θ + n (n·v)(1 - cos θ)", "rotation matrix of a unit axis and an angle"),
+    (r"\mathbf{R}\mathbf{v} = \mathbf v\cos\theta + (\mathbf n\times\mathbf v)\sin\theta + \mathbf n(\mathbf n\cdot\mathbf v)(1-\cos\theta)", "rotation matrix of a unit axis and an angle"),
+    ("R x = x + 2 q_0 (q × x) + 2 q × (q × x)", "rotation matrix of a unit quaternion"), ("A x = a × x", "skew matrix of a vector"),
+])  # fmt: skip
+def test_a_matrix_is_stated_by_what_it_does_to_every_vector(text, formula):
+    """With R as a number, these formulas were false."""
+    verdict = symrot.check(text, repair=False)
+    assert verdict.verdict == "recognised" and verdict.recognised_as[0].name.startswith(formula)
+
+
+def test_quaternions_do_not_commute_in_silence():
+    assert any("read as numbers" in note for note in symrot.check("q p = p q").notes)
+
+
+def test_a_reading_that_ignores_the_stated_frame_does_not_replace_a_doubtful_rate():
+    """R' as the name of a vector was recognised as a cross product."""
+    verdict = symrot.check("R' = [ω]× R", frame="body")
+    assert (verdict.verdict, verdict.diagnosis.code) == ("doubtful", "frame_body_space")

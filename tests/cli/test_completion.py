@@ -1,5 +1,11 @@
 """What the shell completes, and what a mistyped word is told."""
 
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 
 from symrot.cli.main import COMMANDS, _parser, main
@@ -23,6 +29,8 @@ def completions(line):
     ("symrot run t_handle --method ta", "taylor"), ("symrot derive poin", "poinsot"),
     ("symrot emit euler_zxz_body_r", "euler_zxz_body_rates"), ("symrot exercise heavy", "heavy_tops"),
     ("symrot check --textbook bro", "brown"), ("symrot emit x --target nu", "numpy"),
+    ("symrot emit t_handle --step ta", "taylor"), ("symrot sweep t_handle --sampling la", "latin"),
+    ("symrot sweep t_handle --statistics per", "percentiles"), ("symrot run t_handle --state zyx", "zyx"),
 ])  # fmt: skip
 def test_a_shell_completes_commands_options_and_names(line, word):
     assert word in completions(line)
@@ -31,6 +39,23 @@ def test_a_shell_completes_commands_options_and_names(line, word):
 def test_a_shell_completes_nothing_that_does_not_fit():
     assert "t_handle" not in completions("symrot run heavy")
     assert completions("symrot run --zzz") == []
+    assert set(completions("symrot run t_handle --method ")) == {"auto", "exact", "taylor", "dop853", "scipy"}
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="needs bash")
+def test_bash_completes_the_command_that_is_installed(tmp_path):
+    """The line of docs/commands.md completes words at the Tab key: bash then starts symrot without arguments."""
+    pytest.importorskip("argcomplete")
+    symrot = tmp_path / "symrot"
+    symrot.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m symrot "$@"\n', encoding="utf-8")
+    symrot.chmod(0o755)
+    folders = [str(tmp_path), str(Path(sys.executable).parent), os.environ["PATH"]]
+    environment = {**os.environ, "PATH": os.pathsep.join(folders)}
+    press_tab = """eval "$(register-python-argcomplete symrot)"
+        COMP_LINE="symrot run t_h" COMP_POINT=14 COMP_TYPE=9 COMP_WORDS=(symrot run t_h) COMP_CWORD=2
+        _python_argcomplete symrot t_h run; echo "${COMPREPLY[@]}" """
+    done = subprocess.run(["bash", "-c", press_tab], capture_output=True, text=True, env=environment, timeout=60)
+    assert done.stdout.split() == ["t_handle"]
 
 
 @pytest.mark.parametrize(("words", "hint"), [

@@ -21,6 +21,7 @@ import sympy
 import symrot
 from symrot import symbols
 from symrot.certificates import exact_check, recheck
+from symrot.codegen.library_kernels import kernel_program
 from symrot.codegen.lowering.formulas import to_node
 from symrot.codegen.lowering.lower import lower
 from symrot.codegen.numpy_kernel import load_numpy_kernel
@@ -70,6 +71,14 @@ def test_programs_equal_their_equations_to_50_digits(scene_rates):
                 *(constants.get(str(s), known.get(s, values.get(str(s)))) for s in free)
             )
             assert abs(found[f"d{state}"] - exact) <= mpmath.mpf(10) ** -50 * (1 + abs(exact))
+
+
+@pytest.mark.parametrize("shapes", [((3,), (4,)), ((3,), (2,)), ((5, 3), (5, 3)), ((3, 5), (4, 5)), ((3, 4), (4, 3))])
+def test_numpy_kernels_refuse_arrays_whose_first_axis_is_not_the_components(shapes):
+    """Samples along the first axis, or a quaternion for an angular velocity, would give numbers without meaning."""
+    kernel = load_numpy_kernel(kernel_program("euler_zxz_body_rates"))
+    with pytest.raises(ValueError, match=r"values to unpack \(expected 3"):
+        kernel(*map(np.ones, shapes))
 
 
 def test_no_operation_is_constant_trivial_or_unused(scene_rates):

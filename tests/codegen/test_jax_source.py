@@ -55,6 +55,15 @@ def test_kernels_agree_with_numpy_under_jit_and_vmap(jax, name):
         np.testing.assert_allclose(mine, theirs, rtol=0, atol=1e-13 * max(1, np.abs(theirs).max()))
 
 
+@pytest.mark.parametrize("shapes", [((3,), (4,)), ((3,), (2,)), ((5, 3), (5, 3)), ((3, 5), (4, 5))])
+def test_an_array_of_another_length_is_refused(jax, shapes):
+    """By index, JAX would take the last component for each that is missing."""
+    ours = function_of(text_of("euler_zxz_body_rates"), "euler_zxz_body_rates")
+    for function in (ours, jax.jit(ours)):
+        with pytest.raises(ValueError, match=r"values to unpack \(expected 3"):
+            function(*map(np.ones, shapes))
+
+
 def test_derivatives_of_a_scene_agree_with_the_emitted_ones(jax):
     """jax.jacfwd of the rates is what --jacobian prints, in NumPy."""
     rates, slopes = (kernel_text("heavy_top_loops", variables) for variables in ((), ("y",)))
@@ -116,8 +125,8 @@ def test_a_constant_may_have_the_name_of_a_word_of_python():
     signature = Signature("f", (Argument("p", "in", components), Argument("out", "out", (("sum", "", ""),))))
     program = Program(signature, (), (("sum", parse("in + in_*jnp")),))
     text = jax_source(program, kernel_description(definition("heavy_top"), "jax"))
-    assert text.splitlines()[-6:] == [
-        "    in_ = p[1]", "    jnp_ = p[2]", "    out = jnp.stack([", "        in__ + in_*jnp_,", "    ])", "    return out",
+    assert text.splitlines()[-5:] == [
+        "    in__, in_, jnp_ = p", "    out = jnp.stack([", "        in__ + in_*jnp_,", "    ])", "    return out",
     ]  # fmt: skip
 
 
@@ -125,9 +134,10 @@ def test_a_constant_may_have_the_name_of_a_word_of_python():
     ("heavy_top", "q1*half_1 + ", "q1*half_1 - ", "got others"),
     ("heavy_top", "half_1 = 0.5*", "half_1 = 0.25*", "got others"),
     ("heavy_top", "dq = jnp.stack([", "domega = jnp.stack([", "one assignment|to assign"),
-    ("heavy_top", "    A = inertia[0]\n", "    A = inertia[1]\n", "got others"),
+    ("heavy_top", "    A, B, C = inertia\n", "    B, A, C = inertia\n", "got others"),
+    ("heavy_top", "    A, B, C = inertia\n", "    A, B = inertia\n", "names for the 3 components of inertia"),
     ("heavy_top", "2.0*W", "2*W", "literal"),
-    ("heavy_top", "    B = inertia[1]\n", "    A = inertia[1]\n", "not yet used"),
+    ("heavy_top", "    A, B, C = inertia\n", "    A, A, C = inertia\n", "not yet used"),
     ("heavy_top", "0.5*omega_1", "jnp.maximum(0.5, 1.0)*omega_1", "a function of jax.numpy"),
     ("heavy_top", "(inertia, W,", "(W, inertia,", "expected the arguments"),
     ("heavy_top", "return domega, dq", "return dq, domega", "expected the function to return"),

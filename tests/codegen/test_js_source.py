@@ -96,6 +96,19 @@ def test_every_own_function_is_tested_above():
 
 
 @needs_node
+def test_an_array_of_another_length_is_refused(tmp_path):
+    """By index, the quaternion (1, 0, 0, 0) would pass for the angular velocity (1, 0, 0)."""
+    (tmp_path / "kernel.mjs").write_text(text_of("euler_zxz_body_rates"), encoding="utf-8")
+    calls = "[[[0, 1, 0], [1, 0, 0, 0]], [[0, 1], [1, 0, 0]], [[0, 1, 0], [1, 0, 0]]]"
+    (tmp_path / "run.mjs").write_text(
+        'import { euler_zxz_body_rates as rates } from "./kernel.mjs";\n'
+        f"for (const inputs of {calls}) try {{ rates(...inputs, []); console.log(1); }} catch (e) {{ console.log(e.message); }}"
+    )
+    done = subprocess.run(["node", "run.mjs"], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines() == ["omega: expected 3 numbers, got 4", "angles: expected 3 numbers, got 2", "1"]
+
+
+@needs_node
 def test_copysign_minds_the_sign_of_zero(tmp_path):
     (tmp_path / "sign.mjs").write_text("\n".join([*COPYSIGN, "console.log(copysign(2, -0), copysign(-2, 0))"]))
     done = subprocess.run(["node", "sign.mjs"], cwd=tmp_path, capture_output=True, text=True, check=True)
@@ -130,6 +143,7 @@ def test_the_operations_are_those_of_the_c_text():
     ("const A", "const double A", "the word double"),
     ("2.0*W", "2*W", "literal"),
     ("const B", "const A", "not yet used"),
+    ("omega.length !== 3", "omega.length !== 4", "a check that omega has 3 numbers"),
     ("0.5*omega_1", "Math.max(0.5, 1.0)*omega_1", "a function of Math"),
     ("(inertia, W,", "(W, inertia,", "expected the arguments"),
     ("export function heavy_top", "eval(1);\nexport function heavy_top", "only functions"),

@@ -5,16 +5,11 @@ import pytest
 
 import symrot
 from tests.needs import needs_compiler
+from tests.sweeps.scenes import DAMPED_TOP
 
 pytestmark = pytest.mark.usefixtures("quick_compiler")
 
-SCENE = {
-    "schema": 1,
-    "body": {"principal": [1, 1, "1/2"], "about": "fixed_point", "center_of_mass": [0, 0, "1/2"]},
-    "initial": {"omega": ["1/10", "1/5", 20], "attitude": {"sequence": "ZXZ", "angles": [0, "1/2", 0]}},
-    "torque": [{"kind": "gravity", "weight": 20}, {"kind": "damping", "linear": "1/100"}],
-    "span": {"t": [0, 2], "samples": 3},
-}
+SCENE = DAMPED_TOP | {"span": {"t": [0, 2], "samples": 3}, "accuracy": {"tolerance": "1e-10"}}
 
 
 def ensemble(parameters, scene=SCENE):

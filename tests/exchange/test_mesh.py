@@ -237,6 +237,26 @@ def test_crossing_triangles_are_noticed():
         body(Surface(vertices, surface.triangles), mass=1)
 
 
+def test_boxes_that_cross_at_edges_alone_are_noticed():
+    """An edge of the second box passes through the middle of a face of the first, where two triangles meet."""
+    first = box((4, 4, 4))
+    for other in (box((4, 4, 4), (2, 2, 2)), box((2, 2, 2), (2, 2, 3)).flipped()):
+        for matrix in (np.eye(3), np.array([[1, 2, 2], [2, 1, -2], [-2, 2, -1]]) / 4):
+            surface = joined(first, other)
+            with pytest.raises(InputError, match="every winding number is 0"):
+                body(Surface(surface.vertices @ matrix.T, surface.triangles), density=1)
+
+
+@pytest.mark.parametrize("surface,mass", [
+    (joined(box(), box((1, 1, 1), (1, 0.25, 0.25))), 2),
+    (joined(box((4, 4, 4)), box((1, 1, 1), (0, 1, 1)).flipped()), 63),
+    (joined(box((2, 2, 2)), box((2, 2, 1)).flipped()), 4),
+    (joined(box(), box((1, 1, 1), (1, 1, 0))), 2),
+])  # fmt: skip
+def test_bodies_may_touch(surface, mass):
+    assert body(surface, density=1).mass == mass
+
+
 def test_a_small_crossing_in_a_fine_mesh_is_noticed_among_all_pairs():
     from symrot.exchange.crossing import _Boxes, _search_pairs
 
@@ -246,7 +266,7 @@ def test_a_small_crossing_in_a_fine_mesh_is_noticed_among_all_pairs():
         _search_pairs(surface, _Boxes(corners.min(axis=0), corners.max(axis=0)), "part")
     apart = joined(sphere(3), moved(sphere(3), (2.001, 0, 0)))
     corners = apart.vertices[apart.triangles].transpose(1, 2, 0)
-    assert _search_pairs(apart, _Boxes(corners.min(axis=0), corners.max(axis=0)), "part")
+    assert not len(_search_pairs(apart, _Boxes(corners.min(axis=0), corners.max(axis=0)), "part"))
 
 
 def test_degenerate_triangles_of_a_closed_surface_are_harmless():

@@ -95,6 +95,11 @@ def test_orientations_of_mjcf(tmp_path, compiler, attribute, rotation):
     assert tensor(arm) == pytest.approx(matrix @ np.diag([0.02, 0.03, 0.04]) @ matrix.T, abs=1e-16)
 
 
+def test_numbers_without_an_effect_in_mujoco_are_accepted(tmp_path):
+    text = MJCF.format(compiler='boundmass="0.0" boundinertia="0e0" settotalmass="-2"', inertia='diaginertia="1 1 1"')
+    assert symrot.link(robot(tmp_path, text), "arm").mass == Fraction(5, 2)
+
+
 def test_fullinertia_lists_the_diagonal_first(tmp_path):
     text = MJCF.format(compiler="", inertia='fullinertia="0.02 0.03 0.04 0.001 0 -0.002"')
     assert symrot.link(robot(tmp_path, text), "arm").inertia == tuple(
@@ -205,6 +210,8 @@ BOMB = '<!DOCTYPE r [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a
     (SDF.format(attributes="", rotation="0 0 0").replace("<inertial>", '<inertial auto="true">'), "got auto"),
     (MJCF.format(compiler='inertiafromgeom="true"', inertia='diaginertia="1 1 1"'), "compiler: expected inertiafromgeom = 'false', got 'true'"),
     (MJCF.format(compiler='balanceinertia="true"', inertia='diaginertia="1 1 1"'), "with which MuJoCo changes the mass properties"),
+    (MJCF.format(compiler='fusestatic="true"', inertia='diaginertia="1 1 1"'), "compiler: expected fusestatic = 'false', got 'true'"),
+    (MJCF.format(compiler='settotalmass="1e1"', inertia='diaginertia="1 1 1"'), "compiler: expected settotalmass = '-1', got '1e1'"),
     (MJCF.format(compiler='eulerseq="xyw"', inertia='diaginertia="1 1 1"'), "compiler.eulerseq: expected three axes"),
     (MJCF.format(compiler='coordinate="global"', inertia='diaginertia="1 1 1"'), "expected coordinate = 'local', got 'global'"),
     (MJCF.format(compiler="", inertia='diaginertia="1 1 1"').replace("<worldbody>", '<include file="x"/><worldbody>'), "whose settings may change inertials"),

@@ -101,6 +101,16 @@ def test_rates_may_be_written_with_dots_or_as_words(answer):
     assert symrot.grade(exercise, [answer]).marks[0].outcome == "right"
 
 
+@pytest.mark.parametrize("template, answer, outcome", [
+    ("rate_about_vertical", "ω_z = ((cos(theta))*(dpsi)) + (dphi)", "right"), ("rate_about_vertical", "dphi + cos(theta) (dpsi)", "right"),
+    ("rate_about_vertical", "dphi + dpsi*cos(theta) (dphi)", "wrong"), ("rod_about_end", "m*L^2/3 (1.5)", "wrong"), ("rod_about_end", "m*L^2/2 (2/3)", "right"),
+    ("rod_about_end", "m*L^2/3 (Steiner)", "unread"), ("rod_about_end", "m*Abs(L)^2/3", "right"), ("rod_about_end", "-|m|*L^2/3", "wrong"),
+])  # fmt: skip
+def test_a_factor_in_brackets_at_the_end_counts(template, answer, outcome):
+    mark = symrot.grade(symrot.exercise(template, seed=0)[0], [answer]).marks[0]
+    assert mark.outcome == outcome, mark
+
+
 def test_names_with_indices_may_have_braces_or_underscores():
     exercise = symrot.exercise("angle_between")[0]
     for answer in ("p_0 q_0 + p_1 q_1 + p_2 q_2 + p_3 q_3", "p_{0} q_{0} + p_{1} q_{1} + p_{2} q_{2} + p_{3} q_{3}"):

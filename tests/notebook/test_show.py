@@ -45,6 +45,13 @@ def test_a_value_has_a_short_text_and_a_rich_one(name):
     assert hook() == symrot.in_notebook(value)
 
 
+def test_a_motion_at_a_single_time_is_shown_as_text():
+    motion = VALUES["Trajectory"]().at(0.5)
+    assert motion._repr_html_() is None
+    with pytest.raises(symrot.InputError, match="over a span of time"):
+        symrot.in_notebook(motion)
+
+
 def test_part_of_a_derivation_is_shown_without_figures():
     text = symrot.in_notebook(symrot.derivation("poinsot").part(1))
     assert "data:image" not in text and "$$" in text

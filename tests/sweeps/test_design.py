@@ -65,6 +65,7 @@ def test_draws_have_their_distribution():
         ({"omega_1": "normal(0, 1)"}, {"count": 2, "seed": -1}, "seed: expected a whole number"),
         ({"omega_1": "normal(0, 1)"}, {"count": 2, "sampling": "sobl"}, "did you mean 'sobol'?"),
         ({"omega_1": [1, 2]}, {"sampling": "latin"}, "sampling: leave it out unless values are drawn"),
+        ({"omega_1": [1, 2]}, {"seed": 7}, "seed: leave it out unless values are drawn"),
         ({"omega_1": "normal(0, 1)"}, {"count": 2, "attitudes": "unifrom"}, "did you mean 'uniform'?"),
         ({}, {"count": 2}, "at least one value that varies"),
         ({"omega_1": "values(1)", "initial.omega[0]": "values(1)"}, {}, "either by name or by path"),

@@ -56,6 +56,27 @@ def test_arrays_of_a_file_are_those_of_memory(whole, tmp_path, name):
         result.array("omega_11")
 
 
+@pytest.mark.parametrize("name", [None, "a.zarr", "a.parquet"])
+def test_a_data_frame_has_one_row_for_each_trajectory_and_time(whole, tmp_path, name):
+    """Statistics and the components of attitudes do not multiply the rows; every store gives the same frame."""
+    path = None if name is None else tmp_path / name
+    frame = sweep(path=path, statistics=["percentiles(5, 50, 95)", "mean"]).to_dataframe()
+    assert frame.index.names == ["trajectory", "t"] and frame.shape == (40 * 3, 11)
+    assert list(frame.columns[:6]) == ["input_omega_1", "input_weight", "input_q0", "input_q1", "input_q2", "input_q3"]
+    assert np.array_equal(frame["omega_1"].to_numpy().reshape(40, 3), whole["omega_1"])
+    assert np.array_equal(frame["input_q2"].to_numpy()[::3], whole["input_quaternion"][:, 2])
+    assert np.array_equal(frame["axis_z@end"].to_numpy(), np.repeat(whole["axis_z@end"].to_numpy(), 3))
+    assert frame.attrs["units"]["omega_1"] == "rad/s" and frame.attrs["units"]["t"] == "s"
+
+
+@pytest.mark.parametrize("name", [None, "a.zarr", "a.parquet"])
+def test_a_data_frame_without_outputs_at_all_times_has_one_row_for_each_trajectory(whole, tmp_path, name):
+    path = None if name is None else tmp_path / name
+    frame = sweep(path=path, outputs="axis_z@end", statistics="mean").to_dataframe()
+    assert frame.index.names == ["trajectory"]
+    assert np.array_equal(frame["axis_z@end"].to_numpy(), whole["axis_z@end"])
+
+
 def test_pandas_and_xarray_show_units(tmp_path):
     for name in NAMES:
         sweep(path=tmp_path / name, statistics="mean")
@@ -222,8 +243,11 @@ def test_a_dask_cluster_gives_the_same_bits(whole):
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None
     ) as cluster:
-        result = sweep(scheduler=cluster.scheduler_address, chunk=5, statistics="mean")
-    xarray.testing.assert_identical(result.to_xarray(), whole)
+        results = [sweep(scheduler=cluster.scheduler_address, chunk=5, statistics="mean")]
+        with distributed.Client(cluster) as client:
+            results += [sweep(scheduler=each, chunk=5, statistics="mean") for each in (cluster, client)]
+    for result in results:
+        xarray.testing.assert_identical(result.to_xarray(), whole)
 
 
 def test_processes_here_beside_a_scheduler_are_refused():
@@ -240,7 +264,7 @@ def test_a_scheduler_that_does_not_answer_is_one_sentence(monkeypatch):
         sweep(scheduler="tcp://127.0.0.1:9")
 
 
-@pytest.mark.parametrize("address", ["foo", "tcp://foo", "http://foo:1"])
+@pytest.mark.parametrize("address", ["foo", "tcp://foo", "http://foo:1", 8786])
 def test_an_address_of_no_scheduler_is_refused_at_once(address):
     """No client is made, which would wait for a minute when the process ends."""
     pytest.importorskip("distributed")

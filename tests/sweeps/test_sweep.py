@@ -233,3 +233,9 @@ def test_angles_and_quaternions_have_no_mean(output, statistic):
     """Of two tops at 174 and -174 degrees, the mean angle was 0."""
     with pytest.raises(InputError, match=r"angles jump by a turn|q and -q are one attitude"):
         sweep(outputs=[output], statistics=statistic)
+
+
+def test_a_sweep_prints_as_one_line():
+    assert repr(sweep()) == "<Sweep of scene: 40 trajectories, in memory>"
+    result = symrot.sweep("heavy_top_loops", {"body.mass": [0.5, -0.5]}, outputs="omega_3@end")
+    assert repr(result) == "<Sweep of heavy_top_loops: 2 trajectories, 1 impossible, in memory>"

@@ -5,6 +5,8 @@ import json
 import subprocess
 from dataclasses import replace
 from decimal import Context, Decimal, localcontext
+from fractions import Fraction
+from sys import float_info
 
 import mpmath
 import numpy as np
@@ -14,6 +16,7 @@ import symrot
 from symrot.certificates import exact_law
 from symrot.certificates.c_machine.machine import Machine
 from symrot.certificates.certificate import certificate_json, seal
+from symrot.certificates.exact_bounds import free_body_bounds
 from symrot.certificates.exact_law import law_section
 from symrot.certificates.step_certificate import formula_section
 from symrot.cli.main import main
@@ -245,7 +248,12 @@ def test_bounds_hold_on_a_box_with_the_axis_of_rotation():
 @pytest.mark.parametrize(("change", "message"), [
     (_sealed(lambda data: data["bounds"]["rounding"].update(q0=(1e-15).hex())), "the bounds that symrot computes"),
     (_sealed(lambda data: data["bounds"]["box"].update(omega_1=[(0.9).hex(), (1.2).hex()])), "the bounds that symrot"),
+    (_sealed(lambda data: data["bounds"]["box"].update(dt=[(1.0).hex(), (0.0).hex()])), "smaller value is not first"),
     pytest.param(_sealed(lambda data: data["bounds"]["box"].update(omega_1=3)), "'box' in 'bounds'", marks=CAMPAIGN),
+    pytest.param(
+        _sealed(lambda data: data["bounds"]["rounding"].update(energy=(0.0).hex())), "as symrot prints it",
+        marks=CAMPAIGN,
+    ),
     pytest.param(_sealed(lambda data: data["bounds"].update(meaning="")), "'bounds' as symrot", marks=CAMPAIGN),
     pytest.param(_sealed(lambda data: data["bounds"].pop("truncation")), "'truncation' in 'bounds'", marks=CAMPAIGN),
 ])  # fmt: skip
@@ -262,6 +270,41 @@ def test_forged_bounds_of_steps_with_elliptic_functions_are_refused(bounded, tmp
     change(tmp_path)
     with pytest.raises(CertificateError, match=message):
         symrot.audit(path)
+
+
+MOMENTS = [2.0, 3.0, 4.0]
+
+
+@pytest.mark.parametrize(("box", "most"), [
+    ({"omega_1": (0, 0), "dt": (0, "1e9")}, 0.0),  # at rest
+    ({"omega_1": (5e-324, 5e-324), "dt": (-1, 1)}, 1e-318),
+    ({"omega_3": ("7e307", "8e307"), "omega_1": ("1e307", "1e307"), "dt": (0, "1e-308")}, 1e293),
+])  # fmt: skip
+def test_bounds_exist_for_the_smallest_and_the_largest_doubles(box, most):
+    ranges = {name: (Fraction(0), Fraction(0)) for name in BOX} | {
+        name: (Fraction(low), Fraction(high)) for name, (low, high) in box.items()
+    }
+    text = step_text(scene_of(FREE), "exact")
+    rounding, truncation = free_body_bounds(text.c()[0], f"symrot_{text.name}", MOMENTS, ranges)
+    assert max(rounding[:3]) <= most and 1e-15 < max(rounding[3:]) < 1e-14 and max(truncation[3:]) < 1e-29
+
+
+@pytest.mark.parametrize(("box", "message"), [
+    # too small for the C text, which takes some of them as zero: a bound of no state at all would be true and useless
+    ({"omega_2": (Fraction(1, 10**150), Fraction(1, 10**120))}, "omega_2 with numbers that are 0 or at least 1e-100"),
+    ({"dt": (0, 10**300)}, "at most 1048576 revolutions of a phase"),
+    ({"omega_1": (0, 0), "dt": (0, 10**300)}, "expected dt times .omega. of at most"),
+    ({"omega_1": (1, Fraction(float_info.max))}, "middle axis"),
+])  # fmt: skip
+def test_boxes_beyond_the_range_of_the_bounds_are_refused(box, message):
+    ranges = (
+        {name: (Fraction(0), Fraction(0)) for name in BOX}
+        | {"omega_1": (Fraction(1), Fraction(1))}
+        | {name: (Fraction(low), Fraction(high)) for name, (low, high) in box.items()}
+    )
+    text = step_text(scene_of(FREE), "exact")
+    with pytest.raises(InputError, match=message):
+        free_body_bounds(text.c()[0], f"symrot_{text.name}", MOMENTS, ranges)
 
 
 @pytest.mark.parametrize(("scene", "box", "message"), [

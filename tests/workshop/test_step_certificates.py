@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from fractions import Fraction
+from sys import float_info
 
 import mpmath
 import numpy as np
@@ -18,6 +19,7 @@ from symrot.codegen.steps import RK4, TaylorSeries, stepped
 from symrot.errors import CertificateError, InputError
 from symrot.formula.tree import FUNCTIONS
 from symrot.workshop.step_text import step_text
+from symrot.workshop.steps.certify import certify_step
 
 BOX = {"omega_1": (-1, 1), "omega_2": (-1, 1), "omega_3": (-1, 1), "dt": (0, "1/100")}
 QUATERNION = {f"q{i}": (Fraction(-1), Fraction(1)) for i in range(4)}
@@ -188,10 +190,31 @@ def test_series_of_functions_contain_their_derivatives(name):
         assert float(interval.delta) < 1e-10
 
 
+def test_ranges_of_single_numbers_have_bounds():
+    """A component that starts at one number moves, though its range has no width by which it could grow."""
+    rates, method, _, box = problem("tumbling_prism", "rk4", (Fraction(0), Fraction(1, 10000)))
+    bounds = truncation_bounds(rates, method, box | {"omega_2": (Fraction(1, 2), Fraction(1, 2))})
+    assert max(bounds.values()) <= max(truncation_bounds(rates, method, box).values()) < 1e-20
+
+
 def test_steps_too_large_for_a_bound_are_refused():
     rates, method, _, box = problem("tumbling_prism", "rk4", (Fraction(0), Fraction(10)))
     with pytest.raises(InputError, match="got sizes dt up to 10 s; take smaller dt"):
         truncation_bounds(rates, method, box)
+
+
+def test_bounds_on_the_largest_range_of_time_hold_at_all_times():
+    """A range of all doubles is no sign that an input is not used."""
+    scene = symrot.Scene.from_dict(
+        {"schema": 1, "initial": {"omega": [0, 0, 1]}, "span": {"t": [0, 1]}, "body": {"principal": [2, 2, 2]},
+         "torque": [{"kind": "expression", "torque": ["0", "0", "sin(t)**4"]}]}
+    )  # fmt: skip
+    box, largest = ["omega_2=0:0", "omega_3=0:1", "dt=0:1/2"], float_info.max
+    everywhere, once, at_zero = (
+        float.fromhex(certify_step(scene, "taylor", 2, [*box, f"t={t}"])[0]["bounds"]["truncation"]["omega_3"])
+        for t in (f"{-largest!r}:{largest!r}", "0:7", "0:0")
+    )
+    assert everywhere >= once > 2 * at_zero
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 import pytest
-from sympy import Float, Matrix, Rational, cos, diff, eye, sin, solve, sqrt, symbols, zeros
+from sympy import Float, Matrix, Rational, cos, diff, eye, pi, sin, solve, sqrt, symbols, sympify, zeros
 from sympy.physics.mechanics import (
     KanesMethod,
     LagrangesMethod,
@@ -131,16 +131,52 @@ def test_numbers_keep_their_exact_values():
     assert abs(scene.body.inertia[1][1] ** 2 - 2) < Fraction(1, 10**80)
 
 
+def test_a_scene_takes_matrices_and_expressions_of_sympy():
+    """A dcm, a tensor, a column and a control law of SymPy make the scene that their numbers and text make."""
+    own = N.orientnew("B", "Axis", (symbols("a"), N.z)).dcm(N).T.subs(symbols("a"), Rational(1, 3))
+    k, omega_1, q1 = symbols("k omega_1 q1")
+    law = Matrix([-k * omega_1 + Float(1) / 3 * q1**2, 0, 1])
+    taken = symrot.Scene.build(
+        name="b", body={"inertia": Matrix([[1, 0, 0], [0, 2, 0], [0, 0, Rational(5, 2)]])},
+        initial={"omega": Matrix([1, 2, Rational(1, 3)]), "attitude": own}, span={"t": [0, 1]},
+        torque=[{"kind": "expression", "torque": law, "parameters": {"k": 2}}],
+    )  # fmt: skip
+    typed = symrot.Scene.build(
+        name="b", body={"principal": [1, 2, "5/2"]},
+        initial={"omega": [1, 2, "1/3"], "attitude": {"axis": [0, 0, 1], "angle": "1/3"}}, span={"t": [0, 1]},
+        torque=[{"kind": "expression", "torque": [f"-k*omega_1 + {1 / 3!r}*q1**2", 0, 1], "parameters": {"k": 2}}],
+    )  # fmt: skip
+    assert (taken.body.inertia, taken.initial.omega_b) == (typed.body.inertia, typed.initial.omega_b)
+    assert all(abs(a - b) < 1e-15 for a, b in zip(taken.initial.quaternion, typed.initial.quaternion, strict=True))
+    assert (symrot.propagate(taken, t=[1.0]).omega == symrot.propagate(typed, t=[1.0]).omega).all()
+
+
 @pytest.mark.parametrize(("value", "frame", "sentence"), [
     (3, None, "a RigidBody, Inertia, Dyadic or ReferenceFrame, got int"),
     (outer(N.x, N.x), None, "the frame of the components, got NoneType"),
     (ReferenceFrame("B"), N, "known orientation to each other"),
     (ReferenceFrame("B"), None, "the space frame"),
     (RigidBody("b"), None, "a real number, got b_ixx"),
+    (RigidBody("b"), N, "frame: expected none for a RigidBody, which has its own, got N"),
+    (RigidBody("b"), Point("O"), "expected none for a RigidBody"),
 ])  # fmt: skip
 def test_what_has_no_meaning_is_refused(value, frame, sentence):
     with pytest.raises(symrot.InputError, match=sentence):
         symrot.from_sympy(value, frame)
+
+
+def test_the_tensor_of_a_body_is_moved_to_its_centre_and_rotated_to_its_frame():
+    frame = N.orientnew("B", "Axis", (pi / 6, N.x))
+    origin = Point("O")
+    center = origin.locatenew("G", 2 * frame.x + 3 * N.y)
+    rows = symrot.from_sympy(RigidBody("b", center, frame, 2, (inertia(N, 50, 60, 70), origin)))["inertia"]
+    turn = Matrix([[1, 0, 0], [0, sqrt(3) / 2, Rational(1, 2)], [0, -Rational(1, 2), sqrt(3) / 2]])
+    offset = Matrix([2, 3 * sqrt(3) / 2, -Rational(3, 2)])
+    tensor = turn * Matrix.diag(50, 60, 70) * turn.T - 2 * (offset.dot(offset) * eye(3) - offset * offset.T)
+    assert all(abs(float(sympify(rows[i][j]) - tensor[i, j])) < 1e-13 for i in range(3) for j in range(3))
+    loose = RigidBody("b", center, frame, 2, (inertia(ReferenceFrame("C"), 1, 1, 1), center))
+    with pytest.raises(symrot.InputError, match="expected a body whose points and frames are connected"):
+        symrot.from_sympy(loose)
 
 
 def test_a_body_without_mass_is_refused():

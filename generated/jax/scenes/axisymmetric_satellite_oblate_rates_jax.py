@@ -20,14 +20,8 @@ import jax.numpy as jnp
 
 
 def axisymmetric_satellite_oblate_rates(t, y, p):
-    omega_1 = y[0]
-    omega_2 = y[1]
-    q0 = y[2]
-    q1 = y[3]
-    q2 = y[4]
-    q3 = y[5]
-    p0 = p[0]
-    p1 = p[1]
+    omega_1, omega_2, q0, q1, q2, q3 = y
+    p0, p1 = p
     dy = jnp.stack([
         p0*omega_2,
         -(p0*omega_1),

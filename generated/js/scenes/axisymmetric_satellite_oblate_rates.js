@@ -18,6 +18,8 @@
  */
 
 export function axisymmetric_satellite_oblate_rates(t, y, p, dy) {
+    if (y.length !== 6) throw new RangeError(`y: expected 6 numbers, got ${y.length}`);
+    if (p.length !== 2) throw new RangeError(`p: expected 2 numbers, got ${p.length}`);
     const omega_1 = y[0];
     const omega_2 = y[1];
     const q0 = y[2];

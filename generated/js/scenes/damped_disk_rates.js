@@ -20,6 +20,8 @@
  */
 
 export function damped_disk_rates(t, y, p, dy) {
+    if (y.length !== 7) throw new RangeError(`y: expected 7 numbers, got ${y.length}`);
+    if (p.length !== 4) throw new RangeError(`p: expected 4 numbers, got ${p.length}`);
     const omega_1 = y[0];
     const omega_2 = y[1];
     const omega_3 = y[2];

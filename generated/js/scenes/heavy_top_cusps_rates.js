@@ -18,6 +18,8 @@
  */
 
 export function heavy_top_cusps_rates(t, y, p, dy) {
+    if (y.length !== 6) throw new RangeError(`y: expected 6 numbers, got ${y.length}`);
+    if (p.length !== 3) throw new RangeError(`p: expected 3 numbers, got ${p.length}`);
     const omega_1 = y[0];
     const omega_2 = y[1];
     const q0 = y[2];

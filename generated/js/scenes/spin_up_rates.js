@@ -17,6 +17,8 @@
  */
 
 export function spin_up_rates(t, y, p, dy) {
+    if (y.length !== 7) throw new RangeError(`y: expected 7 numbers, got ${y.length}`);
+    if (p.length !== 2) throw new RangeError(`p: expected 2 numbers, got ${p.length}`);
     const omega_1 = y[0];
     const omega_2 = y[1];
     const omega_3 = y[2];

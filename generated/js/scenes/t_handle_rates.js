@@ -19,6 +19,8 @@
  */
 
 export function t_handle_rates(t, y, p, dy) {
+    if (y.length !== 7) throw new RangeError(`y: expected 7 numbers, got ${y.length}`);
+    if (p.length !== 3) throw new RangeError(`p: expected 3 numbers, got ${p.length}`);
     const omega_1 = y[0];
     const omega_2 = y[1];
     const omega_3 = y[2];

@@ -25,20 +25,8 @@ import numpy as np
 
 
 def gravity_gradient_satellite_rates(t, y, p):
-    omega_1 = y[0]
-    omega_2 = y[1]
-    omega_3 = y[2]
-    q0 = y[3]
-    q1 = y[4]
-    q2 = y[5]
-    q3 = y[6]
-    p0 = p[0]
-    p1 = p[1]
-    p2 = p[2]
-    p3 = p[3]
-    p4 = p[4]
-    p5 = p[5]
-    p6 = p[6]
+    omega_1, omega_2, omega_3, q0, q1, q2, q3 = y
+    p0, p1, p2, p3, p4, p5, p6 = p
     q0_q3 = q0*q3
     q1_q2 = q1*q2
     p0_t = p0*t

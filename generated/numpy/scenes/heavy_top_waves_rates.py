@@ -20,15 +20,8 @@ import numpy as np
 
 
 def heavy_top_waves_rates(t, y, p):
-    omega_1 = y[0]
-    omega_2 = y[1]
-    q0 = y[2]
-    q1 = y[3]
-    q2 = y[4]
-    q3 = y[5]
-    p0 = p[0]
-    p1 = p[1]
-    p2 = p[2]
+    omega_1, omega_2, q0, q1, q2, q3 = y
+    p0, p1, p2 = p
     dy = np.empty((6, *np.shape(y)[1:]))
     dy[0] = p0*(q0*q1 + q2*q3) + p1*omega_2
     dy[1] = p0*(q0*q2 - q1*q3) - p1*omega_1

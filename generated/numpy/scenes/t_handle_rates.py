@@ -21,16 +21,8 @@ import numpy as np
 
 
 def t_handle_rates(t, y, p):
-    omega_1 = y[0]
-    omega_2 = y[1]
-    omega_3 = y[2]
-    q0 = y[3]
-    q1 = y[4]
-    q2 = y[5]
-    q3 = y[6]
-    p0 = p[0]
-    p1 = p[1]
-    p2 = p[2]
+    omega_1, omega_2, omega_3, q0, q1, q2, q3 = y
+    p0, p1, p2 = p
     dy = np.empty((7, *np.shape(y)[1:]))
     dy[0] = p0*omega_2*omega_3
     dy[1] = -(p1*omega_3*omega_1)

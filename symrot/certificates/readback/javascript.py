@@ -18,6 +18,9 @@ _TOKEN = re.compile(
     r"\s+|\d[\w.]*(?:(?<=[eE])[+-]\d+)?|[A-Za-z_]\w*(?:\.[a-z]\w*)?|===|[-+*/()\[\]{},;=<>?:]", re.ASCII
 )
 _HEAD = re.compile(r"(?:export )?function (\w+)\(([\w, ]*)\) \{", re.ASCII)
+_LENGTH_CHECK = (
+    "    if ({0}.length !== {1}) throw new RangeError(`{0}: expected {1} number{2}, got ${{{0}.length}}`);\n"
+)
 _COPYSIGN = "function copysign(x, y) {\n    return (y < 0 || Object.is(y, -0) ? -1 : 1)*Math.abs(x);\n}\n"
 _MATH = {
     f"Math.{name}": name
@@ -44,6 +47,7 @@ def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
         names = arguments.split(", ") if arguments else []
         if function == name:
             head = _kernel_head(names, model, where)
+            content = _without_length_checks(content, model, where)
         else:
             head = f"static inline double {function}({', '.join(f'double {each}' for each in names)})"
         functions.append(f"{head}\n{{{_translated(content, where)}")
@@ -56,6 +60,17 @@ def _kernel_head(names: list[str], model: CFunction, where: str) -> str:
     if names != expected:
         raise CertificateError(f"{where}: expected the arguments {', '.join(expected)}, got {', '.join(names)}")
     return kernel_head(model)
+
+
+def _without_length_checks(content: str, model: CFunction, where: str) -> str:
+    """Return the body of a kernel without its first lines, which must check the lengths of the inputs of ``model``."""
+    content = content.removeprefix("\n")
+    for name, size in ((p.name, p.size) for p in model.parameters if p.size and p.is_const):
+        check = _LENGTH_CHECK.format(name, size, "s" if size > 1 else "")
+        if not content.startswith(check):
+            raise CertificateError(f"{where}: expected a check that {name} has {size} numbers, got {content[:40]!r}")
+        content = content.removeprefix(check)
+    return content
 
 
 def _translated(content: str, where: str) -> str:

@@ -16,6 +16,7 @@ __all__ = ["compare_jax"]
 _HEAD = re.compile(r'"""(?:(?!""")[^\\])*"""\n\n(?:import jax\n)?import jax\.numpy as jnp\n', re.ASCII)
 _DEFINITION = re.compile(r"((?:@jax\.custom_jvp\n)?)def (\w+)\(([\w, ]*)\):\n", re.ASCII)
 _ASSIGNMENT = re.compile(r"    ([A-Za-z_]\w*) = (.+)", re.ASCII)
+_UNPACKING = re.compile(r"    \(?(\w+(?:, \w+)*)(?:,\))? = ([A-Za-z_]\w*)", re.ASCII)
 _STACK = re.compile(r"    ([A-Za-z_]\w*) = jnp\.stack\(\[", re.ASCII)
 _ENTRY = re.compile(r"        (.+),", re.ASCII)
 _RETURN = re.compile(r"    return (.+)", re.ASCII)
@@ -103,6 +104,9 @@ def _kernel(lines: list[str], inputs: list[str], model: CFunction, where: str) -
     if not lines or lines[-1] != f"    return {', '.join(p.name for p in outputs)}":
         raise CertificateError(f"{where}: expected the function to return {', '.join(p.name for p in outputs)}")
     body, place = [], 0
+    for each in (p for p in model.parameters if p.size and p.is_const):
+        body += _unpacking(lines[place], each.name, each.size, where)
+        place += 1
     while place < len(lines) - 1:
         stack = _STACK.fullmatch(lines[place])
         place += 1
@@ -119,6 +123,15 @@ def _kernel(lines: list[str], inputs: list[str], model: CFunction, where: str) -
             raise CertificateError(f"{where}: expected the end of the array {stack[1]}, got {lines[place][:30]!r}")
         place += 1
     return "\n".join([kernel_head(model), "{", *body, "}"])
+
+
+def _unpacking(line: str, argument: str, size: int, where: str) -> list[str]:
+    """Return the line that names the components of an argument as C: ``_, b = x`` gives ``const double b = x[1];``."""
+    match = _UNPACKING.fullmatch(line)
+    components = match[1].split(", ") if match else []
+    if match is None or match[2] != argument or len(components) != size or set(components) & (_ONLY_IN_C | _NOT_IN_C):
+        raise CertificateError(f"{where}: expected names for the {size} components of {argument}, got {line[:40]!r}")
+    return [f"const double {name} = {argument}[{i}];" for i, name in enumerate(components) if name != "_"]
 
 
 def _assignment(line: str, where: str) -> str:

@@ -5,11 +5,7 @@ symrot.workshop.bound_table``. The key of a bound is a hash of its task: operati
 libm.
 """
 
-import ast
-import hashlib
-import io
 import json
-import tokenize
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from functools import cache
@@ -17,41 +13,21 @@ from pathlib import Path
 from typing import Any
 
 from symrot.build import cache as cache_files
+from symrot.build.code_digest import code_digest
 from symrot.certificates.rounding.branch_and_bound import SearchResult
 
-__all__ = ["TABLE", "Store", "code_without_prose", "method", "printed_table", "table"]
+__all__ = ["TABLE", "Store", "method", "printed_table", "table"]
 
 TABLE = Path(__file__).with_name("bounds.json")
 _METHOD = ("intervals", "functions", "output_graph", "region", "choices", "centred", "adjoint", "branch_and_bound")
 _NUMBERS = ("bound", "pointwise", "largest_value")
 
 
-def code_without_prose(source: str) -> str:
-    r"""Return Python source without its docstrings, its comments and the lines that then are blank.
-
-    ``"def f(x):\n    # why\n    return x  # m\n"`` gives ``"def f(x):\n    return x\n"``.
-    """
-    # all other characters stay, so that the result is the same in every version of Python
-    documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
-    nodes = [node for node in ast.walk(ast.parse(source)) if isinstance(node, documented)]
-    docstrings = {node.body[0].lineno for node in nodes if ast.get_docstring(node, clean=False) is not None}
-    lines = source.split("\n")
-    for token in reversed(list(tokenize.generate_tokens(io.StringIO(source).readline))):
-        (first, left), (last, right) = token.start, token.end
-        begins_line = not lines[first - 1][:left].strip()
-        is_docstring = token.type == tokenize.STRING and first in docstrings and begins_line
-        if token.type == tokenize.COMMENT or is_docstring:
-            rest = (lines[first - 1][:left] + lines[last - 1][right:]).rstrip()
-            lines[first - 1 : last] = [rest] if rest else []
-    return "\n".join(lines)
-
-
 @cache
 def method() -> str:
     """Return the SHA-256 of the source files that compute bounds (the "method"), without docstrings and comments."""
     # part of the key of each stored bound, so that a bound by other code is not used
-    sources = (Path(__file__).with_name(f"{name}.py").read_text(encoding="utf-8") for name in _METHOD)
-    return hashlib.sha256("\0".join(map(code_without_prose, sources)).encode()).hexdigest()
+    return code_digest(Path(__file__).with_name(f"{name}.py").read_text(encoding="utf-8") for name in _METHOD)
 
 
 @cache

@@ -63,7 +63,8 @@ def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node 
     own = next((node for node in nodes if (node.kind, node.value) == ("name", letter)), None)
     if own is None:
         return None
-    names = {node.value for node in nodes if node.kind == "name"} - {"pi"}
+    has_e = any(_exponent(node) is not None for node in nodes)
+    names = {node.value for node in nodes if node.kind == "name"} - ({"pi", "e"} if has_e else {"pi"})
     functions = {str(node.value) for node in nodes if node.kind == "call"}
     # the only letter, as in i^2 = -1
     is_alone = names == {letter} and not any(

@@ -1,6 +1,6 @@
-"""The matrix R of a rotation, from an equation such as ``R v = q v q*`` that states R by a quaternion q.
+"""The matrix R of a linear map, from an equation such as ``R v = q v q*`` or ``R v = v cos θ + n × v sin θ + ..``.
 
-The equation holds for every vector v. So R is the matrix of the linear map from v to ``q v q*``.
+The equation holds for every vector v. So R is the matrix of the map from v to the other side.
 """
 
 from collections.abc import Collection
@@ -19,7 +19,7 @@ def as_matrix_of_map(relation: Relation, vectors: Collection[str], known: Collec
     Parameters
     ----------
     relation : Relation
-        The equation, in which f is a product of quaternions.
+        The equation, in which f is a product of quaternions, or a sum with cross or dot products of v.
     vectors : collection of str
         The names of vectors.
     known : collection of str
@@ -33,7 +33,7 @@ def as_matrix_of_map(relation: Relation, vectors: Collection[str], known: Collec
         matrix, vector = factors
         name = matrix.args[0] if matrix.kind == "transpose" else matrix
         is_matrix = name.kind == "name" and str(name.value)[0].isupper() and name.value not in known
-        if not is_matrix or not _is_image(image, vector) or name in [node for _, node in walk(image)]:
+        if not is_matrix or not _is_image(image, vector) or name in _nodes(image):
             continue
         rows = _matrix_of(image, vector)
         written = f"{name.value}^T" if matrix.kind == "transpose" else str(name.value)
@@ -44,10 +44,30 @@ def as_matrix_of_map(relation: Relation, vectors: Collection[str], known: Collec
 
 
 def _is_image(image: Node, vector: Node) -> bool:
-    """Return whether ``image`` is the vector part of a product, such as ``q v q*``, that contains ``vector`` v once."""
-    # such a product is a linear map of the vector
-    nodes = [node for _, node in walk(image)]
-    return image.kind == "call" and image.value == "vector_part" and nodes.count(vector) == 1
+    """Return whether ``image`` is the vector part of a product, such as ``q v q*``, that contains ``vector`` v once, or
+    a sum in which each term contains v once, and one in a cross or dot product.
+    """
+    # such a product or sum is a linear map of the vector
+    nodes = _nodes(image)
+    if image.kind == "call" and image.value == "vector_part":
+        return nodes.count(vector) == 1
+    products = [node for node in nodes if node.kind == "call" and node.value in ("cross", "dot")]
+    return _is_linear(image, vector) and any(vector in part for part in map(_nodes, products))
+
+
+def _is_linear(tree: Node, vector: Node) -> bool:
+    """Return whether a formula is linear in a vector by its form: by sums, products, and cross and dot products."""
+    if tree == vector:
+        return True
+    if tree.kind in ("sum", "neg"):
+        return all(_is_linear(term, vector) for term in tree.args)
+    is_product = tree.kind == "product" or (tree.kind == "call" and tree.value in ("cross", "dot"))
+    factors = [factor for factor in tree.args if vector in _nodes(factor)]
+    return is_product and len(factors) == 1 and _is_linear(factors[0], vector)
+
+
+def _nodes(tree: Node) -> list[Node]:
+    return [node for _, node in walk(tree)]
 
 
 def _matrix_of(image: Node, vector: Node) -> Node:

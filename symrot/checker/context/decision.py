@@ -7,10 +7,10 @@ states each word of this name. It is true if it equals such a formula, false if 
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice, zip_longest
+from itertools import islice, pairwise, permutations, zip_longest
 from typing import Any
 
-from sympy import Dummy, Expr, Function, Rational, Symbol, sqrt
+from sympy import Dummy, Expr, Function, Rational, Symbol, cancel, sqrt
 
 from symrot import symbols
 from symrot.checker.claim.atoms import atoms_of
@@ -306,7 +306,11 @@ def _with_guesses(context: Context, verdict: Verdict, stated: str) -> Verdict:
     readings = sorted(verdict.recognised_as, key=lambda known: len(guesses(context, known.name, stated)))
     verdict, likeliest = replace(verdict, recognised_as=tuple(readings)), readings[0]
     # a guess is a word in the formula's name that neither the context nor the claim's quantity states
-    what = " ".join([*guesses(context, likeliest.name, stated), likeliest.how]).strip()
+    words = guesses(context, likeliest.name, stated)
+    # words that follow each other are one phrase: "yaw, rotation matrix" of "yaw angle of a rotation matrix"
+    follow = [f"{first} {second}" in likeliest.name for first, second in pairwise(words)]
+    phrases = "".join(word + (" " if joined else ", ") for word, joined in zip(words, [*follow, False], strict=True))
+    what = ", ".join(filter(None, [phrases.removesuffix(", "), likeliest.how]))
     return replace(verdict, notes=(*verdict.notes, f"guessed, not stated: {what}")) if what else verdict
 
 
@@ -379,6 +383,8 @@ def _by_meant_formulas(
             return _true(claim, named, Verdict("recognised", recognised_as=readings))
         return _with_guesses(claim.context, Verdict("recognised", recognised_as=readings), stated)
     known_decisions = [(candidate, decision) for candidate, decision in decisions if decision is not None]
+    if is_open and any(_is_shifted(value, candidate) for candidate in meant):
+        return None
     if is_open:
         return _near(claim, named, known_decisions)
     return _different(claim, named, verdict, [*known_decisions, *_transposed(known_decisions)])
@@ -466,6 +472,17 @@ def _different_repairs(repairs: Sequence[tuple[Repair, ...]]) -> tuple[Repair, .
     """Return at most three repairs: the best one towards each known formula, then the second-best ones."""
     in_turn = [repair for rank in zip_longest(*repairs) for repair in rank if repair is not None]
     return tuple({repair.text: repair for repair in in_turn}.values())[:MOST_REPAIRS]
+
+
+def _is_shifted(value: Any, candidate: Meant) -> bool:
+    """Return whether a claim's moment of inertia is that of ``candidate`` plus m d^2, for a parallel axis at a simple
+    fraction of a length.
+    """
+    if is_matrix(value) or not candidate.known.name.startswith("moment of inertia of a"):
+        return False
+    added = cancel(value - candidate.value)
+    shares = (cancel(added / (mass * length**2)) for mass, length in permutations(added.free_symbols, 2))
+    return any(share.is_Rational and share > 0 and sqrt(share).is_Rational for share in shares)
 
 
 def _near(claim: Claim, named: NamedFormula, decisions: Sequence[tuple[Meant, Decision]]) -> Verdict | None:

@@ -4,22 +4,20 @@ A claim may have hypotheses, and its text may have divisors and roots that SymPy
 these, and look for a condition under which a false claim is true.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from fractions import Fraction
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from itertools import product
 from typing import Any
 
-from mpmath import iv
-from sympy import Abs, Expr, Ge, Gt, I, Ne, Poly, Rational, Symbol, atan2, fraction, nan, oo, preorder_traversal, zoo
+from sympy import Abs, Expr, Ge, Gt, I, Ne, Poly, Symbol, fraction, nan, oo, preorder_traversal, zoo
 from sympy.polys.rings import PolyElement
 
+from symrot.checker.decide.branch_cuts import BranchCut, branch_cuts
 from symrot.checker.decide.conditions import branch_requirements, requirements
 from symrot.checker.decide.definite import surely_nonnegative
 from symrot.checker.decide.hypotheses import Hypotheses
 from symrot.checker.decide.large_powers import LARGEST_DEGREE, degree_of, point_of_difference, shorter_powers
-from symrot.checker.decide.ranges import condition_texts, follow, positive_symbols, range_text, with_domain
+from symrot.checker.decide.ranges import follow, positive_symbols, range_text, with_domain
 from symrot.checker.decide.real_points import ATTEMPTS
 from symrot.checker.decide.squares_of_roots import is_square_of_roots
 from symrot.checker.decide.unordered import is_unordered
@@ -37,17 +35,16 @@ from symrot.exact.decision import (
     first_decision,
     flatten,
     matched_sides,
-    place_in_matrix,
     prove,
     refute,
     shape_text,
     subtract,
 )
 from symrot.exact.domain import domain
-from symrot.exact.domain.known_points import holds, known_point
+from symrot.exact.domain.known_points import known_point
 from symrot.exact.domain.needs import Need, leaves_of, needs_of
 from symrot.exact.evidence import Counterexample, Requirement
-from symrot.exact.intervals import enclosure, is_nonnegative_at
+from symrot.exact.intervals import is_nonnegative_at
 from symrot.exact.inverse_sums import lifts, principal
 from symrot.exact.limits.budget import one_decision
 from symrot.exact.printing import as_text
@@ -62,9 +59,6 @@ MUCH_LARGER = 5
 
 LONG_SUM = 5
 """The fewest terms of a sum inside a function for which a letter is tried."""
-
-MOST_ON_THE_CUT = 4
-"""The most symbols of a claim with atan2 that is examined at points with simple coordinates."""
 
 
 @dataclass(frozen=True)
@@ -93,6 +87,14 @@ class Equation:
     nonzero: tuple[Expr, ...] = ()
     radicands: tuple[Expr, ...] = ()
     bases: tuple[Expr, ...] = ()
+
+    def at(self, values: Mapping[Expr, Expr]) -> "Equation":
+        """Return the equation with values in place of some of its parts."""
+        parts = {field.name: getattr(self, field.name) for field in fields(self)}
+        return Equation(**{
+            name: tuple(each.xreplace(values) for each in part) if isinstance(part, tuple) else part.xreplace(values)
+            for name, part in parts.items()
+        })  # fmt: skip
 
 
 def is_large(equation: Equation) -> bool:
@@ -237,8 +239,8 @@ def _decide(equation: Equation) -> Decision:
     case = _ClaimCase(lefts, rights, shape, ring, equation=equation)
     try:
         decision = first_decision(case, STAGES)
-        if decision.verdict == "true" and not relations and any(side.has(atan2) for side in case.sides):
-            decision = _conditional_at_branch_cut(decision, case)
+        if decision.verdict in ("true", "conditional"):
+            decision = _off_branch_cuts(decision, equation)
         return replace(decision, products=ring.ratios.products)
     except TooLarge as reason:
         try:
@@ -443,45 +445,66 @@ def for_positive_bases(decision: Decision, equation: Equation) -> Decision:
     return replace(decision, verdict="conditional", requires=(required,), conditions=(required, *decision.conditions))
 
 
-# -- the branch cut of atan2 ------------------------------------------------------------------------------------------
+# -- the branch cuts of atan2 -----------------------------------------------------------------------------------------
 
 
-def _conditional_at_branch_cut(decision: Decision, case: _ClaimCase) -> Decision:
-    """Return ``decision``, with "conditional" for "true" if the sides differ at a point on the branch cut of an
-    atan2.
+def _off_branch_cuts(decision: Decision, equation: Equation) -> Decision:
+    """Return ``decision``, "true" or "conditional", with the condition that no atan2 is on a branch cut on which the
+    sides are known to differ.
     """
-    # the proof may divide by a formula that is zero there: continuous sides that agree around a point agree at it,
-    # but atan2 jumps where its first argument is zero and its second one negative
-    symbols = sorted({symbol for side in case.sides for symbol in side.free_symbols}, key=str)
-    cuts = sorted({node.args[0] for side in case.sides for node in side.atoms(atan2)}, key=str)
-    needs = _needs(case)
-    for point in _points_on_cuts(symbols, cuts) if 0 < len(symbols) <= MOST_ON_THE_CUT else ():
-        values = {symbol: Fraction(int(value.p), int(value.q)) for symbol, value in point.items()}
-        for place, sides in enumerate(zip(case.lefts, case.rights, strict=True)):
-            left, right = (enclosure(side, values) for side in sides)
-            if left is None or right is None or 0 in iv.mpf(0) + left - right:
-                continue
-            if all(holds(need, values) for need in needs):
-                exact = [side.subs(point) for side in sides]
-                witness = Counterexample(tuple(point.items()), place_in_matrix(place, case.shape), *exact)
-                required = Requirement("principal_value", " and ".join(condition_texts(decision.conditions)))
-                return replace(decision, verdict="conditional", requires=(required,), counterexample=witness)
-    return decision
+    usual = decision.requires or (Requirement("principal_value", ""),)
+    requirements, witness = usual, decision.counterexample
+    for cut in branch_cuts([*flatten(equation.left)[0], *flatten(equation.right)[0]]):
+        on_cut = equation.at(cut.values)
+        on_cut = replace(
+            on_cut, divisors=(*on_cut.divisors, cut.negative), radicands=(*on_cut.radicands, -cut.negative)
+        )
+        others = []
+        for requirement in requirements:
+            difference = _difference(cut, on_cut, requirement)
+            if difference is not None:
+                witness = witness or difference
+                text = f"({cut.elsewhere})" if requirement.text else cut.elsewhere
+                requirement = replace(requirement, text=" and ".join(filter(None, (requirement.text, text))))
+            others.append(requirement)
+        requirements = tuple(others)
+    if requirements == usual:
+        return decision
+    conditions = [each for each in decision.conditions if each not in decision.requires]
+    return replace(
+        decision, verdict="conditional", requires=requirements, conditions=(*requirements, *conditions),
+        counterexample=witness,
+    )  # fmt: skip
 
 
-def _points_on_cuts(symbols: Sequence[Expr], cuts: Sequence[Expr]) -> Iterator[dict[Expr, Rational]]:
-    """Yield points with simple coordinates, and after each those moved along one symbol to a zero of a formula in
-    ``cuts``.
+def _difference(cut: BranchCut, equation: Equation, requirement: Requirement) -> Counterexample | None:
+    """Return a point on a branch cut at which a requirement holds and the sides of an equation are known to differ, or
+    None.
     """
-    for values in product((0, -1, 1, Rational(-3, 2)), repeat=len(symbols)):
-        point = dict(zip(symbols, map(Rational, values), strict=True))
-        yield point
-        for cut, symbol in product(cuts, symbols):
-            slope = cut.diff(symbol)
-            at_zero, steep = (value.subs({**point, symbol: 0}) for value in (cut, slope))
-            # the argument is linear in this symbol
-            if not slope.has(symbol) and steep.is_Rational and steep and at_zero.is_Rational:
-                yield {**point, symbol: -at_zero / steep}
+    required = replace(
+        equation, hypotheses=(*equation.hypotheses, *requirement.zeros),
+        divisors=(*equation.divisors, *requirement.strict), radicands=(*equation.radicands, *requirement.signs),
+    )  # fmt: skip
+    for solution in cut.solutions or [{}]:
+        positive = [value for symbol, value in solution.items() if symbol.is_positive]
+        at_zero = required.at(solution)
+        at_zero = replace(
+            at_zero, hypotheses=at_zero.hypotheses if solution else (*at_zero.hypotheses, cut.zero),
+            divisors=(*at_zero.divisors, *positive), radicands=(*at_zero.radicands, *positive),
+        )  # fmt: skip
+        try:
+            lefts, rights, shape = _sides(at_zero)
+            relations = [as_zero(relation) for relation in at_zero.hypotheses]
+            ring = FormulaRing([*lefts, *rights, *at_zero.divisors, *at_zero.nonzero], relations, at_zero.radicands)
+            case = _ClaimCase(lefts, rights, shape, ring, equation=at_zero)
+            first_decision(case, (*STAGES[:2], domain_of_text, nearby_witness, leave_open))
+        except (InputError, TooLarge):  # the hypotheses exclude all points of the cut
+            continue
+        if case.counterexample is not None:
+            point = dict(case.counterexample.point)
+            point |= {symbol: value.subs(point) for symbol, value in solution.items()}
+            return replace(case.counterexample, point=tuple(sorted(point.items(), key=str)))
+    return None
 
 
 # -- reading the equation ---------------------------------------------------------------------------------------------

@@ -318,20 +318,20 @@ class Hypotheses:
         """Return a point where the intervals that enclose the two sides are disjoint, so that the sides differ; or
         None.
         """
-        leaves = {place: leaf for leaf, place in self.ring.symbols.items()}
-        involved = occurring([*self.constraints.zeros, *self.constraints.products])
-        if not involved <= leaves.keys():
+        ring, constraints = self.ring, self.constraints
+        known = {*ring.symbols.values(), *ring.roots.values()}
+        known |= {n for atom, n in ring.sines.items() if is_leaf(atom)}
+        known |= {n for atom, n in ring.cosines.items() if is_leaf(atom)}
+        if not occurring([*constraints.zeros, *constraints.products]) <= known & constraints.free:
             return None
-        others = sorted(atoms_of([left, right]) - set(leaves.values()), key=str)
         for point in self.points(attempts):
-            values = {leaves[n]: point.number(value) for n, value in point.values.items() if n in leaves}
-            values |= {name: OTHER_VALUES[n % len(OTHER_VALUES)] for n, name in enumerate(others)}
+            values = self._values_for([left, right], point)
             if not self._defined(values):
                 continue
             intervals = [enclosure(side, values) for side in (left, right)]
             if None not in intervals and 0 not in intervals[0] - intervals[1]:
                 sides = left.xreplace(values), right.xreplace(values)
-                used = atoms_of([left, right, *self.ring.hypotheses])
+                used = atoms_of([left, right, *self.ring.hypotheses, *self.ring.domain])
                 coordinates = sorted(((name, value) for name, value in values.items() if name in used), key=str)
                 return Counterexample(tuple(coordinates), entry, *sides)
         return None

@@ -90,7 +90,8 @@ def with_domain(requirement: Requirement, conditions: Iterable[Any]) -> Requirem
         return requirement
     alone = _texts(_Conditions.of(signs))
     joined = [text for text in _texts(_Conditions.of([*requirement.conditions, *signs])) if text not in alone]
-    return replace(requirement, text=" and ".join(joined)) if joined else requirement
+    strict = tuple(sign for sign in requirement.signs if follow([(sign, "> 0")], [*requirement.conditions, *signs]))
+    return replace(requirement, text=" and ".join(joined), strict=strict) if joined else requirement
 
 
 def _signs(conditions: Iterable[Any]) -> list[Sign]:
@@ -557,6 +558,8 @@ def _range_text(quantity: Expr, own: _Range) -> str:
         least, most = (None if bound is None else bound - 1 for bound in (least, most))
     below, above = "<=" if own.low_closed else "<", "<=" if own.high_closed else "<"
     text = as_text(quantity)
+    if least is not None and least == most and own.low_closed and own.high_closed:
+        return _one_sided(quantity, least, "==")
     if least is not None and most is not None:
         return f"{as_text(least)} {below} {text} {above} {as_text(most)}"
     if least is not None:

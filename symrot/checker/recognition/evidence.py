@@ -5,7 +5,7 @@ a derived formula that differs from the claim's by one fault. The context is wha
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
 from symrot.checker.claim.claims import Claim
@@ -31,7 +31,7 @@ __all__ = [
     "RARE",
     "fits_context",
     "fits_quantity",
-    "has_diameter",
+    "has_other_length",
     "has_terms",
     "has_word",
     "is_evident",
@@ -143,6 +143,12 @@ OF_ANGLES = re.compile(r"angle rates of|angular velocity of [xyzXYZ]{3}\b")
 RARE = ("annulus", "thin tube", "conical shell", "elliptical")
 """Bodies whose moments a faulty formula is unlikely to mean."""
 
+OTHER_LENGTHS = (("R(_[12])?", r"[dD].*|[lLhH]|ell"), ("[abcLh]", r"[rR]"))
+"""Symbols of known formulas for radii, and for lengths and sides -> letters that books use for other lengths only."""
+
+PARALLEL = re.compile("parallel.ax")
+"""A part of the names of the formulas for a parallel axis."""
+
 AXES = ("x1Ap", "y2Bq", "z3Cr")
 """The last letters of symbols that belong to one axis; p, q and r are the rates of an aircraft."""
 
@@ -171,9 +177,18 @@ def says_too_little(claim: Claim, named: NamedFormula, near: Near) -> bool:
     return is_bare and claim.context.body is None and is_of_body(near.code, near.known.name)
 
 
-def has_diameter(known: Identification) -> bool:
-    """Return whether a claim has d or D, letters of diameters, where the known formula has a radius."""
-    return any(old in ("R", "R_1", "R_2") and new[:1] in ("d", "D") for old, new in known.mapping.items())
+def has_other_length(known: str, renaming: Iterable[tuple[str, str]]) -> bool:
+    """Return whether a claim has the letter of another length than a body's formula, as L for the radius R.
+
+    ``known`` is the name of the formula; ``renaming`` has pairs (symbol, letter of the claim).
+    """
+    if re.match("moment of inertia of a|radius of gyration of a", known) is None or "ellip" in known:
+        return False
+    return any(
+        re.fullmatch(symbol, old) and re.fullmatch(letters, new)
+        for old, new in renaming
+        for symbol, letters in OTHER_LENGTHS
+    )
 
 
 def is_of_body(code: str, known: str) -> bool:
@@ -219,6 +234,8 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
         return False  # the root of a growth rate, whose square has the other sign
     if near.code == "sign_of_term" and is_steady(near.known.name):
         return False  # alpha may be a deceleration
+    if near.code == "factor" and PARALLEL.search(near.known.name):
+        return False  # the distance of the axes may be a multiple of a length, as in I_cm + m L^2/4
     if is_inverted(named, near) or _is_multiple_of_period(named, near):
         return True
     if near.has_other_unit and near.code in SAFE_BY_UNIT:
@@ -226,7 +243,7 @@ def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
         has_tension = "T" in letters | names_in(named.side) and claim.context.body is None
         return words is not None and not (is_energy and has_tension)
     is_general = not letters <= names_in(near.tree)  # the formula may have a letter of its own
-    if is_general and near.code == "factor" and _is_of_stated_body(claim, near):
+    if near.code == "factor" and _is_of_stated_body(claim, near):
         return True
     is_alike = bool(neighbours(near.letter, letters))  # such as I_1 in I_1 + I_3
     if near.code == "extra_term" and (is_general or not is_alike or len(letters) < LEAST_SYMBOLS_EDITED):
@@ -461,7 +478,7 @@ def keeps_places(named: NamedFormula, known: Identification) -> bool:
     if angle_of and re.fullmatch(LAST_ANGLE if angle_of[1] == "first" else FIRST_ANGLE, named.name):
         return False
     letters = [*known.mapping.values()] or [*names_in(named.formula)]
-    is_parallel = re.search("parallel.ax", known.name) is not None
+    is_parallel = PARALLEL.search(known.name) is not None
     about_other = [letter for letter in letters if MOMENT.fullmatch(letter) and not CENTRE.fullmatch(letter)]
     # the theorem of parallel axes gives the moment about a point from the one about the centre of mass
     if is_parallel and CENTRE.fullmatch(named.name) and (about_other or any(map(POINT.fullmatch, letters))):

@@ -28,7 +28,7 @@ def is_shifted_moment(actual: Values, known: Values, letters: Letters) -> bool:
     if any(map(is_matrix, (*actual, *known))) or not all(known):
         return False
     ratios = [value / other for value, other in zip(actual, known, strict=True)]
-    if min(ratios) <= 1 or all(near(ratio, ratios[0]) for ratio in ratios):
+    if min(ratios) <= 1:
         return False
     added = [value - other for value, other in zip(actual, known, strict=True)]
     # d is a simple fraction of one length of the claim, or has two such components

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from itertools import combinations, islice
 from typing import Any
 
-from sympy import Function, Matrix, Mul, Pow, Rational, Symbol, acos, asin, atan, atan2, fraction
+from sympy import Function, Matrix, Mul, Pow, Rational, S, Symbol, acos, asin, atan, atan2, fraction, pi
 
 from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.claim.claims import Claim
@@ -28,7 +28,7 @@ from symrot.checker.recognition.evidence import (
     RARE,
     fits_context,
     fits_quantity,
-    has_diameter,
+    has_other_length,
     has_terms,
     has_word,
     is_evident,
@@ -122,6 +122,9 @@ DECELERATION = r"alpha(_\w+)?|a"
 
 UPRIGHT = "for an angle from the upright position, the equation is right as it stands"
 
+ENDS = {acos: (S.Zero, pi), asin: (-pi / 2, pi / 2), atan2: (-pi, pi)}
+"""Inverse function -> the least and the largest of its values."""
+
 SQUARED = ", squared"
 """The end of the names of those known formulas whose root has the name."""
 
@@ -146,7 +149,8 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
                                             "different moments of inertia, one of them has a wrong index")  # fmt: skip
     if readings:
         usual = _near_usual(claim, named, readings) if repair else None
-        recognised = Verdict("recognised", recognised_as=readings, notes=_on_signs_of_products(claim, named, readings))
+        notes = (*_on_signs_of_products(claim, named, readings), *_on_principal_values(claim, named))
+        recognised = Verdict("recognised", recognised_as=readings, notes=notes)
         return recognised if usual is None else usual
     nearest = _nearest(claim, named) if repair else None
     if nearest is None:
@@ -309,6 +313,17 @@ def _on_signs_of_products(claim: Claim, named: NamedFormula, readings: Collectio
     return () if is_even else (MINUS_PRODUCTS,)
 
 
+def _on_principal_values(claim: Claim, named: NamedFormula) -> tuple[str, ...]:
+    """Return a note, in a tuple, on the range of an angle that a claim gives by an inverse function; otherwise ()."""
+    value = claim.interpreter().read(named.formula)
+    factor, function = (1, None) if is_matrix(value) else value.as_coeff_Mul()
+    if not isinstance(function, acos | asin | atan2) or named.side.kind != "name":
+        return ()
+    least, most = sorted(factor * end for end in ENDS[type(function)])
+    below = "<" if isinstance(function, atan2) else "<="
+    return (f"for {least} {below} {named.name} <= {most}: {function.func} gives only these angles",)
+
+
 def _nearest(claim: Claim, named: NamedFormula) -> Verdict | None:
     """Return the verdict "doubtful" if one edit makes the claim's formula or equation a known one, "recognised" if it
     is one for certain signs of letters; otherwise None.
@@ -409,7 +424,11 @@ def _is_norm(side: Node, other: Node) -> bool:
 def _nearby(claim: Claim, named: NamedFormula) -> list[Near]:
     """Return the known formulas for the claim's quantity that differ from its formula in one part, likeliest first."""
     words, plain = words_of(named), quantity_name(named)
-    nearby = near_formulas(claim, named, lambda known: has_word(known.name, words))
+    nearby = [
+        near
+        for near in near_formulas(claim, named, lambda known: has_word(known.name, words))
+        if not has_other_length(near.known.name, near.renaming)
+    ]
     nearby.sort(key=lambda near: near.cost + PER_NAME * near.renamed + PER_PLACE * misfit_of(plain, near.known.name))
     return nearby
 
@@ -695,7 +714,7 @@ def _readings_of_formula(
             ending_of(known.name) == ending
             and fits_quantity(named, known, is_matrix(value))
             and fits_context(claim.context, named, replace(known, name=known.name.removesuffix(ending)), letters)
-            and not has_diameter(known)
+            and not has_other_length(known.name, known.mapping.items())
         )
 
     is_named = words_of(named) is not None

@@ -11,8 +11,13 @@ _NUMBER = re.compile(
 )
 """The number of an equation at the end of a line: ``(1.23)``, or ``(12)`` after a wide blank or a comma."""
 
-_REMARK = re.compile(r"\s\((?!alpha|beta|gamma|delta|theta|omega)[A-Za-z]{4,}(?:[ '-][A-Za-z]+)*\)[ \t.]*(?=\n|$)")
+_REMARK = re.compile(
+    r"\s\((?!(?i:d?(?:alpha|beta|gamma|delta|epsilon|theta|kappa|lambda|sigma|omega|phi|psi|rho|tau)))"
+    r"[A-Za-z]{4,}(?:[ '-][A-Za-z]+)*\)[ \t.]*(?=\n|$)"
+)
 """Words in brackets at the end of a line, as ``(Steiner)``."""
+
+_OPERATORS = tuple("+-−*·⋅×/^=<>≤≥(")
 
 _WHERE = re.compile(r"[,;.]?\s*\b(?:where|wherein|in which|with)\b:?")
 _CLAUSE = re.compile(r"[^,;\n]+?(?=\s\band\b|[,;\n]|$)|\s\band\b")
@@ -51,12 +56,11 @@ def without_surroundings(source: str, numbers: bool = True) -> Copied:
     >>> without_surroundings("x = 2 (1.5)", numbers=False).text
     'x = 2 (1.5)'
     """
-    notes: list[str] = []
-    labels = [match[0].strip(" \t.") for match in _NUMBER.finditer(source)] if numbers else []
-    text = _NUMBER.sub(_blank, source) if numbers else source
-    notes += [f"{number} is read as the number of the equation" for number in labels]
-    notes += [f"{match[0].strip()!r} is not read" for match in _REMARK.finditer(text)]
-    text = _REMARK.sub(_blank, text)
+    labels, text = _without(_NUMBER, source) if numbers else ([], source)
+    labels = [label.strip(" \t.") for label in labels]
+    notes = [f"{number} is read as the number of the equation" for number in labels]
+    remarks, text = _without(_REMARK, text)
+    notes += [f"{remark.strip()!r} is not read" for remark in remarks]
     where = -1
     if (match := _WHERE.search(text)) and "=" in text[: match.start()]:
         where = match.start()
@@ -70,8 +74,17 @@ def without_surroundings(source: str, numbers: bool = True) -> Copied:
     return Copied(text, where, tuple(labels), tuple(notes))
 
 
-def _blank(match: re.Match[str]) -> str:
-    return " " * len(match[0])
+def _without(pattern: re.Pattern[str], text: str) -> tuple[list[str], str]:
+    """Return what a pattern matches in a text, and the text with blanks there; brackets after an operator stay."""
+    removed: list[str] = []
+
+    def blank(match: re.Match[str]) -> str:
+        if text[: match.start()].rstrip()[-1:] in _OPERATORS:
+            return match[0]
+        removed.append(match[0])
+        return " " * len(match[0])
+
+    return removed, pattern.sub(blank, text)
 
 
 def _clauses(text: str) -> tuple[str, list[str]]:

@@ -6,9 +6,9 @@ The statements are those of the C text, in the same order, so that both compute 
 from keyword import kwlist
 
 from symrot.codegen.printing.banner import Description, banner
-from symrot.codegen.printing.kernel_functions import called, own_function
+from symrot.codegen.printing.kernel_functions import called, own_function, unpacked
 from symrot.codegen.printing.safe_names import with_safe_names
-from symrot.formula.program import Argument, Program
+from symrot.formula.program import Program
 from symrot.formula.tree import FUNCTIONS, Node, names, rename, text
 from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
 
@@ -67,10 +67,6 @@ def _own_function(name: str) -> list[str]:
     ]  # fmt: skip
 
 
-def _unpacked(argument: Argument, used: set[str]) -> list[str]:
-    return [f"    {name} = {argument.name}[{i}]" for i, (name, *_) in enumerate(argument.components) if name in used]
-
-
 def jax_source(program: Program, description: Description) -> str:
     """Return the text of a Python module with one JAX function, which returns an array for each output argument."""
     # the same program gives the same bytes
@@ -84,7 +80,7 @@ def jax_source(program: Program, description: Description) -> str:
     lines += [*(["import jax"] if SLOPES.keys() & set(needed) else []), "import jax.numpy as jnp"]
     lines += [line for name in needed for line in _own_function(name)]
     lines += ["", "", f"def {program.signature.name}({', '.join(a.name for a in inputs)}):"]
-    lines += [line for argument in inputs if not argument.is_scalar for line in _unpacked(argument, used)]
+    lines += [unpacked(argument, used) for argument in inputs if not argument.is_scalar]
     lines += [f"    {name} = {_expression(node)}" for name, node in program.temporaries]
     for argument in outputs:
         lines.append(f"    {argument.name} = jnp.stack([")

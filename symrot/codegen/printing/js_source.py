@@ -66,7 +66,14 @@ def _unpacked(argument: Argument, used: set[str]) -> list[str]:
     ]
 
 
-def js_function(program: Program, qualifier: str = "") -> list[str]:
+def _length_check(argument: Argument) -> str:
+    # by index, JavaScript would ignore the last number of a quaternion that is passed for an angular velocity
+    name, expected = argument.name, f"{argument.size} number{'s' * (argument.size > 1)}"
+    refusal = f"throw new RangeError(`{name}: expected {expected}, got ${{{name}.length}}`);"
+    return f"    if ({name}.length !== {argument.size}) {refusal}"
+
+
+def js_function(program: Program, qualifier: str = "", checked: bool = False) -> list[str]:
     """Return the lines of a JavaScript function that writes the outputs into arrays, as the C function does.
 
     Parameters
@@ -75,13 +82,18 @@ def js_function(program: Program, qualifier: str = "") -> list[str]:
         The program to print. Its outputs must not overlap its inputs.
     qualifier : str
         Text in front of the definition, such as ``"export "``.
+    checked : bool
+        Whether the function throws a RangeError if an input array has another length than the kernel's argument.
     """
     program = with_safe_names(program, RESERVED)
     arguments = [a for a in program.signature.arguments if a.size]
     used = set().union(*(names(node) for _, node in program.temporaries + program.outputs))
     results = dict(program.outputs)
     lines = [f"{qualifier}function {program.signature.name}({', '.join(a.name for a in arguments)}) {{"]
-    lines += [line for a in arguments if a.role == "in" for line in _unpacked(a, used)]
+    inputs = [a for a in arguments if a.role == "in"]
+    if checked:
+        lines += [_length_check(a) for a in inputs if not a.is_scalar]
+    lines += [line for a in inputs for line in _unpacked(a, used)]
     lines += [f"    const {name} = {js_expression(node)};" for name, node in program.temporaries]
     lines += [
         f"    {a.name}[{i}] = {js_expression(results[name])};"
@@ -107,4 +119,4 @@ def js_source(program: Program, description: Description) -> str:
     """Return the text of a JavaScript module that exports one function, which writes the outputs into arrays."""
     # the same program gives the same bytes
     head = banner(program, description, "/*", " *", " */")
-    return "\n".join([*head, "", *js_functions(program), *js_function(program, "export ")]) + "\n"
+    return "\n".join([*head, "", *js_functions(program), *js_function(program, "export ", checked=True)]) + "\n"

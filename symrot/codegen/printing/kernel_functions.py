@@ -1,16 +1,16 @@
-"""Formulas of functions, such as sinc, that kernels call and <math.h> does not contain.
+"""Text that the languages share: functions, such as sinc, that <math.h> does not contain, and arguments in Python.
 
 See :mod:`symrot.kernels.removable`.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from fractions import Fraction
 
-from symrot.formula.program import Program
+from symrot.formula.program import Argument, Program
 from symrot.formula.tree import Node, children, parse
 from symrot.kernels.removable import FUNCTIONS, REMOVABLE, Removable
 
-__all__ = ["NEAR", "called", "has_branch_free_calls", "own_function", "series", "turning_arguments"]
+__all__ = ["NEAR", "called", "has_branch_free_calls", "own_function", "series", "turning_arguments", "unpacked"]
 
 TURNING = ("sinc", *REMOVABLE)  # functions of symrot that call sine or cosine of their argument
 NEAR = (*TURNING, "arc_ratio")  # functions of symrot that have a form without branches, for batches
@@ -83,3 +83,13 @@ def _removable(which: Removable, precision: str) -> tuple[tuple[str, ...], list[
     choice = ("<", ("symbol", "t"), ("number", which.split), ("symbol", "taylor"), direct)
     # a Taylor series near zero, its length determined by the precision; elsewhere a quotient
     return ("x",), [square, taylor], choice
+
+
+def unpacked(argument: Argument, used: Collection[str]) -> str:
+    """Return the Python statement, such as ``_, theta, psi = angles``, that names the ``used`` components.
+
+    Python then raises ValueError for an array of another length, such as samples along the first axis; by index, NumPy
+    would ignore further components, and JAX would take the last one for those that are missing.
+    """
+    components = [name if name in used else "_" for name, *_ in argument.components]
+    return f"    {', '.join(components) if len(components) > 1 else f'({components[0]},)'} = {argument.name}"

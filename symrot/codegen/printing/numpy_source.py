@@ -3,8 +3,8 @@
 from fractions import Fraction
 
 from symrot.codegen.printing.banner import Description, banner
-from symrot.codegen.printing.kernel_functions import called, own_function
-from symrot.formula.program import Argument, Program
+from symrot.codegen.printing.kernel_functions import called, own_function, unpacked
+from symrot.formula.program import Program
 from symrot.formula.tree import FUNCTIONS as KNOWN
 from symrot.formula.tree import Node, names, rename, text
 from symrot.kernels.removable import FUNCTIONS as OWN_FUNCTIONS
@@ -41,10 +41,6 @@ def _own_function(name: str) -> list[str]:
     ]  # fmt: skip
 
 
-def _unpacked(argument: Argument, used: set[str]) -> list[str]:
-    return [f"    {name} = {argument.name}[{i}]" for i, (name, *_) in enumerate(argument.components) if name in used]
-
-
 def numpy_source(program: Program, description: Description) -> str:
     """Return the text of a Python module with one NumPy function, which computes a kernel for one or n samples."""
     inputs = [a for a in program.signature.arguments if a.role == "in" and a.size]
@@ -57,7 +53,7 @@ def numpy_source(program: Program, description: Description) -> str:
     lines += ["", "import numpy as np"]
     lines += [line for name in called(program) for line in _own_function(name)]
     lines += ["", "", f"def {program.signature.name}({', '.join(a.name for a in inputs)}):"]
-    lines += [line for argument in inputs if not argument.is_scalar for line in _unpacked(argument, used)]
+    lines += [unpacked(argument, used) for argument in inputs if not argument.is_scalar]
     lines += [f"    {name} = {_expression(node)}" for name, node in program.temporaries]
     for argument in outputs:
         lines.append(f"    {argument.name} = np.empty(({argument.size}, *np.shape({shape})[1:]))")

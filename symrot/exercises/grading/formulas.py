@@ -116,7 +116,7 @@ def _sides(answer: str, question: Question) -> tuple[str, str]:
     """
     text = answer.strip().strip("$").strip()
     *names, formula = re.split(r"==?|:=", text)
-    if len(names) > 1 or not formula.strip():
+    if len(names) > 1 or not formula.strip() or "\n" in formula:
         raise InputError(f"expected one formula for ${question.name}$ with at most one '=', got {answer[:60]!r}")
     if "\\" in formula:
         return formula, question.latex
@@ -128,7 +128,8 @@ def _sides(answer: str, question: Question) -> tuple[str, str]:
     if unknown:
         letters = ", ".join(name for name in question.symbols if name in _NAME.findall(question.answer))
         raise InputError(f"expected a formula in {letters}, got a formula that contains {', '.join(unknown)}")
-    return f"1*({plain})" if re.fullmatch(r"\s*\w+\s*", plain) else plain, question.answer
+    # in brackets, the checker reads no factor at the end, as in 2 (1.5), as the number of an equation or a remark
+    return f"1*({plain})" if re.fullmatch(r"\s*\w+\s*", plain) else f"({plain})", question.answer
 
 
 def _plain(text: str) -> str:
@@ -138,6 +139,7 @@ def _plain(text: str) -> str:
     functions as ``acos`` (for ``arccos``).
     """
     text = re.sub(r"\barc(sin|cos|tan)", r"a\1", text)
+    text = re.sub(r"\bAbs\b", "abs", text)
     for letter, name in GREEK.items():
         text = text.replace(f"{letter}\u0307", f" d{name}")
         text = re.sub(rf"\b{name}_?dot\b", f"d{name}", text)

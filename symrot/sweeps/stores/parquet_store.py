@@ -15,7 +15,6 @@ from symrot.errors import InputError
 from symrot.files.writing import write
 from symrot.sweeps.chunk import Chunk
 from symrot.sweeps.layout import (
-    COMPONENT,
     MESSAGE,
     STATUS,
     TIME,
@@ -24,6 +23,7 @@ from symrot.sweeps.layout import (
     Table,
     arrays_of,
     difference,
+    frame_labels,
     messages_of,
 )
 from symrot.sweeps.optional import optional
@@ -95,7 +95,7 @@ class ParquetStore:
             if variable.dimensions == (TIME,):
                 columns[variable.name] = values.ravel()
             elif variable.dimensions:
-                parts = zip(_parts(variable.name), values.T, strict=True)
+                parts = zip(variable.columns, values.T, strict=True)
                 columns |= {name: np.repeat(part, repeats) for name, part in parts}
             else:
                 columns[variable.name] = np.repeat(values, repeats)
@@ -107,18 +107,7 @@ class ParquetStore:
 
     def _metadata(self) -> dict[str, str]:
         """Return unit, meaning and frame of all columns as JSON text for a file; pandas shows them as ``attrs``."""
-        by_column = {
-            name: variable
-            for variable in self.header.variables
-            for name in ([variable.name] if variable.dimensions in ((), (TIME,)) else _parts(variable.name))
-        }
-        labels = {
-            "units": {"t": "s"} | {name: variable.unit for name, variable in by_column.items()},
-            "frames": {name: variable.frame for name, variable in by_column.items()},
-            "meanings": {name: variable.meaning for name, variable in by_column.items()},
-            "scene": self.header.scene,
-        }
-        return {"PANDAS_ATTRS": json.dumps(labels)}
+        return {"PANDAS_ATTRS": json.dumps(frame_labels(self.header))}
 
     def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
         """Return the values of the array ``name`` for the trajectories ``start`` to ``stop - 1``."""
@@ -163,14 +152,9 @@ class ParquetStore:
             )
 
     def dataset(self) -> Any:
-        """Return the results as a pandas DataFrame."""
+        """Return the results as a pandas DataFrame, with the index (trajectory, t), or trajectory."""
         pandas = optional("pandas", "to_dataframe")
-        return pandas.read_parquet(os.fspath(self.path))
-
-
-def _parts(name: str) -> list[str]:
-    """Return the names of the four columns for the components of the quaternion ``name``."""
-    return [f"{name.rpartition('_')[0]}_{part}" for part in COMPONENT[1]]
+        return pandas.read_parquet(os.fspath(self.path)).set_index([TRAJECTORY, "t"] if self._long else [TRAJECTORY])
 
 
 def _rows(table: Table, times: NDArray[np.float64]) -> list[dict[str, Any]]:

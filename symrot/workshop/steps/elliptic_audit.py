@@ -10,6 +10,7 @@ from symrot.certificates.audit import LARGEST
 from symrot.certificates.certificate import Data, certificate_json
 from symrot.certificates.exact_law import DIGITS, STATES
 from symrot.certificates.step_certificate import with_bounds
+from symrot.codegen.steady_rotations import STATES as STATE_NAMES
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
 from symrot.scene.file import shipped_names
@@ -75,6 +76,8 @@ def _box(path: Path, data: Data) -> dict[str, tuple[Fraction, Fraction]]:
     try:
         box = data["bounds"]["box"]
         ends = {name: (float.fromhex(low), float.fromhex(high)) for name, (low, high) in box.items()}
+        if not all(low <= high for low, high in ends.values()):
+            raise ValueError("a range whose smaller value is not first")
         return {name: (Fraction(low), Fraction(high)) for name, (low, high) in ends.items()}
     except (AttributeError, KeyError, OverflowError, TypeError, ValueError) as reason:
         raise CertificateError(
@@ -85,23 +88,27 @@ def _box(path: Path, data: Data) -> dict[str, tuple[Fraction, Fraction]]:
 def _bounds(path: Path, step: ExactStepText, data: Data) -> Data:
     """Return the section ``bounds`` of a certificate if its numbers are bounds; raise CertificateError if not."""
     box = _box(path, data)
+    stated = {kind: _numbers(path, data["bounds"], kind) for kind in ("rounding", "truncation")}
     try:
         own = step.bounds(box)
     except InputError as reason:
         raise CertificateError(f"{path}: {reason}") from None
-    stated = data["bounds"]
-    for kind in ("rounding", "truncation"):
+    for kind, numbers in stated.items():
         for name, value in own[kind].items():
-            try:
-                bound = float.fromhex(stated[kind][name])
-            except (KeyError, TypeError, ValueError, OverflowError) as reason:
-                raise CertificateError(
-                    f"{path}: expected {kind!r} in 'bounds' as symrot prints it, got a fault ({reason})"
-                ) from None
             # the last digits depend on the functions of the machine
-            if not float.fromhex(value) / NEAR <= bound <= float.fromhex(value) * NEAR:
+            if not float.fromhex(value) / NEAR <= numbers[name] <= float.fromhex(value) * NEAR:
                 raise CertificateError(f"{path}: expected the bounds that symrot computes on the box, got others")
-    return {key: stated[key] if key in ("rounding", "truncation") else own[key] for key in own}
+    return own | {kind: {name: x.hex() for name, x in numbers.items()} for kind, numbers in stated.items()}
+
+
+def _numbers(path: Path, bounds: Data, kind: str) -> dict[str, float]:
+    """Return the bound of each state that the part ``kind`` of the section ``bounds`` of a certificate states."""
+    try:
+        return {name: float.fromhex(bounds[kind][name]) for name in STATE_NAMES}
+    except (KeyError, TypeError, ValueError, OverflowError) as reason:
+        raise CertificateError(
+            f"{path}: expected {kind!r} in 'bounds' as symrot prints it, got a fault ({reason})"
+        ) from None
 
 
 def _same(path: Path, own: Data, data: Data) -> None:

@@ -36,8 +36,8 @@ BOXED = ("omega_1", "omega_2", "omega_3", "dt")
 METHOD = "closed form of the motion, elliptic functions"
 MEANING = (
     "for each state after one step on the box: |computed - exact motion| <= rounding + truncation, from the same "
-    "floating-point start, size and parameters; the exact motion starts with the quaternion divided by its norm, and "
-    f"components of omega are 0 or at least {TINY:g} of the largest on the box"
+    "floating-point start, size and parameters, for the function of doubles; the exact motion starts with the "
+    f"quaternion divided by its norm, and components of omega are 0 or at least {TINY:g} of the largest on the box"
 )
 SHARES = (Fraction(1, 16), Fraction(-3, 2), Fraction(5))  # sizes of the test vectors, in units of 1/|omega|
 Motions = Callable[[Sequence[Fraction], Sequence[Fraction]], Any]

@@ -4,6 +4,7 @@ import pytest
 
 from symrot.checker.claim.reader import readings_of
 from symrot.checker.claim.tree import text
+from symrot.checker.typed.copied_text import without_surroundings
 from symrot.checker.typed.tokens import tokens_of
 
 COPIED = (
@@ -32,3 +33,11 @@ def test_a_lost_raised_digit_has_two_readings():
 def test_every_place_of_a_token_is_a_place_of_the_text():
     source = "˙φ = I′ᵢₖ + ‖q‖ ± x"
     assert all(0 <= token.start <= token.end <= len(source) for token in tokens_of(source))
+
+
+@pytest.mark.parametrize(("source", "rest"), [
+    ("x = y  (2.1)", "x = y"), ("x = y + (2.1)", "x = y + (2.1)"), ("x = y (Steiner)", "x = y"), ("x = (y) + (dist)", "x = (y) + (dist)"),
+    ("x = y (dpsi)", "x = y (dpsi)"), ("x = (Omega)", "x = (Omega)"), ("x = y - (1.5)", "x = y - (1.5)"), ("x = y * (velocity)", "x = y * (velocity)"),
+])  # fmt: skip
+def test_brackets_after_an_operator_are_a_part_of_the_formula(source, rest):
+    assert without_surroundings(source).text.rstrip() == rest

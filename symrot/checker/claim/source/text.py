@@ -20,6 +20,7 @@ from symrot.checker.arrays.matrices import (
 from symrot.checker.arrays.matrices_of_vectors import with_matrices_of_vectors
 from symrot.checker.arrays.pauli import with_pauli_matrices
 from symrot.checker.arrays.quaternions import Quaternions, used_quaternions
+from symrot.checker.arrays.rotated_vectors import as_matrix_of_map
 from symrot.checker.claim.claims import Claim, assumed_names
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
 from symrot.checker.claim.quantities import (
@@ -123,6 +124,15 @@ def claim_of_relation(
     vectors = [*vectors, *map(Vector, arrays.vectors)]
     vectors = [vector for vector in vectors if vector.name not in dict(define)]
     relation, vectors, with_units = _with_vectors(relation, vectors, define)
+    own = {name for name, _ in define} - {*bold}
+    linear, on_map = as_matrix_of_map(relation, {vector.name for vector in vectors}, own)
+    if on_map:
+        solved = {side.value for side in linear[1:]} - {side.value for side in relation[1:]}
+        define = [(name, tree) for name, tree in define if name not in solved]
+        notes = [*(note for note in notes if note not in map(_on_matrix, solved)), on_map]
+        relation = linear
+        used = {node.value for side in relation[1:] for _, node in walk(side)}
+        vectors = [vector for vector in vectors if vector.name in used]
     relation, lengths = with_lengths(relation, _shapes(vectors, define))
     notes = [*notes, *(f"{name} means the length of the vector where a vector makes no sense" for name in lengths)]
     moving = {str(node.value) for v in vectors if v.timed for _, node in walk(v.components) if node.args == (TIME,)}

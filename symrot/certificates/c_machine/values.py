@@ -1,0 +1,89 @@
+"""Types and compiled expressions of the C that the machine runs.
+
+A variable is a place ``(container, index)``, where the container is a list: an array, the fields of a structure, or the
+variables of a function. A pointer is such a place.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+__all__ = [
+    "INT",
+    "REAL",
+    "VOID",
+    "Frame",
+    "Function",
+    "Place",
+    "Return",
+    "Run",
+    "Struct",
+    "Type",
+    "Value",
+    "called",
+    "copied",
+    "pointer",
+]
+
+Frame = list[Any]
+Run = Callable[[Frame], Any]
+Place = tuple[list[Any], int]
+
+
+class Type(NamedTuple):
+    """A type of C."""
+
+    kind: str  # "int", "real", "void", "struct", "array" or "pointer"
+    of: Any = None  # the structure's name, or the type of the elements
+    size: int = 0  # of an array
+
+
+INT, REAL, VOID = Type("int"), Type("real"), Type("void")
+
+
+def pointer(kind: Type) -> Type:
+    """Return the type as which an argument is passed: an array as a pointer to its elements."""
+    return Type("pointer", kind.of) if kind.kind == "array" else kind
+
+
+class Struct(NamedTuple):
+    """A structure: the names and the types of its members."""
+
+    names: list[str]
+    types: list[Type]
+
+
+class Function(NamedTuple):
+    """A function: its declaration, and its body once that is compiled."""
+
+    result: Type
+    parameters: list[Type]
+    body: list[Run]  # one element once the body is compiled
+    slots: list[int]  # number of variables
+
+
+class Value(NamedTuple):
+    """A compiled expression: its type, its value, and its place if it has one."""
+
+    type: Type
+    run: Run
+    place: Run | None = None
+
+
+class Return(Exception):
+    """Jump out of a function; its argument is the result."""
+
+
+def called(function: Function, arguments: Sequence[Any]) -> Any:
+    """Return the result of a compiled function for numbers, integers and pointers."""
+    frame: Frame = [None] * function.slots[0]
+    frame[: len(arguments)] = arguments
+    try:
+        function.body[0](frame)
+    except Return as result:
+        return result.args[0]
+    return None
+
+
+def copied(value: Any) -> Any:
+    """Return a copy of a structure or array, with copies of those within; a number itself."""
+    return [copied(each) for each in value] if isinstance(value, list) else value

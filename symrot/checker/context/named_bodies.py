@@ -1,0 +1,96 @@
+"""Names of moments of inertia that say for which body or point they are, as ``I_rod`` and ``I_end`` do."""
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.named_formula import NamedFormula
+from symrot.checker.claim.tree import Node, number, product
+from symrot.checker.context.admission import admits_name
+from symrot.checker.context.bodies import BODIES
+from symrot.checker.context.context import Context, read_context
+from symrot.checker.verdict import Verdict
+
+__all__ = ["of_named_body"]
+
+Judge = Callable[[Claim, NamedFormula], Verdict]
+
+ROD, END = "thin rod", "an end"
+
+BODIES_OF_WORD = {
+    **dict.fromkeys(("rod", "stick", "bar"), (ROD, "rod")), "sphere": ("sphere", "spher"), "ball": ("sphere", "spher"),
+    **dict.fromkeys(("disk", "disc"), ("disk", "disk")), **dict.fromkeys(("ring", "hoop"), ("ring", "ring")),
+    **dict.fromkeys(("box", "cube"), ("box", "box")), "shell": ("spherical shell", "shell"),
+    **{name: (name, name) for name in ("cylinder", "cone", "plate", "ellipsoid", "torus")},
+}  # fmt: skip
+"""A word in a name -> the body that it means, and a part of the names of formulas that it may mean."""
+
+PLACE_OF_WORD = {
+    "end": END, **dict.fromkeys(("centre", "center", "cm", "com", "CM", "G"), "the centre of mass"),
+    "tip": "the tip", "apex": "the tip", "rim": "a point of the rim",
+}  # fmt: skip
+"""A word in a name -> the point through which the axis goes."""
+
+HALVES = ("a", "l")
+"""Letters that some books use for half the length of a rod."""
+
+
+def of_named_body(claim: Claim, named: NamedFormula, verdict: Verdict, judge: Judge) -> Verdict:
+    """Return the verdict on a claim about ``I_rod``, ``I_end`` and the like, for which only a formula of this body and
+    point is right; ``verdict`` on other claims.
+
+    ``judge`` returns the verdict on a claim in its context.
+    """
+    match = re.fullmatch(r"[IJ]_(\w+)", named.name)
+    words = match[1].split("_") if match else []
+    body, part = next((BODIES_OF_WORD[word] for word in words if word in BODIES_OF_WORD), ("", ""))
+    place = next((PLACE_OF_WORD[word] for word in words if word in PLACE_OF_WORD), "")
+    if not (body or place) or verdict.verdict in ("true", "false", "doubtful"):
+        return verdict
+    stated = read_context([f"{named.name} = moment of inertia" + f" about {place}" * bool(place)])
+    fitting = tuple(
+        known for known in verdict.recognised_as if part in known.name and admits_name(stated, known.name, named.name)
+    )
+    if fitting:
+        return replace(verdict, recognised_as=fitting)
+    body = body or (ROD if place == END else _body_of(verdict))
+    if body and not claim.context:
+        return _judged(claim, named, verdict, replace(stated, body=read_context(body=body).body), judge)
+    return verdict if not verdict.recognised_as else _not_of_name(named, verdict)
+
+
+def _body_of(verdict: Verdict) -> str:
+    """Return the body of the formula that a claim is recognised as, such as "thin rod"; empty if there is none."""
+    name = f"{verdict.recognised_as[0].name} " if verdict.recognised_as else ""
+    return next((kind.title for kind in BODIES if kind.shape and f" of {kind.formulas[0]} " in name), "")
+
+
+def _judged(claim: Claim, named: NamedFormula, verdict: Verdict, stated: Context, judge: Judge) -> Verdict:
+    """Return the verdict "recognised" or "doubtful" on a claim in the context that its quantity's name states."""
+    other = judge(replace(claim, context=stated), named)
+    if other.verdict in ("true", "recognised"):
+        return replace(other, verdict="recognised")
+    for letter in HALVES if stated.body is not None and stated.body.kind.title == ROD else ():
+        formula = _halved(named.formula, letter)
+        halved = claim.with_relation(("==", named.side, formula), alternatives=())
+        half = judge(replace(halved, context=stated), named._replace(formula=formula))
+        if formula != named.formula and half.verdict in ("true", "recognised"):
+            note = f"guessed, not stated: {letter} is half the length"
+            return Verdict("recognised", recognised_as=half.recognised_as, notes=(*half.notes, note))
+    if other.verdict in ("false", "doubtful") and other.repairs:
+        return replace(other, verdict="doubtful", counterexample=None)
+    return verdict if not verdict.recognised_as else _not_of_name(named, verdict)
+
+
+def _not_of_name(named: NamedFormula, verdict: Verdict) -> Verdict:
+    """Return "definition" for a claim with the formula of another body or point than its quantity's name says."""
+    reason = f"the name {named.name} says something else, and the formula is the {verdict.recognised_as[0].name}"
+    return replace(verdict, verdict="definition", recognised_as=(), reason=reason)
+
+
+def _halved(tree: Node, letter: str) -> Node:
+    if tree == Node("name", letter):
+        return product([number(Fraction(1, 2)), tree])
+    return replace(tree, args=tuple(_halved(child, letter) for child in tree.args))

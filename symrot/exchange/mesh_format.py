@@ -1,0 +1,88 @@
+"""Parts of mesh files that trimesh would lose in silence: files with such parts are refused before they are read."""
+
+import json
+import re
+from collections import Counter
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from symrot.errors import InputError
+from symrot.formula.exact_numbers import show
+
+__all__ = ["TRIANGLES_IN"]
+
+_HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_mesh_quantization")
+"""Starts of the names of extensions of GLB files that change no shape."""
+_STRIP, _FAN = 5, 6  # modes of primitives in GLB files; 4 are triangles, less are points and lines
+_OTHER_SHAPES = {"surf": "a free-form surface", "call": "a reference to another file", "fo": "a polygon in an old form"}
+_EARLY_END = "expected a mesh in the format STL, got a file of another format or one that ends early"
+
+
+def _stl(content: bytes) -> int:
+    """Return the number of triangles that an STL file has."""
+    count = int.from_bytes(content[80:84], "little")
+    if len(content) == 84 + 50 * count:
+        return count
+    text = content.lower()
+    last = text[-1000:].splitlines() or [b""]
+    if not next((line.strip() for line in reversed(last) if line.strip()), b"").startswith(b"endsolid"):
+        raise InputError(_EARLY_END)
+    return text.count(b"endfacet")
+
+
+def _obj(content: bytes) -> int:
+    """Return the number of triangles into which the polygons of an OBJ file are divided."""
+    count, form = 0, 0
+    for number, line in enumerate(content.decode("latin-1").replace("\\\n", " ").splitlines(), 1):
+        key, *words = line.partition("#")[0].split() or [""]
+        if key in _OTHER_SHAPES:
+            raise InputError(f"expected a mesh of polygons, got {_OTHER_SHAPES[key]} in line {number}, {show(key)}")
+        if key == "v":
+            # trimesh divides the numbers of all lines evenly
+            if len(words) < 3 or len(words) != (form or len(words)):
+                raise InputError(f"expected lines of vertices with equally many numbers, 3 or more, got line {number}")
+            form = len(words)
+        count += max(0, len(words) - 2) * (key == "f")
+    return count
+
+
+def _ply(content: bytes) -> None:
+    """Raise InputError for a PLY file in text form with corners that are no whole numbers, which trimesh rounds."""
+    header, _, numbers = content.partition(b"end_header")
+    faces = re.search(rb"element face (\d+)\s+property list \w+ \w+ \w+\s*$", header)
+    if b"format ascii" in header and faces:
+        rows = numbers.rstrip().splitlines()[-int(faces[1]) :]
+        if not re.fullmatch(rb"[\d\s]*", b"\n".join(rows)):
+            raise InputError("expected whole numbers as corners of polygons in a PLY file")
+
+
+def _glb(content: bytes) -> None:
+    """Raise InputError for a GLB file whose shape depends on what trimesh does not read."""
+    document = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")])
+    nodes, meshes, scenes = (document.get(key, []) for key in ("nodes", "meshes", "scenes"))
+    primitives = [primitive for mesh in meshes for primitive in mesh["primitives"]]
+    used = [index for each in primitives for index in (each["attributes"]["POSITION"], each.get("indices", -1))]
+    accessors = [document["accessors"][index] for index in used if index >= 0]
+    parents = Counter(child for node in (*nodes, *scenes) for child in node.get("children", node.get("nodes", [])))
+    required = [name for name in document.get("extensionsRequired", []) if not str(name).startswith(_HARMLESS)]
+    faults = [f"the required extension {show(name)}" for name in required]
+    faults += ["no default scene"] * ("scene" not in document and len(scenes) != 1)
+    faults += ["a node in two places"] * (len(scenes) == 1 and any(count > 1 for count in parents.values()))
+    faults += [fault for node in nodes for fault in _faults_of_node(node)]
+    faults += ["morph targets"] * any(any(owner.get("weights") or ()) for owner in (*nodes, *meshes))
+    faults += ["strips or fans of triangles"] * any(each.get("mode", 4) in (_STRIP, _FAN) for each in primitives)
+    faults += ["sparse or normalized numbers"] * any("sparse" in a or a.get("normalized") for a in accessors)
+    if faults:
+        raise InputError(f"expected a GLB file of plain triangles, got {faults[0]}; save the shape as triangles alone")
+
+
+def _faults_of_node(node: Mapping[str, Any]) -> list[str]:
+    faults = ["instances by an extension"] * ("EXT_mesh_gpu_instancing" in node.get("extensions", {}))
+    return faults + ["a skin"] * ("skin" in node) + ["a rotation of zero"] * (not any(node.get("rotation", (1,))))
+
+
+TRIANGLES_IN: Mapping[str, Callable[[bytes], int | None]] = {".stl": _stl, ".obj": _obj, ".ply": _ply, ".glb": _glb}
+"""Suffix -> function that returns how many triangles the content of a file has, or None if trimesh counts them itself.
+
+It raises InputError for parts that trimesh would lose.
+"""
