@@ -15,7 +15,7 @@ import numpy as np
 
 from symrot.bench.comparison.race import Measured, race, seconds_of
 from symrot.errors import InputError
-from symrot.propagation.motion import ClosedFormMotion, SteppedMotion
+from symrot.propagation.motions.methods import ClosedFormMotion, SteppedMotion
 from symrot.propagation.propagate import propagator
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.steppers.stepping import DONE, Segment

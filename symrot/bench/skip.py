@@ -22,7 +22,7 @@ from symrot.errors import InputError
 from symrot.planning.general_structure import general_structure
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.method import Choice
-from symrot.propagation.motion import stepped_motion
+from symrot.propagation.motions.make import stepped_motion
 from symrot.propagation.propagate import propagator
 from symrot.scene.file import read_toml
 from symrot.scene.scene import Scene, load_scene

@@ -215,6 +215,7 @@ def bounds_of_step(
     fresh : bool
         Whether to compute bounds of rounding errors even if the user's cache has them.
     """
+    _require_intended(rates)
     rounding = rounding_section(operations, None, box, budget=EVALUATIONS, fresh=fresh)
     symbols = _symbols_by_place(step_signature(rates, operations.name))
     used = {place for _, index in operations.outputs for place in output_graph(operations, index).places}
@@ -229,6 +230,23 @@ def bounds_of_step(
         "truncation": {name: value.hex() for name, value in errors.items()},
         "rounding": rounding,
     }
+
+
+def _require_intended(rates: Program) -> None:
+    """Raise InputError if a constant of the rates has a double that stands for another number, such as 1/3."""
+    # the C text has the double alone, whose rounding error is bounded as that of the number for which it stands
+    pending = [node for _, node in (*rates.temporaries, *rates.outputs)]
+    while pending:
+        node = pending.pop()
+        pending += [part for part in (node[2] if node[0] == "call" else node[1:]) if isinstance(part, tuple)]
+        own = _intended(node[1]) if node[0] == "number" else None
+        if own is not None and abs(own - node[1]) > DEFECT * abs(own):
+            meant = intended_value(Fraction(float(node[1])), "binary64")
+            number = f"{meant.fraction}*pi" if meant.times_pi else str(meant.fraction)
+            raise InputError(
+                f"{rates.signature.name}: expected constants with doubles of their own in a step with bounds, got "
+                f"{float(node[1])!r}, whose double is that of {number}; write {number} or fewer digits"
+            )
 
 
 def _with_intended_constants(rates: Program, method: Method) -> Method:

@@ -8,6 +8,7 @@ is the amount by which a method violates an order condition, because its coeffic
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from decimal import ROUND_DOWN, Context
 from fractions import Fraction
 from itertools import combinations_with_replacement
 from math import inf, nextafter, prod
@@ -35,6 +36,7 @@ HIGHEST = 10  # such a coefficient has a lower order
 MOST_TERMS = 4000  # of such a coefficient of a state; with more, intervals alone bound the error
 GROWTH = Fraction(1, 8)  # by which the box around a motion grows in each attempt, relative to its width
 ATTEMPTS = 24
+HALVINGS = 12  # of sizes that have no bound, for the advice which sizes have one
 DEFECT = Fraction(1, 10**25)  # of an order condition, for a method whose coefficients are rounded decimals
 
 Box = Mapping[str, tuple[Fraction, Fraction]]  # name of an input, such as "omega_1" or "dt" -> least and largest value
@@ -386,7 +388,7 @@ def truncation_bounds(rates: Program, method: Method, box: Box) -> dict[str, flo
     if inf in most:
         raise InputError(
             f"{rates.signature.name}: expected steps so short that their truncation errors have a bound on the whole "
-            f"box, got sizes dt up to {float(max(map(abs, box[SIZE]))):g} s; take smaller dt or a smaller box"
+            f"box, got sizes dt up to {float(max(map(abs, box[SIZE]))):g} s; take {problem.advice(box)}"
         )
     return dict(zip(states, most, strict=True))
 
@@ -528,6 +530,18 @@ class _Problem:
             return [_upper(error) for error in errors]
         except ZeroDivisionError:
             return [inf] * len(self.states)
+
+    def advice(self, box: Box) -> str:
+        """Return which steps to take if those of a box have no bounds: the first half, quarter .. of dt that has."""
+        size = max(map(abs, box[SIZE]))
+        for _ in range(HALVINGS):
+            size /= 2
+            short = Fraction(Context(prec=2, rounding=ROUND_DOWN).create_decimal_from_float(float(size)))
+            ends = (max(box[SIZE][0], -short), min(box[SIZE][1], short))
+            with _precision():
+                if ends[0] <= ends[1] and inf not in self.bounds(dict(box) | {SIZE: ends}):
+                    return f"dt up to {float(short):g} s, or a smaller box"
+        return "smaller dt or a smaller box"
 
     def _defective(self, values: Mapping[str, Any], size: Any) -> list[Any]:
         """Return, for each state, a bound of the error that the defects of the method cause."""

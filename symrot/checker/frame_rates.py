@@ -144,7 +144,10 @@ def verdict_on_rates(source: str) -> Verdict | None:
 
 
 def _with_operand(source: str) -> str:
-    """Return an equation between operators, ``(d/dt)_I = (d/dt)_B + ω ×``, applied to a vector A; others unchanged."""
+    """Return an equation with the sign × for an x, and applied to a vector A if it is one between operators,
+    ``(d/dt)_I = (d/dt)_B + ω ×``.
+    """
+    source = re.sub(r"(?<=[wωΩ]) x (?=\w\b)", " × ", source)
     if not re.search(r"\\times\s*$", source):
         return source
     return OPERATOR.sub(lambda match: match[0] + r" \mathbf{A}", source) + r" \mathbf{A}"

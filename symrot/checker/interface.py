@@ -13,6 +13,7 @@ from symrot.checker.claim_verdict import check_claim, check_readings, unfinished
 from symrot.checker.context.context import Context, read_context
 from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.equivalents.inertia_in_frames import without_brackets
+from symrot.checker.equivalents.rotations_by_angle import with_axis
 from symrot.checker.frame_rates import verdict_on_rates, without_marks
 from symrot.checker.text import verdict_on_readings, verdict_on_text
 from symrot.checker.time_limit import TimeUp
@@ -134,15 +135,16 @@ def _checked(
         if not assume and not stated and (of_frames := verdict_on_rates(typed)) is not None:
             return of_frames
         typed, of_mark = without_marks(typed)
-        left = with_plain_signs(without_brackets(typed))
+        with_axes, of_axis = with_axis(typed)
+        left = with_plain_signs(without_brackets(with_axes))
         if is_latex(left) and measured_text(left) is None:
             left = numbers_of_latex(left).lstrip() or left
         if is_latex(left) and measured_text(left) is None:
             verdict = _on_latex(left, assume, units, repair, stated)
         else:
             verdict = verdict_on_text(left, assume, units, repair, stated)
-        if of_mark:
-            verdict = replace(verdict, notes=(of_mark, *verdict.notes))
+        if of_mark or of_axis:
+            verdict = replace(verdict, notes=(*filter(None, (of_mark, of_axis)), *verdict.notes))
         if left == typed:
             return verdict
         return replace(verdict, text=typed.strip(), notes=(f"it is read as {left.strip()}", *verdict.notes))

@@ -5,8 +5,9 @@ from collections.abc import Callable, Sequence
 from difflib import SequenceMatcher
 from html import escape
 
-from symrot.checker.claim.reader import Relation, read_relation
+from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.tree import Node, text
+from symrot.checker.typed.readings import Relation
 from symrot.errors import InputError
 
 __all__ = ["carets", "changed_entry", "changed_spans", "html_with_marks", "latex_with_marks"]

@@ -14,7 +14,7 @@ from symrot.checker.arrays.matrices import as_rotations, matrices_of_entries
 from symrot.checker.claim.claims import Claim, relation_text
 from symrot.checker.claim.named_formula import named_formula
 from symrot.checker.claim.notation import Notation, TypedNotation, notation_of
-from symrot.checker.claim.reader import Declared, Reading, Relation, read_relation, readings_of
+from symrot.checker.claim.reader import read_relation, readings_of
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.source.lines import claims_of_reading
 from symrot.checker.claim.source.text import ON_PAULI, claim_of_relation, functions_of_time
@@ -28,6 +28,7 @@ from symrot.checker.open_equation import as_equation
 from symrot.checker.recognition.together import fit_together, misplaced
 from symrot.checker.rounding import with_rounding
 from symrot.checker.special_cases import for_complex_numbers, for_special_directions
+from symrot.checker.typed.readings import Declared, Reading, Relation
 from symrot.checker.units.conversion import (
     ONE_PER_SECOND,
     STANDARD_GRAVITY,
@@ -401,7 +402,7 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Ve
     repairs = tuple(
         repair if repair.code in AS_TYPED else _marked(repair, claim, notation)
         for repair in verdict.repairs
-        if not _is_odd(repair)
+        if not _is_odd(repair) and _keeps(repair, claim.written)
     )
     texts = [repair.text for repair in repairs]
     repairs = tuple(repair for place, repair in enumerate(repairs) if repair.text not in texts[:place])
@@ -490,7 +491,7 @@ def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
     """Return a repair in the notation of the claim, with the positions at which its text differs from the claim's."""
     if claim.relation is None:
         return replace(repair, text=notation.rewritten(repair.text))
-    texts: Sequence[str] = (relation_text(claim.relation), repair.text)
+    texts: Sequence[str] = [_as_typed(source, claim.written) for source in (relation_text(claim.relation), repair.text)]
     unchanged = [place for place in ("left", "right") if place not in repair.edited] if repair.edited else []
     if len(unchanged) == 1:
         texts = [_with_inverse(source, unchanged[0], claim.text) for source in texts]
@@ -499,6 +500,26 @@ def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
     before, after = map(notation.rewritten, texts)
     changed, text = changed_spans(before, after), after
     return replace(repair, text=text, changed=changed, entry=changed_entry(claim.relation, repair.text))
+
+
+def _as_typed(source: str, written: Sequence[tuple[Node, Node]]) -> str:
+    """Return the text of an equation with the short forms that the claim has for its formulas."""
+    relation = _relation_of(source) if written else None
+    if relation is None:
+        return source
+    sign, left, right = relation
+    return relation_text((sign, _exchanged(left, dict(written)), _exchanged(right, dict(written))))
+
+
+def _exchanged(tree: Node, trees: Mapping[Node, Node]) -> Node:
+    return trees.get(tree) or replace(tree, args=tuple(_exchanged(child, trees) for child in tree.args))
+
+
+def _keeps(repair: Repair, written: Sequence[tuple[Node, Node]]) -> bool:
+    """Return whether a repair leaves the formulas unchanged for which the claim has short forms."""
+    relation = _relation_of(repair.text) if written else None
+    nodes = [node for side in relation[1:] for _, node in walk(side)] if relation else []
+    return not nodes or all(formula in nodes for formula, _ in written)
 
 
 def _with_inverse(source: str, place: str, typed: str) -> str:
@@ -610,7 +631,8 @@ def _on_parts(
                 else "a definition for the other lines"
             )
             formulas = f": the {verdict.recognised_as[0]}" if verdict.recognised_as else ""
-            notes.append(f"{notation.relation(claim.relation)} is {words}{formulas}")
+            relation = _relation_of(_as_typed(relation_text(claim.relation), claim.written))
+            notes.append(f"{notation.relation(relation or claim.relation)} is {words}{formulas}")
             notes += [note for note in verdict.notes if note not in claim.notes]
             if not (defines and verdict.verdict in NAMING and total > 1):
                 counted.append(verdict)

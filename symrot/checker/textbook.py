@@ -10,13 +10,14 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.reader import Declared, read_expression, read_relation
+from symrot.checker.claim.reader import read_expression, read_relation
 from symrot.checker.claim.source.file import read_claims
 from symrot.checker.claim.tree import Node, is_derivative, product, sum_of, text, walk
 from symrot.checker.claim_verdict import check_readings
 from symrot.checker.decide.decision import decide_equation
 from symrot.checker.repair.derived_part import derived_part
 from symrot.checker.rounding import rounded_value
+from symrot.checker.typed.readings import Declared
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
 from symrot.textbook import Condition, Document, PrintedFormula, conditions, errata

@@ -80,7 +80,7 @@ def _audit(options: Namespace) -> int:
     try:
         audit = symrot.audit(
             *options.certificates, object_file=options.object, flags=options.flags, rerun_bounds=options.rerun_bounds,
-            coq=options.coq, progress=progress,
+            coq=options.coq, scene=options.scene, progress=progress,
         )  # fmt: skip
     except CertificateError as reason:
         progress("")
@@ -167,6 +167,9 @@ def _audit_arguments(parser: ArgumentParser) -> None:
         metavar="'CC FLAGS'",
         help="your compiler flags, such as 'gcc -O3 -mfma': print which statements of the certificate still hold with "
         "these flags",
+    )
+    parser.add_argument(
+        "--scene", metavar="SCENE", help="compare the equations and parameters of a kernel or step with this scene"
     )
     parser.add_argument("--rerun-bounds", action="store_true", help="compute the bounds of rounding errors again")
     parser.add_argument("--coq", action="store_true", help="let Coq check the theorem about the kernel")

@@ -30,7 +30,7 @@ def _inertia(options: Namespace) -> int:
             )
         return _print(mesh(path, **of_mesh, flip=options.flip), options)
     if of_mesh or options.flip:
-        raise InputError("inertia: --mass, --density, --scale and --flip are options for a mesh, got a robot file")
+        raise InputError(f"{path}: expected a mesh ({', '.join(SUFFIXES)}) for --mass, --density, --scale and --flip")
     if not name and not options.toml:
         every = robot.links(path)
         if len(every) > 1:

@@ -55,7 +55,8 @@ class Recorder:
         if kind == "*" and self.operations[operands[0]].kind == "number":
             both: Fraction = factor * self.operations[operands[0]].value
             if LEAST < abs(both) < LARGEST:
-                return Recorded(self, operands[1]) * both
+                product: Recorded = Recorded(self, operands[1]) * both
+                return product
         return self.add("*", self.index(factor), index)
 
     def function(self, name: str) -> Callable[..., "Recorded"]:

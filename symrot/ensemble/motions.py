@@ -28,7 +28,7 @@ from symrot.propagation.compiled_models import (
     taylor_library,
 )
 from symrot.propagation.method import METHODS, choose_method
-from symrot.propagation.motion import python_rates
+from symrot.propagation.motions.setup import python_rates
 from symrot.propagation.steppers import dop853, taylor
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.smoothness import non_smooth_torque

@@ -18,7 +18,7 @@ from symrot.formula.tree import Node, evaluate, names
 from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import EPOCH, Parameters
 from symrot.propagation.binding import folded, value_of
-from symrot.propagation.sensitivities.variables import STEP, slopes, without_jumps
+from symrot.propagation.sensitivities.variables import STEP, slopes
 from symrot.propagation.steppers.stepping import Floats
 
 __all__ = ["Numbers"]
@@ -148,7 +148,7 @@ def _slope(
 
     ``A*B`` with A = 2, B = 3 and ``moved = {"A": 1}`` gives 3.
     """
-    node, constants = without_jumps(node), {**fixed, **own}  # own: those of one trajectory
+    constants = {**fixed, **own}  # own: those of one trajectory
     ratios = [abs(constants[name] / slope) for name, slope in moved.items() if slope and name in constants]
     size = min((ratio for ratio in ratios if ratio), default=Fraction(1))
 

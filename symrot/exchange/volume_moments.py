@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symrot.exchange.surface import Surface
+from symrot.inertia.tensor import dot
 
 __all__ = ["Exponents", "VolumeMoments", "approximate_moments", "exact_moments", "exponents"]
 
@@ -95,10 +96,6 @@ def _cross(left: Corner, right: Corner, sign: int = -1) -> Corner:
     return x, y, z
 
 
-def _dot(left: Corner, right: Corner) -> Any:
-    return left[0] * right[0] + left[1] * right[1] + left[2] * right[2]
-
-
 # --- exact ------------------------------------------------------------------------------------------------------------
 
 
@@ -127,7 +124,7 @@ def exact_moments(surface: Surface, degree: int) -> VolumeMoments:
     for start in range(0, len(surface.triangles), CHUNK):
         triangles = surface.triangles[start : start + CHUNK]
         a, b, c = (_columns(points[triangles[:, corner]]) for corner in range(3))
-        determinant = _dot(a, _cross(b, c))
+        determinant = dot(a, _cross(b, c))
         for powers, value in _coefficients((a, b, c), degree, 1).items():
             totals[powers] += int((determinant * value).sum())
     scale = Fraction(2) ** unit
@@ -166,11 +163,11 @@ def approximate_moments(surface: Surface, degree: int) -> VolumeMoments:
         # Each triangle spans a tetrahedron with the middle of the bounding box. Edges instead of corners in the
         # determinant keep all digits of triangles that are small and far from the middle.
         first, second = (_columns(np.ldexp(end - p, -shift)) for end in (q, r))
-        determinant = _dot(a, _cross(first, second))
+        determinant = dot(a, _cross(first, second))
         for powers, value in _coefficients((a, b, c), degree, 1.0).items():
             totals[powers].append(_sum(determinant * value))
         a, b, c, first, second = (_magnitude(item) for item in (a, b, c, first, second))
-        magnitude = _dot(a, _cross(first, second, 1))
+        magnitude = dot(a, _cross(first, second, 1))
         for powers, value in _coefficients((a, b, c), degree, 1.0).items():
             sizes[powers].append(float((magnitude * value).sum()))
     scale = Fraction(2) ** shift

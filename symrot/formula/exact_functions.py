@@ -55,7 +55,6 @@ EXACT_FUNCTIONS: dict[str, Callable[..., Fraction]] = {
     "sin": number.sin,
     "cos": number.cos,
     "abs": abs,
-    "without_turns": number.without_turns,
 }
 
 

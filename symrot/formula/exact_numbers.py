@@ -6,7 +6,7 @@ A rational value is exact: ``"1/3"``, ``"0.6375"`` (51/80), ``1e-3``. An irratio
 
 __all__ = [
     "NEGLIGIBLE", "NEGLIGIBLE_BITS", "PI", "Angle", "cos", "equal", "read", "read_angle", "rounded", "show", "sin",
-    "sqrt", "tan", "unit", "without_turns",
+    "sqrt", "tan", "unit",
 ]  # fmt: skip
 
 from collections.abc import Callable, Sequence
@@ -153,13 +153,6 @@ def _sin_half_turns(half_turns: Fraction) -> Fraction:
 def _bits_for(value: Fraction) -> int:
     """Return how many bits after the binary point represent a small ``value`` with a relative error of 2^-BITS."""
     return BITS + max(0, value.denominator.bit_length() - value.numerator.bit_length())
-
-
-def without_turns(value: Fraction) -> Fraction:
-    """Return the angle between -pi and pi, rad, that equals ``value`` up to whole turns, with an error below 2^-300."""
-    magnitude = max(0, value.numerator.bit_length() - value.denominator.bit_length())
-    turn = 2 * (PI if magnitude < 8 else _pi(BITS + magnitude))
-    return value - round(value / turn) * turn
 
 
 def _sin_shifted(value: Fraction, quarter_turns: int) -> Fraction:

@@ -8,28 +8,26 @@ function is largest on the hull. Lengths are doubles, in m; callers allow for ro
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any, NamedTuple
 
-__all__ = ["Pose", "Solid3", "are_apart", "center", "directions", "excess", "farthest", "height", "outside", "size"]
+from symrot.inertia.tensor import cross, dot
+
+__all__ = [
+    "Pose", "Solid3", "are_apart", "center", "corners", "directions", "excess", "farthest", "height", "is_convex",
+    "outside", "size",
+]  # fmt: skip
 
 Vec = tuple[float, float, float]
 Dimensions = Mapping[str, Any]  # lengths; vertices of a tetrahedron
 
+MERIDIANS = 16  # of a polyhedron around a ball, a multiple of 4
 CORNERS = 64  # of a polygon around a circle, where no exact bound is at hand
 PARALLEL = 1e-12
 
 
-def _dot(a: Vec, b: Vec) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
 def _plus(a: Vec, b: Vec, factor: float = 1.0) -> Vec:
     return a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]
-
-
-def _cross(a: Vec, b: Vec) -> Vec:
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 def _length(a: Vec) -> float:
@@ -49,7 +47,7 @@ class Pose(NamedTuple):
 
     def turn(self, v: Vec) -> Vec:
         """Return a vector in the axes of the body, from its components in the axes of the shape."""
-        x, y, z = (_dot(row, v) for row in self.rotation)
+        x, y, z = (dot(row, v) for row in self.rotation)
         return x, y, z
 
     def turn_back(self, v: Vec) -> Vec:
@@ -160,11 +158,11 @@ def _moved(piece: Piece, pose: Pose) -> Piece:
 
 def _reach(piece: Piece, direction: Vec) -> float:
     """Return the largest n x for points x of a piece, with the unit vector n = ``direction``."""
-    base = _dot(piece.center, direction)
+    base: float = dot(piece.center, direction)
     if isinstance(piece, _Ellipsoid):
-        return base + math.hypot(*(_dot(axis, direction) for axis in piece.axes))
+        return base + math.hypot(*(dot(axis, direction) for axis in piece.axes))
     axis = piece.normal if isinstance(piece, _Disk) else piece.axis
-    along = _dot(axis, direction)
+    along: float = dot(axis, direction)
     if isinstance(piece, _Disk):
         return base + piece.radius * math.sqrt(max(0.0, 1 - along * along)) + piece.ball
     return base + piece.radius * (1.0 if along >= 0 else math.sqrt(max(0.0, 1 - along * along)))
@@ -181,14 +179,14 @@ def _round(piece: Piece) -> _Disk:
 def _farthest_along(piece: Piece, direction: Vec) -> Vec:
     """Return a point of a piece with the largest n x, with the unit vector n = ``direction``."""
     if isinstance(piece, _Ellipsoid):
-        shares = [_dot(axis, direction) for axis in piece.axes]
+        shares = [dot(axis, direction) for axis in piece.axes]
         length = math.hypot(*shares) or 1.0
         point = piece.center
         for axis, share in zip(piece.axes, shares, strict=True):
             point = _plus(point, axis, share / length)
         return point
     axis = piece.normal if isinstance(piece, _Disk) else piece.axis
-    along = _dot(axis, direction)
+    along = dot(axis, direction)
     across = _plus(direction, axis, -along)
     rim = _plus(piece.center, _unit(across), piece.radius if _length(across) > PARALLEL else 0.0)
     if isinstance(piece, _Disk):
@@ -199,7 +197,7 @@ def _farthest_along(piece: Piece, direction: Vec) -> Vec:
 def farthest(solid: Solid3, direction: Vec) -> Vec:
     """Return a point of a shape with the largest n x, with a unit vector n = ``direction`` in the axes of the body."""
     points = [_farthest_along(piece, direction) for piece in solid.hull]
-    return max(points, key=lambda point: _dot(point, direction))
+    return max(points, key=lambda point: dot(point, direction))
 
 
 def height(solid: Solid3, direction: Vec) -> float:
@@ -225,8 +223,8 @@ _AXES: tuple[Vec, Vec, Vec] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 def _farthest(disk: _Disk, point: Vec) -> float:
     """Return the largest distance of a point of an inflated disk from ``point``."""
     offset = _plus(disk.center, point, -1.0)
-    along = _dot(offset, disk.normal)
-    across = math.sqrt(max(0.0, _dot(offset, offset) - along * along))
+    along = dot(offset, disk.normal)
+    across = math.sqrt(max(0.0, dot(offset, offset) - along * along))
     return math.hypot(along, across + disk.radius) + disk.ball
 
 
@@ -234,11 +232,49 @@ def _around(disk: _Disk) -> list[Vec]:
     """Return the corners of a polygon that contains a disk."""
     if not disk.radius:
         return [disk.center]
-    first = _unit(_cross(disk.normal, _AXES[min(range(3), key=lambda k: abs(disk.normal[k]))]))
-    second = _cross(disk.normal, first)
+    first = _unit(cross(disk.normal, _AXES[min(range(3), key=lambda k: abs(disk.normal[k]))]))
+    second = cross(disk.normal, first)
     radius = disk.radius / math.cos(math.pi / CORNERS)
     turns = [2 * math.pi * k / CORNERS for k in range(CORNERS)]
     return [_plus(_plus(disk.center, first, radius * math.cos(t)), second, radius * math.sin(t)) for t in turns]
+
+
+def corners(solid: Solid3) -> list[Vec]:
+    """Return points whose convex hull contains a shape; none for a torus."""
+    points: list[Vec] = []
+    for piece in solid.hull:
+        if isinstance(piece, _Disk) and not piece.ball:
+            points += _around(piece)
+        elif isinstance(piece, _Disk) and piece.radius:
+            return []
+        elif isinstance(piece, _Dome):
+            first = _unit(cross(piece.axis, _AXES[min(range(3), key=lambda k: abs(piece.axis[k]))]))
+            axes = (first, cross(piece.axis, first), piece.axis)
+            half = [point for point in _ball() if point[2] >= 0]
+            points += [_combined(piece.center, axes, point, piece.radius) for point in half]
+        elif isinstance(piece, _Disk):
+            points += [_plus(piece.center, point, piece.ball) for point in _ball()]
+        else:
+            points += [_combined(piece.center, piece.axes, point, 1.0) for point in _ball()]
+    return points
+
+
+def _combined(center: Vec, axes: tuple[Vec, Vec, Vec], shares: Vec, factor: float) -> Vec:
+    for axis, share in zip(axes, shares, strict=True):
+        center = _plus(center, axis, factor * share)
+    return center
+
+
+@cache
+def _ball() -> list[Vec]:
+    """Return the corners of a polyhedron that contains the ball of radius 1; the equator z = 0 has corners."""
+    # the planes of its faces are nearer to the centre than the corners by the cosines of half their two angles
+    step = math.pi / MERIDIANS
+    radius = 1 / math.cos(step) ** 2
+    rings = [(radius * math.cos(k * 2 * step), radius * math.sin(k * 2 * step) if k else 0.0)
+             for k in range(-MERIDIANS // 4 + 1, MERIDIANS // 4)]  # fmt: skip
+    around = [(math.cos(2 * step * n), math.sin(2 * step * n)) for n in range(MERIDIANS)]
+    return [(0.0, 0.0, -radius), *((r * x, r * y, z) for r, z in rings for x, y in around), (0.0, 0.0, radius)]
 
 
 # --- walls: each returns by how much a hull reaches beyond it, in m; at most 0 if the hull is inside ------------------
@@ -277,7 +313,7 @@ def _ellipsoid_wall(a: float, b: float, c: float) -> Wall:
     def reach(piece: Piece) -> float:
         if isinstance(piece, _Ellipsoid):
             axes = [scaled(axis) for axis in piece.axes]
-            crossed = max(abs(_dot(axes[i], axes[j])) for i, j in ((0, 1), (0, 2), (1, 2)))
+            crossed = max(abs(dot(axes[i], axes[j])) for i, j in ((0, 1), (0, 2), (1, 2)))
             lengths = [_length(axis) for axis in axes]
             spread = max(lengths) if crossed < PARALLEL else math.hypot(*lengths)
             return _length(scaled(piece.center)) + spread
@@ -312,10 +348,10 @@ def _faces(d: Dimensions) -> list[Wall]:
     walls = []
     for k in range(4):
         a, b, c = (d["vertices"][i] for i in range(4) if i != k)
-        normal = _unit(_cross(_plus(b, a, -1.0), _plus(c, a, -1.0)))
-        if _dot(normal, _plus(d["vertices"][k], a, -1.0)) > 0:
+        normal = _unit(cross(_plus(b, a, -1.0), _plus(c, a, -1.0)))
+        if dot(normal, _plus(d["vertices"][k], a, -1.0)) > 0:
             normal = _plus((0.0, 0.0, 0.0), normal, -1.0)
-        walls.append(_plane(normal, _dot(normal, a)))
+        walls.append(_plane(normal, dot(normal, a)))
     return walls
 
 
@@ -407,7 +443,7 @@ def directions(solid: Solid3) -> list[Vec]:
     if solid.shape == "tetrahedron":
         v = solid.dimensions["vertices"]
         faces = ((0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3))
-        normals += [_unit(_cross(_plus(v[j], v[i], -1.0), _plus(v[k], v[i], -1.0))) for i, j, k in faces]
+        normals += [_unit(cross(_plus(v[j], v[i], -1.0), _plus(v[k], v[i], -1.0))) for i, j, k in faces]
     return [solid.pose.turn(normal) for normal in normals]
 
 
@@ -415,7 +451,7 @@ def are_apart(first: Solid3, second: Solid3, rounding: float) -> bool:
     """Return whether a plane separates the hulls of two shapes, which may overlap by the length ``rounding``, m."""
     offset = _plus(center(second), center(first), -1.0)
     axes = [solid.pose.turn(_Z) for solid in (first, second)]
-    across = [_unit(_plus(offset, axis, -_dot(offset, axis))) for axis in axes]
+    across = [_unit(_plus(offset, axis, -dot(offset, axis))) for axis in axes]
     # tried in turn: the line of the centres, lines across the axes, normals of faces
     for normal in (_unit(offset), *across, *directions(first), *directions(second)):
         back = _plus((0.0, 0.0, 0.0), normal, -1.0)
@@ -446,6 +482,11 @@ _EXCESS: dict[str, Callable[[Dimensions, Vec], float]] = {
     "spherical_shell": lambda d, p: abs(_length(p) - d["radius"]),
     "ring": lambda d, p: math.hypot(math.hypot(p[0], p[1]) - d["radius"], p[2]),
 }
+
+
+def is_convex(solid: Solid3) -> bool:
+    """Return whether a shape contains all points between its points."""
+    return solid.shape not in _EXCESS
 
 
 def excess(solid: Solid3, point: Vec) -> float:

@@ -15,6 +15,7 @@ from symrot.errors import InputError
 from symrot.formula.tree import Node, evaluate
 from symrot.inertia import containment
 from symrot.inertia.containment import Pose, Solid3, are_apart, excess, outside
+from symrot.inertia.cutting import cut
 from symrot.inertia.integration import shape_points
 from symrot.inertia.shapes import SHAPES, scalars
 
@@ -29,6 +30,7 @@ DENSITY = 0.01
 SHARES = (0.001, 0.25, 0.5, 0.75, 0.999)  # of the coordinates of a hole, at test points
 INWARDS = 1e-6  # share of the way from the end of a hole to its middle, at test points
 MOST_PIECES = 200
+MOST_CUTS = 50
 MOST_POINTS = 200_000  # tests of a point against a part
 Vec = tuple[float, float, float]
 PointMass = tuple[Any, Sequence[Any]]  # mass, kg; position in the axes of the body, m
@@ -104,6 +106,8 @@ def doubtful_holes(parts: Sequence[Filled | None], names: Sequence[str]) -> tupl
         if _is_within(hole, near, radius):
             continue
         _refuse_negative(hole, near, radius, name)
+        if _is_covered(hole, near, radius):
+            continue
         doubts.append(
             f"{name}: whether this hole lies within parts of at least its density could not be decided; where it does "
             "not, the body has a negative density"
@@ -124,6 +128,39 @@ def _is_within(hole: Filled, near: Sequence[Filled], radius: float) -> bool:
         return True
     pieces = _pieces(hole.solid, [part.solid for part in added])
     return bool(pieces) and all(map(is_carried, pieces))
+
+
+def _is_covered(hole: Filled, near: Sequence[Filled], radius: float) -> bool:
+    """Return whether the faces of parts cut a hole into pieces that bounds prove to lie within parts."""
+    # such as a round hole across the joint of two boxes
+    rounding = ROUNDING * radius
+    hosts = [part for part in near if not part.subtract and containment.is_convex(part.solid)]
+    others = [part for part in near if part.subtract and not are_apart(hole.solid, part.solid, rounding)]
+    planes = [
+        (normal, containment.height(part.solid, normal))
+        for part in hosts
+        for x, y, z in containment.directions(part.solid)
+        for normal in ((x, y, z), (-x, -y, -z))
+    ]
+    waiting, cuts = [containment.corners(hole.solid)], 0
+    while waiting:
+        piece = waiting.pop()
+        around = [part for part in hosts if all(excess(part.solid, point) <= rounding for point in piece)]
+        if piece and _carry(around, [hole, *others]):
+            continue
+        plane = next((plane for plane in planes if _crosses(plane, piece, rounding)), None)
+        if plane is None or cuts == MOST_CUTS:
+            return False
+        waiting += cut(piece, *plane, rounding)
+        cuts += 1
+    return True
+
+
+def _crosses(plane: tuple[Vec, float], points: Sequence[Vec], rounding: float) -> bool:
+    """Return whether there are points on both sides of a plane, given by a unit normal and a distance."""
+    normal, height = plane
+    heights = [sum(a * b for a, b in zip(point, normal, strict=True)) - height for point in points]
+    return bool(heights) and min(heights) < -rounding and max(heights) > rounding
 
 
 def _carry(parts: Sequence[Filled], holes: Sequence[Filled]) -> bool:

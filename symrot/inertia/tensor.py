@@ -39,6 +39,8 @@ def vector(source: Any) -> Vector:
 
     ``ValueError`` is raised if they are not three.
     """
+    if type(source) is tuple and len(source) == 3 and not isinstance(source[0], list):
+        return source
     components = _items(source)
     if len(components) == 1:
         components = _items(components[0])

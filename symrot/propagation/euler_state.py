@@ -28,7 +28,8 @@ from symrot.planning.scene_kernel import KernelRecord, SceneKernel, bind
 from symrot.propagation import time_shift
 from symrot.propagation.compiled_models import ATTITUDE_SCALE, RATE_SCALE, has_formulas, kernel_key, scene_kernel
 from symrot.propagation.method import Choice
-from symrot.propagation.motion import Motion, Setup
+from symrot.propagation.motions.motion import Motion
+from symrot.propagation.motions.setup import Setup
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.steppers import dop853, taylor
 from symrot.propagation.steppers.smoothness import non_smooth_torque

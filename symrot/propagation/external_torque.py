@@ -26,7 +26,8 @@ from symrot.formula import exact_numbers as number
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.compiled_models import enclosure_text, error_blocks, has_formulas, scene_kernel
 from symrot.propagation.method import EXTERNAL_TORQUE
-from symrot.propagation.motion import Motion, RestartableMotion, Setup, SteppedInC
+from symrot.propagation.motions.motion import Motion, RestartableMotion, SteppedInC
+from symrot.propagation.motions.setup import Setup
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers import dop853

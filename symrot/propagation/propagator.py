@@ -18,7 +18,9 @@ from symrot.formula import exact_numbers as number
 from symrot.planning.plan import Plan, make_plan, structure_key
 from symrot.planning.scene_kernel import SceneKernel
 from symrot.propagation.method import choose_method
-from symrot.propagation.motion import ClosedFormMotion, Motion, RestartableMotion, make_motion
+from symrot.propagation.motions.make import make_motion
+from symrot.propagation.motions.methods import ClosedFormMotion
+from symrot.propagation.motions.motion import Motion, RestartableMotion
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.integration_stopped import Samples
 from symrot.propagation.steppers.stepping import Stats, is_sorted

@@ -15,7 +15,7 @@ from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
 from symrot.kinematics import conversions
 from symrot.propagation.events.event_result import EventResult
-from symrot.propagation.motion import Motion
+from symrot.propagation.motions.motion import Motion
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.stepping import Stats
 from symrot.results.samples import MotionSamples

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.errors import InputError
+from symrot.errors import InputError, with_hint
 from symrot.scene.tables import QUANTITIES, Output
 
 __all__ = ["LOCK", "About", "Labelled", "about", "labelled"]
@@ -91,7 +91,9 @@ def labelled(trajectory: Any, names: Sequence[str] | None = None) -> list[Labell
             quantities.append(derivatives[name])
             continue
         if name not in QUANTITIES:
-            raise InputError(f"quantities: expected names among {', '.join([*QUANTITIES, *derivatives])}, got {name!r}")
+            known = [*QUANTITIES, *derivatives]
+            message = f"quantities: expected names among {', '.join(known)}, got {name!r}"
+            raise InputError(with_hint(message, str(name), known))
         unit, meaning = QUANTITIES[name]
         components = COMPONENTS.get(name, ())
         if name == "euler":

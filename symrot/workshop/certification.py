@@ -8,6 +8,7 @@ from typing import Any
 from symrot.certificates.step_certificate import is_step
 from symrot.errors import InputError
 from symrot.formula import exact_numbers
+from symrot.scene.scene import SceneSource, load_scene
 from symrot.workshop import bounds as rounding
 from symrot.workshop import certify as certificates
 from symrot.workshop.steps import certify as steps
@@ -302,6 +303,7 @@ def audit(
     flags: str | None = None,
     rerun_bounds: bool = False,
     coq: bool = False,
+    scene: SceneSource | None = None,
     progress: Progress = _silent,
 ) -> Audit:
     """Check that certificates hold for the kernels in their folders: formulas, laws, C text and error bounds.
@@ -319,6 +321,8 @@ def audit(
         the others are computed.
     coq : bool
         Whether Coq checks the theorem about the kernel; without Coq or a theorem, a statement says so.
+    scene : Scene, str, Path or dict, optional
+        Your scene; the audit compares its equations and parameters with those of the kernel or step.
     progress : callable
         Called with a line of text as each part of the work begins.
 
@@ -350,7 +354,8 @@ def audit(
         raise InputError("audit: expected the path of a certificate, NAME.cert.json, got no path")
     on_flags = () if flags is None else tuple(certificates.flag_lines(flags))
     compiled = None if object_file is None else Path(object_file)
-    reports = certificates.audit_files([Path(path) for path in paths], compiled, rerun_bounds, coq, progress)
+    own = None if scene is None else load_scene(scene)
+    reports = certificates.audit_files([Path(path) for path in paths], compiled, rerun_bounds, coq, own, progress)
     return Audit({path: tuple(lines) for path, lines in reports.items()}, on_flags)
 
 

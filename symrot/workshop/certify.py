@@ -1,8 +1,9 @@
 """The work of `symrot certify` and `symrot audit`: making certificates of kernels, and checking them."""
 
 import json
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cache
+from functools import cache, partial
 from hashlib import sha256
 from importlib.metadata import version
 from itertools import repeat
@@ -18,6 +19,7 @@ from symrot.files.reading import read_input
 from symrot.kernels.jacobian import BY
 from symrot.kernels.library import is_kernel
 from symrot.scene.file import names_with_kernels
+from symrot.scene.scene import SceneSource, load_scene
 from symrot.workshop import object_code
 from symrot.workshop.certificate_diff import difference, kernel_of
 from symrot.workshop.emit import kernel_names
@@ -47,11 +49,17 @@ LABEL = max(map(len, PROOFS)) + 2  # characters
 MANY = 12  # smallest number of certificates that several processes audit at once
 
 
-def _proven_statement(data: Data) -> Data | None:
+def _proven_statement(data: Data, own: SceneSource | None = None) -> Data | None:
     """Return the statements that symrot proves about the kernel named in the certificate ``data``.
 
-    The result is None for an unknown kernel.
+    The result is None for an unknown kernel. ``own`` is the user's scene, whose kernel it should be.
     """
+    if own is not None:
+        jacobian = re.search(r" --jacobian ([\w,]+) ", str(data["regenerate"]))
+        text = kernel_text(load_scene(own), jacobian[1].split(",") if jacobian else ())
+        if text.name != data["kernel"]:
+            raise CertificateError(f"{data['kernel']}: expected the certificate of {text.name}, of the scene")
+        return proven_statement(text.under_test(data.get("rounding")))
     name = data["kernel"]
     scene = str(data["regenerate"]).removeprefix("symrot emit ").removesuffix(" --target c")
     if not is_kernel(name):
@@ -90,7 +98,7 @@ def _sha256(texts: Iterable[str]) -> str:
 
 def audit_file(
     path: Path, object_file: Path | None = None, rerun: bool = False, coq: bool = False,
-    progress: Callable[[str], object] = lambda text: None,
+    scene: SceneSource | None = None, progress: Callable[[str], object] = lambda text: None,
 ) -> list[str]:  # fmt: skip
     """Audit a certificate; return one line for each statement that holds, and for each that was not checked.
 
@@ -105,6 +113,8 @@ def audit_file(
         the others are computed.
     coq : bool
         Whether Coq checks the theorem about the kernel; without Coq or a theorem, a line says so.
+    scene : Scene, str, Path or dict, optional
+        The scene whose kernel or step this should be; by default a shipped scene of the name in the certificate.
 
     Raises
     ------
@@ -113,9 +123,9 @@ def audit_file(
     """
     progress(f"auditing {path.name} ..")
     if (step := step_data(path)) is not None:
-        return _audit_step(path, step, object_file, rerun, coq, progress)
+        return _audit_step(path, step, object_file, rerun, coq, scene, progress)
     try:
-        data, report = audit(path, _proven_statement)
+        data, report = audit(path, partial(_proven_statement, own=scene))
     except CertificateError as reason:
         raise CertificateError(f"{reason}{difference(path)}") from None
     source = path.with_name(f"{data['kernel']}.c")
@@ -129,14 +139,15 @@ def audit_file(
 
 
 def _audit_step(
-    path: Path, data: Data, object_file: Path | None, rerun: bool, coq: bool, progress: Callable[[str], object]
-) -> list[str]:
+    path: Path, data: Data, object_file: Path | None, rerun: bool, coq: bool, scene: SceneSource | None,
+    progress: Callable[[str], object],
+) -> list[str]:  # fmt: skip
     if object_file is not None and "scene" in data:
         raise InputError(
             f"--object: expected a step without loops, got {path.name}: object code of a step with elliptic functions "
             "cannot be compared"
         )
-    report = audit_step(path, data, rerun, progress)
+    report = audit_step(path, data, rerun, scene, progress)
     if object_file is not None:
         source = path.with_name(f"{data['kernel']}.c")
         report += object_code.object_lines(source.read_text(encoding="utf-8"), object_file, source.name)
@@ -145,7 +156,7 @@ def _audit_step(
 
 def audit_files(
     paths: Sequence[Path], object_file: Path | None = None, rerun: bool = False, coq: bool = False,
-    progress: Callable[[str], object] = lambda text: None,
+    scene: SceneSource | None = None, progress: Callable[[str], object] = lambda text: None,
 ) -> dict[str, list[str]]:  # fmt: skip
     """Audit certificates; return a map from each path to the lines that :func:`audit_file` returns.
 
@@ -155,10 +166,10 @@ def audit_files(
         If a certificate does not hold; the message is about the first such certificate in ``paths``.
     """
     if len(paths) < MANY:
-        return {str(path): audit_file(path, object_file, rerun, coq, progress) for path in paths}
+        return {str(path): audit_file(path, object_file, rerun, coq, scene, progress) for path in paths}
     # several processes share the work
     reports = {}
-    options = map(repeat, (object_file, rerun, coq))
+    options = map(repeat, (object_file, rerun, coq, scene))
     with workers() as pool:
         for path, report in zip(paths, pool.map(audit_file, paths, *options, chunksize=8), strict=True):
             progress(f"audited {path.name} ..")

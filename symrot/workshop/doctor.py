@@ -17,9 +17,11 @@ __all__ = ["clear_cache", "facts", "lines"]
 
 NEEDED = ("sympy", "numpy", "scipy")
 EXTRAS = {
-    "plot": ("matplotlib",), "bench": ("heyoka",), "test": ("pytest", "pytest-xdist", "hypothesis"),
-    "dev": ("ruff", "mypy"),
+    "plot": ("matplotlib",), "film": ("imageio-ffmpeg",), "frames": ("pandas", "xarray"), "mesh": ("trimesh",),
+    "sweep": ("zarr", "pyarrow", "tqdm"), "cluster": ("dask", "distributed"), "completion": ("argcomplete",),
+    "jax": ("jax",), "bench": ("heyoka",), "test": ("pytest", "pytest-xdist", "hypothesis"), "dev": ("ruff", "mypy"),
 }  # fmt: skip
+"""The packages that each extra of pyproject.toml adds."""
 SECONDS_TO_ANSWER = 10
 TINY = "double symrot_check(double x) { return 3.0*x + 0.5; }\n"
 

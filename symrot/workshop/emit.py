@@ -73,6 +73,11 @@ class Emitted(_Texts):
         """The name of the C function for one sample in double precision: ``symrot_`` and the name of the kernel."""
         return f"symrot_{self.name}"
 
+    @property
+    def parameters(self) -> tuple[float, ...]:
+        """The values of the argument ``p``, which a scene sets; empty for a kernel of the library."""
+        return self.text.parameter_values
+
     @cached_property
     def certificate(self) -> str:
         """The text of the kernel's certificate, a JSON file of proofs; CertificateError is raised if a proof fails."""

@@ -57,6 +57,11 @@ class KernelText(ABC):
     folders: ClassVar[Mapping[str, str]]  # target -> its folder, relative to the folder of the certificate
     has_certificate: ClassVar[bool] = True
 
+    @property
+    def parameter_values(self) -> tuple[float, ...]:
+        """The values of the argument ``p``, which a scene sets; empty for a kernel of the library."""
+        return ()
+
     @abstractmethod
     def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
         """Return the pair (C source, header); ``bounds`` are rounding bounds for the comment at the head."""
@@ -269,6 +274,11 @@ class SceneText(KernelText):
         arguments, values = self._lowered.program.signature.arguments, tuple(bind(parameters, constants))
         # the bounds of the kernel's rounding errors depend on them
         return SceneInputs(arguments, values, self.scene.span[:2], formulas, constants)
+
+    @property
+    def parameter_values(self) -> tuple[float, ...]:
+        """The values of the argument ``p`` in the scene."""
+        return tuple(self.inputs.parameters)
 
 
 def kernel_text(kernel: KernelText | SceneSource, jacobian: Sequence[str] = ()) -> KernelText:

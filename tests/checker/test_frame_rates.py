@@ -9,6 +9,7 @@ B = r"\boldsymbol\omega"
 
 @pytest.mark.parametrize("text", [
     "dA/dt = d'A/dt + Ω×A", "(dA/dt)_s = (dA/dt)_b + ω × A", "(dr/dt)_fixed = (dr/dt)_rot + ω × r",
+    "(dA/dt)_space = (dA/dt)_body + w x A",
     rf"\left.\frac{{d\mathbf A}}{{dt}}\right|_I = \left.\frac{{d\mathbf A}}{{dt}}\right|_B + {B}\times\mathbf A",
     rf"\left(\frac{{d\mathbf L}}{{dt}}\right)_{{\text{{space}}}} = \left(\frac{{d\mathbf L}}{{dt}}\right)_{{\text{{body}}}} + {B}\times\mathbf L",
     rf"\frac{{{{}}^N d}}{{dt}}\mathbf v = \frac{{{{}}^B d}}{{dt}}\mathbf v + {{}}^N{B}^B\times\mathbf v",

@@ -303,7 +303,7 @@ def test_wrong_relations_and_formulas_are_not_recognised(claim):
     "e = mc^2", "x = m r^2", "ω₂ = I₁ω₁/I₂", "T = ω·L", "H = I α", "I_G = I_O + m d²", "k_G² = k_O² + d²",
     "R_11 = 1 - 2(q_1² + q_2²)", "φ̇ = (L_3 - L_z cos θ)/(I_1 sin²θ)", r"x^* = \bar x", r"\theta' = \omega",
     "I_1 ω̇_1 = (I_1 - I_3) ω_3 ω_2", "C ω̇_3 = 0",
-    "I = I_cm + M L²/4", "I_end = I_cm + M L²/4", "k² = k_G² + L²/4", "I = 1/2 m L²",
+    "H = p_φ φ̇ + p_θ θ̇ − L", "I = I_cm + M L²/4", "I_end = I_cm + M L²/4", "k² = k_G² + L²/4", "I = 1/2 m L²",
     "T = 2π √((I_G + m d²)/(m g d))", "λ² = (I_2 - I_1)(I_3 - I_2) ω²/(I_1 I_3)", "M = (C - A) ω² sin β cos β", "I_G = I_O - m d²",
 ])  # fmt: skip
 def test_letters_that_say_something_else_are_neither_recognised_nor_accused(claim):
@@ -313,6 +313,9 @@ def test_letters_that_say_something_else_are_neither_recognised_nor_accused(clai
 @pytest.mark.parametrize(("claim", "name"), [
     ("R_11 = 1 - 2(q_2² + q_3²)", "entry 11"), ("R_23 = 2(q_2 q_3 + q_0 q_1)", "entry 32"),
     ("φ̇ = (L_z - L_3 cos θ)/(I_1 sin²θ)", "rate of precession"), ("I_O = I_G + m d²", "parallel axis"),
+    ("pφ = (I1 sin² θ + I3 cos² θ)φ̇ + I3ψ̇ cos θ", "momentum of precession"), ("I = Icm + Md²", "parallel axis"),
+    ("I = Ic + md²", "parallel axis"), ("Veff(θ) = (pφ − pψ cos θ)²/(2I1 sin² θ) + mgl cos θ", "effective potential"),
+    ("H = pθ²/(2I1) + (pφ − pψ cos θ)²/(2I1 sin² θ) + pψ²/(2I3) + Mgl cos θ", "energy of a heavy top from its momenta"),
     ("Ω = I_3 ω_3/I_1", "nutation"), ("H_O = r × m v + H_G", "angular momentum about a point"),
     ("v′ = v + 2 r × (r × v + w v)", "rotated vector"), ("v' = q v q*", "rotated vector"),
     (r"M_3 = \begin{pmatrix} \cos\theta & \sin\theta & 0 \\ -\sin\theta & \cos\theta & 0 \\ 0 & 0 & 1 \end{pmatrix}", "z axis"),

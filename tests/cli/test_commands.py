@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+import tomllib
 from itertools import pairwise
 from pathlib import Path
 
@@ -14,6 +15,7 @@ import symrot
 from symrot.cli import main as cli
 from symrot.workshop import kernel_files as kernels
 from symrot.workshop.derivation_pages import illustrated
+from symrot.workshop.doctor import EXTRAS
 from tests.bad_scenes import bad_scenes
 
 ROOT = Path(symrot.__file__).parents[1]
@@ -211,6 +213,14 @@ def test_derivations_are_listed_and_printed(capsys):
     page = illustrated(symrot.derivation("parallel_axis"))
     assert run(capsys, "derive", "parallel_axis")[1] == page.markdown()
     assert run(capsys, "derive", "parallel_axis", "--format", "latex")[1] == page.latex()
+
+
+def test_doctor_lists_every_extra_and_its_own_packages():
+    with (ROOT / "pyproject.toml").open("rb") as stream:
+        extras = tomllib.load(stream)["project"]["optional-dependencies"]
+    assert set(EXTRAS) == set(extras) - {"docs"}
+    for name, packages in EXTRAS.items():
+        assert set(packages) <= {requirement.split(">")[0] for requirement in extras[name]}
 
 
 def test_doctor_compiles_and_tells_of_a_broken_compiler(capsys, monkeypatch, tmp_path):

@@ -6,6 +6,7 @@ import ctypes
 import json
 import os
 import random
+import re
 import shutil
 import subprocess
 import sys
@@ -334,3 +335,13 @@ def test_arguments_that_are_not_used_do_not_warn_and_literals_are_doubles():
 def test_what_cannot_be_emitted_is_refused(scene, target):
     with pytest.raises(InputError):
         symrot.emit(scene, target)
+
+
+@pytest.mark.parametrize("options", [{}, {"step": "rk4"}, {"step": "exact"}], ids=str)
+def test_an_emitted_kernel_has_the_parameters_of_its_scene(options):
+    """They are the numbers of the C text: of its head comment, or of its file of parameters."""
+    kernel = symrot.emit("heavy_top_loops", **options)
+    texts = kernel.text.c_files()
+    numbers = [float(word) for word in re.findall(r"[-+]?\d+\.\d*(?:e[-+]?\d+)?", "".join(texts.values()))]
+    assert len(kernel.parameters) == 3 and set(kernel.parameters) <= set(numbers)
+    assert symrot.emit("quaternion_dcm").parameters == ()

@@ -4,12 +4,15 @@ import math
 import random
 import re
 
+import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
 import symrot
 from symrot.errors import InputError
 from symrot.inertia.composite import Part, doubtful_holes
-from symrot.inertia.containment import are_apart, center, excess, outside, size
+from symrot.inertia.containment import are_apart, center, corners, excess, outside, size
+from symrot.inertia.cutting import cut
 from symrot.inertia.holes import filled, pose
 from symrot.inertia.integration import shape_points
 from symrot.inertia.shapes import SHAPES, check_dimensions, scalars
@@ -29,6 +32,7 @@ BOX = part("box", a=4, b=3, c=2)
 DRUM = part("cylinder", radius=3, length=5)
 STEPPED = (part("cylinder", radius=2, length=2), part("cylinder", (0, 0, 2), radius=1, length=2))
 HALVES = (part("box", (-1, 0, 0), a=2, b=2, c=2), part("box", (1, 0, 0), a=2, b=2, c=2))
+QUARTERS = [part("box", (x, y, 0), a=2, b=2, c=2) for x in (-1, 1) for y in (-1, 1)]
 
 
 @pytest.mark.parametrize("parts", [
@@ -38,6 +42,14 @@ HALVES = (part("box", (-1, 0, 0), a=2, b=2, c=2), part("box", (1, 0, 0), a=2, b=
     [DRUM, hole("cylinder", rotation=ABOUT_X, radius="1/2", length="59/10")],
     [*STEPPED, hole("cylinder", (0, 0, 1), radius="1/2", length=4)],
     [*HALVES, hole("box", a=1, b=1, c=2)],
+    *([*HALVES, each] for each in (
+        hole("cylinder", radius="1/2", length=2), hole("sphere", radius="9/10"), hole("cone", (0, 0, -1), radius="1/2", height=2),
+        hole("hemisphere", radius="9/10"), hole("ellipsoid", a="9/10", b="1/3", c="1/2"),
+        hole("cylinder", rotation=((0.6, 0, 0.8), (0, 1, 0), (-0.8, 0, 0.6)), radius="1/4", length=2),
+    )),
+    [*QUARTERS, hole("cylinder", radius=1, length=2), hole("cylinder", ("3/2", 0, 0), radius="1/4", length=2)],
+    [HALVES[0], HALVES[1]._replace(density=1), hole("cylinder", density=1, radius="1/2", length=2)],
+    [part("plate", (-1, 0, 0), a=2, b=2), part("plate", (1, 0, 0), a=2, b=2), hole("disk", radius="1/2")],
     [BOX, hole("box", a=1, b=1, c=1), hole("box", (1, 0, 0), a=1, b=1, c=1)],
     [BOX, *(hole("box", (x, 0, 0), density=1, a=1, b=1, c=1) for x in (0, 0.5))],
     [BOX, hole("cylinder", radius=1, length=2), part("cylinder", radius=1, length=2, density=7)],
@@ -90,13 +102,39 @@ def test_a_hole_that_makes_the_density_negative_is_refused(parts, sentence):
     assert re.match(r"body\.part\[\d\]: expected ", str(refusal.value))
 
 
+def test_a_gap_between_parts_is_not_covered():
+    gap = part("box", (1.0000001, 0, 0), a=2, b=2, c=2)
+    assert len(doubtful_holes([HALVES[0], gap, hole("cylinder", radius="1/2", length=2)])) == 1
+
+
+@pytest.mark.parametrize("normal,height", [((0.6, 0.0, 0.8), 0.3), ((0.0, 0.0, 1.0), -0.2), ((0.36, 0.48, 0.8), 0.1)])
+def test_a_plane_divides_the_volume_of_a_hull(normal, height):
+    rng = random.Random(2)
+    points = [(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1)) for _ in range(40)]
+    below, above = cut(points, normal, height, 1e-12)
+    heights = [[sum(a * b for a, b in zip(p, normal, strict=True)) - height for p in half] for half in (below, above)]
+    assert max(heights[0]) < 1e-12 and min(heights[1]) > -1e-12
+    assert ConvexHull(below).volume + ConvexHull(above).volume == pytest.approx(ConvexHull(points).volume, rel=1e-12)
+
+
+@pytest.mark.parametrize("shape", [name for name, shape in SHAPES.items() if shape.kind == "solid" and name != "torus"])
+def test_a_shape_is_within_the_hull_of_its_corners(shape):
+    rng = random.Random(3)
+    body = drawn(rng, shape, 1)
+    hull = ConvexHull(corners(body.solid))
+    numbers = scalars(SHAPES[shape], body.exact_dimensions)
+    points = [body.solid.pose.to_body((p["x"], p["y"], p["z"]))
+              for p in shape_points(SHAPES[shape], numbers, (0.0, 0.17, 0.3, 0.52, 0.7, 0.96, 1.0))]  # fmt: skip
+    assert (hull.equations[:, :3] @ np.array(points).T + hull.equations[:, 3:]).max() < 1e-12
+
+
 SCENE = {"initial": {"omega": [0, 0, 1]}, "span": {"t": [0, 1]}}
 
 
 def test_a_hole_that_cannot_be_decided_is_a_warning_of_the_run():
     boxes = [{"shape": "box", "a": 2, "b": 2, "c": 2, "density": 1, "at": [x, 0, 0]} for x in (-1, 1)]
-    ball = {"shape": "sphere", "radius": 0.5, "density": 1, "subtract": True}
-    scene = symrot.Scene.build(body={"part": [*boxes, ball]}, **SCENE)
+    groove = {"shape": "torus", "ring": 0.5, "tube": 0.25, "density": 1, "subtract": True}
+    scene = symrot.Scene.build(body={"part": [*boxes, groove]}, **SCENE)
     (warning,) = symrot.propagate(scene).warnings
     assert warning.startswith("scene: body.part[2]: whether this hole lies within parts")
     assert "whether this hole" in symrot.explain(scene)

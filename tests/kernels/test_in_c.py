@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from symrot.bench import ulps
+from symrot.cli.main import main
 from symrot.codegen.printing.build_files import FLAGS, build_files
 from symrot.codegen.printing.math_header import FAR, math_header
 from symrot.workshop.emit import emit
@@ -232,15 +233,20 @@ def test_a_component_that_is_no_kernel_is_refused_in_a_sentence(tmp_path):
 @needs_cmake
 @pytest.mark.skipif(not shutil.which("pkg-config"), reason="needs pkg-config")
 def test_pkg_config_knows_installed_kernels_by_name(tmp_path):
-    """Three kernels are built and installed; a program takes them by pkg-config."""
+    """Three kernels are built and installed; a program takes them by pkg-config, also after a step from another folder."""
     compiled(
         "cmake", "-S", KERNELS, "-B", tmp_path / "build", f"-DSYMROT_KERNELS={';'.join(USED)}",
         f"-DCMAKE_INSTALL_PREFIX={tmp_path / 'prefix'}",
     )  # fmt: skip
     compiled("cmake", "--build", tmp_path / "build", "--target", "install")
     assert len([*(tmp_path / "build").rglob("*.c.o")]) == len(USED)
+    assert main(["emit", "tumbling_prism", "--step", "rk4", "--cmake", "-o", str(tmp_path / "step")]) == 0
+    compiled(
+        "cmake", "-S", tmp_path / "step", "-B", tmp_path / "other", f"-DCMAKE_INSTALL_PREFIX={tmp_path / 'prefix'}"
+    )
+    compiled("cmake", "--build", tmp_path / "other", "--target", "install")
     search = {"PKG_CONFIG_PATH": str(tmp_path / "prefix" / "lib" / "pkgconfig")}
-    names = [f"symrot-{name}" for name in USED]
+    names = [f"symrot-{name}" for name in (*USED, "tumbling_prism_rk4_step")]
     options = subprocess.run(["pkg-config", "--cflags", "--libs", *names], env=os.environ | search, check=True,
                              capture_output=True, text=True).stdout  # fmt: skip
     compiled(COMPILERS[0], EXAMPLE, *options.split(), "-o", tmp_path / "program")

@@ -17,7 +17,8 @@ from symrot.inertia import composite
 from symrot.planning import rules
 from symrot.planning.plan import make_plan, structure_key
 from symrot.propagation import compiled_models as kernels
-from symrot.propagation import motion, propagate, propagator
+from symrot.propagation import propagate, propagator
+from symrot.propagation.motions import make
 from symrot.propagation.steppers import taylor
 from symrot.scene.scene import Scene, load_scene
 from symrot.scene.tables import Initial
@@ -119,7 +120,7 @@ def test_starts_of_one_key_have_one_plan(name):
 LOOKED_UP = [
     (composite, "principal_axes"), (heavy_top, "quaternion_of"), (library, "build"), (library, "built"),
     (library, "compiler"), (library, "missing"), (library, "fetch"), (taylor, "order_for"),
-    (motion, "scene_kernel"), (choose, "exact_form"), (propagator, "make_plan"), (propagator, "choose_method"),
+    (make, "scene_kernel"), (choose, "exact_form"), (propagator, "make_plan"), (propagator, "choose_method"),
     (kernels, "scene_kernel"),
 ]  # fmt: skip
 
@@ -165,7 +166,7 @@ def test_quantities_of_a_changed_start_use_one_kernel(monkeypatch):
     """The kernel of energy and momentum is fetched once for a structure, not once for each trajectory."""
     called = propagate.propagator(PRISM)
     assert called(omega=(0.1, 0.2, 0.3)).invariants
-    monkeypatch.setattr(motion, "scene_kernel", None)
+    monkeypatch.setattr(make, "scene_kernel", None)
     drift = [max(i.drift for i in called(omega=(0.1, 0.2, 0.3 + k)).invariants) for k in range(3)]
     assert max(drift) < 1e-14
 

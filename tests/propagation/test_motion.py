@@ -9,11 +9,12 @@ import pytest
 
 import symrot
 from symrot.errors import InputError
-from symrot.propagation import euler_state, external_torque, motion
+from symrot.propagation import euler_state, external_torque
+from symrot.propagation.motions import methods, motion
 from symrot.propagation.switched import motion as switched
 
 FINAL = {
-    motion.ConstantMotion, motion.ClosedFormMotion, motion.SteppedMotion, motion.SciPyMotion,
+    methods.ConstantMotion, methods.ClosedFormMotion, methods.SteppedMotion, methods.SciPyMotion,
     external_torque.ExternallyDrivenMotion, switched.SwitchedMotion, euler_state.EulerMotion,
 }  # fmt: skip
 MEMBERS = (property, cached_property, staticmethod, classmethod)

@@ -19,7 +19,7 @@ from symrot.kinematics import conversions
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation import method as choosing
 from symrot.propagation.method import Choice
-from symrot.propagation.motion import stepped_motion
+from symrot.propagation.motions.make import stepped_motion
 from symrot.propagation.propagate import propagate, propagator
 from symrot.scene.file import names_with_kernels
 from symrot.scene.scene import Scene, load_scene

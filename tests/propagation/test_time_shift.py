@@ -13,12 +13,14 @@ import pytest
 from symrot.codegen.taylor.time_shift import moved
 from symrot.ensemble.ensemble import propagate_ensemble
 from symrot.errors import PropagationError
-from symrot.formula.exact_numbers import PI, without_turns
+from symrot.formula.exact_numbers import PI
 from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import evaluate, parse
 from symrot.planning.scene_kernel import EXACT_FUNCTIONS, bind
 from symrot.propagation import time_shift as epoch
-from symrot.propagation.motion import SteppedMotion, SteppedSetup, on_clock
+from symrot.propagation.motions.methods import SteppedMotion
+from symrot.propagation.motions.motion import on_clock
+from symrot.propagation.motions.setup import SteppedSetup
 from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers import dop853
 from symrot.propagation.steppers.stepping import MAX_STEPS
@@ -124,15 +126,13 @@ def test_a_start_far_away_costs_no_digit(case, t0):
 
 
 def test_the_clock_of_the_scene_would_cost_them():
-    """Without the shift of time the check above fails."""
+    """Without the shift of time, phases that are rounded to 1e-7 rad look like a torque that varies in every step."""
     found = propagator(scene(AXIS, CASES["axis"][1], 10**9), "dop853")
     motion = found._motion
     shared = SteppedSetup(replace(motion.setup, allows_time_shift=False), motion.library)
     found._motion = SteppedMotion(shared, motion.plan)
-    with mpmath.workdps(40):
-        expected = axis_reference(10**9)
-    trajectory = found(10**9 + np.array(TAU))
-    assert error(trajectory.omega, trajectory.quaternion, expected) > 1e3 * BELOW
+    with pytest.raises(PropagationError, match="the step shrank to nothing"):
+        found(10**9 + np.array(TAU))
 
 
 def test_taylor_steps_keep_phases_over_a_long_span():
@@ -252,15 +252,6 @@ def test_large_coefficients_become_parameters():
 
 def test_the_time_is_found_where_it_is_needed():
     assert not program("k*y").uses("t", ("dy",)) and program("a*y").uses("t", ("dy",)) and program("k*y").uses("k")
-
-
-def test_whole_turns_are_taken_away_exactly():
-    for value in (Fraction(10**300, 7), Fraction(-(10**18)), Fraction(3), Fraction(0)):
-        rest = without_turns(value)
-        with mpmath.workdps(400):
-            expected = mpmath.sin(mpmath.mpf(value.numerator) / value.denominator)
-            assert abs(mpmath.sin(mpmath.mpf(rest.numerator) / rest.denominator) - expected) < mpmath.mpf(10) ** -80
-        assert abs(rest) <= PI + Fraction(1, 2**200)
 
 
 @pytest.mark.parametrize("start", [1e9 + 0.3, -7.1, 1e15, 3e-300])

@@ -102,6 +102,8 @@ def test_a_data_set_has_axes_units_and_names(trajectory):
 def test_unknown_quantities_are_refused_in_a_sentence(trajectory):
     with pytest.raises(InputError, match=r"quantities: expected names among omega, .* got 'speed'"):
         trajectory._labelled(["speed"])
+    with pytest.raises(InputError, match=r"got 'enrgy' \(did you mean 'energy'\?\)"):
+        trajectory._labelled(["enrgy"])
 
 
 def test_a_missing_package_is_named_with_its_extra():

@@ -1,8 +1,10 @@
 """Certificates of steps: bounds of rounding and truncation hold, wrong steps and edited certificates are refused."""
 
 import json
+import re
 from dataclasses import replace
 from fractions import Fraction
+from hashlib import sha256
 from sys import float_info
 
 import mpmath
@@ -12,12 +14,14 @@ import pytest
 import symrot
 from symrot.certificates import truncation
 from symrot.certificates.certificate import certificate_json, seal
-from symrot.certificates.step_certificate import formula_section, rates_of
+from symrot.certificates.readback.header import check_source
+from symrot.certificates.readback.readback import read_kernel
+from symrot.certificates.step_certificate import _require_intended, bounds_of_step, formula_section, rates_of
 from symrot.certificates.truncation import _OF_SERIES, _number, _Power, _trees, require_order, truncation_bounds
 from symrot.cli.main import main
 from symrot.codegen.steps import RK4, TaylorSeries, stepped
 from symrot.errors import CertificateError, InputError
-from symrot.formula.tree import FUNCTIONS
+from symrot.formula.tree import FUNCTIONS, parse
 from symrot.workshop.step_text import step_text
 from symrot.workshop.steps.certify import certify_step
 
@@ -199,8 +203,14 @@ def test_ranges_of_single_numbers_have_bounds():
 
 def test_steps_too_large_for_a_bound_are_refused():
     rates, method, _, box = problem("tumbling_prism", "rk4", (Fraction(0), Fraction(10)))
-    with pytest.raises(InputError, match="got sizes dt up to 10 s; take smaller dt"):
+    with pytest.raises(
+        InputError, match=r"got sizes dt up to 10 s; take dt up to [\d.]+ s, or a smaller box"
+    ) as refusal:
         truncation_bounds(rates, method, box)
+    advice = Fraction(re.findall(r"[\d.]+", str(refusal.value))[-1])
+    assert all(map(np.isfinite, truncation_bounds(rates, method, box | {"dt": (Fraction(0), advice)}).values()))
+    with pytest.raises(InputError, match="take smaller dt or a smaller box"):
+        truncation_bounds(rates, method, box | {"dt": (Fraction(8), Fraction(10))})
 
 
 def test_bounds_on_the_largest_range_of_time_hold_at_all_times():
@@ -215,6 +225,77 @@ def test_bounds_on_the_largest_range_of_time_hold_at_all_times():
         for t in (f"{-largest!r}:{largest!r}", "0:7", "0:0")
     )
     assert everywhere >= once > 2 * at_zero
+
+
+@pytest.mark.parametrize(("number", "other"), [("0.3333333333333333", "1/3"), ("0.50000000000000001", "1/2"),
+                                               ("3.141592653589793", "1[*]pi")])  # fmt: skip
+def test_a_constant_that_is_rounded_as_another_has_no_bounds(number, other):
+    """The error of a rounded 1/3 is no bound of that of 0.3333333333333333, which rounds to the same double."""
+    rates, method, *_ = problem("tumbling_prism", "rk4", (Fraction(0), Fraction(1, 100)))
+    near = replace(rates, outputs=((rates.outputs[0][0], parse(f"cos({number}*omega_2)")), *rates.outputs[1:]))
+    with pytest.raises(InputError, match=f"whose double is that of {other}; write"):
+        bounds_of_step(read_kernel(*step_source("tumbling_prism")), near, method, {})
+    exact = replace(rates, outputs=((rates.outputs[0][0], parse("cos(omega_2/3)/4")), *rates.outputs[1:]))
+    _require_intended(exact)
+
+
+HEAD = '#include "tumbling_prism_rk4_step.h"\n'
+TEXTS = {  # C that the proof does not read, or that other compilers read otherwise: what is replaced, by what
+    "another header": (HEAD, HEAD + '#include "other.h"\n'), "header of the system": (HEAD, HEAD + "#include <tgmath.h>\n"),
+    "header of functions": (HEAD, HEAD + '#include "symrot_math.h"\n'), "macro": (HEAD, HEAD + "#define t dt\n"),
+    "pragma": (HEAD, HEAD + "#pragma STDC FP_CONTRACT OFF\n"),
+    "function of the C library": (HEAD, HEAD + "double memcpy(double x)\n{\n    return x;\n}\n"),
+    "static function of the C library": (HEAD, HEAD + "static inline double fmin(double x)\n{\n    return x;\n}\n"),
+    "prototype": (HEAD, HEAD + "float cos(float x);\n"), "indented function": (HEAD, HEAD + " void exit(double x)\n{\n}\n"),
+    "variable": (HEAD, HEAD + "double errno;\n"), "text at the end": ("", "\nextern int x;\n"),
+    "function without its header": (HEAD, HEAD + "static inline double symrot_f(double x)\n{\n    return sqrt(x);\n}\n"),
+    "line comment": ("0.5*dt;", "0.5*dt //**/ 2.0\n;"), "carriage return": ("0.5*dt;", "0.5*dt; /* \r */"),
+    "guard of the header": (
+        HEAD, HEAD + "static inline double symrot_f(double x, double SYMROT_TUMBLING_PRISM_RK4_STEP_H)\n{\n    return x;\n}\n",
+    ),
+}  # fmt: skip
+
+
+def step_source(scene):
+    text = step_text(scene, "rk4")
+    return text.c()[0], f"symrot_{text.name}"
+
+
+@pytest.mark.parametrize("what", TEXTS)
+def test_a_c_text_with_more_than_its_functions_is_refused(what):
+    old, new = TEXTS[what]
+    source, name = step_source("tumbling_prism")
+    check_source(source, name.removeprefix("symrot_"))
+    text = source.replace(old, new, 1) if old else source + new
+    assert text != source
+    with pytest.raises(CertificateError, match="tumbling_prism_rk4_step"):
+        check_source(text, name.removeprefix("symrot_"))
+
+
+@pytest.mark.parametrize("literal", ["1e400", "1e-1000000000", "1e39f", "0x1p99999"])
+def test_a_literal_beyond_its_type_is_refused(literal):
+    source, name = step_source("tumbling_prism")
+    at = source.index("void symrot_tumbling_prism_rk4_stepf(") if literal.endswith("f") else 0
+    text = source[:at] + source[at:].replace("(void)t;", f"(void)t;\n    const double_ x9 = {literal};", 1)
+    text = text.replace("double_", "float" if literal.endswith("f") else "double")
+    with pytest.raises(CertificateError, match="expected a literal within the range of"):
+        read_kernel(text, name + ("f" if literal.endswith("f") else ""))
+
+
+def test_an_audit_refuses_a_c_text_that_includes_another_file(tmp_path):
+    """Such a file, which no hash covers, could define sin as cos."""
+    scene = tmp_path / "other.toml"
+    scene.write_text("schema = 1\nbody = {principal = [1, 2, 2]}\ninitial = {omega = [0, 0, 1]}\nspan = {t = [0, 1]}\n")
+    symrot.certify(str(scene), directory=tmp_path, step="exact")
+    source, path = tmp_path / "other_exact_step.c", tmp_path / "other_exact_step.cert.json"
+    assert symrot.audit(path).statements
+    text = source.read_text().replace("#include <math.h>", '#include <math.h>\n#include "macros.h"')
+    source.write_text(text)
+    data = json.loads(path.read_text())
+    data["files"][source.name] = sha256(text.encode()).hexdigest()
+    path.write_text(certificate_json(data))
+    with pytest.raises(CertificateError, match="expected no #include but <math"):
+        symrot.audit(path)
 
 
 @pytest.fixture(scope="module")
@@ -324,3 +405,23 @@ def test_a_quotient_of_whole_numbers_is_enclosed():
     assert truncation._over(0, 3) == 0 and truncation._over(6, 3) == 2
     third = truncation._over(1, 3)
     assert third.a < third.b and 1 in 3 * third
+
+
+@pytest.mark.parametrize("words", [[], ["--jacobian", "omega"], ["--step", "rk4"], ["--step", "exact"]], ids=" ".join)
+def test_an_audit_compares_with_the_scene_of_the_user(tmp_path, capsys, words):
+    """Kernel and steps of a scene outside the package are those of its file, and not those of a file with another moment."""
+    text = symrot.load_scene("tumbling_prism").with_(principal=[1, 2, "5/2"]).to_toml()
+    (tmp_path / "own.toml").write_text(text, encoding="utf-8")
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "own.toml").write_text(text.replace("5/2", "9/4"), encoding="utf-8")
+    assert "9/4" in (tmp_path / "other" / "own.toml").read_text(encoding="utf-8")
+    assert main(["emit", str(tmp_path / "own.toml"), *words, "-o", str(tmp_path)]) == 0
+    (certificate,) = tmp_path.glob("*.cert.json")
+    capsys.readouterr()
+    assert main(["audit", str(certificate)]) == 0 and "pass " in capsys.readouterr().out
+    assert main(["audit", str(certificate), "--scene", str(tmp_path / "own.toml")]) == 0
+    out = capsys.readouterr().out
+    assert "not compared" not in out and ("the scene own" in out or "equal those that symrot derives" in out)
+    assert main(["audit", str(certificate), "--scene", str(tmp_path / "other" / "own.toml")]) == 1
+    assert "expected" in capsys.readouterr().err
+    assert main(["audit", str(certificate), "--scene", "t_handle"]) == 1

@@ -13,7 +13,8 @@ from symrot.planning.plan import Plan, make_plan
 from symrot.planning.scene_kernel import SceneKernel, bind
 from symrot.propagation.compiled_models import scene_kernel
 from symrot.propagation.method import Choice
-from symrot.propagation.motion import Motion, make_motion
+from symrot.propagation.motions.make import make_motion
+from symrot.propagation.motions.motion import Motion
 from symrot.scene.scene import Scene
 
 __all__ = ["PARTS", "Problem", "State"]

@@ -36,7 +36,7 @@ from symrot.planning.general_structure import general_structure
 from symrot.planning.plan import Plan
 from symrot.propagation.compiled_models import formula_deviations
 from symrot.propagation.method import Choice
-from symrot.propagation.motion import stepped_motion
+from symrot.propagation.motions.make import stepped_motion
 from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.smoothness import non_smooth_torque

@@ -19,7 +19,8 @@ from symrot.bench.comparison.exact_path import ExactPath
 from symrot.build import cache
 from symrot.closed_form.registry import exact_form
 from symrot.planning.plan import make_plan
-from symrot.propagation.motion import Motion, SteppedMotion
+from symrot.propagation.motions.methods import SteppedMotion
+from symrot.propagation.motions.motion import Motion
 from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers.smoothness import non_smooth_torque
 from symrot.propagation.steppers.stepping import Stats

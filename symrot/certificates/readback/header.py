@@ -1,14 +1,15 @@
 """The check that the header of an emitted kernel contains only fixed lines and the prototypes of its C file.
 
 A header can change what a C file means; a macro called ``sin`` is enough. So every line outside comments must be one
-of the constants ``_TOP`` to ``_END``, in this order, or part of a prototype.
+of the constants ``_TOP`` to ``_END``, in this order, or part of a prototype. So can another header, or a function that
+is called like one of the C library: the C file of a step contains nothing but its functions.
 """
 
 import re
 
 from symrot.errors import CertificateError
 
-__all__ = ["check_header"]
+__all__ = ["check_header", "check_source"]
 
 _COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 _TOP = """
@@ -92,6 +93,40 @@ def check_header(header: str, source: str, name: str) -> None:
     if declared != defined:
         odd = sorted(declared ^ defined)[0]
         raise CertificateError(f"{name}.h: expected the same functions as in {name}.c, but {odd!r} differs")
+
+
+def check_source(source: str, name: str) -> None:
+    """Raise CertificateError if a C file includes other files, or contains anything but the functions of a step.
+
+    Parameters
+    ----------
+    source : str
+        The text of NAME.c.
+    name : str
+        The name of the step.
+    """
+    if odd := re.search(r"\\|\?\?|//|[\0-\x09\x0b-\x1f]", source):
+        raise CertificateError(
+            f"{name}.c: expected C without backslash, trigraph, // or control character, got {odd[0]!r}"
+        )
+    guard, lines = f"SYMROT_{name.upper()}_H", _COMMENT.sub(" ", source).split("\n")
+    for line in (line.strip() for line in lines if "#" in line):
+        if line not in ("#include <math.h>", f'#include "{name}.h"'):
+            raise CertificateError(f"{name}.c: expected no #include but <math.h> and {name}.h, got {line[:80]!r}")
+    code = " ".join(line for line in lines if "#" not in line)
+    if re.search(rf"\b{guard}\b", code):
+        raise CertificateError(f"{name}.c: expected no name that the header defines, got {guard}")
+    calls = re.findall(r"\b(?!symrot_|for\b)[a-z]\w*\s*\((?!\s*void\b)", code)
+    blocks = 1
+    while blocks:  # the innermost first
+        code, blocks = re.subn(r"\{[^{}]*\}", "@", code)
+    *heads, end = (" ".join(head.split()) for head in code.split("@"))
+    own = rf"void symrot_{name}f?(_batch)?\([^()]*\)|static inline (double|float) symrot_\w+\([^()]*\)"
+    for head in (*heads, *[end] * bool(end)):
+        if head == end or not re.fullmatch(own, head):
+            raise CertificateError(f"{name}.c: expected a function of the step, got {head[:80]!r}")
+    if calls and "#include <math.h>" not in source:
+        raise CertificateError(f"{name}.c: expected #include <math.h> for {calls[0]}..), got none")
 
 
 def _lines(text: str) -> list[str]:

@@ -4,13 +4,14 @@ A function works on one sample, or on a batch of many samples. This module share
 ``where`` is the name of a file, for error messages; ``scope`` has the names that are known at a line of the text.
 """
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
-from struct import pack, unpack
 
 from symrot.certificates.readback.c_functions import CFunction, Cursor, Parameter, Token, functions_of
+from symrot.certificates.readback.intended_constants import rounds_to
 from symrot.certificates.readback.operations import RELATIONS, GraphBuilder, Operations
 from symrot.errors import CertificateError
 
@@ -190,11 +191,10 @@ class _BodyReader:
         if is_float != (self.real == "float") or text.isdigit():
             raise cursor.fail(f"a literal of type {self.real}")
         cursor.next()
-        digits = text.removesuffix("f") if is_float else text
-        value = float.fromhex(digits) if digits.lower().startswith("0x") else float(digits)
-        if self.real == "float":
-            value = _nearest_float(digits, value)
-        return self.builder.add("const", Fraction(value))
+        try:
+            return self.builder.add("const", _nearest(text.removesuffix("f") if is_float else text, self.real))
+        except OverflowError:
+            raise cursor.fail(f"a literal within the range of {self.real}", repr(text)) from None
 
     def _element(self, cursor: Cursor, scope: _Scope, name: str) -> int:
         """Read the index after the name of an input array; return the node for this component, such as ``q[1]``."""
@@ -250,19 +250,21 @@ class _BodyReader:
         return value
 
 
-def _nearest_float(digits: str, value: float) -> float:
-    """Return the float nearest to the decimal text ``digits``, of which ``value`` is the nearest double.
+def _nearest(digits: str, real: str) -> Fraction:
+    """Return the double or float nearest to the text of a number; raise OverflowError if it is too large."""
+    # rounding the nearest double again could give the neighbouring float
+    return rounds_to(_exact(digits), "binary64" if real == "double" else "binary32")
 
-    Rounding the double again could give the neighbouring float.
-    """
-    if digits.lower().startswith("0x"):
-        return float(unpack("f", pack("f", value))[0])
-    exact, rounded = Fraction(digits), float(unpack("f", pack("f", value))[0])
-    bits = unpack("I", pack("f", rounded))[0]
-    near = [float(unpack("f", pack("I", bits + step))[0]) for step in (-1, 0, 1) if 0 <= bits + step < 0x7F800000]
-    closest = min(abs(Fraction(item) - exact) for item in near)
-    ties = [item for item in near if abs(Fraction(item) - exact) == closest]
-    return min(ties, key=lambda item: unpack("I", pack("f", item))[0] & 1)
+
+def _exact(digits: str) -> Fraction:
+    """Return the exact value of a decimal or hexadecimal number, such as 0x1.8p-1 = 3/4."""
+    if re.search(r"[ep][-+]?0*\d{5}", digits, re.IGNORECASE):
+        raise OverflowError
+    if not digits.lower().startswith("0x"):
+        return Fraction(digits)
+    mantissa, _, exponent = digits.lower().removeprefix("0x").partition("p")
+    whole, _, part = mantissa.partition(".")
+    return Fraction(int(whole + part, 16), 16 ** len(part)) * Fraction(2) ** int(exponent)
 
 
 def _defined(functions: Mapping[str, CFunction], name: str, where: str) -> CFunction:

@@ -21,6 +21,8 @@ __all__ = [
 OF_MATRICES = ("det", "trace", "inverse", "adjugate", "transpose")
 UNIT_NAMES = ("I", "E", "I_3", "E_3")
 COLUMN = (3, 1)
+OF_NUMBERS = ("sin", "cos", "tan")
+"""Functions of a number, as of the length of a vector."""
 
 
 def matrix_of_entries(name: str, timed: bool = False) -> Node:
@@ -268,6 +270,9 @@ class _Lengths:
         # two columns cannot be multiplied
         if node.kind == "product" and own.count(COLUMN) > 1 and {*own} <= {COLUMN, None}:
             return self.scalar(node)
+        # a column has no sine, and nothing is divided by it
+        if node.kind == "inv" or (node.kind == "call" and node.value in OF_NUMBERS):
+            return replace(node, args=tuple(map(self.scalar, node.args)))
         # a column cannot be added to a scalar
         if node.kind == "sum" and None in own and COLUMN in own and not _has_added_name(node):
             return replace(node, args=tuple(self.scalar(child) for child in node.args))

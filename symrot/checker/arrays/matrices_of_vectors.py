@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from symrot import symbols
 from symrot.checker.claim.reader import read_expression
-from symrot.checker.claim.tree import TIME, Node, is_derivative, number, product, walk
+from symrot.checker.claim.tree import TIME, Node, is_derivative, negated, number, product, text, walk
 from symrot.checker.claim.vectors import Vector
 from symrot.exact.printing import as_text
 from symrot.kinematics.rotation_vector import dcm_of_axis_angle
@@ -38,6 +38,7 @@ class WithMatrices(NamedTuple):
     vectors: tuple[Vector, ...] = ()
     letters: tuple[str, ...] = ()  # the letters K that are replaced
     notes: tuple[str, ...] = ()
+    written: tuple[tuple[Node, Node], ...] = ()  # rotation matrices, each with the exponential that it stands for
 
 
 def with_matrices_of_vectors(
@@ -73,7 +74,9 @@ def with_matrices_of_vectors(
         return WithMatrices(relation)
     notes = [f"{name} is read as the skew matrix of the unit vector {axis}" for name, axis in axes.items()]
     new = tuple(Vector(axis, unit=True) for axis in dict.fromkeys(axes.values()) if axis not in hats)
-    return WithMatrices((sign, made[0], made[1]), new, tuple(name for name in axes if name not in hats), tuple(notes))
+    letters_of_matrices = tuple(name for name in axes if name not in hats)
+    written = tuple(pair for side in sides for pair in _exponentials(side, axes))
+    return WithMatrices((sign, made[0], made[1]), new, letters_of_matrices, tuple(notes), written)
 
 
 def _axis_name(letter: str, used: Collection[str]) -> str:
@@ -148,14 +151,8 @@ def _rewritten(tree: Node, axes: Mapping[str, str]) -> Node:
 
     ``axes`` maps K to k.
     """
-    exponent = _exponent(tree)
-    factors = _factors(exponent) if exponent is not None else ()
-    if exponent is not None and exponent.kind != "neg" and len(factors) == 2:
-        for matrix, angle in (factors, factors[::-1]):
-            axis = axes.get(_name_of(matrix))
-            vector = Node("name", axis) if axis else matrix.args[0] if matrix.value == "skew" else None
-            if vector is not None and vector.kind == "name":
-                return _rotation(vector, angle)
+    if (rotation := _rotation_of_exponential(tree, axes)) is not None:
+        return rotation
     if tree.kind == "call" and tree.value == "dot" and _name_of(tree) in axes:
         return Node("power", None, (_rewritten(tree.args[0], axes), number(2)), tree.span)
     if tree.kind == "name" and tree.value in axes:
@@ -165,6 +162,32 @@ def _rewritten(tree: Node, axes: Mapping[str, str]) -> Node:
     made = replace(tree, args=tuple(_rewritten(child, axes) for child in tree.args))
     is_sum = made.kind == "sum" and any(node.value == "skew" for _, node in walk(made))
     return _with_unit(made) if is_sum else made
+
+
+def _rotation_of_exponential(tree: Node, axes: Mapping[str, str]) -> Node | None:
+    """Return the tree of the rotation matrix for ``exp(theta*K)`` and ``exp(skew(v))``; None for other formulas."""
+    exponent = _exponent(tree)
+    if exponent is None:
+        return None
+    factors = _factors(exponent)
+    signed = negated if exponent.kind == "neg" else (lambda angle: angle)
+    if len(factors) == 1 and factors[0].value == "skew" and factors[0].args[0].kind == "name":
+        (vector,) = factors[0].args
+        length = Node("call", "sqrt", (Node("call", "dot", (vector, vector)),))
+        return _rotation(vector, signed(length), length)
+    for matrix, angle in (factors, factors[::-1]) if len(factors) == 2 else ():
+        axis = axes.get(_name_of(matrix))
+        vector = Node("name", axis) if axis else matrix.args[0] if matrix.value == "skew" else number(0)
+        if vector.kind == "name":
+            return _rotation(vector, signed(angle))
+    return None
+
+
+def _exponentials(tree: Node, axes: Mapping[str, str]) -> Iterator[tuple[Node, Node]]:
+    """Yield (rotation matrix, exponential) for each exponential of a skew matrix in a tree."""
+    for _, node in walk(tree):
+        if (rotation := _rotation_of_exponential(node, axes)) is not None:
+            yield read_expression(text(rotation)), node
 
 
 def _with_unit(tree: Node) -> Node:
@@ -179,9 +202,15 @@ def _derived_rotation() -> Node:
     return read_expression(as_text(dcm_of_axis_angle()))
 
 
-def _rotation(axis: Node, angle: Node) -> Node:
-    """Return the tree of the rotation matrix about the unit vector ``axis``, the exponential of angle times skew."""
-    places = {symbol.name: Node("index", None, (axis, number(n))) for n, symbol in enumerate(symbols.axis)}
+def _rotation(axis: Node, angle: Node, length: Node | None = None) -> Node:
+    """Return the tree of the rotation matrix about ``axis``, the exponential of angle times skew matrix.
+
+    ``length`` is the length of ``axis``, by default 1.
+    """
+    components = [Node("index", None, (axis, number(n))) for n in range(3)]
+    if length is not None:
+        components = [product([component, Node("inv", None, (length,))]) for component in components]
+    places = {symbol.name: component for symbol, component in zip(symbols.axis, components, strict=True)}
     return _substituted(_derived_rotation(), {**places, symbols.alpha.name: angle})
 
 

@@ -58,6 +58,8 @@ def used_quaternions(
         The names that are defined.
     """
     sign, *sides = relation
+    sides = list(map(_with_pairs, sides))
+    relation = sign, sides[0], sides[1]
     if _has_units(sides, (*vectors, *known)):
         return _of_units(relation)
     by_components = _by_components(relation, known)
@@ -69,6 +71,8 @@ def used_quaternions(
         for _, node in walk(side)
         if node.kind == "call" and node.value == CONJUGATE and node.args[0].kind == "name"
     }
+    factors = {part.value for side in sides for _, node in walk(side) if node.value == "qmul" for part in node.args}
+    bold |= {node.args[0].value for side in sides for _, node in walk(side) if is_derivative(node)} & factors
     vectors = [name for name in vectors if name not in bold]  # a bold letter with a conjugate is a quaternion
     names = _quaternion_names(sides, vectors, shapes, known)
     if not names and not any(node.value == CONJUGATE for side in sides for _, node in walk(side)):
@@ -275,6 +279,21 @@ def _vector_of_pair(node: Node) -> Sequence[Node]:
     inside = node.args[0] if node.kind == "call" and node.value == "Matrix" else node
     is_pair = inside.kind == "list" and len(inside.args) == 2 and inside.args[1].kind == "name"
     return inside.args[1:] if is_pair else ()
+
+
+def _with_pairs(tree: Node) -> Node:
+    """Return a tree with the pair ``(0, v)`` for the column of 0 and v as a factor of a product of quaternions."""
+    args = tuple(map(_with_pairs, tree.args))
+    if tree.kind == "call" and tree.value == "qmul":
+        args = tuple(map(_as_pair, args))
+    return replace(tree, args=args)
+
+
+def _as_pair(node: Node) -> Node:
+    rows = node.args[0].args if node.kind == "call" and node.value == "Matrix" else ()
+    entries = tuple(row.args[0] if row.kind == "list" and len(row.args) == 1 else row for row in rows)
+    is_pair = len(entries) == 2 and entries[1].kind == "name"
+    return Node("list", ("(", ")"), entries, node.span) if is_pair else node
 
 
 def _is_list(node: Node) -> bool:

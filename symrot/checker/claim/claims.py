@@ -12,7 +12,6 @@ from typing import Any
 from sympy import Expr, Symbol
 
 from symrot.checker.claim.interpreter import Interpreter, time
-from symrot.checker.claim.reader import Relation
 from symrot.checker.claim.scope import Divisor
 from symrot.checker.claim.shapes import (
     shape_of,
@@ -20,6 +19,7 @@ from symrot.checker.claim.shapes import (
 from symrot.checker.claim.tree import Node, text, walk
 from symrot.checker.context.context import NO_CONTEXT, Context
 from symrot.checker.decide.decision import Equation
+from symrot.checker.typed.readings import Relation
 from symrot.errors import InputError
 from symrot.exact.decision import ShapeMismatch, matched_sides
 
@@ -89,6 +89,8 @@ class Claim:
         components.
     context : Context
         Statements in words about the names of the claim and about the body, such as ``"rod"``.
+    written : tuple of (Node, Node)
+        Formulas in ``relation``, each with the short form that the text has for it, such as an exponential.
     """
 
     id: str = ""
@@ -108,6 +110,7 @@ class Claim:
     editable: tuple[str, ...] = SIDES
     has_parts: bool = False
     context: Context = NO_CONTEXT
+    written: tuple[tuple[Node, Node], ...] = ()
 
     @property
     def has_double_equals(self) -> bool:

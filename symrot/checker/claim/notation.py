@@ -7,8 +7,9 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Protocol
 
-from symrot.checker.claim.reader import Reading, Relation, read_expression, read_relation
+from symrot.checker.claim.reader import read_expression, read_relation
 from symrot.checker.claim.tree import Node, is_derivative, text
+from symrot.checker.typed.readings import Reading, Relation
 from symrot.errors import InputError
 
 __all__ = ["Notation", "TypedNotation", "notation_of", "with_formulas"]

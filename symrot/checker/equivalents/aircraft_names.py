@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.reader import Relation
 from symrot.checker.claim.tree import Node, is_derivative, walk, with_names
 from symrot.checker.equivalents.equivalent_claim import brought_back
+from symrot.checker.typed.readings import Relation
 from symrot.checker.verdict import Verdict
 
 __all__ = ["Renamed", "with_usual_letters"]

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from symrot.checker.claim.claims import relation_text
-from symrot.checker.claim.reader import Relation, read_relation
+from symrot.checker.claim.reader import read_relation
+from symrot.checker.typed.readings import Relation
 from symrot.checker.verdict import Repair, Verdict
 from symrot.errors import InputError
 

@@ -1,9 +1,9 @@
 """Claims solved by an inverse matrix, ``ω' = J^-1 (M - ω × J ω)``, decided as ``J ω' = M - ω × J ω``."""
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.reader import Relation
 from symrot.checker.claim.tree import Node, number, product
 from symrot.checker.equivalents.equivalent_claim import brought_back
+from symrot.checker.typed.readings import Relation
 from symrot.checker.verdict import Verdict
 
 __all__ = ["in_claim", "multiplied"]

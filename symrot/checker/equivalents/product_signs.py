@@ -6,12 +6,12 @@ So each claim is decided with the opposite sign of every product of inertia.
 from dataclasses import replace
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.reader import Relation
 from symrot.checker.claim.tree import Node, is_derivative, negated
 from symrot.checker.context.context import Context, Meaning
 from symrot.checker.context.quantities import QUANTITIES
 from symrot.checker.equivalents.equivalent_claim import brought_back
 from symrot.checker.repair.edits import PRODUCT_OF_INERTIA
+from symrot.checker.typed.readings import Relation
 from symrot.checker.verdict import Verdict
 
 __all__ = ["in_claim", "sign_by_integral", "with_minus_sign", "with_sign"]

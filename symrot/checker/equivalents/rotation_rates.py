@@ -13,10 +13,10 @@ from sympy import Function, Symbol
 
 from symrot.checker.claim.claims import Claim, relation_text
 from symrot.checker.claim.interpreter import time
-from symrot.checker.claim.reader import Relation
 from symrot.checker.claim.tree import Node, is_derivative
 from symrot.checker.decide.decision import Equation, decide_equation
 from symrot.checker.repair.edits import FAULT_DESCRIPTIONS
+from symrot.checker.typed.readings import Relation
 from symrot.checker.verdict import Diagnosis, Repair, Verdict
 from symrot.kinematics.rotations import elementary_rotation, vee
 

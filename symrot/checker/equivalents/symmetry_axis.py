@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.reader import Relation
 from symrot.checker.claim.tree import Node
 from symrot.checker.equivalents.equivalent_claim import brought_back
+from symrot.checker.typed.readings import Relation
 from symrot.checker.verdict import Verdict
 
 __all__ = ["in_claim", "with_axis_z"]

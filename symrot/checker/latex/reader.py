@@ -9,21 +9,14 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, ClassVar
 
-from symrot.checker.claim.reader import (
-    Chain,
-    Reading,
-    Relation,
-    distinct_readings,
-    each_reading,
-    read_expression,
-    read_relation,
-)
+from symrot.checker.claim.reader import read_expression, read_relation
 from symrot.checker.claim.tree import TIME, Node, is_derivative, sum_of, text, walk
 from symrot.checker.claim.vectors import Vector, used_vectors, without_marks
 from symrot.checker.latex.calculus import DOTS, CalculusPart
 from symrot.checker.latex.cursor import JOINTS, UPRIGHT, Names, is_letter
 from symrot.checker.latex.names import NAME_MARKS, OPERATORS, VECTOR_MARKS
 from symrot.checker.latex.sums import FUNCTIONS, SIGNS
+from symrot.checker.typed.readings import Chain, Reading, Relation, distinct_readings, each_reading
 from symrot.errors import InputError
 from symrot.latex import tree
 
@@ -279,11 +272,13 @@ class _Interpreter(CalculusPart):
         r"""Parse the left side of a definition of a matrix, ``R(\phi) =``, and return the name R; else None."""
         # brackets around it, as in [M_3(\theta)] =, are left out
         opened = 1 if self.at("[") else 0
+        item = self.peek(opened)
+        letter = tree.alone(item.inside) if isinstance(item, tree.Font) else item
         named = 2 if isinstance(self.peek(opened + 1), tree.Script) else 1
         first = self.index + opened + named
         texts = [item.text for item in self.items[first:]]
         end = texts.index(")") if ")" in texts else 0
-        if texts[:1] != ["("] or not is_letter(self.peek(opened)) or texts[1 : end + 1] == ["t", ")"]:
+        if texts[:1] != ["("] or not is_letter(letter) or texts[1 : end + 1] == ["t", ")"]:
             return None
         if texts[end + 1 : end + 2 + opened] != [*"]"[:opened], "="]:
             return None
@@ -296,11 +291,10 @@ class _Interpreter(CalculusPart):
         # otherwise R(\phi) is a product
         if not (is_matrix or (letters and {*letters} <= rest)):
             return None
-        self.index += opened
-        item = self.next()
+        self.index += opened + 1
         subscript = self.script("_")
         self.index += end + 1 + opened
-        name = item.text.removeprefix("\\")
+        name = letter.text.removeprefix("\\")
         name = self.resolved(name, self.subscript(subscript)) if subscript else name
         self.notes.append(f"{name}(..) is read as the name {name}")
         return Node("name", name)

@@ -10,12 +10,11 @@ from symrot.checker.arrays.index_notation import component_of_cross
 from symrot.checker.arrays.pauli import commutator
 from symrot.checker.arrays.quaternions import CONJUGATE, quaternion_product
 from symrot.checker.claim.functions import BUILT_IN
-from symrot.checker.claim.reader import DEEPEST_NESTING
 from symrot.checker.claim.tree import Node, is_derivative, negated, number, product, sum_of
 from symrot.checker.claim.vectors import MARK
 from symrot.checker.latex.cursor import CLOSING, UPRIGHT, Cursor, is_d, is_letter
 from symrot.checker.latex.macros import INSTEAD
-from symrot.checker.typed.cursor import is_usual_vector
+from symrot.checker.typed.cursor import DEEPEST_NESTING, is_usual_vector
 from symrot.checker.typed.defined_functions import DEFINED
 from symrot.checker.typed.words import ALIASES
 from symrot.latex import tree
@@ -327,6 +326,8 @@ class SumsPart(Cursor):
             return matrix
         bars, self.open_bars = self.open_bars, ()
         inner = self.expression()
+        if opening.text == "(" and "\\otimes" in self.source and self.take(","):  # a quaternion (0, v)
+            inner = Node("list", ("(", ")"), (inner, self.expression()))
         inner = self.paired(inner, "-" if opening.text == "[" else "+") if opening.text in ("[", "\\{") else inner
         crossed = opening.text == "[" and self.take("\\times")
         self.expect(CLOSING[opening.text])

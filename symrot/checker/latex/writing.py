@@ -8,9 +8,10 @@ from typing import ClassVar
 
 from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.notation import with_formulas
-from symrot.checker.claim.reader import Relation, read_relation, with_time
+from symrot.checker.claim.reader import read_relation, with_time
 from symrot.checker.claim.tree import Node, number, text, walk
 from symrot.checker.latex.reader import Names, read_latex
+from symrot.checker.typed.readings import Relation
 from symrot.errors import InputError
 from symrot.latex.tokens import GREEK
 

@@ -98,7 +98,7 @@ QUANTITIES: tuple[tuple[str, tuple[str, ...]], ...] = (
     (r"W", ("work", "potential", "energy")),
     (r"V|U|E_?p|PE", ("potential", "work")),
     (r"d[LHhM](_?([xyzOGCPAB0-3]|cm))?", ("rate of the angular momentum",)),
-    (r"[Hh](_?([xyzOGCPAB0-3]|cm))?", ("angular momentum",)),
+    (r"H", ("angular momentum", "energy of")), (r"[Hh](_?([xyzOGCPAB0-3]|cm))?", ("angular momentum",)),
     (r"L(_?([xyzOGCPAB0-3]|cm))?", ("angular momentum", "Lagrangian", "torque")),
     (r"p_?(phi|theta|psi|varphi)|P_?(phi|theta|psi)", ("momentum of",)),
     (r"M", ("torque", "angular momentum of", "gyroscopic couple")),
@@ -121,6 +121,10 @@ MOMENTA = {"phi": "precession", "theta": "nutation", "psi": "spin"}
 
 MOMENT, KNOWN_MOMENT = re.compile(r"[IJ](_?\w+)?"), re.compile(r"[ABCIJ](_?\w+)?")
 """Names that are moments of inertia in any claim, and names of moments of inertia in known formulas."""
+
+RATE_OF_ANGLE = re.compile(rf"diff\(({'|'.join(ANGLES)}|varphi|vartheta)\(t\), t\)")
+KNOWN_RATE = re.compile(r"d[a-z]+(_?\w+)?|(omega|Omega|w|n)(_?\w+)?")
+"""Rates of angles in claims, and symbols of known formulas that they may stand for."""
 
 OF_MATRICES = ("inertia tensor", "rotation matrix", "Jacobian", "quaternion")
 """Words for quantities that are matrices."""
@@ -503,8 +507,12 @@ def keeps_places(named: NamedFormula, known: Identification) -> bool:
     momenta = [known.mapping.get(momentum, "") for momentum in ("p_phi", "p_psi")]
     if momenta[0].endswith(("3", "psi")) or momenta[1].endswith(("z", "phi")):
         return False
-    # a letter of a moment of inertia stands for nothing else
-    return not any(MOMENT.fullmatch(new) and not KNOWN_MOMENT.fullmatch(old) for old, new in known.mapping.items())
+    # a letter of a moment of inertia, and a rate of an angle, stand for nothing else
+    return not any(
+        (MOMENT.fullmatch(new) and not KNOWN_MOMENT.fullmatch(old))
+        or (RATE_OF_ANGLE.fullmatch(new) and not KNOWN_RATE.fullmatch(old))
+        for old, new in known.mapping.items()
+    )
 
 
 def _is_reversed(name: str, known: Identification) -> bool:

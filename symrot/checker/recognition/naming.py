@@ -560,6 +560,8 @@ def _edited(claim: Claim, named: NamedFormula) -> Verdict | None:
     for edit in (*_edits(claim, named.formula), *_with_all_terms_added(named)):
         if names_in(edit.tree) < letters or edit.code == "extra_term":  # the formula may be a more general one
             continue
+        if edit.code == "two_faults":
+            continue  # two changes alone are no evidence of a fault
         all_readings = _readings(claim, named, edit.tree, least, interpreter)
         readings = tuple(known for known in all_readings if not any(body in known.name for body in RARE))
         is_growth = re.fullmatch("lambda|sigma|s", named.name) is not None

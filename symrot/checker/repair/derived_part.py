@@ -9,10 +9,11 @@ from typing import Any
 from sympy import Derivative, Dummy, Expr, ImmutableMatrix, Matrix, MatrixBase, Rational, Symbol, cos, cot, csc, sin
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.reader import Declared, read_expression
+from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, number, product, replaced, walk
 from symrot.checker.repair.entries import replacement
 from symrot.checker.repair.filter import matrix_entries
+from symrot.checker.typed.readings import Declared
 from symrot.exact.decide import normal_form
 from symrot.exact.decision import flatten
 from symrot.exact.printing import as_text

@@ -94,6 +94,9 @@ _SUBSCRIPT = re.compile(rf"_(?:[A-Za-z0-9]+|[{_GREEK}±∓])|[{''.join(_LOWERED)
 _PRIMED = re.compile(rf"'+(?=[{''.join(_LOWERED)}])")
 """Primes between a letter and its subscript."""
 
+_OF_MOMENTUM = re.compile(rf"[φϕθψ](?![{''.join(_OVER)}_{''.join(_LOWERED)}0-9(])")
+"""The angle after the p of its momentum, ``pφ``."""
+
 _AXIS_PAIR = re.compile("[IJP]_[xyz]'[xyz]'")
 """A product of inertia about axes with a prime."""
 
@@ -261,6 +264,8 @@ def _name(text: str, at: int, name: re.Match[str]) -> Iterator[tuple[str, str, i
         return
     if word.endswith("_") and text[stop : stop + 1] and text[stop] in LETTERS:
         word, stop = word + LETTERS[text[stop]], stop + 1
+    if word in ("p", "P") and _OF_MOMENTUM.match(text, stop):  # a PDF loses the lower place of an index
+        word, stop = f"{word}_{LETTERS[text[stop]]}", stop + 1
     if _AXIS_PAIR.fullmatch(f"{word}{text[stop : stop + 3]}"):  # I_x'y' is one name, as in LaTeX
         yield "name", f"{word}_prime{text[stop + 1]}_prime", stop + 3
         return

@@ -82,6 +82,9 @@ MOST_LETTERS = 3
 """The most letters of a product that the text does not use by themselves."""
 
 
+_OF_CENTRE = re.compile("[A-Za-z](cm|CM|com|COM|cg|CG)", re.ASCII)
+"""A quantity of the centre of mass or of gravity, such as ``vcm``."""
+
 WORDS_WITH_I = ("if", "in", "is")
 """Words of two letters that start with i."""
 
@@ -106,7 +109,12 @@ def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], 
     ((('a', 'b'), False), ((), False), ((), False))
     """
     # a name is not split
-    if word in WHOLE_WORDS or len(word) < 2 or (word.startswith("d") and word[1:] in GREEK_WORDS):
+    if (
+        word in WHOLE_WORDS
+        or len(word) < 2
+        or _OF_CENTRE.fullmatch(word)
+        or (word.startswith("d") and word[1:] in GREEK_WORDS)
+    ):
         return (), False
     if joined := _JOINED.fullmatch(word):
         function, number, name, index = joined.groups()

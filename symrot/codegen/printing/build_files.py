@@ -106,13 +106,13 @@ endif()
 """
 
 _CMAKE = """\
-# Kernels of symrot as a static library, and their installation. Printed by symrot; do not edit.
+# Kernels of symrot as static libraries, and their installation. Printed by symrot; do not edit.
 #
 #     add_subdirectory(path/to/this/folder symrot)
 #     target_link_libraries(firmware PRIVATE symrot::heavy_top)
 #
-# Inside another project, only kernels that are linked are compiled. On its own, the folder makes one library:
-# -DSYMROT_KERNELS="euler_zyx_dcm;heavy_top" builds and installs these kernels alone; by default, all of this folder.
+# Inside another project, only kernels that are linked are compiled. On its own, the folder builds and installs all its
+# kernels, or those that -DSYMROT_KERNELS="euler_zyx_dcm;heavy_top" names. Several folders may have one prefix.
 # After the installation, find_package(symrot COMPONENTS ..) and `pkg-config --libs symrot-heavy_top` know them by name.
 cmake_minimum_required(VERSION 3.13)
 project(symrot_kernels VERSION @VERSION@ LANGUAGES C)
@@ -128,49 +128,25 @@ foreach(kernel IN LISTS _symrot_kernels)
   get_target_property(source symrot_${kernel} SOURCES)
   get_filename_component(folder "${source}" DIRECTORY)
   list(APPEND symrot_sources "${source}" "${folder}/${kernel}.h")
-  list(APPEND symrot_files "${source}")
   if(EXISTS "${folder}/${kernel}_parameters.h")
     list(APPEND symrot_sources "${folder}/${kernel}_parameters.h")
   endif()
+  set_target_properties(symrot_${kernel} PROPERTIES EXCLUDE_FROM_ALL FALSE)
+  file(WRITE "${CMAKE_CURRENT_BINARY_DIR}/symrot-${kernel}.pc" "prefix=${CMAKE_INSTALL_PREFIX}
+
+Name: symrot-${kernel}
+Description: The kernel ${kernel} of symrot
+Version: @VERSION@
+Cflags: -I\\${prefix}/share/symrot
+Libs: -L\\${prefix}/lib -lsymrot_${kernel} -lm
+")
+  install(TARGETS symrot_${kernel} ARCHIVE DESTINATION lib)
+  install(FILES "${CMAKE_CURRENT_BINARY_DIR}/symrot-${kernel}.pc" DESTINATION lib/pkgconfig)
 endforeach()
 if(EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/symrot_math.h")
   list(APPEND symrot_sources "${CMAKE_CURRENT_SOURCE_DIR}/symrot_math.h")
 endif()
-add_library(symrot STATIC ${symrot_files})
-list(GET _symrot_kernels 0 first)
-get_target_property(options symrot_${first} COMPILE_OPTIONS)
-set_target_properties(symrot PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON POSITION_INDEPENDENT_CODE ON)
-target_include_directories(symrot PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}")
-if(options)
-  target_compile_options(symrot PRIVATE ${options})
-endif()
-
-set(prefix "${CMAKE_INSTALL_PREFIX}")
-configure_file(symrot.pc.in symrot.pc @ONLY)
-install(FILES "${CMAKE_CURRENT_BINARY_DIR}/symrot.pc" DESTINATION lib/pkgconfig)
-foreach(kernel IN LISTS _symrot_kernels)
-  file(WRITE "${CMAKE_CURRENT_BINARY_DIR}/symrot-${kernel}.pc" "Name: symrot-${kernel}
-Description: The kernel ${kernel} of symrot
-Version: @VERSION@
-Requires: symrot
-")
-  install(FILES "${CMAKE_CURRENT_BINARY_DIR}/symrot-${kernel}.pc" DESTINATION lib/pkgconfig)
-endforeach()
-install(TARGETS symrot ARCHIVE DESTINATION lib)
 install(FILES ${symrot_sources} symrotConfig.cmake symrotConfigVersion.cmake DESTINATION share/symrot)
-"""
-
-_PKG_CONFIG = """\
-# Printed by symrot; do not edit. CMake puts in the prefix; by hand: sed 's|@prefix@|/usr/local|'
-prefix=@prefix@
-includedir=${prefix}/share/symrot
-libdir=${prefix}/lib
-
-Name: symrot
-Description: Kernels of rigid-body rotation, emitted by symrot
-Version: @VERSION@
-Cflags: -I${includedir}
-Libs: -L${libdir} -lsymrot -lm
 """
 
 
@@ -178,10 +154,7 @@ def build_files() -> dict[str, str]:
     """Return the texts of the build files for a folder with all C kernels: a mapping from file name to text."""
     clang = " ".join(flag for flag in FLAGS if "tree" not in flag)
     major, minor, *_ = __version__.split(".")
-    texts = {
-        "CMakeLists.txt": _CMAKE, "symrotConfig.cmake": _CONFIG, "symrotConfigVersion.cmake": _VERSION,
-        "symrot.pc.in": _PKG_CONFIG,
-    }  # fmt: skip
+    texts = {"CMakeLists.txt": _CMAKE, "symrotConfig.cmake": _CONFIG, "symrotConfigVersion.cmake": _VERSION}
     values = {"GNU": " ".join(FLAGS), "CLANG": clang, "VERSION": __version__, "MAJOR": major, "MINOR": minor}
     for word, value in values.items():
         texts = {name: text.replace(f"@{word}@", value) for name, text in texts.items()}

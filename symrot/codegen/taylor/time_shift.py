@@ -87,7 +87,7 @@ class _Mover:
         self.forms: dict[str, _Form] = {TIME: _Form(None, (ZERO, ONE))}
         self.forms |= {name: _Form(("symbol", name)) for name, *_ in self.states.components}
         self.forms |= {name: _Form(("symbol", name), (("symbol", name),)) for name, *_ in self.own.components}
-        self.known: dict[tuple[tuple[Node, ...], bool], Node] = {}
+        self.known: dict[tuple[Node, ...], Node] = {}
         self.added: list[tuple[str, Node]] = []
 
     def result(self) -> tuple[Program, Parameters]:
@@ -121,8 +121,10 @@ class _Mover:
         terms = _terms(node, [part.terms for part in parts])
         if terms is not None and len(terms) == 2:
             return _Form(None, terms)
-        turns = kind == "call" and node[1] in TURNING
-        written = tuple(self.written(part, turns) for part in parts)
+        phase = parts[0].terms
+        if kind == "call" and node[1] in TURNING and phase is not None and len(phase) > 1 and not parts[0].centred:
+            return _Form(self.turned(node[1], phase))
+        written = tuple(map(self.written, parts))
         if kind == "call":
             return _Form((kind, node[1], written), terms)
         # such a product is not expanded: ((t - c)/w)**2 would become a difference of large numbers near a narrow pulse
@@ -164,30 +166,46 @@ class _Mover:
         else:
             yield negative, self.read(node)
 
-    def written(self, form: _Form, turns: bool = False) -> Node:
-        """Return the formula of a :class:`_Form` in the shifted time; a polynomial is written by Horner's rule.
-
-        ``turns`` allows multiples of 2 pi to be subtracted, for the angle in a sine, cosine or tangent.
-        """
-        whole = turns and form.terms is not None and len(form.terms) > 1 and not form.centred
-        if form.node is not None and not whole:
+    def written(self, form: _Form) -> Node:
+        """Return the formula of a :class:`_Form` in the shifted time; a polynomial is written by Horner's rule."""
+        if form.node is not None:
             return form.node
         assert form.terms is not None
-        if (form.terms, turns) not in self.known:
-            self.known[form.terms, turns] = self.horner(form.terms, turns)
-        return self.known[form.terms, turns]
+        if form.terms not in self.known:
+            self.known[form.terms] = self.power_sum(self.shifted(form.terms))
+        return self.known[form.terms]
 
-    def horner(self, terms: tuple[Node, ...], turns: bool) -> Node:
-        old, time = [self.resolved(term) for term in terms], ("symbol", TIME)
-        value: Node | None = None
-        for i in reversed(range(len(old))):
-            new: Node = ZERO
+    def turned(self, function: str, phase: tuple[Node, ...]) -> Node:
+        """Return the sine, cosine or tangent of a polynomial of the time, ``phase``.
+
+        The phase is c at the epoch. The sine is ``sin(c)*cos(u) + cos(c)*sin(u)``, where u is 0 there: near each of its
+        zeros it keeps its digits, which ``sin(c + u)`` loses near all zeros but 0.
+        """
+        constant, *rest = self.shifted(phase)
+        advance = self.power_sum([ZERO, *rest])
+        sine, cosine = (("call", name, (advance,)) for name in ("sin", "cos"))
+        sine_there, cosine_there = (self.parameter(("call", name, (constant,))) for name in ("sin", "cos"))
+        above = ("+", ("*", sine_there, cosine), ("*", cosine_there, sine))
+        below = ("-", ("*", cosine_there, cosine), ("*", sine_there, sine))
+        return above if function == "sin" else below if function == "cos" else ("/", above, below)
+
+    def shifted(self, terms: tuple[Node, ...]) -> list[Node]:
+        """Return the coefficients of a polynomial in the shifted time, as formulas of constants and the epoch."""
+        old, new = [self.resolved(term) for term in terms], []
+        for i in range(len(old)):
+            coefficient: Node = ZERO
             for j in range(i, len(old)):
                 share = _times(("number", Fraction(comb(j, i))), old[j])
-                new = _plus(new, _times(share, ("**", ("symbol", EPOCH), j - i) if j > i else ONE))
-            new = ("call", "without_turns", (new,)) if turns and i == 0 else new
+                coefficient = _plus(coefficient, _times(share, ("**", ("symbol", EPOCH), j - i) if j > i else ONE))
+            new.append(coefficient)
+        return new
+
+    def power_sum(self, coefficients: list[Node]) -> Node:
+        """Return the polynomial in the shifted time with the given coefficients, lowest power first."""
+        time, value = ("symbol", TIME), None
+        for new in reversed(coefficients):
             coefficient = new if new[0] == "number" else self.parameter(new)
-            grown = value if value is None else time if value == ONE else ("*", value, time)
+            grown: Node | None = value if value is None else time if value == ONE else ("*", value, time)
             value = coefficient if grown is None else grown if coefficient == ZERO else ("+", coefficient, grown)
         assert value is not None
         return value

@@ -7,11 +7,10 @@ disc's radius in time is the step times the *reach*. A step may miss a fraction 
 import math
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from symrot.codegen.enclosure.terms import LOW_ORDER, REACHES, Enclosure, value_operands
-from symrot.formula.float_functions import FLOAT_FUNCTIONS
-from symrot.formula.tree import evaluate
+from symrot.formula.float_functions import float_value
 
 __all__ = ["Deviations", "Disc", "longest_followed"]
 
@@ -182,14 +181,11 @@ class Deviations:
         self.likely = 0  # index of the reach (radius in time) that proved the last step
         self.spent = 0  # evaluations so far
 
-        def number(node: Any) -> float:
-            return float(evaluate(node, parameters, FLOAT_FUNCTIONS, float))
-
         self._rules = [
-            (i, series, value_operands(series), [0.0 if w is None else number(w) for w in series.weights])
-            for i, series in ((i, enclosure.system.series[i]) for i in enclosure.series)
+            (i, each, value_operands(each), [0.0 if w is None else float_value(w, parameters) for w in each.weights])
+            for i, each in ((i, enclosure.system.series[i]) for i in enclosure.series)
         ]
-        self._terms = [[(abs(number(weight)), operand) for weight, operand in own] for own in enclosure.terms]
+        self._terms = [[(abs(float_value(w, parameters)), operand) for w, operand in own] for own in enclosure.terms]
 
     def __call__(
         self, t: float, radius: float, whole: float, y: Sequence[float], radii: Sequence[float]

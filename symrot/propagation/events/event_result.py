@@ -28,7 +28,8 @@ from symrot.propagation.events.events import (
     uses_attitude,
 )
 from symrot.propagation.events.polynomials import HEAD, Piece, fitted, fitted_pieces
-from symrot.propagation.motion import ClosedFormMotion, Motion, MotionInParts, SciPyMotion, SteppedInC, on_clock
+from symrot.propagation.motions.methods import ClosedFormMotion, SciPyMotion
+from symrot.propagation.motions.motion import Motion, MotionInParts, SteppedInC, on_clock
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import Integration, Stats, Switching, split_at, stats_of
 

@@ -12,7 +12,7 @@ from symrot.formula.tree import Node, children, evaluate, names
 from symrot.planning.general_structure import constants_of
 from symrot.planning.scene_kernel import Parameters
 from symrot.propagation.binding import value_of
-from symrot.propagation.sensitivities.variables import difference, slopes, without_jumps
+from symrot.propagation.sensitivities.variables import difference, slopes
 from symrot.propagation.sensitivities.variation import Column
 from symrot.scene.scene import Scene
 
@@ -61,7 +61,7 @@ class ParameterSlopes:
                 rows[name] = [float(own.get(str(k), 0)) for k in range(len(self.columns))]
         for k, column in enumerate(self.columns):
             depends, changes = set(self.depends(parameters, k)) - rational, self._changes[k]
-            moving = [(name, without_jumps(formula)) for name, formula in parameters if name in depends]
+            moving = [(name, formula) for name, formula in parameters if name in depends]
             if not moving:
                 continue
 

@@ -13,7 +13,6 @@ from typing import Any
 from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import read, show
-from symrot.formula.tree import Node, children
 from symrot.scene.changes import path_of
 from symrot.scene.scene import Scene
 
@@ -26,7 +25,6 @@ __all__ = [
     "read_variables",
     "require_formulas",
     "slopes",
-    "without_jumps",
 ]
 
 ATTITUDE = "attitude"
@@ -226,19 +224,6 @@ def difference(scene: Scene, variable: Variable, numbers: Callable[[Scene], Numb
         return numbers(moved(change) if change else scene)
 
     return slopes(values, variable.step, variable.name)
-
-
-def without_jumps(node: Node) -> Node:
-    """Return the formula of a phase without the whole turns that are subtracted from it; its derivatives are the same.
-
-    The number of turns jumps, for example that of ``b*epoch`` at an instant at which sin(b*t) is zero.
-    """
-    if node[0] in ("number", "symbol"):
-        return node
-    parts = tuple(map(without_jumps, children(node)))
-    if node[0] == "call":
-        return parts[0] if node[1] == "without_turns" else ("call", node[1], parts)
-    return (node[0], *parts, *(node[2:] if node[0] == "**" else ()))
 
 
 def slopes(values: Callable[[Fraction], Numbers], step: Fraction, name: str) -> dict[str, Fraction]:

@@ -26,7 +26,7 @@ from symrot.propagation.binding import value_of
 from symrot.propagation.events.event_result import EventResult
 from symrot.propagation.sensitivities.event_times import event_time_slopes
 from symrot.propagation.sensitivities.libraries import RATES, MotionLibrary, rates_of
-from symrot.propagation.sensitivities.variables import Variable, difference, read_variables, without_jumps
+from symrot.propagation.sensitivities.variables import Variable, difference, read_variables
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.time_shift import starts_far
 from symrot.results.sensitivity import SwitchSlopes
@@ -230,9 +230,8 @@ class _Part:
 
         def numbers(other: Scene) -> dict[str, Fraction]:
             constants = {"pi": number.PI, EPOCH: Fraction(epoch), **constants_of(other, structure)}
-            return {name: value_of(node, constants) for name, node in smooth}
+            return {name: value_of(node, constants) for name, node in parameters}
 
-        smooth = [(name, without_jumps(node)) for name, node in parameters]
         slopes = [difference(scene, column.variable, numbers) if column.constants else {} for column in columns]
         depends = [[name for name, _ in parameters if name in each] for each in slopes]
         self.columns, self._library = columns, MotionLibrary(plan, rates, depends)

@@ -98,7 +98,7 @@ static const double SYMROT_REGAIN = 1.5;  /* largest growth of a step after an e
 #endif
 static const double SYMROT_LARGE = 1e80;  /* limit of squares of errors: products of two are finite */
 static const double SYMROT_ROUND_OFF = 2.0*DBL_EPSILON;  /* smallest error that a step can have */
-static const double SYMROT_RATE_FLOOR = 1e-3;  /* rad: errors of rates are relative to at least this per step */
+static const double SYMROT_RATE_FLOOR = 1e-3;  /* rad: errors of rates are relative to at least this per long step */
 
 /* Return x^(-1/16) to 4 %, which is enough for a step size: the bits of a number are nearly its logarithm. */
 static inline double symrot_inverse_root_16(double x)
@@ -127,14 +127,15 @@ static inline double symrot_length(const double *v, int block)
     return largest*sqrt(sum);
 }
 
-/* Return the square of the size that the error of a block is compared with. */
-static inline double symrot_scale_squared(const double *y, const double *y1, double h, int block)
+/* Return the square of the size that the error of a block is compared with in a step of length h. In a pulse, where
+ * steps are short, errors of rates are not relative to a larger rate: they remain after the pulse. */
+static inline double symrot_scale_squared(const double *y, const double *y1, double h, double pace, int block)
 {
     const double fixed = symrot_scales[block];
     if (fixed > 0.0) return fixed*fixed;
     const double before = symrot_square_sum(y, block), after = symrot_square_sum(y1, block);
-    const double larger = before > after ? before : after, least = SYMROT_RATE_FLOOR/h*(SYMROT_RATE_FLOOR/h);
-    const double size = larger > least ? larger : least;
+    const double larger = before > after ? before : after, least = SYMROT_RATE_FLOOR/fmax(fabs(h), pace);
+    const double size = larger > least*least ? larger : least*least;
     return size < DBL_MAX ? size : DBL_MAX;  /* finite even for the shortest step */
 }
 
@@ -225,8 +226,8 @@ static void symrot_radii(symrot_path term, double part, double *radius)
 
 #if defined(SYMROT_DEFECT)
 /* Return the defect of the dense output inside a step: its error in the equations, per step and relative to blocks. */
-static SYMROT_APART double symrot_defect(double at, double h, const double *y, const double *y1, const double *p,
-    double (*term)[SYMROT_WIDTH])
+static SYMROT_APART double symrot_defect(double at, double h, double pace, const double *y, const double *y1,
+    const double *p, double (*term)[SYMROT_WIDTH])
 {
     static const double places[] = {0.2718, 0.6180};
     double worst = 0.0;
@@ -245,7 +246,7 @@ static SYMROT_APART double symrot_defect(double at, double h, const double *y, c
         symrot_rate(at + s*h, here, p, rate);
         EACH_STATE(i) slope[i] -= h*rate[i];
         for (int b = 0; b < SYMROT_COUNT; ++b) {
-            const double defect = sqrt(symrot_square_sum(slope, b)/symrot_scale_squared(y, y1, h, b));
+            const double defect = sqrt(symrot_square_sum(slope, b)/symrot_scale_squared(y, y1, h, pace, b));
             if (worst == worst && !(defect <= worst)) worst = defect;  /* NaN remains NaN */
         }
     }
@@ -357,7 +358,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
         double worst = 0.0;
         for (int b = 0; b < SYMROT_COUNT; ++b) {
             double e5 = symrot_square_sum(error5, b), e3 = symrot_square_sum(error3, b);
-            double size = symrot_scale_squared(y, y1, h, b);
+            double size = symrot_scale_squared(y, y1, h, pace, b);
             if (size > SYMROT_LARGE || (size > 0.0 && size < 1.0/SYMROT_LARGE)) {
                 e5 /= size;
                 e3 /= size;
@@ -372,7 +373,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
         if (worst <= 1.0) {
             double bars[SYMROT_COUNT];
             for (int b = 0; b < SYMROT_COUNT; ++b)
-                bars[b] = SYMROT_SLACK*allowed*sqrt(symrot_scale_squared(y, y1, h, b));
+                bars[b] = SYMROT_SLACK*allowed*sqrt(symrot_scale_squared(y, y1, h, pace, b));
             if (SYMROT_DEPENDS) {  /* enclosures that depend on the states need their path */
                 symrot_rate(last, y1, p, k[13]);
                 symrot_dense_coefficients(at, h, y, step, p, k, term);
@@ -396,7 +397,7 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
             symrot_dense_coefficients(at, h, y, step, p, k, term);
             ++dense;
             defects += 2;
-            const double defect = symrot_defect(at, h, y, y1, p, term);
+            const double defect = symrot_defect(at, h, pace, y, y1, p, term);
             if (!(defect <= SYMROT_DEFECT*allowed)) {
                 ++rejected;
                 ++proofs;

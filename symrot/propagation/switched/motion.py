@@ -15,7 +15,8 @@ from symrot.planning.plan import Plan
 from symrot.propagation.compiled_models import scene_kernel
 from symrot.propagation.events.polynomials import Piece
 from symrot.propagation.method import Choice
-from symrot.propagation.motion import MotionInParts, Setup
+from symrot.propagation.motions.motion import MotionInParts
+from symrot.propagation.motions.setup import Setup
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped, add_samples
 from symrot.propagation.steppers.stepping import Floats, Recording, Stats, Switching, split_at, stats_of
 from symrot.propagation.switched.run import Chunk, SwitchedRun

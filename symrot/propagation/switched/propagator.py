@@ -2,7 +2,7 @@
 
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.method import choose_method
-from symrot.propagation.motion import Motion
+from symrot.propagation.motions.motion import Motion
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.switched.motion import SwitchedMotion
 from symrot.scene.tables import Initial

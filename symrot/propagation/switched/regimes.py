@@ -23,7 +23,7 @@ from symrot.planning.scene_kernel import Parameters
 from symrot.propagation.binding import folded, two_doubles
 from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.events import Event, guard_library_source
-from symrot.propagation.motion import SciPyMotion, SteppedMotion
+from symrot.propagation.motions.methods import SciPyMotion, SteppedMotion
 from symrot.propagation.steppers.stepping import Floats
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.time_shift import ShiftedParameters

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from symrot.propagation.motion import Motion
+from symrot.propagation.motions.motion import Motion
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.regimes import Modes, Regime
 

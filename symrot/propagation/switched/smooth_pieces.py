@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.polynomials import Piece, fitted, rows_of
-from symrot.propagation.motion import SciPyMotion, SteppedMotion
+from symrot.propagation.motions.methods import SciPyMotion, SteppedMotion
 from symrot.propagation.steppers import dop853, taylor
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped, why_hopeless
 from symrot.propagation.steppers.stepping import Floats

@@ -14,12 +14,12 @@ from typing import Any
 from symrot.dynamics.structure import FormulaTorque, TorqueStructure, TorqueSwitch
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import PI
-from symrot.formula.float_functions import FLOAT_FUNCTIONS
+from symrot.formula.float_functions import float_value
 from symrot.formula.switches import STATES, Switch, between_sides, chosen, hold, on_line, placed
-from symrot.formula.tree import Node, evaluate, names, parse, rename, text
+from symrot.formula.tree import Node, names, parse, rename, text
 from symrot.planning.plan import Plan
 from symrot.propagation.method import Choice
-from symrot.propagation.motion import on_own_clock
+from symrot.propagation.motions.make import on_own_clock
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.switched.regimes import Modes, Regime
 
@@ -132,7 +132,7 @@ class SwitchedSystem:
                 values[switch.mode] = float(modes[switch.mode])
                 continue
             try:
-                guard = float(evaluate(chosen(switch.guard, modes), values, FLOAT_FUNCTIONS, float))
+                guard = float_value(chosen(switch.guard, modes), values)
             except (ArithmeticError, ValueError):
                 raise IntegrationStopped(self.start, f"{switch.label} has no value there") from None
             modes[switch.mode] = math.floor(guard) if switch.kind == "floor" else -1 if guard < 0.0 else 1

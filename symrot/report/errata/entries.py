@@ -3,9 +3,10 @@
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 
-from symrot.checker.claim.reader import Relation, read_expression, read_relation
+from symrot.checker.claim.reader import read_expression, read_relation
 from symrot.checker.claim.tree import Node, number, sum_of
 from symrot.checker.textbook import Finding, findings
+from symrot.checker.typed.readings import Relation
 from symrot.report.errata.typesetting import filled, latex, marked
 from symrot.textbook import DOCUMENTS, Document, Erratum, PrintedFormula, document, errata
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from symrot.certificates.audit import LARGEST
 from symrot.certificates.certificate import Data, certificate_json, seal
-from symrot.certificates.readback.header import check_header
+from symrot.certificates.readback.header import check_header, check_source
 from symrot.certificates.readback.readback import read_kernel
 from symrot.certificates.rounding.bounds import check_section
 from symrot.certificates.step_certificate import (
@@ -25,6 +25,7 @@ from symrot.codegen.steps import Method, SteadyRotations, WithDerivatives
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
 from symrot.scene.file import shipped_names
+from symrot.scene.scene import SceneSource, load_scene
 from symrot.workshop.step_text import ORDER, step_method, step_text
 from symrot.workshop.steps.elliptic_audit import audit_elliptic
 
@@ -46,8 +47,9 @@ def step_data(path: Path) -> Data | None:
 
 
 def audit_step(
-    path: Path, data: Data, rerun: bool = False, progress: Callable[[str], object] = lambda text: None
-) -> list[str]:
+    path: Path, data: Data, rerun: bool = False, scene: SceneSource | None = None,
+    progress: Callable[[str], object] = lambda text: None,
+) -> list[str]:  # fmt: skip
     """Audit the certificate of a step; return the statements that were checked and hold, one line each.
 
     Parameters
@@ -58,6 +60,8 @@ def audit_step(
         Its content, from :func:`step_data`.
     rerun : bool
         Whether to search for the bounds of rounding errors again; bounds of truncation are always computed again.
+    scene : Scene, str, Path or dict, optional
+        The scene whose step this should be; by default a shipped scene of the name in the certificate.
 
     Raises
     ------
@@ -66,7 +70,7 @@ def audit_step(
     """
     if "scene" in data:
         progress("checking ..")
-        return audit_elliptic(path, data)
+        return audit_elliptic(path, data, scene)
     name = str(data.get("kernel"))
     if data.get("schema") != SCHEMA:
         raise CertificateError(f"{path}: expected the schema {SCHEMA}, got {data.get('schema')}; emit the step again")
@@ -94,6 +98,7 @@ def audit_step(
             f"them ({reason}); print the certificate again"
         ) from None
     source = texts[f"{name}.c"]
+    check_source(source, name)
     check_header(texts[f"{name}.h"], source, name)
     # files, C text and bounds are compared with the rates that the certificate states
     rates = rates_of(data)
@@ -109,8 +114,7 @@ def audit_step(
     ]
     if isinstance(method, SteadyRotations):
         report.append("the C text is the motion itself, not an approximation: it solves the equations of the rates")
-    # for a shipped scene these must be the rates that symrot derives
-    report.append(_of_scene(path, data, method))
+    report.append(_of_scene(path, data, method, scene))
     if "bounds" in data:
         progress("bounding ..")
         report.append(_bounds(path, data, method, source, rerun))
@@ -164,31 +168,32 @@ def _method(path: Path, data: Data) -> Method:
     return method
 
 
-def _of_scene(path: Path, data: Data, method: Method) -> str:
-    """Compare a step's certificate with the shipped scene that it names; return the result as a sentence.
+def _of_scene(path: Path, data: Data, method: Method, scene: SceneSource | None) -> str:
+    """Compare a step's certificate with the user's scene, or with the shipped scene that it names; return a sentence.
 
     CertificateError is raised if they differ.
     """
-    options = r" --step \w+(?: --order \d+)?(?: --jacobian [\w,]+)?"
-    match = re.fullmatch(rf"symrot emit (\S+){options} --target c", str(data["regenerate"]))
-    scene = match[1] if match else ""
-    if scene not in shipped_names():
-        # the certificate names no shipped scene
-        return (
-            "the rates of the motion were not compared with a scene, because symrot has no scene of the name in the "
-            "certificate"
-        )
+    if scene is None:
+        options = r" --step \w+(?: --order \d+)?(?: --jacobian [\w,]+)?"
+        match = re.fullmatch(rf"symrot emit (\S+){options} --target c", str(data["regenerate"]))
+        if match is None or match[1] not in shipped_names():
+            return (
+                "the rates of the motion were not compared with a scene, because symrot has no scene of the name in "
+                "the certificate; pass yours by --scene"
+            )
+        scene = match[1]
+    own_scene = load_scene(scene)
     order = None
     if not isinstance(method, SteadyRotations) and method.name == "taylor" and method.order != ORDER:
         order = method.order
     jacobian = method.by if isinstance(method, WithDerivatives) else ()
-    own = json.loads(step_text(scene, method.name, order, jacobian).certificate())
+    own = json.loads(step_text(own_scene, method.name, order, jacobian).certificate())
     for section in SECTIONS:
         if section not in ("bounds", "trusted", "seal") and own[section] != data[section]:
             raise CertificateError(
-                f"{path}: expected {section!r} as symrot prints it for the scene {scene}, got other content"
+                f"{path}: expected {section!r} as symrot prints it for the scene {own_scene.name}, got other content"
             )
-    return f"rates, parameters and files are those that symrot derives for the scene {scene}"
+    return f"rates, parameters and files are those that symrot derives for the scene {own_scene.name}"
 
 
 def _bounds(path: Path, data: Data, method: Method, source: str, rerun: bool) -> str:

@@ -14,7 +14,7 @@ from symrot.codegen.steady_rotations import STATES as STATE_NAMES
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
 from symrot.scene.file import shipped_names
-from symrot.scene.scene import Scene, load_scene
+from symrot.scene.scene import Scene, SceneSource, load_scene
 from symrot.workshop.steps.exact import ExactStepText, plain_content
 
 __all__ = ["audit_elliptic"]
@@ -23,7 +23,7 @@ NEAR = 1 + 1e-6
 """The factor within which bounds are the same; they are stated larger by more than this."""
 
 
-def audit_elliptic(path: Path, data: Data) -> list[str]:
+def audit_elliptic(path: Path, data: Data, scene: SceneSource | None = None) -> list[str]:
     """Audit the certificate of an exact step with elliptic functions; return the statements that hold, one line each.
 
     Parameters
@@ -32,6 +32,8 @@ def audit_elliptic(path: Path, data: Data) -> list[str]:
         NAME.cert.json, in the folder with the files that it names.
     data : mapping
         Its content.
+    scene : Scene, str, Path or dict, optional
+        The scene whose step this should be; by default a shipped scene of the name in the certificate.
 
     Raises
     ------
@@ -64,7 +66,7 @@ def audit_elliptic(path: Path, data: Data) -> list[str]:
     return [
         f"{step.name}: {len(texts)} files are those that symrot prints for the scene in the certificate",
         f"the C text solves the equations of motion at {STATES} states to {DIGITS} digits; nothing is proven elsewhere",
-        _of_scene(path, step.scene, data),
+        _of_scene(path, step.scene.name, data, scene),
         "bounds of rounding and truncation are those that symrot computes"
         if "bounds" in data
         else "no bounds of rounding and truncation",
@@ -133,10 +135,14 @@ def _step(path: Path, data: Data) -> ExactStepText:
         ) from None
 
 
-def _of_scene(path: Path, scene: Scene, data: Data) -> str:
-    """Compare the scene in a certificate with the shipped scene of its name; return the result as a sentence."""
-    if scene.name not in shipped_names():
-        return "the scene in the certificate was not compared, because symrot has no scene of its name"
-    if plain_content(load_scene(scene.name).to_dict()) != data["scene"]["content"]:
-        raise CertificateError(f"{path}: expected 'scene' to be the scene {scene.name} of symrot, got other content")
-    return f"the scene in the certificate is the scene {scene.name} of symrot"
+def _of_scene(path: Path, name: str, data: Data, scene: SceneSource | None) -> str:
+    """Compare the scene in a certificate with the user's, or with the shipped scene ``name``; return a sentence."""
+    if scene is None and name not in shipped_names():
+        return (
+            "the scene in the certificate was not compared, because symrot has no scene of its name; pass yours by "
+            "--scene"
+        )
+    own = load_scene(name if scene is None else scene)
+    if plain_content(own.to_dict()) != data["scene"]["content"]:
+        raise CertificateError(f"{path}: expected 'scene' to be the scene {own.name}, got other content")
+    return f"the scene in the certificate is the scene {own.name}{' of symrot' if scene is None else ''}"

@@ -27,6 +27,11 @@ class StepFiles(KernelText):
         """Pairs (name, value), one for each of the scene's parameters p; empty if the scene has none."""
 
     @property
+    def parameter_values(self) -> tuple[float, ...]:
+        """The values of the argument ``p`` in the scene."""
+        return tuple(value for _, value in self._parameters)
+
+    @property
     @abstractmethod
     def _test(self) -> str:
         """The text of a C program that compares the step with the test vectors; it exits with 0 if all agree."""

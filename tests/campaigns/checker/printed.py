@@ -39,7 +39,7 @@ from sympy import Expr, ImmutableMatrix, acos, asin, atan, atan2
 import symrot
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.functions import ROTATIONS
-from symrot.checker.claim.reader import Declared, Reading, readings_of
+from symrot.checker.claim.reader import readings_of
 from symrot.checker.claim.source.lines import claims_of_reading
 from symrot.checker.claim.source.text import functions_of_time, is_latex
 from symrot.checker.claim.tree import Node, negated
@@ -50,6 +50,7 @@ from symrot.checker.recognition.identification import pairings
 from symrot.checker.recognition.letters import is_atom
 from symrot.checker.recognition.relations import primitive
 from symrot.checker.repair.canonical_form import terms_of_equation
+from symrot.checker.typed.readings import Declared, Reading
 from symrot.errors import SymrotError
 from symrot.exact.decide import decide
 from symrot.exact.decision import flatten

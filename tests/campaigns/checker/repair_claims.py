@@ -13,7 +13,8 @@ from sympy import MatrixBase
 
 from symrot.catalogue import derivation, names
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.reader import Relation, read_expression, read_relation
+from symrot.checker.claim.reader import read_expression, read_relation
+from symrot.checker.typed.readings import Relation
 from symrot.conventions import INTRINSIC_SEQUENCES, SEQUENCES
 from symrot.errors import InputError
 from symrot.exact.printing import as_text

@@ -13,6 +13,11 @@ TRUE = (
     # matrices and columns
     "(A B)^T = B^T A^T", "det(A B) = det(A) det(B)", "tr(A B) = tr(B A)", "a^T b = b^T a", "tr(a b^T) = a^T b", "det(A^T) = det A",
     "[[0, 1], [1, 0]]^T = [[0, 1], [1, 0]]", "[0, -a^T; a, 0]^T = -[0, -a^T; a, 0]",
+    # exponentials, and rotations by angles
+    r"e^{[\theta]_\times} = I + \frac{\sin\|\theta\|}{\|\theta\|}[\theta]_\times + \frac{1-\cos\|\theta\|}{\|\theta\|^2}[\theta]_\times^2",
+    r"\exp([\phi]_\times) = I + \frac{\sin\phi}{\phi}[\phi]_\times + \frac{1-\cos\phi}{\phi^2}[\phi]_\times^2",
+    "exp(-[w]×) = I - sin|w|/|w| [w]× + (1 - cos|w|)/|w|² [w]×²",
+    r"R(\alpha) R(\beta) = R(\alpha+\beta)", "R(α) R(β) = R(α+β)", r"\mathbf{R}(\theta)^T = \mathbf{R}(-\theta)", "R(2π) = I",
     # lengths
     "|a × b|² = a² b² − (a·b)²", "|a × b|^2 + (a·b)^2 = a b a b",
     # integrals
@@ -22,7 +27,7 @@ TRUE = (
 FALSE = (
     "q q* = ‖q‖", "(q ⊗ p)* = q* ⊗ p*", "q ⊗ p = p ⊗ q", r"q^{-1} = \frac{\bar q}{\|q\|}", "(A B)^T = A^T B^T", "tr(A B) = tr(A) tr(B)",
     "q p = (q0 p0 + qv . pv, q0 pv + p0 qv + qv x pv)", "|ω × r|² = ω² r − (ω·r)²", r"\int (x^2 + y^2)\,dm = \int x^2\,dm",
-    "R a x R b = -R (a x b)",
+    "R a x R b = -R (a x b)", "R(α) R(β) = R(α−β)",
 )  # fmt: skip
 
 OPEN = (
@@ -53,10 +58,28 @@ def test_what_depends_on_the_meaning_of_a_name_is_not_accused(claim):
 
 @pytest.mark.parametrize("claim", [
     r"\dot q = \tfrac12\, q\otimes\begin{bmatrix}0\\ \boldsymbol\omega\end{bmatrix}", "q̇ = ½ q ⊗ (0, ω)", "cos Φ = ½ (tr A - 1)",
-    "J_O = J_c + m (r^T r I_3 - r r^T)",
+    "J_O = J_c + m (r^T r I_3 - r r^T)", r"\dot q = \frac12 q\otimes\begin{bmatrix}0\\ \omega\end{bmatrix}",
+    r"\dot{\mathbf q} = \frac12 (0, \boldsymbol\omega) \otimes \mathbf q",
+    r"\mathbf R(q) = \begin{bmatrix} 1-2(q_2^2+q_3^2) & 2(q_1q_2-q_0q_3) & 2(q_1q_3+q_0q_2) \\"
+    r"2(q_1q_2+q_0q_3) & 1-2(q_1^2+q_3^2) & 2(q_2q_3-q_0q_1) \\ 2(q_1q_3-q_0q_2) & 2(q_2q_3+q_0q_1) & 1-2(q_1^2+q_2^2)"
+    r"\end{bmatrix}",
 ])  # fmt: skip
 def test_a_formula_with_arrays_is_recognised(claim):
     assert symrot.check(claim, repair=False).verdict == "recognised"
+
+
+def test_a_repair_has_the_exponential_of_the_claim():
+    claim = (
+        r"R = \exp([\mathbf u]_\times\theta) = I + \sin\theta[\mathbf u]_\times + (1+\cos\theta)[\mathbf u]_\times^2"
+    )
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "false" and verdict.repairs[0].text.startswith(r"\exp([\mathbf{u}]_\times \theta) = ")
+    assert not any("Matrix" in text for text in (*(repair.text for repair in verdict.repairs), *verdict.notes))
+
+
+def test_rotations_by_letters_about_unknown_axes_are_not_of_one_axis():
+    with pytest.raises(InputError):
+        symrot.check("A = R(ψ) R(θ) R(φ)")
 
 
 def test_a_given_matrix_replaces_the_entries():

@@ -4,8 +4,8 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from symrot.checker.claim.reader import Reading, Relation
 from symrot.checker.claim.tree import TIME, Node, negated, product, walk
+from symrot.checker.typed.readings import Reading, Relation
 from symrot.errors import InputError
 
 __all__ = ["BEGIN", "END", "with_rates"]

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from symrot.checker.arrays.complex_parts import BAR, imaginary_unit, open_numbers, substituted
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.reader import Chain, Reading, readings_of
+from symrot.checker.claim.reader import readings_of
 from symrot.checker.claim.source.impulses import with_rates
 from symrot.checker.claim.source.text import check_units, claim_of_relation, is_latex
 from symrot.checker.claim.tree import Node, walk
@@ -13,6 +13,7 @@ from symrot.checker.claim.vectors import used_vectors
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
 from symrot.checker.equivalents.product_signs import sign_by_integral, with_sign
 from symrot.checker.latex.reader import latex_readings
+from symrot.checker.typed.readings import Chain, Reading
 from symrot.errors import InputError
 
 __all__ = ["claims_of_reading"]

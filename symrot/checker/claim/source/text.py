@@ -29,7 +29,7 @@ from symrot.checker.claim.quantities import (
     letters_of_quantities,
     with_natural_base,
 )
-from symrot.checker.claim.reader import Declared, Relation, read_relation, readings_of, with_time
+from symrot.checker.claim.reader import read_relation, readings_of, with_time
 from symrot.checker.claim.shapes import (
     Shape,
     added_names,
@@ -42,6 +42,7 @@ from symrot.checker.claim.tree import TIME, Node, negated, walk
 from symrot.checker.claim.tree import number as number_node
 from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor, with_scalar_products
 from symrot.checker.latex.reader import Names, read_latex
+from symrot.checker.typed.readings import Declared, Relation
 from symrot.checker.units.units import read_unit
 from symrot.errors import InputError
 
@@ -172,6 +173,7 @@ def claim_of_relation(
         sources=sources,
         units={**_units_of_directions(vectors), **check_units(dict(units or {}), used, "claim")},
         has_parts=unit is not None or bool(on_indices),
+        written=with_matrices.written,
         notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
     )
 

@@ -44,12 +44,14 @@ def tops() -> Iterator[Named]:
     yield "rate of spin of a symmetric top from its momenta", HEAVY, rates[DPSI]
     reduced = kinetic.subs(rates)
     (nutation,) = solve(momenta[1] - P_THETA, DTHETA)
-    yield "kinetic energy of a symmetric top from its momenta", HEAVY, reduced.subs(DTHETA, nutation)
+    by_momenta = reduced.subs(DTHETA, nutation)
+    yield "kinetic energy of a symmetric top from its momenta", HEAVY, by_momenta
     for weight in WEIGHTS:
         potential = weight * ARM * cos(THETA)
         yield "potential energy of a heavy top", HEAVY, potential
         yield "Lagrangian of a heavy top", HEAVY, kinetic - potential
         yield "energy of a heavy top", HEAVY, kinetic + potential
+        yield "energy of a heavy top from its momenta", HEAVY, by_momenta + potential
         effective = (reduced + potential).subs(DTHETA, 0)
         yield "effective potential of a heavy top", HEAVY, effective
         without_spin = factor(cancel(effective - potential - P_PSI**2 / (2 * C))) + potential

@@ -1,0 +1,37 @@
+r"""Equations between rotations by angles about one axis, ``R(\alpha) R(\beta) = R(\alpha + \beta)``."""
+
+import re
+
+__all__ = ["with_axis"]
+
+ANGLE = (
+    r"\\?(?:alpha|beta|gamma|delta|theta|phi|varphi|psi|pi)(?![a-z])|[αβγδθφϕψπ]|[0-9]+|[-−+*·/ ₁₂]|_\{?[0-9]\}?|\\,"
+)
+CALL = re.compile(
+    rf"(?P<name>(?:\\(?:mathbf|mathrm|boldsymbol|bm)\s*\{{\s*R\s*\}}|(?<![A-Za-z\\{{])R))\s*(?P<open>\\left)?\((?P<angle>(?:{ANGLE})+)(?:\\right)?\)"
+)
+"""A rotation by an angle."""
+
+OTHERS = re.compile(
+    r"(?:=|\^|[IE1]|\{\s*(?:T|-1|\\top|[0-9])\s*\}|T|-1|⁻¹|[²³ᵀ0-9·*$\s]|\\cdot|\\,|\\mathbf\{I\}|\\top)+"
+)
+"""All else in an equation that has nothing but such rotations, their powers and transposes, and the unit matrix."""
+
+NOTE = "R(..) is read as the rotation by an angle in a plane, or about one fixed axis, here z"
+
+
+def with_axis(source: str) -> tuple[str, str]:
+    """Return a text with ``R_z(..)`` for ``R(..)``, and a note, for an equation between rotations by several angles;
+    other texts unchanged, with an empty note.
+
+    Examples
+    --------
+    >>> with_axis("R(α) R(β) = R(α + β)")[0], with_axis("R(θ) = Rz(θ)")[0]
+    ('R_z(α) R_z(β) = R_z(α + β)', 'R(θ) = Rz(θ)')
+    """
+    calls = list(CALL.finditer(source))
+    angles = {"".join(call["angle"].split()) for call in calls}
+    is_of_number = len(angles) == 1 and re.fullmatch(r"[0-9\\piπ]+", "".join(angles)) is not None
+    if OTHERS.fullmatch(CALL.sub("", source)) is None or not (len(angles) > 1 or is_of_number):
+        return source, ""
+    return CALL.sub(lambda call: f"R_z({call['angle']})", source), NOTE

@@ -1,0 +1,160 @@
+"""The guards of a motion under torques with switching functions: their values, signs and zeros.
+
+The *guard* of a function is its argument; its *mode* is the number that replaces it in formulas.
+"""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from symrot.errors import InputError
+from symrot.formula.float_functions import float_value
+from symrot.formula.tree import names, parse
+from symrot.propagation.events.events import signs_at_ends
+from symrot.propagation.events.polynomials import Piece
+from symrot.propagation.motions.motion import Motion
+from symrot.propagation.steppers.integration_stopped import IntegrationStopped
+from symrot.propagation.steppers.stepping import Floats
+from symrot.propagation.switched.instant import Instant
+from symrot.propagation.switched.regimes import Guard, Modes, Regime
+from symrot.propagation.switched.run_state import RunState
+from symrot.propagation.switched.system import SwitchedSystem
+
+__all__ = ["MOST_ULPS", "Guards"]
+
+NEARBY, MOST_ULPS = 1e-6, 64.0  # part of the time since the last switch; units in the last place of a located time
+RISE_BITS = 40  # a guard is followed from 2 to this negative power of a piece on, to see whether it rises
+
+
+class Guards(RunState):
+    """The guards (arguments of sign, floor, ..) at the present time of a motion and near it."""
+
+    def __init__(self, motion: Motion, system: SwitchedSystem, end: float) -> None:
+        super().__init__(motion, end, system.initial_modes())
+        # t and end are times on a clock that shows 0 at the last switch, an instant of twice the digits
+        self.system, self._end = system, Instant(end)
+        self.by_name = {switch.mode: switch for switch in system.switches}
+        self.held = frozenset[str]()
+
+    @property
+    def now(self) -> float:
+        """The present time of the motion on the clock of the scene, s, rounded to one double."""
+        return self.zero.after(self.t).high
+
+    def _at(self, t: float) -> Instant:
+        return self._end if t == self.end else self.zero.after(t)
+
+    def _name(self, mode: str) -> str:
+        return str(self.by_name[mode].label)
+
+    def _names_of_held(self) -> str:
+        return " and ".join(self._name(mode) for mode in sorted(self.held))
+
+    def _regime(self, modes: Modes) -> Regime:
+        """Return the smooth motion for given values of sign, abs, .., with the arguments of :attr:`held` at zero."""
+        try:
+            return self.system.regime(self.held, modes)
+        except InputError:  # the equations have no such motion or several
+            raise IntegrationStopped(
+                self.t,
+                f"the motion would slide along the jump of {self._names_of_held()}, but not in exactly one way: the "
+                "equations have no solution or several; change the torque, or end the motion at this time",
+                self.end,
+            ) from None
+
+    def _guard_value(self, mode: str, place: tuple[float, Floats] | None = None) -> float:
+        """Return the argument of a switching function, now or at ``place``, (time, states).
+
+        For floor(x) it is x minus the present floor.
+        """
+        # the floor is its value n in the present equations: it changes where x - n is 0 or 1
+        regime = self._regime(self.modes)
+        return float_value(regime.formulas[mode], self._values(regime, place or (self.t, self.y)))
+
+    def _values(self, regime: Regime, place: tuple[float, Floats]) -> dict[str, float]:
+        """Return the values, by name, of all names in switching functions' arguments, at ``place`` = (time, states)."""
+        t, y = place
+        names = [f"omega_{i} of t" for i in (1, 2, 3)]
+        names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure.attitude else []
+        quantities = self.motion.evaluate(np.array([t]), y[None], names)[0].tolist()
+        values = {name.removesuffix(" of t"): value for name, value in zip(names, quantities, strict=True)}
+        return {**values, **regime.values(self.modes, self.zero), "t": t}
+
+    def _oriented(self, regime: Regime, guard: Guard, place: tuple[float, Floats]) -> float:
+        """Return the value of a guard's formula, which falls through zero at a switch; NaN if it has no value."""
+        try:
+            return float_value(parse(guard.formula), self._values(regime, place))
+        except (ArithmeticError, ValueError, IntegrationStopped):
+            return math.nan
+
+    def _crosses(self, regime: Regime, guard: Guard, *places: tuple[float, Floats]) -> bool:
+        """Return whether a function (sign, floor, ..) switches between two points (time, states) of the motion."""
+        before, after = (self._oriented(regime, guard, place) for place in places)
+        # the guard falls from >= 0 to <= 0
+        return before >= 0.0 >= after and before > after
+
+    def _inside(self, mode: str) -> set[str]:
+        """Return the names in the argument of ``mode``: x and the mode of sign(y), for abs(x + sign(y))."""
+        return set(names(self.by_name[mode].guard))
+
+    def _negative(
+        self, regime: Regime, active: list[bool], values: list[float], piece: Piece
+    ) -> tuple[list[Guard], list[Guard]]:
+        """Return the guards that are negative just after the start of ``piece``, and the guards negative at its end."""
+        formulas = [guard.formula for guard in regime.guards]
+        # such a function should have switched before the piece or within it; active: guards that can end the regime
+        first, last = (
+            [guard for guard, on, sign in zip(regime.guards, active, signs, strict=True) if on and sign < 0]
+            for signs in signs_at_ends(regime.path, formulas, values, piece)
+        )
+        return first, last
+
+    def _rises(self, regime: Regime, guard: Guard, piece: Piece, states: Callable[[Floats], Floats]) -> bool:
+        """Return whether the guard is at most zero at the start of ``piece`` and rises until it is positive."""
+        # The state was located where the guard is zero, to the rounding errors of a longer piece: it may be slightly
+        # negative still. Values at doubled distances tell rising from falling, which is a switch back or sliding.
+        start, end = float(piece.edges[0]), float(piece.edges[-1])
+        times = np.concatenate([[start], start + (end - start) * np.ldexp(1.0, range(-RISE_BITS, 1))])
+        before = -math.inf
+        for t, y in zip(times.tolist(), states(times), strict=True):
+            value = self._oriented(regime, guard, (t, y))
+            if not before <= value <= 0.0:
+                return value > 0.0 and before > -math.inf
+            before = value
+        return False
+
+    def _located(self, regime: Regime, guard: Guard, t: float) -> Instant:
+        """Return the time near t at which a guard (argument of sign, abs, ..) is zero, as an :class:`Instant`."""
+        instant = self.zero.after(t)
+        if guard.mode in self.held or guard.mode not in regime.of_time:
+            # only if the guard depends on time alone, a Newton step gives its zero to twice the digits
+            return instant
+        switch, aside = self.by_name[guard.mode], NEARBY * abs(t)
+        goal = 0.0 if switch.kind == "sign" else max(guard.change, 0)
+        values = regime.values(self.modes, instant)
+
+        def value(t: float) -> float:
+            return float_value(regime.formulas[guard.mode], {**values, "t": t}) - goal
+
+        try:
+            slope = (value(aside) - value(-aside)) / (2.0 * aside)
+            correction = -value(0.0) / slope
+        except (ArithmeticError, ValueError, IntegrationStopped):
+            return instant
+        if abs(correction) > MOST_ULPS * math.ulp(t):
+            return instant
+        return self._past(regime, guard, instant.after(correction))
+
+    def _past(self, regime: Regime, guard: Guard, instant: Instant) -> Instant:
+        """Return ``instant``, moved on by some rounding errors if ``guard`` as computed there is still positive."""
+        # The function (sign, abs, ..) would switch back at once. Later times are tried, at growing distances of a few
+        # units in the last place.
+        formula, later = parse(guard.formula), instant
+        step = self.side * math.ulp(math.ulp(instant.high))
+        while abs(step) <= MOST_ULPS * math.ulp(instant.high):
+            values = {**regime.values(self.modes, later), "t": 0.0}
+            if float_value(formula, values) <= 0.0:
+                return later
+            later, step = instant.after(step), 8.0 * step
+        return instant
