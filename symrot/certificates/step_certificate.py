@@ -11,6 +11,7 @@ from hashlib import sha256
 
 from symrot.certificates.certificate import Data, certificate_json
 from symrot.certificates.exact_motion import motion_section, require_limits
+from symrot.certificates.readback.c_functions import Parameter, functions_of
 from symrot.certificates.readback.intended_constants import intended_value
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.readback.readback import read_batch, read_kernel
@@ -318,6 +319,8 @@ def _proof(step: str, rates: Program, method: Method, source: str, suffix: str) 
     one = read_kernel(source, name, file)
     if one.digest() != read_batch(source, f"{name}_batch", file).digest():
         raise CertificateError(f"{file}: expected {name} and {name}_batch to perform the same operations, got others")
+    by = method.by if isinstance(method, WithDerivatives) else ()
+    _require_arguments(file, source, name, step_signature(rates, step, by), TYPES[suffix])
     require_limits(file, one)
     places = _symbols_by_place(step_signature(rates, step))
     degrees = [_degree(file, rates, method, places, one, point) for point in range(POINTS)]
@@ -325,6 +328,22 @@ def _proof(step: str, rates: Program, method: Method, source: str, suffix: str) 
     motion = {"motion": motion_section(file, rates, places, one)} if isinstance(method, SteadyRotations) else {}
     return {"type": TYPES[suffix], "operations": one.counts(), "digest": one.digest(), "points": POINTS,
             "wrong_with_probability_below": probability(max(degrees))} | motion  # fmt: skip
+
+
+def _require_arguments(file: str, source: str, name: str, signature: Signature, real: str) -> None:
+    """Raise CertificateError unless a C function and its batch have the arguments of a step in their order."""
+    one, batch = [], [Parameter("n", "size_t", 0, False)]
+    for each in signature.arguments:
+        is_input = each.role == "in"
+        one.append(Parameter(each.name, real, 0 if each.is_scalar else each.size, is_input and not each.is_scalar))
+        batch.append(one[-1] if each.name == "p" else Parameter(each.name, real, -1, is_input))
+    functions = functions_of(source, file)
+    for function, expected in ((name, one), (f"{name}_batch", batch)):
+        if functions[function].parameters != tuple(expected):
+            raise CertificateError(
+                f"{file}: expected {function} to have the arguments {', '.join(each.name for each in expected)}, of "
+                f"{real} and with the sizes of a step, got others"
+            )
 
 
 def _degree(

@@ -1,6 +1,6 @@
 """Claims about complex numbers and vectors that hold only in a special case, which the verdict then states in words.
 
-``|z|^2 = z^2`` holds for a real z, and ``F·d = F d`` for a displacement d along F.
+``|z|^2 = z^2`` holds for a real z, ``F·d = F d`` for a displacement d along F, ``v = |v| n`` for the direction n of v.
 """
 
 from collections.abc import Iterator
@@ -56,22 +56,27 @@ def for_special_directions(claim: Claim, verdict: Verdict) -> Verdict:
     """Return the verdict "conditional" on a claim such as ``F·d = F d``, true for special directions only; else
     ``verdict``.
     """
-    if verdict.verdict != "false" or claim.relation is None or claim.hypotheses:
+    if verdict.verdict != "false" or claim.relation is None:
         return verdict
     vectors = [name for name, tree in claim.define if is_components(name, tree) and tree in _columns(name)]
-    if len(vectors) != 2 or len(claim.define) != 2 or not any(_has_only_lengths(side) for side in claim.relation[1:]):
+    units = [name for name in vectors if Vector(name, unit=True).length_is_one in claim.hypotheses]
+    if len(vectors) != 2 or len(claim.define) != 2 or len(units) != len(claim.hypotheses):
         return verdict
-    first, second = vectors
+    if not any(_has_only_lengths(side) for side in claim.relation[1:]):
+        return verdict
+    first, second = sorted(vectors, key=lambda name: name not in units)
     own, other = Node("name", first), Node("name", OTHER)
     components = dict(claim.define)
     along = product([Node("name", FACTOR), own])
     across = Node("call", "cross", (own, other))
     positive = (">", Node("name", FACTOR), number(0))
     columns = (first, components[first]), (OTHER, Vector(OTHER).components)
-    cases = (
+    cases = [
         (f"{first} and {second} have the same direction", (columns[0], (second, along)), (positive,)),
         (f"{first} and {second} are perpendicular", (*columns, (second, across)), ()),
-    )
+    ]
+    if units:  # v = |v| n, with a hat over n
+        cases = [(f"{second} has the direction of {first}", cases[0][1], (positive, *claim.hypotheses))]
     for condition, define, hypotheses in cases:
         special = replace(claim, define=define, hypotheses=hypotheses, alternatives=())
         if check_claim(special, repair=False).verdict == "true":

@@ -19,7 +19,7 @@ from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.source.lines import claims_of_reading
 from symrot.checker.claim.source.text import ON_PAULI, claim_of_relation, functions_of_time
 from symrot.checker.claim.tree import TIME, Node, number, walk, with_names
-from symrot.checker.claim_verdict import check_claim, is_unfinished
+from symrot.checker.claim_verdict import check_claim, is_unfinished, within_limits
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
 from symrot.checker.inequality import OPPOSITE, is_inequality, verdict_on_inequality
 from symrot.checker.marks import changed_entry, changed_spans
@@ -269,8 +269,15 @@ def _on_units(
     verdict = parts[0] if len(parts) == 1 else _on_parts(lines, parts, notation, measured.units)
     diagnosis = replace(verdict.diagnosis, text=measured.restored(verdict.diagnosis.text))
     notes = tuple(map(measured.restored, verdict.notes))
-    repairs = tuple(repair for repair in verdict.repairs if repair.code == "digits")  # others lack the units
+    digits = (repair for repair in verdict.repairs if repair.code == "digits")  # others lack the units
+    repairs = tuple(_with_own_units(repair, measured, source.strip()) for repair in digits)
     return replace(verdict, text=source.strip(), diagnosis=diagnosis, notes=notes, repairs=repairs)
+
+
+def _with_own_units(repair: Repair, measured: Measured, source: str) -> Repair:
+    """Return a repair with units in place of their names: ``5 % = 0.05`` for ``(5*unit_1) = 0.05``."""
+    written = measured.restored(re.sub(r"\((\d+(\.\d+)?\*unit_\d+)\)", r"\1", repair.text))
+    return repair if written == repair.text else replace(repair, text=written, changed=changed_spans(source, written))
 
 
 def names_of(reading: Reading) -> set[str]:
@@ -387,6 +394,8 @@ def _differs(echo: str, source: str) -> bool:
 def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Verdict:
     """Return the verdict on one equation, written in the notation of the text."""
     verdict = with_rounding(claim, check_claim(claim, repair and not claim.has_parts))
+    if verdict.verdict == "false" and repair and claim.unsplit is not None:
+        verdict = _with_complex_repairs(claim, verdict)
     verdict = in_degrees(claim, verdict, lambda other: with_rounding(other, check_claim(other, repair=False)))
     verdict = _on_rotations(claim, verdict) if verdict.verdict == "false" else verdict
     verdict = _on_rotation_by_letter(claim, verdict) if verdict.verdict == "definition" and plain else verdict
@@ -411,6 +420,15 @@ def _on_claim(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Ve
     )
     notes = (*claim.notes, *verdict.notes, *_on_numbers(claim, verdict), *_on_zero_powers(claim, verdict))
     return replace(verdict, repairs=repairs, notes=notes, requires=requires, conditions=conditions)
+
+
+def _with_complex_repairs(claim: Claim, verdict: Verdict) -> Verdict:
+    """Return the verdict on a false claim about complex numbers, with its probable fault and repairs."""
+    from symrot.checker.repair.of_complex import complex_repairs
+
+    with within_limits():
+        diagnosis, repairs = complex_repairs(claim)
+    return replace(verdict, diagnosis=diagnosis, repairs=repairs) if repairs else verdict
 
 
 def _on_inertia_matrix(claim: Claim, verdict: Verdict) -> Verdict:
@@ -491,7 +509,8 @@ def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
     """Return a repair in the notation of the claim, with the positions at which its text differs from the claim's."""
     if claim.relation is None:
         return replace(repair, text=notation.rewritten(repair.text))
-    texts: Sequence[str] = [_as_typed(source, claim.written) for source in (relation_text(claim.relation), repair.text)]
+    relation = claim.relation if claim.unsplit is None else claim.unsplit[1]
+    texts: Sequence[str] = [_as_typed(source, claim.written) for source in (relation_text(relation), repair.text)]
     unchanged = [place for place in ("left", "right") if place not in repair.edited] if repair.edited else []
     if len(unchanged) == 1:
         texts = [_with_inverse(source, unchanged[0], claim.text) for source in texts]
@@ -499,7 +518,7 @@ def _marked(repair: Repair, claim: Claim, notation: Notation) -> Repair:
         texts = list(map(_with_plain_arrays, texts))
     before, after = map(notation.rewritten, texts)
     changed, text = changed_spans(before, after), after
-    return replace(repair, text=text, changed=changed, entry=changed_entry(claim.relation, repair.text))
+    return replace(repair, text=text, changed=changed, entry=changed_entry(relation, repair.text))
 
 
 def _as_typed(source: str, written: Sequence[tuple[Node, Node]]) -> str:

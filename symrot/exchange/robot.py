@@ -49,19 +49,24 @@ class Link(NamedTuple):
 
 
 class Format(NamedTuple):
-    """A format of robot files: its name, the tag of a link, the path to all links, and the reader of an inertial."""
+    """A format of robot files: its name, the tag of a link, the path to all links, and the reader of an inertial.
+
+    ``other`` is the path to elements of the same tag that are no links.
+    """
 
     name: str
     tag: str
-    paths: tuple[str, ...]
+    path: str
     read: Callable[[Element, Element], Inertial]
+    other: str = ""
 
     def elements(self, root: Element) -> list[Element]:
         """Return the elements of all links in the XML tree ``root``.
 
         Elements with the same tag at other places, as in plugins, are not links.
         """
-        return [element for path in self.paths for element in root.findall(path)]
+        others = set(root.findall(self.other)) if self.other else set()
+        return [element for element in root.findall(self.path) if element not in others]
 
 
 def links(path: str | Path) -> tuple[Link, ...]:
@@ -268,8 +273,10 @@ def _read_urdf(element: Element, root: Element) -> Inertial:
         _require_known(origin, ("xyz", "rpy"), ())
     center = _numbers("0 0 0" if origin is None else origin.get("xyz", "0 0 0"), 3, "origin.xyz")
     angles = _numbers("0 0 0" if origin is None else origin.get("rpy", "0 0 0"), 3, "origin.rpy")
-    mass = _numbers(_one(inertial, "mass", "inertial").get("value"), 1, "mass.value")[0]
-    inertia = _one(inertial, "inertia", "inertial")
+    amount, inertia = (_one(inertial, tag, "inertial") for tag in ("mass", "inertia"))
+    _require_known(amount, ("value",), ())
+    _require_known(inertia, _ENTRIES, ())
+    mass = _numbers(amount.get("value"), 1, "mass.value")[0]
     tensor = _tensor({key: _numbers(inertia.get(key), 1, f"inertia.{key}")[0] for key in _ENTRIES})
     return _body(element, mass, center, tensor, of_roll_pitch_yaw(angles, Angles()) if any(angles) else None)
 
@@ -304,6 +311,7 @@ def _pose(pose: Element | None) -> tuple[tuple[Fraction, ...], Tensor | None]:
     """
     if pose is None:
         return (Fraction(0),) * 3, None
+    _require_known(pose, ("relative_to", "frame", "rotation_format", "degrees"), ())
     if pose.get("relative_to") or pose.get("frame"):
         raise InputError("pose: expected a pose in the frame of the link, got one relative to another frame")
     form = pose.get("rotation_format", "euler_rpy")
@@ -385,8 +393,9 @@ def _read_mjcf(element: Element, root: Element) -> Inertial:
 
 
 FORMATS = {
-    "robot": Format("URDF", "link", ("link",), _read_urdf),
-    "sdf": Format("SDF", "link", (".//model/link",), _read_sdf),
-    "mujoco": Format("MJCF", "body", ("worldbody//body",), _read_mjcf),
+    "robot": Format("URDF", "link", "link", _read_urdf),
+    # the state of a world has the places of its links
+    "sdf": Format("SDF", "link", ".//model/link", _read_sdf, ".//state//link"),
+    "mujoco": Format("MJCF", "body", "worldbody//body", _read_mjcf),
 }
 """Tag of the root element -> format."""

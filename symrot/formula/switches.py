@@ -214,6 +214,13 @@ def _degree(node: Node) -> int:
     return most if function in ("abs", "min", "max", "clip", "where") else RISKY
 
 
+def _risky(condition: Node) -> bool:
+    """Return whether a condition compares formulas that may have no value somewhere, or a pole or pulse."""
+    if condition[1] == "less":
+        return max(map(_degree, condition[2])) >= RISKY
+    return any(map(_risky, condition[2]))
+
+
 @lru_cache(maxsize=256)
 def smooth(sources: tuple[str, ...]) -> Smooth:
     """Return formulas, given as text, in smooth form, with their switches.
@@ -309,9 +316,14 @@ class _Writer:
             left, right = map(self.smooth, parts)
             self.label = text(condition)
             return self._step(_difference(right, left))
-        shares = [self.share(part) for part in parts]
+        shares = [self.share(parts[0])]
         if name == "not":
             return ("-", ONE, shares[0])
+        # in t < 1 and sqrt(1 - t) < omega_1, the root needs a value only before t = 1
+        outside, risky = self.conditions, _risky(parts[1])
+        self.conditions = (*outside, (shares[0], int(name == "and"))) if risky else outside
+        shares.append(self.share(parts[1]))
+        self.conditions = outside
         # t < 1 and omega_1 < 0 gives (1 + s1)/2 * (1 + s2)/2
         both: Node = ("*", *shares)
         return both if name == "and" else ("-", ("+", *shares), both)

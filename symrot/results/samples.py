@@ -73,12 +73,12 @@ class Samples(ABC):
         """Angular velocity, space components, rad/s, shape (..., 3)."""
         return self._to_space(self.omega)
 
-    @property
+    @cached_property
     def polhode(self) -> Floats:
         """The polhode, the path of omega in the body: the same array as :attr:`omega`."""
         return self.omega
 
-    @property
+    @cached_property
     def herpolhode(self) -> Floats:
         """The herpolhode, the path of omega in space: the same array as :attr:`omega_space`."""
         return self.omega_space

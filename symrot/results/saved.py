@@ -17,12 +17,13 @@ from numpy.typing import NDArray
 
 from symrot.errors import InputError
 from symrot.files.reading import refuse_special
-from symrot.results.labels import About, Labelled, event_array
+from symrot.results.labels import LOCK, About, Labelled, event_array
 from symrot.results.samples import Samples
 from symrot.results.sensitivity import Sensitivities, event_time_items, restored, time_slopes
 
 __all__ = ["SavedTrajectory", "load"]
 
+VECTORS = ("omega_space", "polhode", "herpolhode")
 Floats = NDArray[np.float64]
 _ARCHIVE_FAULTS = (OSError, EOFError, NotImplementedError, RuntimeError, zipfile.BadZipFile, zlib.error)
 _CONTENT_FAULTS = (ValueError, LookupError, TypeError, AttributeError)  # as of metadata without a name or a list
@@ -56,6 +57,8 @@ class SavedTrajectory(Samples):
 
     def __init__(self, metadata: dict[str, Any], items: Sequence[Labelled]) -> None:
         self.metadata, self._items = metadata, {item.name: item for item in items}
+        # in place of the properties that compute them from omega and the quaternion
+        self.__dict__ |= {name: self._items[name].values for name in ("dcm", *VECTORS) if name in self._items}
         self.t = self._items["t"].values
         self.at_events: list[SavedTrajectory] = []
         self.event_kinds: list[list[str]] = []
@@ -125,7 +128,9 @@ class SavedTrajectory(Samples):
         names = (quantities,) if isinstance(quantities, str) else tuple(quantities)
         for name in names:
             self.quantity(name)
-        return [self._items["t"], *(self._items[name] for name in names if name != "t")]
+        # with the angles of an Euler sequence comes where it is at gimbal lock
+        groups = ((name, LOCK) if name == "euler" and LOCK in self._items else (name,) for name in names if name != "t")
+        return [self._items["t"], *(self._items[name] for group in groups for name in group)]
 
 
 def load(path: str | Path) -> SavedTrajectory:

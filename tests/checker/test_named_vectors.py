@@ -106,3 +106,22 @@ def test_definitions_of_short_forms_agree_with_their_reading():
 def test_a_repair_names_the_angles_of_short_forms():
     (repair, *_) = symrot.check(f"R = {CRAIG % '-'}").repairs
     assert "sin(alpha)*sin(gamma)" in repair.text
+
+
+@pytest.mark.parametrize(("claim", "verdict"), [
+    ("‖a + b‖² = ‖a‖² + 2 a·b + ‖b‖²", "true"), ("‖a+b‖² - ‖a-b‖² = 2 a·b", "false"), (r"\|a+b\|^2 = \|a\|^2 + 2 a\cdot b + \|b\|^2", "true"),
+    ("|n̂·v| = |v|", "conditional"), ("(n̂·v) n̂ = v", "false"), (r"(\hat n\cdot v)\hat n = v", "false"), ("(a × b)·c = a·(c × b)", "false"),
+])  # fmt: skip
+def test_a_dot_between_vectors_is_no_product_of_their_lengths(claim, verdict):
+    """With ``a·b`` as |a| |b|, the first claim was conditional and ``(n̂·v) n̂ = v`` true."""
+    assert symrot.check(claim, repair=False).verdict == verdict
+
+
+@pytest.mark.parametrize(("claim", "verdict"), [
+    ("v = |v| v̂", "true"), ("v = |v|² v̂", "false"), ("v̂ = v", "false"), ("v̂ = v/|v|", "true"), ("G r̂/r² = G r/r³", "true"), ("r = r r̂", "true"),
+    (r"\frac{\hat{\mathbf r}}{r^2} = \frac{\mathbf r}{r^2}", "false"), (r"\frac{\hat r}{r^2} = \frac{\mathbf r}{r^3}", "true"),
+    (r"\vec v = v^2\hat v", "false"), (r"\mathbf{\hat n}\cdot\mathbf{\hat n} = 1", "true"), (r"\boldsymbol\omega = \omega\hat n", "conditional"),
+])  # fmt: skip
+def test_a_name_with_a_hat_is_the_direction_of_the_name_without(claim, verdict):
+    """Both were one vector of length 1, so that ``v = |v|² v̂`` was true."""
+    assert symrot.check(claim, repair=False).verdict == verdict

@@ -169,7 +169,8 @@ def test_a_missing_vector_term_and_a_missing_square_of_a_matrix_are_found():
     assert (term.code, term.text) == ("missing_term", "q*p = [q0*p0 - dot(qv, pv), q0*pv + cross(qv, pv) + p0*qv]")
     claim = r"e^{\hat\omega\theta} = I + \hat\omega\sin\theta + \hat\omega(1-\cos\theta)"
     (square,) = symrot.check(claim).repairs
-    assert square.code == "exponent" and "skew(omega)**2*(1 - cos(theta))" in square.text
+    assert square.code == "exponent" and r"[\hat{\boldsymbol{\omega}}]_\times^2 (1 - \cos(\theta))" in square.text
+    assert symrot.check(square.text, repair=False).verdict == "true"
 
 
 def test_the_inverse_of_a_tensor_before_a_sum_is_moved_to_the_other_side():

@@ -101,3 +101,12 @@ def test_a_reading_that_ignores_the_stated_frame_does_not_replace_a_doubtful_rat
     """R' as the name of a vector was recognised as a cross product."""
     verdict = symrot.check("R' = [ω]× R", frame="body")
     assert (verdict.verdict, verdict.diagnosis.code) == ("doubtful", "frame_body_space")
+
+
+@pytest.mark.parametrize(("claim", "verdict"), [
+    ("sin θ = 2t/(1+t²) where t = tan(θ/2)", "true"), ("sin θ = 2t/(1-t²) where t = tan(θ/2)", "false"),
+    (r"\cos\theta = \frac{1-t^2}{1+t^2}, \quad t = \tan\frac{\theta}{2}", "true"),
+    (r"\sin\theta = \frac{2u}{1+u^2}, \quad u = \tan\frac{\theta}{2}", "true"), ("x = v t, v = a t", "definition"),
+])  # fmt: skip
+def test_t_is_no_time_if_the_text_defines_it(claim, verdict):
+    assert symrot.check(claim, repair=False).verdict == verdict

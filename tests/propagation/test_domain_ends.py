@@ -44,3 +44,32 @@ def test_a_motion_that_is_cut_off_says_what_it_cost(torque, method, times):
     stats = caught.value.trajectory.stats
     assert stats.accepted > 3 and stats.evaluations > 3 and stats.seconds > 0
     assert f"{stats.accepted} steps" in repr(caught.value.trajectory)
+
+
+@needs_compiler
+@pytest.mark.parametrize(
+    ("torque", "end"),
+    [
+        ("1 + step(asin(omega_3) + 9)", 0.5), ("1 + step(acos(1 - omega_3) + 9)", 1.0),
+        ("where(sqrt(1 - t) > -1, 1, 0)", 1.0), ("where(asin(1.01*sin(t)) < 9, 1, 0)", np.arcsin(1 / 1.01)),
+    ],
+)  # fmt: skip
+def test_a_motion_ends_where_the_argument_of_a_switch_has_no_value(torque, end):
+    """The mode of the switch stays 1, but the torque has no value: the motion went on with it in silence."""
+    with pytest.raises(PropagationError, match="has no value there") as caught:
+        symrot.propagate(scene(torque))
+    reached = caught.value.trajectory
+    assert reached.t[-1] == pytest.approx(end, abs=2.1e-3) and reached.t[-1] <= end + 1e-9
+
+
+@needs_compiler
+@pytest.mark.parametrize(
+    ("torque", "omega"),
+    [
+        ("where(t < 1 and sqrt(1 - t) > 1/2, 1, 0)", 0.75), ("where(t > 1 and sqrt(t - 1) > 1/2, 1, 0)", 0.75),
+        ("where(t > 1 or sqrt(1 - t) < 1/2, 1, 0)", 1.25),
+        ("where(acos(q0) < 1/2, 1, 1)", 2.0),  # the error of the motion takes q0 beyond 1
+    ],
+)  # fmt: skip
+def test_a_condition_needs_a_value_only_where_it_decides(torque, omega):
+    assert symrot.propagate(scene(torque)).omega[-1, 2] == pytest.approx(omega, abs=1e-12)

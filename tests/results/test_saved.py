@@ -150,3 +150,17 @@ def test_a_truncated_file_is_refused(path):
 def test_a_name_that_is_no_file_of_samples_is_refused_before_anything_is_computed(trajectory, tmp_path):
     with pytest.raises(InputError, match=r"save: expected a file name that ends in \.npz, \.csv"):
         trajectory.save(tmp_path / "motion.txt")
+
+
+def test_each_vector_of_a_file_is_an_attribute_also_without_omega_and_quaternion(tmp_path):
+    motion = symrot.propagate("t_handle", t=[0, 0.5, 1])
+    for name in ("dcm", "omega_space", "polhode", "herpolhode", "axis"):
+        motion.save(tmp_path / "motion.npz", [name])
+        assert np.array_equal(getattr(symrot.load(tmp_path / "motion.npz"), name), motion.quantity(name))
+
+
+def test_the_table_of_a_file_says_where_an_euler_sequence_is_at_gimbal_lock(tmp_path):
+    motion = symrot.propagate("heavy_top_loops", t=[0, 0.5, 1])
+    motion.save(tmp_path / "motion.npz", ["euler", "omega"])
+    table = symrot.load(tmp_path / "motion.npz").to_dataframe(["euler", "omega"])
+    assert table.equals(motion.to_dataframe(["euler", "omega"])) and "euler_lock" in table

@@ -272,6 +272,22 @@ def test_a_c_text_with_more_than_its_functions_is_refused(what):
         check_source(text, name.removeprefix("symrot_"))
 
 
+@pytest.mark.parametrize(("old", "new"), [
+    ("double t, const double x[7], const double p[3], double dt", "double dt, const double x[7], const double p[3], double t"),
+    ("const double x[7], const double p[3]", "const double p[3], const double x[7]"), ("double dt,", "double dt, double u,"),
+    ("const double p[3], double dt", "const double p[4], double dt"), ("double t,", "double time,"),
+    ("RESTRICT t, const double *SYMROT_RESTRICT x", "RESTRICT x, const double *SYMROT_RESTRICT t"),
+])  # fmt: skip
+def test_arguments_of_another_order_are_refused(old, new):
+    """A header with the same order declares them, and the C text computes the method from their names."""
+    text = step_text("tumbling_prism", "rk4")
+    source = text.c()[0]
+    assert old in source
+    wrong = source.replace(old, new, 1).replace("(void)t;", f"(void){'time' if 'time' in new else 't'};", 1)
+    with pytest.raises(CertificateError, match="to have the arguments"):
+        formula_section(text.name, text._rates_program, text.method, wrong)
+
+
 @pytest.mark.parametrize("literal", ["1e400", "1e-1000000000", "1e39f", "0x1p99999"])
 def test_a_literal_beyond_its_type_is_refused(literal):
     source, name = step_source("tumbling_prism")

@@ -58,8 +58,6 @@ def used_quaternions(
         The names that are defined.
     """
     sign, *sides = relation
-    sides = list(map(_with_pairs, sides))
-    relation = sign, sides[0], sides[1]
     if _has_units(sides, (*vectors, *known)):
         return _of_units(relation)
     by_components = _by_components(relation, known)
@@ -277,23 +275,9 @@ def _is_inverse(node: Node) -> bool:
 def _vector_of_pair(node: Node) -> Sequence[Node]:
     """Return [v] for a quaternion written as a pair ``(0, v)`` of a number and a vector; [] for any other node."""
     inside = node.args[0] if node.kind == "call" and node.value == "Matrix" else node
-    is_pair = inside.kind == "list" and len(inside.args) == 2 and inside.args[1].kind == "name"
-    return inside.args[1:] if is_pair else ()
-
-
-def _with_pairs(tree: Node) -> Node:
-    """Return a tree with the pair ``(0, v)`` for the column of 0 and v as a factor of a product of quaternions."""
-    args = tuple(map(_with_pairs, tree.args))
-    if tree.kind == "call" and tree.value == "qmul":
-        args = tuple(map(_as_pair, args))
-    return replace(tree, args=args)
-
-
-def _as_pair(node: Node) -> Node:
-    rows = node.args[0].args if node.kind == "call" and node.value == "Matrix" else ()
-    entries = tuple(row.args[0] if row.kind == "list" and len(row.args) == 1 else row for row in rows)
-    is_pair = len(entries) == 2 and entries[1].kind == "name"
-    return Node("list", ("(", ")"), entries, node.span) if is_pair else node
+    entries = tuple(row.args[0] if row.kind == "list" and len(row.args) == 1 else row for row in inside.args)
+    is_pair = inside.kind == "list" and len(entries) == 2 and entries[1].kind == "name"
+    return entries[1:] if is_pair else ()
 
 
 def _is_list(node: Node) -> bool:

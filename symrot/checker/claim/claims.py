@@ -18,7 +18,7 @@ from symrot.checker.claim.shapes import (
 )
 from symrot.checker.claim.tree import Node, text, walk
 from symrot.checker.context.context import NO_CONTEXT, Context
-from symrot.checker.decide.decision import Equation
+from symrot.checker.decide.equation import Equation
 from symrot.checker.typed.readings import Relation
 from symrot.errors import InputError
 from symrot.exact.decision import ShapeMismatch, matched_sides
@@ -91,6 +91,8 @@ class Claim:
         Statements in words about the names of the claim and about the body, such as ``"rod"``.
     written : tuple of (Node, Node)
         Formulas in ``relation``, each with the short form that the text has for it, such as an exponential.
+    unsplit : (str, Relation) or None
+        The imaginary unit of a complex equation, and the equation before its split into real and imaginary parts.
     """
 
     id: str = ""
@@ -111,6 +113,7 @@ class Claim:
     has_parts: bool = False
     context: Context = NO_CONTEXT
     written: tuple[tuple[Node, Node], ...] = ()
+    unsplit: tuple[str, Relation] | None = None
 
     @property
     def has_double_equals(self) -> bool:

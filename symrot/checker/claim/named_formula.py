@@ -133,7 +133,8 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     is_condition = is_condition or _is_condition_on_matrix(left, right, generic)
     if is_condition or _has_own_angle(left, right, generic) or _has_open_derivative(left, right, known):
         return NamedFormula(text(left), left, right, solve=None)
-    defined = {name for quantities in letters for name, _ in quantities} & (known - {"pi", "t"})
+    always = {"pi", "t"} - {*dict(claim.define)}  # t = tan(theta/2) is no time
+    defined = {name for quantities in letters for name, _ in quantities} & (known - always)
     is_open_rate = _is_open_rate(left, right) or _is_open_rate(right, left)
     if not claim.hypotheses and not defined and is_open_rate and not _has_hidden_zero(claim, left, right):
         return NamedFormula(text(left), left, right, solve=None)
@@ -141,7 +142,9 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     if not claim.hypotheses and left.kind == "name" and _has_own_letters(_letters_by_definition(claim, left, right)):
         return NamedFormula(text(left), left, right, solve=None)
     if claim.hypotheses or any(
-        name in known and (name != "t" or is_moving) for quantities in letters for name, _ in quantities
+        name in known and (name != "t" or is_moving or name not in always)
+        for quantities in letters
+        for name, _ in quantities
     ):
         return None
     if all(_is_name(side) or _is_rate(side) for side in (left, right)):

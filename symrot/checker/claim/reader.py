@@ -10,6 +10,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 from symrot.checker.claim.tree import TIME, Node, number
+from symrot.checker.claim.vectors import length, may_be_mixed, on_direction
 from symrot.checker.typed.ambiguous_words import WordReader
 from symrot.checker.typed.copied_text import without_surroundings
 from symrot.checker.typed.cursor import Doubt, Vocabulary
@@ -17,7 +18,7 @@ from symrot.checker.typed.grammar import Parser
 from symrot.checker.typed.lines import lines_of, with_signs
 from symrot.checker.typed.readings import Chain, Declared, Reading, Relation, distinct_readings, each_reading
 from symrot.checker.typed.tokens import Token, tokens_of, without_dots
-from symrot.checker.typed.vector_names import crossed, marked, names_alone
+from symrot.checker.typed.vector_names import crossed, dotted, marked, names_alone
 from symrot.errors import InputError, complaint
 
 __all__ = ["LONGEST_TEXT", "MOST_PIECES", "read_expression", "read_relation", "readings_of", "with_time"]
@@ -61,6 +62,7 @@ class _Text:
             The keys of ambiguous pieces (:class:`Doubt`) that get their less usual meaning.
         """
         marked_names = frozenset(marked(self.tokens))
+        marked_names |= dotted(self.tokens, {*marked_names, *crossed(self.tokens, marked_names, flips)})
         alone = {*names_alone(self.tokens, marked_names), *self.declared.symbols}
         tokens, notes, doubts = list(self.tokens), list[str](), list[Doubt]()
         if not as_sympy:
@@ -68,11 +70,16 @@ class _Text:
             tokens = words.read(alone, {*crossed(tokens, marked_names, flips), *marked_names})
             notes, doubts = words.notes, words.doubts
             alone |= set(names_alone(tokens, marked_names))
+        hats = {name.text for name, mark in pairwise(tokens) if mark.kind == "hat"}
+        bare = {name.text for name, mark in pairwise(tokens) if mark.kind != "hat"}
+        mixed = frozenset(filter(may_be_mixed, hats & bare))
+        notes += map(on_direction, sorted(mixed))
         vocabulary = Vocabulary(
             frozenset(self.declared.symbols),
             frozenset(self.declared.functions),
             frozenset(alone),
             frozenset([*crossed(tokens, marked_names, flips), *marked_names]),
+            mixed,
         )
         lines, plain = [], not self.source.isascii() or not as_sympy
         timed, differentiated = set[str]() if as_sympy else {*self.declared.functions}, set[str]()
@@ -104,8 +111,8 @@ class _Text:
             Chain(tuple(signs), tuple(_finished(side, timed, vocabulary.vectors) for side in sides), both_signs)
             for signs, sides, both_signs in lines
         )
-        hats = {name.text for name, mark in pairwise(tokens) if mark.kind == "hat"}
         typed = {t.text: without_dots(self.source[t.start : t.end]) for t in tokens if t.kind == "name"}
+        typed |= {name: typed[name].replace("\N{COMBINING CIRCUMFLEX ACCENT}", "") for name in mixed}
         spelling = {name: word for name, word in typed.items() if word not in ("", name)}
         flipped = tuple(dict.fromkeys(doubt.excerpt for doubt in doubts if doubt.key in flips))
         return Reading(
@@ -115,7 +122,7 @@ class _Text:
             tuple(dict.fromkeys(notes)),
             spelling,
             frozenset(timed),
-            {name: name in hats for name in sorted(vocabulary.vectors)},
+            {name: name in hats - mixed for name in sorted(vocabulary.vectors)},
             flipped,
         )
 
@@ -159,6 +166,8 @@ def _finished(node: Node, timed: Collection[str], vectors: Collection[str], pare
     if node.kind == "power" and node.args[0].value in vectors and node.args[1] == number(2):
         own = _finished(node.args[0], timed, vectors)
         return Node("call", "dot", (own, own), node.span)
+    if node.kind == "power" and node.args[0].value in vectors and node.args[1].kind == "number":
+        return replace(node, args=(length(_finished(node.args[0], timed, vectors)), node.args[1]))
     nested = parent == "transpose" and node.kind == "list" and node.args[0].kind == "list"
     if node.kind == "list" and (parent not in ("call", "list", "transpose", "index") or nested):
         if len(node.args) == 1:

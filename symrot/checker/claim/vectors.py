@@ -13,9 +13,14 @@ from symrot.checker.claim.tree import TIME, Node, is_derivative, number, product
 __all__ = [
     "MARK",
     "Vector",
+    "beside_directions",
+    "direction",
     "gyroscopic_tensors",
     "is_components",
     "is_tensor",
+    "length",
+    "may_be_mixed",
+    "on_direction",
     "used_vectors",
     "with_scalar_products",
     "without_marks",
@@ -167,9 +172,35 @@ def _without_marks(node: Node, spelled: Mapping[str, str], vectors: Sequence[Nod
     if node.kind == "power" and node.args[0] in vectors and node.args[1] == number(2):
         return Node("call", "dot", (node.args[0], node.args[0]), node.span)
     if node in vectors:
-        return Node("call", "sqrt", (Node("call", "dot", (node, node)),), node.span)
+        return replace(length(node), span=node.span)
     made = replace(node, args=tuple(_without_marks(child, spelled, vectors) for child in node.args))
     return _with_scalar_products(made, vectors) if made.kind == "product" else made
+
+
+def direction(vector: Node) -> Node:
+    """Return ``v/sqrt(dot(v, v))``, what v with a hat means in a text that has v without a hat too."""
+    return Node("product", None, (vector, Node("inv", None, (length(vector),))), vector.span)
+
+
+def beside_directions(factors: Sequence[Node]) -> list[Node]:
+    """Return the factors of a product with the length of v in place of v, if the direction of v is a factor too."""
+    # r times r with a hat is a vector: the first r is a length
+    return [length(factor) if direction(factor) in factors else factor for factor in factors]
+
+
+def may_be_mixed(name: str) -> bool:
+    """Return whether a text may have ``name`` with and without a hat: no axis, whose coordinate has the same letter."""
+    return name not in "xyzijk" and not name.startswith("e_")
+
+
+def on_direction(name: str) -> str:
+    """Return the note for the user that ``name`` with a hat is a direction."""
+    return f"{name} with a hat is {name}/|{name}|, since the text has {name} too"
+
+
+def length(vector: Node) -> Node:
+    """Return ``sqrt(dot(v, v))`` for the vector v."""
+    return Node("call", "sqrt", (Node("call", "dot", (vector, vector)),))
 
 
 def gyroscopic_tensors(sides: Sequence[Node]) -> Iterator[str]:

@@ -1,6 +1,7 @@
 """The cursor of the checker's LaTeX reader: the position in a formula, and the names that the claim declares."""
 
 import re
+from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from string import whitespace
@@ -121,6 +122,9 @@ class Cursor(cursor.Cursor):
         self.vectors: dict[str, bool] = {}  # name of a vector -> whether it has a hat
         self.notes: list[str] = []
         self.crossed: set[str] = set()  # names without a mark that are vectors by their use
+        self.hatted: set[str] = set()  # names of vectors that have a hat somewhere
+        self.bare = Counter[str]()  # how often vectors have a mark, but no hat
+        self.mixed: frozenset[str] = frozenset()  # vectors that the text has with and without a hat
         start, stop = _unwrapped(source)
         outside = (source[:start] + source[stop:]).strip(whitespace + "$.,;\\[]()")
         if outside and "begin{" not in outside:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from symrot.checker.arrays.quaternions import CONJUGATE
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
 from symrot.checker.claim.tree import TIME, Node, is_derivative, negated, number, sum_of
-from symrot.checker.claim.vectors import MARK, is_tensor
+from symrot.checker.claim.vectors import MARK, direction, is_tensor
 from symrot.checker.latex.cursor import CLOSING, UPRIGHT, is_letter
 from symrot.checker.latex.sums import SumsPart
 from symrot.latex import tree
@@ -220,14 +220,26 @@ class NamesPart(SumsPart):
         node = self.under(mark, self.symbol)
         if node.kind == "call" and node.value == "Matrix":
             return node
+        inner = inside.text if inside.text in VECTOR_MARKS else ""  # \\hat{\\mathbf n}
+        if node.kind == "product":  # \\mathbf{\\hat n}, beside n without a hat
+            return node
         name = str(node.value)
         if name not in self.names.matrices:
             if not self.names.implied or name in self.names:
                 raise self.fail(f"{name} to be declared as a vector or matrix (it has a mark of one)", mark)
             node = self.vector(name)
-        if mark.text == "\\hat" and (bare := str(node.value).removesuffix(MARK)) in self.vectors:
-            self.vectors[bare] = True
+        bare = str(node.value).removesuffix(MARK)
+        has_hat = mark.text == "\\hat" and bare in self.vectors
+        if has_hat:
+            self.hatted.add(bare)
+            self.bare[bare] -= bool(inner)  # the inner mark has counted it
+        elif inner != "\\hat":
+            self.bare[bare] += 1
         self.refuse_call()
+        if has_hat and bare in self.mixed:
+            return direction(node)
+        if has_hat:
+            self.vectors[bare] = True
         return node
 
     def total(self, sign: tree.Node) -> Node:

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 from symrot.checker.claim.reader import read_expression, read_relation
 from symrot.checker.claim.tree import TIME, Node, is_derivative, sum_of, text, walk
-from symrot.checker.claim.vectors import Vector, used_vectors, without_marks
+from symrot.checker.claim.vectors import Vector, may_be_mixed, on_direction, used_vectors, without_marks
 from symrot.checker.latex.calculus import DOTS, CalculusPart
 from symrot.checker.latex.cursor import JOINTS, UPRIGHT, Names, is_letter
 from symrot.checker.latex.names import NAME_MARKS, OPERATORS, VECTOR_MARKS
@@ -123,20 +123,25 @@ def _read(
 ) -> "tuple[list[Line], _Interpreter]":  # fmt: skip
     """Return the lines that ``read`` parses from a LaTeX text, and the interpreter that parsed them."""
     # if a name without a mark turns out to be a vector only late in the text, the text is parsed again
-    crossed: frozenset[str] = frozenset()
+    # so it is if a vector turns out to occur with and without a hat
+    crossed, mixed = frozenset[str](), frozenset[str]()
     while True:
         # flips are keys of ambiguous parts; if it is None, an ambiguous text is refused
         # upper chooses the upper or lower signs of \pm
         reader = _Interpreter(source, where, names, flips, upper)
-        reader.crossed = set(crossed)
+        reader.crossed, reader.mixed = set(crossed), mixed
         try:
             lines = read(reader)
         except InputError:
             if reader.crossed == crossed:
                 raise
         else:
-            if reader.crossed == crossed:
+            names_in_lines = {node.value for _, sides in lines for side in sides for _, node in walk(side)}
+            both = frozenset(filter(may_be_mixed, reader.hatted & ({*+reader.bare} | names_in_lines)))
+            if reader.crossed == crossed and both == mixed:
+                reader.notes += map(on_direction, sorted(mixed))
                 return lines, reader
+            mixed = both
         crossed = frozenset(reader.crossed)
 
 

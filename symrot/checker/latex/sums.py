@@ -14,7 +14,7 @@ from symrot.checker.claim.tree import Node, is_derivative, negated, number, prod
 from symrot.checker.claim.vectors import MARK
 from symrot.checker.latex.cursor import CLOSING, UPRIGHT, Cursor, is_d, is_letter
 from symrot.checker.latex.macros import INSTEAD
-from symrot.checker.typed.cursor import DEEPEST_NESTING, is_usual_vector
+from symrot.checker.typed.cursor import DEEPEST_NESTING, SHARED, is_usual_vector
 from symrot.checker.typed.defined_functions import DEFINED
 from symrot.checker.typed.words import ALIASES
 from symrot.latex import tree
@@ -52,6 +52,11 @@ ENDS = frozenset([
 ])  # fmt: skip
 """Items that cannot start a factor."""
 
+
+NORM = re.compile(r"\\(?:\||lVert|Vert)(.*?)\\(?:\||rVert|Vert)")
+"""A norm, such as ``\\|a + b\\|``: the names in it are vectors, or quaternions."""
+
+QUATERNIONS = ("q", "p")
 
 TRIPLE_PRODUCT = re.compile(
     r"\\times\s*(?:\\left)?\([^()+-]*\\times|\([^()]*\\times[^()]*\)\s*\\times|\)\s*\\times\s*(?:\\left)?\("
@@ -98,6 +103,11 @@ class SumsPart(Cursor):
             kinds = self.names.is_matrix(left), self.names.is_matrix(right)
             if operator.text == "\\times" and any(kinds) and not all(kinds):
                 self.note_vector(right if kinds[0] else left)
+            elif operator.text == "\\cdot" and any(kinds) and not all(kinds):
+                other = last_factor(right if kinds[0] else left)
+                name = name_of(other)
+                if (is_usual_vector(name) or name == "g") and name not in {*SHARED, *self.vectors}:
+                    self.note_vector(other)
             elif not any(kinds) and self.has_bare_vectors(left, right, operator.text):
                 for side in (left, right):
                     self.note_vector(last_factor(side))
@@ -118,6 +128,9 @@ class SumsPart(Cursor):
         ``\omega\times r``.
         """
         names = [name_of(last_factor(side)) for side in (left, right)]
+        inside = set(re.findall("[A-Za-z]+", " ".join(NORM.findall(self.source))))
+        if self.flips is not None and sign == "\\cdot" and {*names} <= inside - {*QUATERNIONS}:
+            return True
         if self.flips is None or sign not in ("\\times", "\\cdot") or not all(map(is_usual_vector, names)):
             return False
         function = {"\\times": "\\sin", "\\cdot": "\\cos"}[sign]

@@ -23,6 +23,7 @@ __all__ = [
     "flattened",
     "neighbours",
     "normalise_factors",
+    "put",
     "scaled",
     "single_edits",
 ]
@@ -170,10 +171,10 @@ def single_edits(
         for code, made, extra in _changes(node, path, names, functions, matrices, order, id(node) in entries):
             is_exponent = code == "factor" and id(node) in exponents
             code = "exponent" if is_exponent else code
-            yield Edit(code, COST[code] + extra, path, _put(tree, path, made))
+            yield Edit(code, COST[code] + extra, path, put(tree, path, made))
         if id(node) not in closed and _is_scalar(node, matrices):
             squared = Node("power", None, (node, number(2)))
-            yield Edit("exponent", COST["exponent"], path, _put(tree, path, squared))
+            yield Edit("exponent", COST["exponent"], path, put(tree, path, squared))
 
 
 def _admits_squares(node: Node) -> bool:
@@ -189,7 +190,7 @@ def _is_scalar(node: Node, matrices: Callable[[Node], bool]) -> bool:
     return not matrices(node) or node.value in ("dot", "det", "trace")
 
 
-def _put(tree: Node, path: Path, made: Node) -> Node:
+def put(tree: Node, path: Path, made: Node) -> Node:
     """Return a tree with the node ``made`` at ``path``; a sum in a sum, or a product in a product, is merged."""
     if path and made.kind in ("neg", "sum", "product"):
         *above, place = path

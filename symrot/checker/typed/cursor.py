@@ -34,6 +34,9 @@ VECTOR_FUNCTIONS = ("cross", "vee", "Matrix")
 USUAL_VECTORS = frozenset([*"abcdeuvwrpqnsFLHMNRT", "omega", "Omega", "alpha", "tau", "epsilon", "eps", "sigma"])
 """Names between which a letter x with blanks around it is a product sign, unless x is a name of the text."""
 
+SHARED = ("R", "T", "N", "s", "sigma", "epsilon", "eps")
+"""Names of vectors that are as often numbers: a radius, a tension, a normal force, a length."""
+
 
 @dataclass(frozen=True)
 class Doubt:
@@ -59,6 +62,7 @@ class Vocabulary:
     functions: frozenset[str] = frozenset()  # declared
     alone: frozenset[str] = frozenset()  # names that occur without a bracket after them
     vectors: frozenset[str] = frozenset()  # names that, for example, cross products and hats show to be vectors
+    mixed: frozenset[str] = frozenset()  # vectors that occur with and without a hat
 
     def function(self, name: str) -> str | None:
         """Return the name of the function that ``name`` means, asin for arcsin; None if it means no function."""

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from symrot.checker.arrays.quaternions import CONJUGATE, quaternion_product
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of
+from symrot.checker.claim.vectors import beside_directions
 from symrot.checker.typed.cursor import ADDING
 from symrot.checker.typed.pieces import PiecesPart
 from symrot.checker.typed.tokens import SIGNS, Token
@@ -121,7 +122,7 @@ class Parser(PiecesPart):
                 before = self.start()
                 factors.append(self.factor())
             else:
-                return product(factors, self.span(start)) if len(factors) > 1 else factors[0]
+                return product(beside_directions(factors), self.span(start)) if len(factors) > 1 else factors[0]
 
     def divisor(self, above: Node, start: int, slash: int) -> Node:
         """Parse and return the divisor after ``above`` and a slash: one factor, or a product such as ``2m`` in

@@ -10,6 +10,7 @@ from symrot.checker.arrays.index_notation import component_of_cross
 from symrot.checker.arrays.quaternions import CONJUGATE
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import TIME, Node, derivative, is_derivative, number, product
+from symrot.checker.claim.vectors import direction
 from symrot.checker.typed.cursor import ADDING, DEEPEST_NESTING, MASS
 from symrot.checker.typed.densities import over_mass
 from symrot.checker.typed.open_functions import OpenFunctionsPart
@@ -60,6 +61,8 @@ class PiecesPart(OpenFunctionsPart):
             elif token.kind == "hat":
                 self.plain = True
                 self.next()
+                if node.value in self.vocabulary.mixed:
+                    node = direction(node)
             elif token.kind == "tilde" or self.is_skew_cross(node):
                 self.plain = True
                 self.next()
@@ -168,6 +171,8 @@ class PiecesPart(OpenFunctionsPart):
         order = int(mark.text) if mark.kind == "dots" else len(mark.text)
         if order > MOST_DOTS:
             raise self.fail(f"a time derivative of order at most {MOST_DOTS}", mark.start)
+        if node.kind == "number":
+            raise self.fail("degrees as a decimal number, or ft or in for a length, in place of a prime", mark.start)
         if node.kind == "name":
             name = str(node.value)
             doubtful = mark.kind == "prime" and name not in self.vocabulary.functions

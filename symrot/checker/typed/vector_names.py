@@ -3,10 +3,10 @@
 from collections.abc import Collection, Iterator, Sequence
 from itertools import pairwise
 
-from symrot.checker.typed.cursor import is_cross_letter, is_mass_before_vector, is_usual_vector
+from symrot.checker.typed.cursor import SHARED, is_cross_letter, is_mass_before_vector, is_usual_vector
 from symrot.checker.typed.tokens import Token
 
-__all__ = ["crossed", "marked", "names_alone"]
+__all__ = ["crossed", "dotted", "marked", "names_alone"]
 
 DOT_OF_PRODUCTS = ("(", None, None, ")", "·", "(", None, None, ")")
 """The tokens of ``(R a)·(R b)``, with None in place of each name."""
@@ -63,7 +63,10 @@ def marked(tokens: Sequence[Token]) -> Iterator[str]:
     triples = list(zip(tokens, tokens[1:], tokens[2:], strict=False))
     yield from _by_angle(tokens)
     lengths = {name.text for left, name, right in triples if left.text == right.text == "|" and name.kind == "name"}
-    # a·b = |a| |b| cos x: names whose lengths occur
+    norms = [place for place, token in enumerate(tokens) if token.text == "‖"]
+    for start, end in zip(norms[::2], norms[1::2], strict=False):
+        lengths |= {token.text for token in tokens[start:end] if token.kind == "name"} - {"q", "p"}  # no quaternions
+    # a·b = |a| |b| cos x, ‖a + b‖² = ‖a‖² + 2 a·b + ‖b‖²: names whose lengths occur
     for left, dot, right in triples:
         if dot.text == "·" and {left.text, right.text} <= lengths:
             yield from (left.text, right.text)
@@ -86,6 +89,21 @@ def marked(tokens: Sequence[Token]) -> Iterator[str]:
             or (_is_dot(before) and name.spaced)
         ):
             yield name.text
+
+
+def dotted(tokens: Sequence[Token], vectors: Collection[str]) -> set[str]:
+    """Return the usual names of vectors at a dot beside one of ``vectors`` or beside a cross product: v in ``n·v``."""
+    names: set[str] = set()
+    for place, dot in enumerate(tokens):
+        if dot.text != "·" or not 0 < place < len(tokens) - 1:
+            continue
+        before, after = tokens[place - 1], tokens[place + 1]
+        owner = tokens[place - 2] if before.kind == "hat" else before
+        crosses = [token.text for token in tokens[max(place - 4, 0) : place]] if before.text == ")" else []  # (a × b)·c
+        is_left = owner.text in vectors or "×" in crosses
+        names |= {token.text for token, beside in ((after, is_left), (before, after.text in vectors)) if beside}
+    usual = {name for name in names if is_usual_vector(name) or name == "g"}
+    return usual - {*vectors, *SHARED}
 
 
 def _by_angle(tokens: Sequence[Token]) -> Iterator[str]:

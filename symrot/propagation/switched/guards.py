@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from symrot.errors import InputError
 from symrot.formula.float_functions import float_value
@@ -16,13 +17,15 @@ from symrot.propagation.events.polynomials import Piece
 from symrot.propagation.motions.motion import Motion
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import Floats
+from symrot.propagation.switched.domains import excess
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.regimes import Guard, Modes, Regime
 from symrot.propagation.switched.run_state import RunState
 from symrot.propagation.switched.system import SwitchedSystem
 
-__all__ = ["MOST_ULPS", "Guards"]
+__all__ = ["ERRORS", "MOST_ULPS", "Guards"]
 
+ERRORS = 100.0  # largest error of a motion, in tolerances
 NEARBY, MOST_ULPS = 1e-6, 64.0  # part of the time since the last switch; units in the last place of a located time
 RISE_BITS = 40  # a guard is followed from 2 to this negative power of a piece on, to see whether it rises
 
@@ -75,11 +78,25 @@ class Guards(RunState):
     def _values(self, regime: Regime, place: tuple[float, Floats]) -> dict[str, float]:
         """Return the values, by name, of all names in switching functions' arguments, at ``place`` = (time, states)."""
         t, y = place
+        values = {name: float(column[0]) for name, column in self._columns(np.array([t]), y[None]).items()}
+        return {**values, **regime.values(self.modes, self.zero), "t": t}
+
+    def _columns(self, times: Floats, states: Floats) -> dict[str, Floats]:
+        """Return the values of omega_1..3 and, if the scene has an attitude, of q0..3 at the rows of ``states``."""
         names = [f"omega_{i} of t" for i in (1, 2, 3)]
         names += [f"q{i} of t" for i in range(4)] if self.motion.plan.structure.attitude else []
-        quantities = self.motion.evaluate(np.array([t]), y[None], names)[0].tolist()
-        values = {name.removesuffix(" of t"): value for name, value in zip(names, quantities, strict=True)}
-        return {**values, **regime.values(self.modes, self.zero), "t": t}
+        quantities = self.motion.evaluate(times, states, names)
+        return {name.removesuffix(" of t"): column for name, column in zip(names, quantities.T, strict=True)}
+
+    def _has_no_value(self, regime: Regime, mode: str, times: Floats, states: Floats) -> NDArray[np.bool_]:
+        """Return at which times a guard has no value, even if the states changed by the error of the motion."""
+        columns = self._columns(times, states)
+        rate = np.sqrt(sum(columns[f"omega_{i}"] ** 2 for i in (1, 2, 3)))
+        sizes = {name: rate if name.startswith("omega") else np.ones_like(times) for name in columns}
+        numbers = {name: np.array(value) for name, value in regime.values(self.modes, self.zero).items()}
+        with np.errstate(all="ignore"):
+            outside = excess(regime.formulas[mode], {**columns, **numbers, "t": times}, sizes)
+        return np.broadcast_to(outside > ERRORS * self.motion.tolerance, times.shape)
 
     def _oriented(self, regime: Regime, guard: Guard, place: tuple[float, Floats]) -> float:
         """Return the value of a guard's formula, which falls through zero at a switch; NaN if it has no value."""

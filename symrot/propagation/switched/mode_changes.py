@@ -13,7 +13,7 @@ from symrot.propagation.events.polynomials import Piece
 from symrot.propagation.motions.motion import Motion
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import Floats
-from symrot.propagation.switched.guards import MOST_ULPS, Guards
+from symrot.propagation.switched.guards import ERRORS, MOST_ULPS, Guards
 from symrot.propagation.switched.regimes import Guard, Modes, Regime
 from symrot.propagation.switched.run_state import CHATTER
 from symrot.propagation.switched.system import SwitchedSystem, is_continuous
@@ -22,7 +22,6 @@ __all__ = ["ModeChanges"]
 
 MOST_SWITCHES, MOST_AT_ONCE = 1_000_000, 1000
 PERTURBATION, PARALLEL = 1e-6, 1e-6  # of time and states, for slopes; relative difference of parallel slopes
-ERRORS = 100.0  # largest error of a motion, in tolerances
 SHORT = 1e-9  # part of the span: distance beyond an instant without rates at which formulas are evaluated
 CHATTERING = 1e-9  # part of the span: CHATTER switches within it count as infinitely many
 SwitchState = tuple[frozenset[tuple[str, int]], frozenset[str]]

@@ -25,6 +25,7 @@ from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.events.events import Event, guard_library_source
 from symrot.propagation.motions.methods import SciPyMotion, SteppedMotion
 from symrot.propagation.steppers.stepping import Floats
+from symrot.propagation.switched.domains import may_lose_value
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.time_shift import ShiftedParameters
 
@@ -82,6 +83,7 @@ class Regime:
         self.formulas = {mode: rename(node, names_of_clock) for mode, node in zip(modes, formulas, strict=True)}
         known = {"t", "pi", *(name for name, _ in self.parameters)}
         self.of_time = {mode for mode, formula in self.formulas.items() if names(formula) <= known}
+        self.may_lose_value = {mode for mode, formula in self.formulas.items() if may_lose_value(formula)}
         self.guards = [guard for switch in switches for guard in self._guards(switch)]
         mode, always = min(held, default=""), ()
         self.guards += [Guard(mode, f"attraction_{k}_of_t", 0, always) for k in range(len(held))]

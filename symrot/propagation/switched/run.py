@@ -32,6 +32,7 @@ __all__ = ["Chunk", "SwitchedRun"]
 HOP_BITS = 10  # a hop over a switch is at most 2 to this power units in the last place of the clock long
 LEAST_TURN = 1e-3  # rad over the whole span: errors of slower rotations are relative to this rate
 AWAY = range(50, 400, 10)  # a hop away from a switch is the span divided by 2 to this power
+PROBES = 8  # times in each step at which arguments of switching functions must have a value
 Consumer = Callable[["Chunk"], None]
 
 
@@ -138,6 +139,7 @@ class SwitchedRun(ModeChanges):
         source = smooth_pieces(self, regime, rates)
         start, passed = self.t, [self.t]
         violated: list[Guard] = []
+        lost: list[IntegrationStopped] = []  # not empty if an argument has no value from there on
         left: list[bool] = []  # not empty if a guard left zero: the motion is followed again from there
 
         def watched() -> Generator[Piece, None, None]:
@@ -162,7 +164,10 @@ class SwitchedRun(ModeChanges):
                         self.t, self.y = passed[-1], states(np.array(passed[-1:]))[0]
                         self._forget_changes()
                     return
-                consume(self._chunk(passed[-1], float(piece.edges[-1]), states, piece))
+                chunk = self._chunk(passed[-1], float(piece.edges[-1]), states, piece)
+                if (no_value := self._pass_on(consume, regime, active, chunk)) is not None:
+                    lost.append(no_value)
+                    return
                 passed.append(float(piece.edges[-1]))
 
         current: list[tuple[Piece, Callable[[Floats], Floats]]] = []
@@ -197,6 +202,8 @@ class SwitchedRun(ModeChanges):
         finally:
             watching.close()
             self.cost += source.cost()
+        if lost:
+            raise lost[0]
         if violated:  # an argument that jumped with another function is corrected before others cross zero
             return min(violated, key=lambda guard: not self._inside(guard.mode) & set(self.order))
         if left:
@@ -212,7 +219,9 @@ class SwitchedRun(ModeChanges):
         if abs(stop) > abs(passed[-1]):
             rows = int((np.abs(piece.edges[:-1]) < abs(stop)).sum())
             part = Piece(np.append(piece.edges[:rows], stop), piece.rows[:rows])
-            consume(Chunk(self._at(passed[-1]), instant, self.zero, states, part))
+            chunk = Chunk(self._at(passed[-1]), instant, self.zero, states, part)
+            if (no_value := self._pass_on(consume, regime, active, chunk)) is not None:
+                raise no_value
         self.y = states(np.array([stop]))[0]
         self.t = stop
         self._arrive(instant)
@@ -270,6 +279,35 @@ class SwitchedRun(ModeChanges):
             for guard, on in zip(regime.guards, active, strict=True):
                 if on and guard.mode not in self.held and self._crosses(regime, guard, (t, y), (t + h, y + change)):
                     return *straight(h, change), guard
+        return None
+
+    def _pass_on(
+        self, consume: Consumer, regime: Regime, active: list[bool], chunk: Chunk
+    ) -> IntegrationStopped | None:
+        """Pass ``chunk`` to ``consume``, up to where an argument of sign, floor, .. has no value; return that error."""
+        modes = {guard.mode for guard, on in zip(regime.guards, active, strict=True) if on} - self.held
+        partial = [mode for mode in sorted(modes) if mode in regime.may_lose_value]
+        if not partial:
+            consume(chunk)
+            return None
+        edges = chunk.own_piece.edges
+        steps = np.append(edges[:1], edges[:-1, None] + np.diff(edges)[:, None] * np.arange(1, PROBES + 1) / PROBES)
+        for mode in partial:
+            times = steps
+            for _ in range(8):  # the first time without a value is enclosed more and more closely
+                outside = self._has_no_value(regime, mode, times, chunk.own_states(times))
+                if not outside.any():
+                    break
+                first = max(int(outside.argmax()), 1)
+                times = np.linspace(times[first - 1], times[first], 65)
+            if len(times) == 65:
+                last = float(times[0])
+                if last != edges[0]:
+                    rows = int((np.abs(edges[:-1] - edges[0]) < abs(last - edges[0])).sum())
+                    part = Piece(np.append(edges[:rows], last), chunk.own_piece.rows[:rows])
+                    consume(chunk._replace(stop=self._at(last), own_piece=part))
+                return IntegrationStopped(last, f"{self._name(mode)} has no value there", self.end)
+        consume(chunk)
         return None
 
     def _chunk(self, start: float, stop: float, states: Callable[[Floats], Floats], piece: Piece) -> Chunk:

@@ -52,3 +52,16 @@ def test_the_size_of_a_number_in_polar_form_needs_a_radius():
 def test_a_line_beside_complex_numbers_stays_an_equation_of_real_numbers():
     assert symrot.check("z = x + i y, |z|^2 = x^2 + y^2, sin(2 a) = 2 sin a cos a").verdict == "true"
     assert symrot.check("x_i = a + i b").verdict == "definition"
+
+
+@pytest.mark.parametrize(("claim", "repaired"), [
+    ("e^(iθ) = cos θ - i sin θ", "e^(i*θ) = cos(θ) + i*sin(θ)"),
+    (r"e^{i\theta} = \cos\theta + \sin\theta", r"e^{i \theta} = \cos(\theta) + i \sin(\theta)"),
+    ("|z|^2 = x^2 - y^2 where z = x + i y", "abs(x + i*y)^2 = x^2 + y^2"), ("e^(iπ) = 1", "e^(i*π) = -1"),
+    ("sin x = (e^(ix) - e^(-ix))/2", "sin(x) = (e^(i*x) - e^(-i*x))/(2*i)"),
+    (r"\mathrm{Re}(e^{i\theta}) = \sin\theta", r"\Re(e^{i \theta}) = \cos(\theta)"),
+])  # fmt: skip
+def test_a_repair_has_complex_numbers_as_typed(claim, repaired):
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "false" and verdict.repairs[0].text == repaired
+    assert symrot.check(repaired, repair=False).verdict == "true"

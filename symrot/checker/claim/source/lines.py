@@ -8,7 +8,7 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import readings_of
 from symrot.checker.claim.source.impulses import with_rates
 from symrot.checker.claim.source.text import check_units, claim_of_relation, is_latex
-from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim.tree import TIME, Node, is_derivative, walk
 from symrot.checker.claim.vectors import used_vectors
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
 from symrot.checker.equivalents.product_signs import sign_by_integral, with_sign
@@ -18,6 +18,7 @@ from symrot.errors import InputError
 
 __all__ = ["claims_of_reading"]
 
+CIRCULAR = ("sin", "cos", "tan")
 MOST_EQUATIONS = 30
 """The most equations in one text; ``a = b = c`` counts as two."""
 
@@ -30,6 +31,7 @@ def claims_of_reading(
     define: list[tuple[str, Node]] = []
     lines = []
     reading = with_rates(reading)
+    reading = replace(reading, lines=_with_substitutions_first(reading.lines))
     if sum(len(chain.links) for chain in reading.lines) > MOST_EQUATIONS:
         raise InputError(f"expected at most {MOST_EQUATIONS} equations in one text; a file of claims may have more")
     # ``stated`` is what the user says in words about names and the body
@@ -42,6 +44,7 @@ def claims_of_reading(
     if numbers and all(unit.kind == "name" for unit in numbers.values()):
         context = [substituted(side, numbers) for side in context if side.kind != "name"]
     assume, stated = _with_signs_of_products(assume, stated)
+    has_time = any(is_derivative(n) or n.args == (TIME,) for side in context for _, n in walk(side))
     for chain in reading.lines:
         links = chain.links
         if len(links) > 1 and set(chain.signs) != {"=="}:
@@ -66,12 +69,20 @@ def claims_of_reading(
         if sign := sign_by_integral(first, chain.sides[1]):
             stated = with_sign(stated, first, sign)
             continue
-        reserved = ("pi", "t", *(name for name, _ in define))
+        reserved = ("pi", *(["t"] if has_time else []), *(name for name, _ in define))
         # a line that only names a formula defines this name for the lines after it
         is_name = first.kind == "name" and chain.signs[0] == "==" and first.value not in reserved
         if is_name and not chain.both_signs and first not in [node for _, node in walk(chain.sides[1])]:
             define.append((str(first.value), chain.sides[1]))
     return lines
+
+
+def _with_substitutions_first(lines: Sequence[Chain]) -> tuple[Chain, ...]:
+    """Return lines with ``u = tan(theta/2)`` before ``sin(theta) = 2*u/(1 + u**2)``, which uses u."""
+    of_angles = [line for line in lines if line.sides[0].kind == "call" and line.sides[0].value in CIRCULAR]
+    used = {str(node.value) for line in of_angles for side in line.sides for _, node in walk(side)}
+    first = [line for line in lines if line.sides[0].kind == "name" and line.sides[0].value in used]
+    return (*first, *(line for line in lines if line not in first))
 
 
 def _with_signs_of_products(assume: Sequence[str], stated: Context) -> tuple[list[str], Context]:

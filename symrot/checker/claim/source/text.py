@@ -105,7 +105,9 @@ def claim_of_relation(
     is_vector = unit is not None and unit.value in {vector.name for vector in vectors}
     if unit is not None and (is_vector or not is_complex(relation[1:], str(unit.value))):
         unit = None
+    unsplit = None
     if unit is not None:
+        unsplit = str(unit.value), relation
         relation = with_parts(relation, str(unit.value), source)
         notes = [*notes, f"{unit.value} is the imaginary unit, and real and imaginary parts are compared"]
     moving_matrices = {
@@ -174,6 +176,7 @@ def claim_of_relation(
         units={**_units_of_directions(vectors), **check_units(dict(units or {}), used, "claim")},
         has_parts=unit is not None or bool(on_indices),
         written=with_matrices.written,
+        unsplit=unsplit,
         notes=(*notes, *(f"{letter} is read as a quantity, not as {OTHER_MEANINGS[letter]}" for letter in letters)),
     )
 
