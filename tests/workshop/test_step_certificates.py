@@ -381,7 +381,16 @@ def _other_parameter(data, folder):
     data["rates"]["parameters"][0][2] = (1.0).hex()
 
 
+def _other_entry(section, name, value=1):
+    return lambda data, folder: (data[section] if section else data).update({name: value})
+
+
 @pytest.mark.parametrize(("change", "message"), [
+    (_other_entry("step", "tolerance"), "'step' in the form"), (_other_entry("rates", "error"), "'rates' in the form"),
+    (_other_entry("", "title", "a step without errors"), "'title' and 'kernel' to name the scene tumbling_prism"),
+    (_other_entry("", "regenerate", "symrot emit other"), "the command of the step"),
+    # otherwise the rates would not be compared with those of tumbling_prism
+    (_other_entry("", "regenerate", "symrot emit other --step taylor --order 3 --target c"), "to name the scene other"),
     (_smaller_truncation, "expected the bounds that symrot computes"), (_smaller_rounding, "expected"),
     (_other_rates, "expected next"), (_other_order, "expected the order|expected next"), (_other_text, "an edited one"),
     (_other_parameter, "the parameters that the certificate states"),
