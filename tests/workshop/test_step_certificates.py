@@ -242,7 +242,7 @@ def test_a_constant_that_is_rounded_as_another_has_no_bounds(number, other):
 HEAD = '#include "tumbling_prism_rk4_step.h"\n'
 TEXTS = {  # C that the proof does not read, or that other compilers read otherwise: what is replaced, by what
     "another header": (HEAD, HEAD + '#include "other.h"\n'), "header of the system": (HEAD, HEAD + "#include <tgmath.h>\n"),
-    "header of functions": (HEAD, HEAD + '#include "symrot_math.h"\n'), "macro": (HEAD, HEAD + "#define t dt\n"),
+    "no header": (HEAD, ""), "header of functions": (HEAD, HEAD + '#include "symrot_math.h"\n'), "macro": (HEAD, HEAD + "#define t dt\n"),
     "pragma": (HEAD, HEAD + "#pragma STDC FP_CONTRACT OFF\n"),
     "function of the C library": (HEAD, HEAD + "double memcpy(double x)\n{\n    return x;\n}\n"),
     "static function of the C library": (HEAD, HEAD + "static inline double fmin(double x)\n{\n    return x;\n}\n"),
