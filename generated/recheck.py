@@ -27,6 +27,7 @@ checked.
 # Proofs of laws, theorems of Coq, operation counts, flags, object code, the domain, and NumPy texts beyond their hash;
 # nor that a kernel computes what its name promises: all files must agree on the name, but only `symrot audit` knows its
 # meaning.
+# Certificates of time steps (`symrot emit SCENE --step METHOD`): they are refused, and `symrot audit` checks them.
 
 # mypy: ignore-errors
 import json

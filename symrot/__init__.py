@@ -62,7 +62,7 @@ _NAMES_OF_MODULES = {
     "propagation.method": ("METHODS",),
     "propagation.propagate": ("propagate", "propagator"),
     "propagation.propagator": ("Propagator",),
-    "propagation.steppers.stepping": ("Stats",),
+    "propagation.steppers.stats": ("Stats",),
     "propagation.trajectory": ("Invariant", "Trajectory"),
     "report.output": ("save",),
     "report.plot": ("plot",),

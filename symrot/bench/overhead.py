@@ -18,7 +18,8 @@ from symrot.errors import InputError
 from symrot.propagation.motions.methods import ClosedFormMotion, SteppedMotion
 from symrot.propagation.propagate import propagator
 from symrot.propagation.propagator import Propagator
-from symrot.propagation.steppers.stepping import DONE, Segment
+from symrot.propagation.steppers.segments import Segment
+from symrot.propagation.steppers.stepping import DONE
 
 __all__ = ["main", "measure"]
 

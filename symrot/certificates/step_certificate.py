@@ -11,6 +11,7 @@ from hashlib import sha256
 
 from symrot.certificates.certificate import Data, certificate_json
 from symrot.certificates.exact_motion import motion_section, require_limits
+from symrot.certificates.readback.c_functions import Parameter, functions_of
 from symrot.certificates.readback.intended_constants import intended_value
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.readback.readback import read_batch, read_kernel
@@ -41,7 +42,9 @@ __all__ = [
     "formula_section",
     "is_step",
     "rates_of",
+    "rates_section",
     "step_certificate",
+    "step_section",
     "trusted",
     "with_bounds",
 ]
@@ -98,8 +101,8 @@ def step_certificate(step: StepUnderTest) -> str:
             "title": step.title,
             "regenerate": step.command,
             "method": step.method.formula,
-            "step": _step_section(step.method),
-            "rates": _rates_section(step.rates, step.values),
+            "step": step_section(step.method),
+            "rates": rates_section(step.rates, step.values),
             "files": {path: sha256(text.encode()).hexdigest() for path, text in step.files.items()},
             "formula": formula_section(step.name, step.rates, step.method, step.files[f"{step.name}.c"]),
             "trusted": trusted(step.method.name, has_bounds=False),
@@ -119,7 +122,7 @@ def trusted(method: str, has_bounds: bool, elliptic: bool = False) -> Data:
     return assumptions if has_bounds else assumptions | NOT_STATED
 
 
-def _step_section(method: Method) -> Data:
+def step_section(method: Method) -> Data:
     """Return the name of a step's method and what distinguishes it from others of this name, such as its order."""
     if isinstance(method, SteadyRotations):
         return {"method": method.name, "axis": None if method.axis is None else method.axis + 1}
@@ -138,7 +141,7 @@ def with_bounds(data: Data, bounds: Data) -> Data:
     return bare | {"bounds": bounds, "trusted": trusted(data["step"]["method"], True, "scene" in data)}
 
 
-def _rates_section(rates: Program, values: Sequence[float]) -> Data:
+def rates_section(rates: Program, values: Sequence[float]) -> Data:
     """Return the rates ``dy/dt`` of a motion as data for JSON: formulas as text, parameters with their ``values``."""
     parameters = [c for a in rates.signature.arguments if a.name == "p" for c in a.components]
     return {
@@ -318,6 +321,8 @@ def _proof(step: str, rates: Program, method: Method, source: str, suffix: str) 
     one = read_kernel(source, name, file)
     if one.digest() != read_batch(source, f"{name}_batch", file).digest():
         raise CertificateError(f"{file}: expected {name} and {name}_batch to perform the same operations, got others")
+    by = method.by if isinstance(method, WithDerivatives) else ()
+    _require_arguments(file, source, name, step_signature(rates, step, by), TYPES[suffix])
     require_limits(file, one)
     places = _symbols_by_place(step_signature(rates, step))
     degrees = [_degree(file, rates, method, places, one, point) for point in range(POINTS)]
@@ -325,6 +330,22 @@ def _proof(step: str, rates: Program, method: Method, source: str, suffix: str) 
     motion = {"motion": motion_section(file, rates, places, one)} if isinstance(method, SteadyRotations) else {}
     return {"type": TYPES[suffix], "operations": one.counts(), "digest": one.digest(), "points": POINTS,
             "wrong_with_probability_below": probability(max(degrees))} | motion  # fmt: skip
+
+
+def _require_arguments(file: str, source: str, name: str, signature: Signature, real: str) -> None:
+    """Raise CertificateError unless a C function and its batch have the arguments of a step in their order."""
+    one, batch = [], [Parameter("n", "size_t", 0, False)]
+    for each in signature.arguments:
+        is_input = each.role == "in"
+        one.append(Parameter(each.name, real, 0 if each.is_scalar else each.size, is_input and not each.is_scalar))
+        batch.append(one[-1] if each.name == "p" else Parameter(each.name, real, -1, is_input))
+    functions = functions_of(source, file)
+    for function, expected in ((name, one), (f"{name}_batch", batch)):
+        if functions[function].parameters != tuple(expected):
+            raise CertificateError(
+                f"{file}: expected {function} to have the arguments {', '.join(each.name for each in expected)}, of "
+                f"{real} and with the sizes of a step, got others"
+            )
 
 
 def _degree(

@@ -19,7 +19,8 @@ from symrot.checker.claim.reader import readings_of
 from symrot.checker.claim.source.lines import claims_of_reading
 from symrot.checker.claim.source.text import is_latex
 from symrot.checker.claim_verdict import verdict_of_decision, within_limits
-from symrot.checker.decide.decision import Equation, decide_equation
+from symrot.checker.decide.decision import decide_equation
+from symrot.checker.decide.equation import Equation
 from symrot.checker.latex.reader import latex_readings
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError

@@ -6,12 +6,14 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+from symrot.checker.approximation import verdict_on_approximation
 from symrot.checker.claim.size import MOST_NESTED, nesting
 from symrot.checker.claim.source.file import Refusal, read_entries
 from symrot.checker.claim.source.text import functions_of_time, is_latex
 from symrot.checker.claim_verdict import check_claim, check_readings, unfinished, verdict_of_decision, within_limits
 from symrot.checker.context.context import Context, read_context
-from symrot.checker.decide.decision import Equation, decide_equation
+from symrot.checker.decide.decision import decide_equation
+from symrot.checker.decide.equation import Equation
 from symrot.checker.equivalents.inertia_in_frames import without_brackets
 from symrot.checker.equivalents.rotations_by_angle import with_axis
 from symrot.checker.frame_rates import verdict_on_rates, without_marks
@@ -134,6 +136,8 @@ def _checked(
         typed = _without_backticks(left).lstrip()  # places in the text count from its first character
         if not assume and not stated and (of_frames := verdict_on_rates(typed)) is not None:
             return of_frames
+        if not assume and not stated and (approximate := verdict_on_approximation(typed)) is not None:
+            return approximate
         typed, of_mark = without_marks(typed)
         with_axes, of_axis = with_axis(typed)
         left = with_plain_signs(without_brackets(with_axes))

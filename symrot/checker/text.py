@@ -269,8 +269,15 @@ def _on_units(
     verdict = parts[0] if len(parts) == 1 else _on_parts(lines, parts, notation, measured.units)
     diagnosis = replace(verdict.diagnosis, text=measured.restored(verdict.diagnosis.text))
     notes = tuple(map(measured.restored, verdict.notes))
-    repairs = tuple(repair for repair in verdict.repairs if repair.code == "digits")  # others lack the units
+    digits = (repair for repair in verdict.repairs if repair.code == "digits")  # others lack the units
+    repairs = tuple(_with_own_units(repair, measured, source.strip()) for repair in digits)
     return replace(verdict, text=source.strip(), diagnosis=diagnosis, notes=notes, repairs=repairs)
+
+
+def _with_own_units(repair: Repair, measured: Measured, source: str) -> Repair:
+    """Return a repair with units in place of their names: ``5 % = 0.05`` for ``(5*unit_1) = 0.05``."""
+    written = measured.restored(re.sub(r"\((\d+(\.\d+)?\*unit_\d+)\)", r"\1", repair.text))
+    return repair if written == repair.text else replace(repair, text=written, changed=changed_spans(source, written))
 
 
 def names_of(reading: Reading) -> set[str]:

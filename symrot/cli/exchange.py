@@ -21,6 +21,8 @@ def _inertia(options: Namespace) -> int:
 
     if options.json and options.toml:
         raise InputError("inertia: expected at most one of --json and --toml")
+    if options.fixed_point is not None and not options.toml:
+        raise InputError("--fixed-point: expected --toml as well")
     path, name = _path_and_link(options.file)
     of_mesh = {key: getattr(options, key) for key in ("mass", "density", "scale") if getattr(options, key) is not None}
     if Path(path).suffix.lower() in SUFFIXES:
@@ -57,7 +59,7 @@ def _print(inertial: "Inertial", options: Namespace) -> int:
     if options.json:
         say_json(inertials.facts(inertial))
     elif options.toml:
-        say(inertials.table_text(inertial).splitlines())
+        say(inertials.table_text(inertial, options.fixed_point).splitlines())
     else:
         say(inertials.lines(inertial))
     return OK
@@ -72,6 +74,8 @@ def _inertia_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--scale", metavar="X", help="unit of length of a mesh in m: 1/1000 for mm (default: 1)")
     parser.add_argument("--flip", action="store_true", help="reverse the triangles of a mesh that is turned inside out")
     parser.add_argument("--toml", action="store_true", help="print the table [body] of a scene")
+    parser.add_argument("--fixed-point", metavar="X,Y,Z", help="with --toml: the point of the file, m, about which the "
+                        "body rotates (default: its centre of mass)")  # fmt: skip
     json_option(parser)
 
 

@@ -273,8 +273,10 @@ def _read_urdf(element: Element, root: Element) -> Inertial:
         _require_known(origin, ("xyz", "rpy"), ())
     center = _numbers("0 0 0" if origin is None else origin.get("xyz", "0 0 0"), 3, "origin.xyz")
     angles = _numbers("0 0 0" if origin is None else origin.get("rpy", "0 0 0"), 3, "origin.rpy")
-    mass = _numbers(_one(inertial, "mass", "inertial").get("value"), 1, "mass.value")[0]
-    inertia = _one(inertial, "inertia", "inertial")
+    amount, inertia = (_one(inertial, tag, "inertial") for tag in ("mass", "inertia"))
+    _require_known(amount, ("value",), ())
+    _require_known(inertia, _ENTRIES, ())
+    mass = _numbers(amount.get("value"), 1, "mass.value")[0]
     tensor = _tensor({key: _numbers(inertia.get(key), 1, f"inertia.{key}")[0] for key in _ENTRIES})
     return _body(element, mass, center, tensor, of_roll_pitch_yaw(angles, Angles()) if any(angles) else None)
 
@@ -309,6 +311,7 @@ def _pose(pose: Element | None) -> tuple[tuple[Fraction, ...], Tensor | None]:
     """
     if pose is None:
         return (Fraction(0),) * 3, None
+    _require_known(pose, ("relative_to", "frame", "rotation_format", "degrees"), ())
     if pose.get("relative_to") or pose.get("frame"):
         raise InputError("pose: expected a pose in the frame of the link, got one relative to another frame")
     form = pose.get("rotation_format", "euler_rpy")

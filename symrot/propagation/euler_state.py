@@ -32,8 +32,10 @@ from symrot.propagation.motions.motion import Motion
 from symrot.propagation.motions.setup import Setup
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.steppers import dop853, taylor
+from symrot.propagation.steppers.segments import split_at
 from symrot.propagation.steppers.smoothness import non_smooth_torque
-from symrot.propagation.steppers.stepping import Integration, Stats, split_at
+from symrot.propagation.steppers.stats import Stats
+from symrot.propagation.steppers.stepping import Integration
 from symrot.propagation.trajectory import Trajectory
 from symrot.scene.scene import Scene
 

@@ -31,7 +31,9 @@ from symrot.propagation.motions.setup import Setup
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers import dop853
-from symrot.propagation.steppers.stepping import MAX_STEPS, Integration, Recording, Stats
+from symrot.propagation.steppers.recording import Recording
+from symrot.propagation.steppers.stats import Stats
+from symrot.propagation.steppers.stepping import MAX_STEPS, Integration
 from symrot.propagation.table_splines import table_splines
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial

@@ -60,7 +60,9 @@ def choose_method(plan: Plan, method: str = "auto") -> Choice:
         If the method needs a compiler and no compiler is installed.
     """
     if not isinstance(method, str):
-        raise InputError(f"method: expected the name of a method, such as 'auto', got {show(method)}")
+        raise InputError(
+            f"method: expected the name of a method, such as 'auto', got {show(method)}; times are the argument t"
+        )
     if plan.scene.table is not None:
         if method not in ("auto", "dop853"):
             raise InputError(f"method: expected 'auto' or 'dop853' for a torque without a formula, got {method!r}")

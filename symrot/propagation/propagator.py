@@ -23,7 +23,8 @@ from symrot.propagation.motions.methods import ClosedFormMotion
 from symrot.propagation.motions.motion import Motion, RestartableMotion
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.integration_stopped import Samples
-from symrot.propagation.steppers.stepping import Stats, is_sorted
+from symrot.propagation.steppers.stats import Stats
+from symrot.propagation.steppers.stepping import is_sorted
 from symrot.propagation.trajectory import Trajectory
 from symrot.scene.attitude import Attitude, dcm_of, read_attitude, refuse_two
 from symrot.scene.content import plain

@@ -17,7 +17,7 @@ from symrot.kinematics import conversions
 from symrot.propagation.events.event_result import EventResult
 from symrot.propagation.motions.motion import Motion
 from symrot.propagation.real_array import real_array
-from symrot.propagation.steppers.stepping import Stats
+from symrot.propagation.steppers.stats import Stats
 from symrot.results.samples import MotionSamples
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial
@@ -291,7 +291,7 @@ class Trajectory(MotionSamples):
         return self._sampled(times, self._path(times))
 
     def resample(self, times: ArrayLike | int) -> "Trajectory":
-        """Return the trajectory at the given times, or at a number of evenly spaced times of its span.
+        """Return the trajectory at the given times, or at a number of evenly spaced times of its span, without events.
 
         Parameters
         ----------

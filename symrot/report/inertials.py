@@ -2,12 +2,13 @@
 
 from collections.abc import Sequence
 from decimal import Context, Decimal
-from fractions import Fraction
 from typing import Any
 
 from symrot.exchange.inertial import Inertial
 from symrot.exchange.orientation import quaternion_of
 from symrot.exchange.robot import Link
+from symrot.inertia.principal import principal_axes
+from symrot.report.layout import fields
 from symrot.scene.content import toml_text
 
 __all__ = ["facts", "lines", "link_facts", "link_lines", "table_text"]
@@ -48,19 +49,23 @@ def lines(inertial: Inertial) -> list[str]:
             ("error", f"at most {table['error']:.1e}, relative" if table["error"] else "none: exact arithmetic")
         )
         rows.append(("surface", table["checks"]))
-    width = max(len(name) for name, _ in rows)
-    return [f"{inertial.name}, about its centre of mass", *(f"  {name:{width}}  {text}" for name, text in rows)]
+    return [f"{inertial.name}, about its centre of mass", *fields((f"  {name}", text) for name, text in rows)]
 
 
-def table_text(inertial: Inertial) -> str:
-    """Return the table ``[body]`` of a scene file as TOML: name, mass and inertia, numbers with at most 34 digits."""
-    table = dict(inertial.table())
-    rows = [[_decimal(entry) for entry in row] for row in inertial.inertia]
-    return toml_text({"body": {**table, "mass": _decimal(inertial.mass), "inertia": rows}})
+def table_text(inertial: Inertial, fixed_point: str | None = None) -> str:
+    """Return the table ``[body]`` of a scene file as TOML, about the centre of mass or a fixed point ``"X,Y,Z"``, m."""
+    table = dict(inertial.table(fixed_point if fixed_point is None else fixed_point.split(",")))
+    principal = principal_axes(table["inertia"])
+    # equal moments, and the sum of the moments of a flat body, must remain equal to 2^-200, which is 60 digits
+    context = Context(prec=34 if principal.kind == "asymmetric" and not principal.flat else 80)
 
+    def decimal(value: Any) -> Any:
+        if isinstance(value, list):
+            return [decimal(each) for each in value]
+        return context.divide(Decimal(value.numerator), Decimal(value.denominator))
 
-def _decimal(value: Fraction) -> Decimal:
-    return Context(prec=34).divide(Decimal(value.numerator), Decimal(value.denominator))
+    numbers = {key: decimal(table[key]) for key in ("mass", "center_of_mass", "inertia") if key in table}
+    return toml_text({"body": table | numbers})
 
 
 def _numbers(values: Sequence[float]) -> str:

@@ -88,7 +88,7 @@ class CostRecord(TypedDict):
 class SwitchingRecord(TypedDict):
     """One time ``t`` at which a function with a jump or kink in a torque, such as sign(x), switches.
 
-    See :class:`symrot.propagation.steppers.stepping.Switching`.
+    See :class:`symrot.propagation.steppers.stats.Switching`.
     """
 
     t: float

@@ -67,8 +67,12 @@ def find_scene(source: str | Path) -> Path:
     except OSError as reason:
         raise InputError(f"{str(source)[:80]}: expected a scene file, got {reason.strerror}") from None
     label = str(source) if str(source).isprintable() else repr(str(source))
-    hint = nearest(path.stem, names)
-    hints = f"{hint} `symrot scenes` lists all" if hint else f"the shipped scenes are {', '.join(names)}"
+    in_folder = nearest(path.name, [file.name for file in path.parent.glob("*.toml")])
+    shipped = nearest(path.stem, names)
+    if in_folder and not (is_name and shipped):
+        hints = in_folder
+    else:
+        hints = f"{shipped} `symrot scenes` lists all" if shipped else f"the shipped scenes are {', '.join(names)}"
     raise InputError(f"{label}: expected a scene or a scene file, but there is none of this name ({hints})")
 
 

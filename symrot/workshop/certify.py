@@ -18,6 +18,7 @@ from symrot.errors import CertificateError, InputError, nearest
 from symrot.files.reading import read_input
 from symrot.kernels.jacobian import BY
 from symrot.kernels.library import is_kernel
+from symrot.report.layout import fields
 from symrot.scene.file import names_with_kernels
 from symrot.scene.scene import SceneSource, load_scene
 from symrot.workshop import object_code
@@ -392,7 +393,7 @@ def lines(data: Data, compared: bool = True) -> list[str]:
         rows.append(("object code", "compared in an earlier run, not now (--objects compares)"))
     required = ", ".join(data["flags"]["required"])
     rows.append(("flags", f"required {required}; void under {', '.join(data['flags']['void'])}"))
-    return [f"{data['kernel']}: {data['title']}", *(f"  {label:<{LABEL}}{text}" for label, text in rows)]
+    return [f"{data['kernel']}: {data['title']}", *fields((f"  {label:<{LABEL - 2}}", text) for label, text in rows)]
 
 
 def _short(text: str) -> str:

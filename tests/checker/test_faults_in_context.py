@@ -81,3 +81,15 @@ def test_a_step_with_names_that_the_reader_does_not_know_is_left_out_of_the_camp
     index, rest = Symbol("a_{k-2}", real=True), Symbol("b", real=True)
     step = SimpleNamespace(left=rest, right=rest + 1, hypotheses=(index - rest,))
     assert claims_of_step(step, "series") == []
+
+
+@pytest.mark.parametrize("claim", [
+    "M_1 = A ω_1' + (C - B) ω_2 ω_3", "A ω_1' = (B - C) ω_2 ω_3", "dL/dt = M - ω × L", "T = 1/2 (A ω_1^2 + B ω_2^2 + C ω_3^2)",
+])  # fmt: skip
+def test_a_formula_for_principal_axes_is_none_for_the_space_frame(claim):
+    assert symrot.check(claim, frame="body").verdict in ("true", "recognised")
+    assert symrot.check(claim, frame="space").verdict not in ("true", "recognised")
+
+
+def test_an_equation_of_vectors_holds_in_both_frames():
+    assert symrot.check("M = I ω' + ω × I ω", frame="space").verdict == "true"

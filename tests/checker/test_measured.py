@@ -148,3 +148,13 @@ def test_a_wrong_whole_number_gets_the_right_one(claim, right):
 )
 def test_one_digit_a_last_zero_and_a_rational_value_leave_no_room_for_rounding(claim):
     assert symrot.check(claim).verdict == "false"
+
+
+def test_a_prime_after_a_number_is_no_rate():
+    """90' was the rate of 90, so that 90' = 1.5° was false."""
+    with pytest.raises(symrot.InputError, match="degrees as a decimal number"):
+        symrot.check("90′ = 1.5°")
+
+
+def test_a_repair_has_units_and_no_names_for_them():
+    assert symrot.check("5% = 0.5").repairs[0].text == "5 % = 0.0"

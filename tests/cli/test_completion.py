@@ -75,6 +75,13 @@ def test_a_mistyped_word_is_told_the_nearest_one(words, hint, capsys):
     assert hint in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("word", ["satelite.toml", "satellite", "satellite.tml"])
+def test_a_mistyped_scene_file_is_told_the_file_in_its_folder(tmp_path, capsys, word):
+    (tmp_path / "satellite.toml").touch()
+    assert main(["run", str(tmp_path / word)]) == 2
+    assert "(did you mean 'satellite.toml'?)" in capsys.readouterr().err
+
+
 def test_a_word_like_no_other_gets_no_hint():
     assert nearest("zzzzzz", COMMANDS) == ""
     assert with_hint("expected a command", "zzzzzz", COMMANDS) == "expected a command"

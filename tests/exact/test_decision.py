@@ -5,7 +5,7 @@ from sympy import Matrix, Rational, Symbol, symbols
 
 from symrot.checker.claim.interpreter import Interpreter
 from symrot.checker.claim.source.text import claim_of_text
-from symrot.checker.decide import decision as claims
+from symrot.checker.decide import stages as claims
 from symrot.exact import decide as formulas
 from symrot.exact.decision import Decision, ShapeMismatch, first_decision, matched_sides, place_in_matrix
 from symrot.exact.evidence import Counterexample

@@ -224,6 +224,9 @@ BOMB = '<!DOCTYPE r [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a
     (changed(('<mass value="2.5"/>', '<mass value="2.5"/><pose>1 0 0 0 0 0</pose>')), "expected elements among origin, mass, inertia, got 'pose'"),
     (changed(('<mass value="2.5"/>', '<mass value="2.5"/><origin xyz="1 0 0"/>')), "inertial: expected one element <origin>, got 2"),
     (SDF.format(attributes="", rotation="0 0 0").replace("<inertial>", '<inertial mass="2">'), "inertial: expected attributes among auto, got 'mass'"),
+    (changed(('mass value="2.5"', 'mass value="2.5" unit="g"')), "mass: expected attributes among value, got 'unit'"),
+    (changed(('izz="0.04"', 'izz="0.04" frame="world"')), "inertia: expected attributes among ixx, ixy, ixz, iyy, iyz, izz, got 'frame'"),
+    (SDF.format(attributes='order="zyx"', rotation="0 0 0"), "pose: expected attributes among relative_to, frame, rotation_format, degrees, got 'order'"),
     (SDF.format(attributes='degrees="yes"', rotation="0 0 0"), "pose.degrees: expected true or false, got 'yes'"),
     (MJCF.format(compiler='angle="Degree"', inertia='diaginertia="1 1 1"'), "compiler.angle: expected 'degree' or 'radian', got 'Degree'"),
     (MJCF.format(compiler="", inertia='diaginertia="1 1 1" rpy="1 0 0"'), "inertial: expected attributes among pos, mass"),
@@ -295,6 +298,42 @@ def test_a_link_is_the_body_of_a_scene(tmp_path):
     assert np.array(scene.body.inertia, dtype=float) == pytest.approx(tensor(arm), rel=1e-15)
     with pytest.raises(InputError, match=r"fixed_point: expected three numbers \[x, y, z\] in m, got 3"):
         arm.table(fixed_point=3)
+
+
+ROTATED = """<robot name="r"><link name="wheel"><inertial><origin xyz="0.1 0 0.2" rpy="0.1 0.2 0.3"/><mass value="2"/>
+<inertia ixx="{xx}" ixy="0" ixz="0" iyy="{yy}" iyz="0" izz="{zz}"/></inertial></link></robot>"""
+
+
+@pytest.mark.parametrize(("xx", "yy", "zz"), [("0.02", "0.02", "0.03"), ("0.01", "0.02", "0.03")])
+def test_a_printed_table_keeps_equal_moments_and_flat_bodies(tmp_path, capsys, xx, yy, zz):
+    """The digits that are printed suffice to see that two moments are equal, and that the body is flat."""
+    path = robot(tmp_path, ROTATED.format(xx=xx, yy=yy, zz=zz))
+    assert main(["inertia", f"{path}:wheel", "--toml"]) == 0
+    scene = scene_of(tmp_path, capsys.readouterr().out)
+    expected = symrot.link(path, "wheel").principal
+    assert (scene.body.principal.kind, scene.body.principal.flat) == (expected.kind, expected.flat)
+
+
+def test_a_printed_table_about_a_fixed_point_is_that_of_python(tmp_path, capsys):
+    path = robot(tmp_path, ROTATED.format(xx="0.02", yy="0.021", zz="0.03"))
+    assert main(["inertia", f"{path}:wheel", "--toml", "--fixed-point=0,0,-1/10"]) == 0
+    scene = scene_of(tmp_path, capsys.readouterr().out)
+    table = symrot.link(path, "wheel").table(fixed_point=[0, 0, "-1/10"])
+    assert scene.body.about == "fixed_point" and scene.body.center_of_mass == (Fraction(1, 10), 0, Fraction(3, 10))
+    assert np.array(scene.body.inertia, dtype=float) == pytest.approx(
+        np.array(table["inertia"], dtype=float), rel=1e-15
+    )
+    assert main(["inertia", f"{path}:wheel", "--fixed-point=0,0,0"]) == 2
+    assert "--fixed-point: expected --toml as well" in capsys.readouterr().err
+    assert main(["inertia", f"{path}:wheel", "--toml", "--fixed-point=0,0"]) == 2
+    assert "fixed_point: expected three numbers" in capsys.readouterr().err
+
+
+def scene_of(folder, body):
+    """Return the scene whose table ``body`` is a text of TOML."""
+    file = folder / "scene.toml"
+    file.write_text(f"schema = 1\n{body}\n[initial]\nomega = [0, 0, 1]\n[span]\nt = [0, 1]\n", encoding="utf-8")
+    return symrot.load_scene(file)
 
 
 def test_the_command_lists_links_and_their_problems(tmp_path, capsys):

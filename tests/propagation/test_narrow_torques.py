@@ -263,7 +263,7 @@ def test_an_ensemble_meets_the_pulse(method):
 
 
 @pytest.mark.shipped_flags  # compiled quickly, it computes for a minute
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(8)
 @pytest.mark.parametrize("method", ("taylor", "dop853"))
 @pytest.mark.parametrize("torque", ["exp(t**3)", "exp(exp(t))", "cosh(100*t)", "1/(t-1/3)**3"])
 def test_overflow_and_poles_end_in_a_sentence(torque, method):

@@ -242,7 +242,7 @@ def test_a_constant_that_is_rounded_as_another_has_no_bounds(number, other):
 HEAD = '#include "tumbling_prism_rk4_step.h"\n'
 TEXTS = {  # C that the proof does not read, or that other compilers read otherwise: what is replaced, by what
     "another header": (HEAD, HEAD + '#include "other.h"\n'), "header of the system": (HEAD, HEAD + "#include <tgmath.h>\n"),
-    "header of functions": (HEAD, HEAD + '#include "symrot_math.h"\n'), "macro": (HEAD, HEAD + "#define t dt\n"),
+    "no header": (HEAD, ""), "header of functions": (HEAD, HEAD + '#include "symrot_math.h"\n'), "macro": (HEAD, HEAD + "#define t dt\n"),
     "pragma": (HEAD, HEAD + "#pragma STDC FP_CONTRACT OFF\n"),
     "function of the C library": (HEAD, HEAD + "double memcpy(double x)\n{\n    return x;\n}\n"),
     "static function of the C library": (HEAD, HEAD + "static inline double fmin(double x)\n{\n    return x;\n}\n"),
@@ -270,6 +270,22 @@ def test_a_c_text_with_more_than_its_functions_is_refused(what):
     assert text != source
     with pytest.raises(CertificateError, match="tumbling_prism_rk4_step"):
         check_source(text, name.removeprefix("symrot_"))
+
+
+@pytest.mark.parametrize(("old", "new"), [
+    ("double t, const double x[7], const double p[3], double dt", "double dt, const double x[7], const double p[3], double t"),
+    ("const double x[7], const double p[3]", "const double p[3], const double x[7]"), ("double dt,", "double dt, double u,"),
+    ("const double p[3], double dt", "const double p[4], double dt"), ("double t,", "double time,"),
+    ("RESTRICT t, const double *SYMROT_RESTRICT x", "RESTRICT x, const double *SYMROT_RESTRICT t"),
+])  # fmt: skip
+def test_arguments_of_another_order_are_refused(old, new):
+    """A header with the same order declares them, and the C text computes the method from their names."""
+    text = step_text("tumbling_prism", "rk4")
+    source = text.c()[0]
+    assert old in source
+    wrong = source.replace(old, new, 1).replace("(void)t;", f"(void){'time' if 'time' in new else 't'};", 1)
+    with pytest.raises(CertificateError, match="to have the arguments"):
+        formula_section(text.name, text._rates_program, text.method, wrong)
 
 
 @pytest.mark.parametrize("literal", ["1e400", "1e-1000000000", "1e39f", "0x1p99999"])
@@ -365,7 +381,16 @@ def _other_parameter(data, folder):
     data["rates"]["parameters"][0][2] = (1.0).hex()
 
 
+def _other_entry(section, name, value=1):
+    return lambda data, folder: (data[section] if section else data).update({name: value})
+
+
 @pytest.mark.parametrize(("change", "message"), [
+    (_other_entry("step", "tolerance"), "'step' in the form"), (_other_entry("rates", "error"), "'rates' in the form"),
+    (_other_entry("", "title", "a step without errors"), "'title' and 'kernel' to name the scene tumbling_prism"),
+    (_other_entry("", "regenerate", "symrot emit other"), "the command of the step"),
+    # otherwise the rates would not be compared with those of tumbling_prism
+    (_other_entry("", "regenerate", "symrot emit other --step taylor --order 3 --target c"), "to name the scene other"),
     (_smaller_truncation, "expected the bounds that symrot computes"), (_smaller_rounding, "expected"),
     (_other_rates, "expected next"), (_other_order, "expected the order|expected next"), (_other_text, "an edited one"),
     (_other_parameter, "the parameters that the certificate states"),

@@ -23,7 +23,7 @@ from symrot.propagation.motions.methods import SteppedMotion
 from symrot.propagation.motions.motion import Motion
 from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers.smoothness import non_smooth_torque
-from symrot.propagation.steppers.stepping import Stats
+from symrot.propagation.steppers.stats import Stats
 from symrot.propagation.trajectory import Trajectory
 from symrot.scene.scene import Scene
 

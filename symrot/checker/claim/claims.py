@@ -18,7 +18,7 @@ from symrot.checker.claim.shapes import (
 )
 from symrot.checker.claim.tree import Node, text, walk
 from symrot.checker.context.context import NO_CONTEXT, Context
-from symrot.checker.decide.decision import Equation
+from symrot.checker.decide.equation import Equation
 from symrot.checker.typed.readings import Relation
 from symrot.errors import InputError
 from symrot.exact.decision import ShapeMismatch, matched_sides

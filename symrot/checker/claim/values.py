@@ -6,7 +6,8 @@ from fractions import Fraction
 from mpmath import iv
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.decide.decision import Equation, decide_equation
+from symrot.checker.decide.decision import decide_equation
+from symrot.checker.decide.equation import Equation
 from symrot.errors import InputError
 from symrot.exact.decision import Decision
 from symrot.exact.evidence import Counterexample

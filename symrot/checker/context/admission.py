@@ -54,6 +54,16 @@ def frame_of(name: str) -> str:
     return match[1] if match else ""
 
 
+OF_BODY_AXES = ("principal axes", "in the body", "Euler's equations", "rotation of a symmetric body")
+"""Words in the names of derived formulas whose components are along axes of the body."""
+
+
+def _axes_of(name: str) -> str:
+    """Return "body" for a derived formula for components along axes of the body, as its ``name`` says; else ""."""
+    # Euler's equations as an equation of vectors, "any body axes", hold in the space frame too
+    return "body" if any(words in name for words in OF_BODY_AXES) and "any body axes" not in name else ""
+
+
 def sequence_of(name: str) -> str:
     """Return the Euler sequence that a derived formula's ``name`` contains, such as "ZXZ", or an empty text."""
     return next((word for word in re.findall(r"[A-Za-z]+", name) if word in SEQUENCES), "")
@@ -94,8 +104,9 @@ def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
     if context.sign_of_products == "minus" and name.endswith("without the minus sign"):
         yield "without the minus sign of products of inertia"
     expected = context.frame or (meaning.frame if meaning else "")
-    if expected and frame and frame != expected:
-        yield f"for the {frame} frame"
+    own = frame or _axes_of(name)
+    if expected and own and own != expected:
+        yield f"for the {own} frame"
     if context.sequence and sequence and sequence not in (context.sequence, same_rotation(context.sequence)):
         yield f"for the sequence {sequence}"
     if sequence and not is_usual_for_body(context, sequence):

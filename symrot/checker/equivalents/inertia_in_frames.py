@@ -11,7 +11,8 @@ from sympy import Matrix, Symbol
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.source.text import is_latex
 from symrot.checker.claim.tree import Node
-from symrot.checker.decide.decision import Equation, decide_equation
+from symrot.checker.decide.decision import decide_equation
+from symrot.checker.decide.equation import Equation
 from symrot.checker.verdict import Verdict
 from symrot.kinematics.rotations import elementary_rotation
 

@@ -14,7 +14,8 @@ from sympy import Function, Symbol
 from symrot.checker.claim.claims import Claim, relation_text
 from symrot.checker.claim.interpreter import time
 from symrot.checker.claim.tree import Node, is_derivative
-from symrot.checker.decide.decision import Equation, decide_equation
+from symrot.checker.decide.decision import decide_equation
+from symrot.checker.decide.equation import Equation
 from symrot.checker.repair.edits import FAULT_DESCRIPTIONS
 from symrot.checker.typed.readings import Relation
 from symrot.checker.verdict import Diagnosis, Repair, Verdict

@@ -21,7 +21,8 @@ from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, is_derivative, negated, number, product, sum_of, text, walk, with_names
 from symrot.checker.context.context import letters_of
-from symrot.checker.decide.decision import Equation, decide_equation
+from symrot.checker.decide.decision import decide_equation
+from symrot.checker.decide.equation import Equation
 from symrot.checker.recognition.evidence import (
     LEAST_SYMBOLS_EDITED,
     MOST_COMPONENTS,

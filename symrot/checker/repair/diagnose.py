@@ -13,7 +13,8 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.tree import Node
 from symrot.checker.claim.tree import text as written
-from symrot.checker.decide.decision import Equation, decide_equation
+from symrot.checker.decide.decision import decide_equation
+from symrot.checker.decide.equation import Equation
 from symrot.checker.repair.canonical_form import canonical, terms_of_equation, with_ordered_products
 from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, Edit, normalise_factors, single_edits
 from symrot.checker.repair.entries import by_entries

@@ -171,6 +171,8 @@ class PiecesPart(OpenFunctionsPart):
         order = int(mark.text) if mark.kind == "dots" else len(mark.text)
         if order > MOST_DOTS:
             raise self.fail(f"a time derivative of order at most {MOST_DOTS}", mark.start)
+        if node.kind == "number":
+            raise self.fail("degrees as a decimal number, or ft or in for a length, in place of a prime", mark.start)
         if node.kind == "name":
             name = str(node.value)
             doubtful = mark.kind == "prime" and name not in self.vocabulary.functions

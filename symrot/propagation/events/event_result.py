@@ -31,7 +31,9 @@ from symrot.propagation.events.polynomials import HEAD, Piece, fitted, fitted_pi
 from symrot.propagation.motions.methods import ClosedFormMotion, SciPyMotion
 from symrot.propagation.motions.motion import Motion, MotionInParts, SteppedInC, on_clock
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
-from symrot.propagation.steppers.stepping import Integration, Stats, Switching, split_at, stats_of
+from symrot.propagation.steppers.segments import split_at
+from symrot.propagation.steppers.stats import Stats, Switching, stats_of
+from symrot.propagation.steppers.stepping import Integration
 
 __all__ = ["EventResult", "integrate_with_events"]
 

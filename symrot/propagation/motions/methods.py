@@ -16,7 +16,9 @@ from symrot.propagation.compiled_models import error_blocks
 from symrot.propagation.motions.motion import RestartableMotion, ShiftableMotion, SteppedInC
 from symrot.propagation.motions.setup import ClosedFormSetup, SteppedSetup, python_rates
 from symrot.propagation.steppers import dop853
-from symrot.propagation.steppers.stepping import Integration, Recording, Stats
+from symrot.propagation.steppers.recording import Recording
+from symrot.propagation.steppers.stats import Stats
+from symrot.propagation.steppers.stepping import Integration
 from symrot.scene.tables import Initial
 
 if TYPE_CHECKING:

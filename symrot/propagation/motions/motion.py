@@ -17,7 +17,9 @@ from symrot.propagation.events.polynomials import Piece
 from symrot.propagation.method import Choice
 from symrot.propagation.motions.setup import Setup
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
-from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Integration, Recording, Stats
+from symrot.propagation.steppers.recording import Recording
+from symrot.propagation.steppers.stats import Stats
+from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Integration
 from symrot.scene.tables import Initial
 
 __all__ = ["Motion", "MotionInParts", "RestartableMotion", "ShiftableMotion", "SteppedInC", "on_clock"]

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from symrot.build.sources import c_text
 from symrot.errors import InputError
+from symrot.propagation.steppers.segments import Segment
 from symrot.propagation.steppers.stepping import (
     MAX_STEPS,
     NOT_FINITE,
@@ -22,7 +23,6 @@ from symrot.propagation.steppers.stepping import (
     Integration,
     PathLike,
     Run,
-    Segment,
     Stepper,
     Window,
     check_tolerance,

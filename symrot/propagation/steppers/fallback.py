@@ -20,17 +20,10 @@ from symrot.errors import InputError
 from symrot.propagation import progress
 from symrot.propagation.enclosures.step_limit import Deviations, longest_followed
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped, add_samples, why_hopeless, why_stuck
-from symrot.propagation.steppers.stepping import (
-    NOT_FINITE_SENTENCE,
-    Floats,
-    Recording,
-    Segment,
-    Stats,
-    check_longest_step,
-    check_tolerance,
-    segments,
-    split_at,
-)
+from symrot.propagation.steppers.recording import Recording
+from symrot.propagation.steppers.segments import Segment, segments, split_at
+from symrot.propagation.steppers.stats import Stats
+from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Floats, check_longest_step, check_tolerance
 
 __all__ = ["METHODS", "FallbackRecording", "Options", "WholeMotion", "integrate", "method_name", "record"]
 
@@ -187,7 +180,7 @@ def record(
 
 
 class FallbackRecording(Recording):
-    """A motion by SciPy, computable at any time; see :class:`symrot.propagation.steppers.stepping.Recording`."""
+    """A motion by SciPy, computable at any time; see :class:`symrot.propagation.steppers.recording.Recording`."""
 
     def __init__(self, motion: "_Integration", pieces: list[Piece], low: float, high: float) -> None:
         self._pieces = pieces

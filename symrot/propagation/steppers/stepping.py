@@ -1,4 +1,4 @@
-"""Code that all steppers share: loaded libraries, integrations of motions, recordings, and error messages.
+"""Code that all steppers share: loaded libraries, integrations of motions, checks and error messages.
 
 A :class:`Run` is the state of one motion in the memory of the C code. The *pace* is the time that a motion covers per
 step. To *sample* is to compute the states at given times; to *record* is to store every step for later.
@@ -8,9 +8,8 @@ import ctypes
 import math
 import os
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from functools import cached_property
-from itertools import pairwise
 from operator import le
 from time import perf_counter
 from typing import Any, ClassVar, NamedTuple
@@ -22,6 +21,9 @@ from symrot.build.address import address
 from symrot.errors import CompilerError, InputError
 from symrot.propagation import progress
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped, add_samples, why_hopeless, why_stuck
+from symrot.propagation.steppers.recording import Recording
+from symrot.propagation.steppers.segments import Segment, segments, split_at
+from symrot.propagation.steppers.stats import Stats
 
 __all__ = [
     "DONE",
@@ -33,88 +35,25 @@ __all__ = [
     "Floats",
     "Integration",
     "PathLike",
-    "Recording",
     "Run",
-    "Segment",
-    "Stats",
     "SteppedRecording",
     "Stepper",
-    "Switching",
     "Window",
     "check_longest_step",
     "check_tolerance",
     "is_sorted",
-    "segments",
-    "split_at",
-    "stats_of",
 ]
 
 MAX_STEPS = 100_000_000  # default limit of a motion: a minute or two
 MOST_RECORDED = 2 << 30  # bytes of recorded steps
 PATIENCE = 200_000  # steps between two checks of the pace
 FEW = 40  # sample times that are compared one by one
-SLIVER = 2.0**-100  # part of a segment: so near its end, every formula has the same value as at the end
 
 Floats = NDArray[np.float64]
 PathLike = str | os.PathLike[str]
 
 DONE, PAUSED, FULL, NOT_FINITE, UNDERFLOW = range(5)  # return values of a stepper in C
 NOT_FINITE_SENTENCE = "its rate of change is not finite there"
-
-
-class Switching(NamedTuple):
-    """The time t, s, at which a function in a torque, such as ``sign(omega_3)``, switches."""
-
-    t: float
-    function: str
-    # "passed": the argument changes its sign; "held": it stays at zero from then on (dry friction holds a wheel at
-    # rest); "released": it leaves zero after being held there
-    how: str
-
-
-class Stats(NamedTuple):
-    """The cost of a propagation.
-
-    Attributes
-    ----------
-    accepted, rejected : int
-        Numbers of accepted and rejected steps.
-    evaluations : int
-        Evaluations of the kernel.
-    seconds : float
-        Time of the whole propagation.
-    switches : int
-        Number of changes of the Euler sequence if Euler angles are the state; otherwise the number of switching times.
-    switching_times : tuple of float
-        Times, s, without repetition, at which functions such as sign switch in the torques.
-    switchings : tuple of Switching
-        The functions that switch, with their times.
-
-    Examples
-    --------
-    >>> import symrot
-    >>> symrot.propagate("t_handle").stats.rejected >= 0
-    True
-    """
-
-    accepted: int
-    rejected: int
-    evaluations: int
-    seconds: float
-    switches: int = 0
-    switching_times: tuple[float, ...] = ()
-    switchings: tuple[Switching, ...] = ()
-
-
-def stats_of(cost: Any, seconds: float, switchings: Iterable[Switching]) -> Stats:
-    """Return the statistics of a motion from ``cost``: accepted steps, rejected steps and evaluations."""
-    accepted, rejected, evaluations = map(int, cost)
-    listed = tuple(sorted(switchings))
-    times = tuple(sorted({change.t for change in listed}))  # coinciding switches count once
-    return Stats(accepted, rejected, evaluations, seconds, len(times), times, listed)
-
-
-# ------------------------------------------------------------------------------------------------ checks and sentences
 
 
 def check_tolerance(tolerance: float) -> None:
@@ -139,93 +78,6 @@ def _numbers(what: str, values: ArrayLike, length: int) -> list[float]:
     return numbers
 
 
-# ------------------------------------------------------------------------------------------------ times
-
-
-class Segment(NamedTuple):
-    """Interval between switching times, from ``start`` to ``stop``, s.
-
-    Torques are evaluated at ``first`` and ``last``: just inside a switching time, otherwise at the ends.
-    """
-
-    # first and last lie just inside a switching time, where a torque may jump
-    start: float
-    stop: float
-    first: float
-    last: float
-
-
-def segments(t0: float, end: float, breaks: Sequence[float]) -> list[Segment]:
-    """Return the segments into which switching times divide the span from t0 to ``end``, in this order.
-
-    For t0 = 2, ``end`` = 0 and a break at 1: from 2 to 1, from 1 to 0.
-    """
-    if not breaks:
-        return [Segment(t0, end, t0, end)]
-    low, high = min(t0, end), max(t0, end)
-    # switching times outside the span do not count
-    inside, known = [time for time in breaks if low < time < high], set(breaks)
-    edges = [t0, *(inside if end >= t0 else reversed(inside)), end]
-    return [
-        Segment(
-            start,
-            stop,
-            _inside(start, stop) if start in known else start,
-            _inside(stop, start) if stop in known else stop,
-        )
-        for start, stop in pairwise(edges)
-    ]
-
-
-def _inside(edge: float, other: float) -> float:
-    """Return a time in a segment, so near to its end ``edge`` that a torque with a jump there has just jumped."""
-    # too near the edge to affect the choice of the first step
-    time = edge + SLIVER * (other - edge)
-    return time if time != edge else math.nextafter(edge, other)
-
-
-def split_at(times: Floats, t0: float) -> Iterator[NDArray[np.intp]]:
-    """Yield the indices of the times from t0 on, then of those before, if any, each sorted by distance from t0."""
-    # for the times 3, 0, 2 and t0 = 1: [2, 0], then [1]; an empty array is left out
-    order = np.argsort(times, kind="stable")
-    first_after = int(np.searchsorted(times[order], t0))
-    for part in (order[first_after:], order[:first_after][::-1]):
-        if len(part):
-            yield part
-
-
-# ------------------------------------------------------------------------------------------------ a motion at any time
-
-
-class Recording(ABC):
-    """A motion as a function from times in ``span``, one or n, to states, shape (N,) or (n, N)."""
-
-    # scene time, s, at which the clock of the motion shows 0
-    epoch = 0.0
-
-    def __init__(self, t0: float, y0: Sequence[float] | Floats, span: tuple[float, float], stats: Stats) -> None:
-        self._t0, self._y0, self.span, self.stats = t0, y0, span, stats
-
-    @abstractmethod
-    def _fill(self, times: Floats, states: Floats) -> None:
-        """Write the states at ``times``, which lie inside the span and differ from t0, into the array ``states``.
-
-        The shapes are (n,) and (n, N).
-        """
-
-    def __call__(self, t: ArrayLike) -> Floats:
-        times = np.asarray(t, dtype=np.float64)
-        flat = np.ascontiguousarray(times).reshape(-1)
-        outside = ~((flat >= self.span[0]) & (flat <= self.span[1]))
-        if outside.any():
-            low, high, asked = (time + self.epoch for time in (*self.span, float(flat[outside][0])))
-            raise InputError(f"t: expected times from {low} to {high} s, where the motion is known, got {asked} s")
-        states = np.empty((len(flat), len(self._y0)))
-        self._fill(flat, states)
-        states[flat == self._t0] = self._y0
-        return states.reshape(*times.shape, len(self._y0))
-
-
 class SteppedRecording(Recording):
     """A motion whose states can be computed at any time, from the recorded steps of a stepper in C."""
 
@@ -238,9 +90,6 @@ class SteppedRecording(Recording):
         for rows, chosen in ((self._backward, times < self._t0), (self._forward, times > self._t0)):
             if chosen.any():
                 states[chosen] = self._dense(rows, times[chosen])
-
-
-# ------------------------------------------------------------------------------------------------ the steppers in C
 
 
 class Window(NamedTuple):

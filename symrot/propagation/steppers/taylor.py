@@ -18,6 +18,7 @@ from symrot.build.sources import c_text
 from symrot.errors import CompilerError, InputError
 from symrot.formula.program import Program
 from symrot.formula.tree import operations
+from symrot.propagation.steppers.segments import Segment
 from symrot.propagation.steppers.stepping import (
     MAX_STEPS,
     NOT_FINITE,
@@ -27,7 +28,6 @@ from symrot.propagation.steppers.stepping import (
     Integration,
     PathLike,
     Run,
-    Segment,
     Stepper,
     check_tolerance,
 )

@@ -18,7 +18,10 @@ from symrot.propagation.method import Choice
 from symrot.propagation.motions.motion import MotionInParts
 from symrot.propagation.motions.setup import Setup
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped, add_samples
-from symrot.propagation.steppers.stepping import Floats, Recording, Stats, Switching, split_at, stats_of
+from symrot.propagation.steppers.recording import Recording
+from symrot.propagation.steppers.segments import split_at
+from symrot.propagation.steppers.stats import Stats, Switching, stats_of
+from symrot.propagation.steppers.stepping import Floats
 from symrot.propagation.switched.run import Chunk, SwitchedRun
 from symrot.propagation.switched.system import SwitchedSystem
 

@@ -15,6 +15,7 @@ from symrot.certificates.rounding.scenes import scene_problem
 from symrot.certificates.step_certificate import bounds_of_step, rates_of, with_bounds
 from symrot.codegen.steps import step_signature
 from symrot.errors import InputError
+from symrot.report.layout import fields
 from symrot.workshop.input_ranges import input_box, plain_box
 from symrot.workshop.kernel_files import write_files
 from symrot.workshop.step_text import StepText, step_text
@@ -134,8 +135,7 @@ def _law_rows(data: Data) -> list[tuple[str, str]]:
 
 
 def _printed(data: Data, rows: Sequence[tuple[str, str]]) -> list[str]:
-    width = max(len(label) for label, _ in rows) + 2
-    return [f"{data['kernel']}: {data['title']}", *(f"  {label:<{width}}{text}" for label, text in rows)]
+    return [f"{data['kernel']}: {data['title']}", *fields((f"  {label}", text) for label, text in rows)]
 
 
 def _bound_rows(bounds: Mapping[str, Any], states: Sequence[str]) -> list[tuple[str, str]]:

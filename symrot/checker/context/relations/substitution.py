@@ -12,7 +12,8 @@ from sympy import Expr
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.context.context import Context
-from symrot.checker.decide.decision import Equation, decide_equation
+from symrot.checker.decide.decision import decide_equation
+from symrot.checker.decide.equation import Equation
 from symrot.checker.verdict import Diagnosis, Identification, Verdict
 from symrot.errors import InputError
 from symrot.exact.decision import Decision

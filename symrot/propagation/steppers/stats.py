@@ -1,0 +1,58 @@
+"""The cost of a propagation, and the times at which torques switch."""
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+__all__ = ["Stats", "Switching", "stats_of"]
+
+
+class Switching(NamedTuple):
+    """The time t, s, at which a function in a torque, such as ``sign(omega_3)``, switches."""
+
+    t: float
+    function: str
+    # "passed": the argument changes its sign; "held": it stays at zero from then on (dry friction holds a wheel at
+    # rest); "released": it leaves zero after being held there
+    how: str
+
+
+class Stats(NamedTuple):
+    """The cost of a propagation.
+
+    Attributes
+    ----------
+    accepted, rejected : int
+        Numbers of accepted and rejected steps.
+    evaluations : int
+        Evaluations of the kernel.
+    seconds : float
+        Time of the whole propagation.
+    switches : int
+        Number of changes of the Euler sequence if Euler angles are the state; otherwise the number of switching times.
+    switching_times : tuple of float
+        Times, s, without repetition, at which functions such as sign switch in the torques.
+    switchings : tuple of Switching
+        The functions that switch, with their times.
+
+    Examples
+    --------
+    >>> import symrot
+    >>> symrot.propagate("t_handle").stats.rejected >= 0
+    True
+    """
+
+    accepted: int
+    rejected: int
+    evaluations: int
+    seconds: float
+    switches: int = 0
+    switching_times: tuple[float, ...] = ()
+    switchings: tuple[Switching, ...] = ()
+
+
+def stats_of(cost: Any, seconds: float, switchings: Iterable[Switching]) -> Stats:
+    """Return the statistics of a motion from ``cost``: accepted steps, rejected steps and evaluations."""
+    accepted, rejected, evaluations = map(int, cost)
+    listed = tuple(sorted(switchings))
+    times = tuple(sorted({change.t for change in listed}))  # coinciding switches count once
+    return Stats(accepted, rejected, evaluations, seconds, len(times), times, listed)
