@@ -47,9 +47,8 @@ def _obj(content: bytes) -> int:
 
 
 def _ply(content: bytes) -> None:
-    """Raise InputError for a PLY file in text form with corners that are no whole numbers, which trimesh rounds, or with
-    more lines than its header says, which trimesh leaves out.
-    """
+    """Raise InputError for a PLY file as text with corners that are no whole numbers, or with surplus lines."""
+    # trimesh rounds the former and leaves out the latter
     header, _, numbers = content.partition(b"end_header")
     lines = sum(map(int, re.findall(rb"^element \w+ (\d+)", header, re.MULTILINE)))
     if b"format ascii" in header and len(numbers.strip().splitlines()) > lines:
