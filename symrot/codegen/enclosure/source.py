@@ -6,14 +6,22 @@ states; :file:`propagation/enclosures/disc.h` contains the rules of disc arithme
 
 from collections.abc import Mapping, Sequence
 
-from symrot.codegen.enclosure.terms import LOW_ORDER, REACHES, Enclosure, enclosure, value_operands
+from symrot.codegen.enclosure.terms import (
+    LOW_ORDER,
+    REACHES,
+    Enclosure,
+    enclosure,
+    functions_of_time,
+    rounded_terms,
+    value_operands,
+)
 from symrot.codegen.printing.c_source import c_expression
 from symrot.codegen.taylor.recurrences import Recurrences, recurrences
 from symrot.errors import InputError
 from symrot.formula.program import Program
 from symrot.formula.tree import Node, rename
 
-__all__ = ["enclosure_definitions", "enclosure_source"]
+__all__ = ["enclosure_definitions", "enclosure_source", "rounding_source"]
 
 
 def enclosure_source(program: Program, order: int, edges: Sequence[int]) -> str:
@@ -51,9 +59,7 @@ def enclosure_definitions(enclosure: Enclosure | None, order: int, edges: Sequen
     system = enclosure.system
     places = {name: f"p[{i}]" for i, name in enumerate(system.parameters)}
     lines = [f"const symrot_disc d{i} = {_disc(system, i, places)};" for i in enclosure.series]
-    for state, own in enumerate(enclosure.terms):
-        parts = [f"{_size(weight, places)}d{operand}.r" for weight, operand in own]
-        lines.append(f"deviation[{state}] = {' + '.join(parts) or '0.0'};")
+    lines += _radii(enclosure, places)
     used = ", ".join("1" if state in enclosure.states else "0" for state in range(len(system.states)))
     radii = REACHES[order < LOW_ORDER]
     reaches = ", ".join(f"{{{r!r}, {r**-order / ((order + 1) * (1 - 1 / r))!r}}}" for r in radii)
@@ -77,6 +83,63 @@ def enclosure_definitions(enclosure: Enclosure | None, order: int, edges: Sequen
         "}",
         "",
     ])  # fmt: skip
+
+
+def rounding_source(program: Program) -> str:
+    """Return C code that bounds the rounding errors of a program's rates in formulas of t, for the Taylor stepper.
+
+    The code defines ``SYMROT_ROUNDS`` 1 and the function ``symrot_roundings`` if such errors may be large: the narrow
+    pulse ``w/((t**2 - 25)**2 + w**2)`` is deformed by the rounding of its phase ``t**2 - 25``.
+    """
+    whole = enclosure(recurrences(program))
+    rounded = None if whole is None else rounded_terms(whole)
+    if rounded is None:
+        return "#define SYMROT_ROUNDS 0\n"
+    system, linear = rounded.system, functions_of_time(rounded)
+    places = {name: f"p[{i}]" for i, name in enumerate(system.parameters)}
+    lines = [f"const symrot_disc d{i} = {_rounded_disc(system, i, places, linear)};" for i in rounded.series]
+    return "\n".join([
+        "#define SYMROT_ROUNDS 1",
+        "/* Bound the rounding errors of the rates in formulas of the time t + t_low. */",
+        "static void symrot_roundings(double t, double t_low, const double *y, const double *p, double *deviation)",
+        "{",
+        "    const double reach = 0.0, whole = 1.0, radius[SYMROT_STATES] = {0.0};",
+        *(f"    (void){name};" for name in ("t", "t_low", "reach", "whole", "y", "radius", "p")),
+        *(f"    {line}" for line in [*lines, *_radii(rounded, places)]),
+        "}",
+        "",
+    ])  # fmt: skip
+
+
+def _rounded_disc(system: Recurrences, number: int, places: Mapping[str, str], linear: Mapping[int, bool]) -> str:
+    """Return C text of a disc around the computed value of a series that contains its exact value."""
+    # the low part of the time is added to sums, and to the phases of the rule clock
+    series, disc = system.series[number], _disc(system, number, places)
+    if series.rule == "time":
+        return "symrot_disc_of(t, fabs(t_low))"
+    if number not in linear:
+        return disc
+    if series.rule != "sum" or linear[number]:
+        centre = f"symrot_disc_of(({disc}).c, 0.0)" if linear[number] else disc
+        return f"symrot_disc_rounded({centre}, 0.0)"
+    *weights, constant = series.weights
+    parts = [
+        f"{_size(weight, places)}fabs(d{operand}.c)"
+        for operand, weight in zip(series.operands, weights, strict=True)
+        if weight is not None
+    ]
+    parts += [f"fabs({_constant(constant, places)})"] if constant is not None else []
+    return f"symrot_disc_rounded({disc}, {' + '.join(parts)})"
+
+
+def _radii(enclosure: Enclosure, places: Mapping[str, str]) -> list[str]:
+    """Return the C statements that set the deviation of each rate from the radii of its terms' discs."""
+    return [
+        f"deviation[{state}] = "
+        + (" + ".join(f"{_size(weight, places)}d{operand}.r" for weight, operand in own) or "0.0")
+        + ";"
+        for state, own in enumerate(enclosure.terms)
+    ]
 
 
 def _size(weight: Node, places: Mapping[str, str]) -> str:

@@ -5,12 +5,13 @@ and states notice it, see :file:`propagation/enclosures/disc.h`. Polynomials of 
 bounds. Standard library only.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from symrot.codegen.taylor.recurrences import Recurrences, Series
 from symrot.formula.tree import Node
 
-__all__ = ["LOW_ORDER", "REACHES", "Enclosure", "enclosure", "value_operands"]
+__all__ = ["LOW_ORDER", "REACHES", "Enclosure", "enclosure", "functions_of_time", "rounded_terms", "value_operands"]
 
 HIGHEST_DEGREE = 6  # degree of a polynomial without short pulses: cos(t)**6 is as broad as a pulse of 0.5 rad
 BEYOND = HIGHEST_DEGREE + 1
@@ -59,16 +60,21 @@ def enclosure(system: Recurrences) -> Enclosure | None:
     )
     if not any(terms):
         return None
+    needed = _needed(system, terms)
+    states = {system.series[i].number for i in needed if system.series[i].rule == "state"}
+    return Enclosure(system, needed, terms, tuple(sorted(states)))
+
+
+def _needed(system: Recurrences, terms: Sequence[Sequence[tuple[Node, int]]]) -> tuple[int, ...]:
+    """Return the series of the terms, with their operands and the operands of these, in order of evaluation."""
     needed: set[int] = set()
     waiting = [operand for own in terms for _, operand in own]
-    # the operands of the bounded terms, and their operands
     while waiting:
         number = waiting.pop()
         if number not in needed:
             needed.add(number)
             waiting += value_operands(system.series[number])
-    states = {system.series[i].number for i in needed if system.series[i].rule == "state"}
-    return Enclosure(system, tuple(sorted(needed)), terms, tuple(sorted(states)))
+    return tuple(sorted(needed))
 
 
 def _degree(series: Series, degrees: list[int]) -> int:
@@ -84,3 +90,39 @@ def _degree(series: Series, degrees: list[int]) -> int:
     # any other quantity, such as exp(u), is no polynomial
     own = [degrees[operand] for operand in value_operands(series)] if series.rule in ("sum", "product") else [BEYOND]
     return sum(own) if series.rule == "product" else max(own, default=0)
+
+
+def functions_of_time(enclosure: Enclosure) -> dict[int, bool]:
+    """Return the evaluated series that depend on t and on no state, each with whether it is linear in t."""
+    linear: dict[int, bool] = {}
+    for i in enclosure.series:
+        series = enclosure.system.series[i]
+        own = value_operands(series)
+        if series.rule in ("time", "clock") or (own and all(operand in linear for operand in own)):
+            linear[i] = series.rule == "time" or (series.rule == "sum" and all(linear[operand] for operand in own))
+    return linear
+
+
+def rounded_terms(enclosure: Enclosure) -> Enclosure | None:
+    """Return the terms that the rounding of a phase may change much, as in 1/((t^2 - 25)^2 + w^2); None if none.
+
+    A phase is a function of time that is not linear and inside a divisor, a root or a function.
+    """
+    # linear phases and the functions of the rule clock are evaluated with a correction of their rounding errors
+    linear = functions_of_time(enclosure)
+    phases: set[int] = set()
+    sensitive: set[int] = set()
+    for i in enclosure.series:
+        series = enclosure.system.series[i]
+        own = value_operands(series)
+        if series.rule not in ("sum", "product", "time", "clock", "state"):
+            is_wave = series.function in ("sin", "cos", "tan")  # their phases may be large
+            if phases.intersection(own) or (is_wave and any(not linear.get(operand, True) for operand in own)):
+                sensitive.add(i)
+        if sensitive.intersection(own):
+            sensitive.add(i)
+        cancels = series.rule == "sum" and sum(weight is not None for weight in series.weights) > 1
+        if phases.intersection(own) or (not linear.get(i, True) and (cancels or series.rule not in ("sum", "product"))):
+            phases.add(i)
+    terms = tuple(tuple(pair for pair in own if pair[1] in sensitive) for own in enclosure.terms)
+    return enclosure._replace(terms=terms, series=_needed(enclosure.system, terms)) if any(terms) else None

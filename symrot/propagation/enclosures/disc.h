@@ -34,6 +34,13 @@ static inline double symrot_disc_log(symrot_disc a)
     return a.g == a.g ? a.g : size == 0.0 ? -745.0 : log(size);
 }
 
+/* The disc of a computed value, with the error of its last operation and of a sum of numbers of the given size. */
+static inline symrot_disc symrot_disc_rounded(symrot_disc a, double size)
+{
+    a.r += 0.5*DBL_EPSILON*(fabs(a.c) + size);
+    return a;
+}
+
 /* The logarithms bound the product of a pulse that underflows and a wave whose bound overflows. */
 static inline symrot_disc symrot_disc_product(symrot_disc a, symrot_disc b)
 {

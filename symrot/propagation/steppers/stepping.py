@@ -31,6 +31,7 @@ __all__ = [
     "NOT_FINITE",
     "NOT_FINITE_SENTENCE",
     "PAUSED",
+    "ROUNDED",
     "UNDERFLOW",
     "Floats",
     "Integration",
@@ -53,6 +54,7 @@ Floats = NDArray[np.float64]
 PathLike = str | os.PathLike[str]
 
 DONE, PAUSED, FULL, NOT_FINITE, UNDERFLOW = range(5)  # return values of a stepper in C
+ROUNDED = 6
 NOT_FINITE_SENTENCE = "its rate of change is not finite there"
 
 
@@ -439,7 +441,7 @@ class Integration:
         # any other status: an array is full, or the limit of steps per call is reached
         if status == DONE:
             return status
-        if status in (NOT_FINITE, UNDERFLOW):
+        if status in (NOT_FINITE, UNDERFLOW, ROUNDED):
             reason = stepper.reasons[status]
             reason = why_stuck(reason, run.t, self.t0, run.stop) if status == UNDERFLOW else reason
             raise IntegrationStopped(run.t, reason, run.stop)

@@ -12,6 +12,7 @@
  *     SYMROT_INVARIANTS                  number of invariants; if not 0, their C text precedes, see projection.c,
  *     SYMROT_INVARIANT_PARAMETERS        and the numbers of their parameters, which follow those of the system
  *     SYMROT_ENCLOSED                    whether some terms may hide a feature: then enclosure.h is inserted here
+ *     SYMROT_ROUNDS                      whether rounding errors of the rates are bounded, by symrot_roundings
  * C99 that is also valid C++; no malloc, no globals, no input or output, reentrant.
  *
  * Coefficients belong to the series in time/unit, where the unit is a power of two near the last step. No number over-
@@ -35,6 +36,8 @@ typedef struct {
     double pace;
     double max_step;     /* positive */
     double proven;       /* the last step, if the enclosure held it back, or 0 */
+    double rounded;      /* sum of the squares of the first block's rounding errors, from formulas of time */
+    double largest;      /* largest size of that block so far */
     int64_t next;        /* first sample not yet written */
     int64_t accepted, jets, recorded;
     int64_t reach;       /* number of the disc with the best bound in the last step */
@@ -65,6 +68,10 @@ static const double SYMROT_LEAST_TAIL = 1e-18;   /* below round-off a smaller ta
 #if SYMROT_ENCLOSED
 static const double SYMROT_SLACK = 30.0;        /* enclosures exceed errors by this or less: see docs/step_control.md */
 static const double SYMROT_GROWTH = 1.5;         /* largest growth of a step after an enclosure shortened one */
+#endif
+#if SYMROT_ROUNDS
+static const double SYMROT_ROUNDED_LIMIT = 50.0;  /* tolerances: errors are nearly always below 0.4 of the bound */
+enum { SYMROT_FIRST_STEPS = 8 };                 /* steps from rest, too short to show how large the rates become */
 #endif
 static const double SYMROT_RATE_FLOOR = 1e-3;    /* rad: errors of rates are relative to at least this per step */
 
@@ -159,6 +166,28 @@ static inline double symrot_allowed(const symrot_run *run, double unit)
     const double share = fabs(unit)/run->pace, tail = run->tail*(share < 1.0 ? share*sqrt(share*sqrt(share)) : 1.0);
     return tail > SYMROT_LEAST_TAIL ? tail : SYMROT_LEAST_TAIL;
 }
+
+#if SYMROT_ROUNDS
+/*
+ * Return whether the rounding errors of the first block, from formulas of time, remain small enough up to the end of a
+ * step of s units. Rounded, a formula such as t^2 - 25 moves a narrow pulse by another amount in each step.
+ */
+static SYMROT_APART int symrot_steady(symrot_run *run, symrot_v4 (*x)[SYMROT_ORDER + 1], double s, double unit,
+    double t, double t_low, const double *y, const double *p)
+{
+    double error[SYMROT_STATES], worst = 0.0, size = 0.0;
+    symrot_roundings(t, t_low, y, p, error);
+    for (int i = symrot_borders[0]; i < symrot_borders[1]; ++i)
+        if (!(error[i] <= worst)) worst = error[i] == error[i] ? error[i] : INFINITY;
+    for (int n = SYMROT_ORDER; n >= 0; --n) size = size*fabs(s) + symrot_size(x, n, 0);
+    worst *= s*unit;
+    run->rounded += worst*worst;  /* errors of different steps are independent */
+    run->largest = symrot_larger(run->largest, size);
+    const double fixed = symrot_scales[0], least = SYMROT_RATE_FLOOR/run->pace;
+    const double reference = fixed > 0.0 ? fixed : symrot_larger(run->largest, least);
+    return sqrt(run->rounded) <= SYMROT_ROUNDED_LIMIT*run->tail*reference;
+}
+#endif
 
 /* Return whether the last two coefficients are all finite: only a finite number times zero is zero. */
 static inline int symrot_finite(symrot_v4 (*x)[SYMROT_ORDER + 1], int order)
@@ -324,7 +353,8 @@ static SYMROT_APART void symrot_record(double *row, double t, double h, double t
  * in    attempts   most steps to take in this call
  *
  * Returns SYMROT_DONE; SYMROT_PAUSED after `attempts` steps or SYMROT_FULL when the record has no room (call again to
- * continue); SYMROT_NOT_FINITE or SYMROT_UNDERFLOW when the motion cannot be followed further.
+ * continue); SYMROT_NOT_FINITE, SYMROT_UNDERFLOW or SYMROT_ROUNDED when the motion cannot be followed
+ * further.
  */
 SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *times, int64_t count, double *states,
     double *record, int64_t room, int64_t attempts)
@@ -412,6 +442,13 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
             status = SYMROT_UNDERFLOW;
             break;
         }
+#if SYMROT_ROUNDS
+        const int steady = symrot_steady(run, x, s, unit, t, t_low, y, p);
+        if (!steady && (at_stop || run->accepted + accepted >= SYMROT_FIRST_STEPS)) {
+            status = SYMROT_ROUNDED;
+            break;
+        }
+#endif
         double t1 = t + h, low1 = (h - (t1 - t)) + t_low;  /* a fast sum, for |t| > |h|, else exact enough: see below */
         if (fabs(h) > fabs(t)) low1 = (t - (t1 - h)) + t_low;
         const double sum = t1 + low1;

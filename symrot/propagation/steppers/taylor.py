@@ -23,6 +23,7 @@ from symrot.propagation.steppers.stepping import (
     MAX_STEPS,
     NOT_FINITE,
     PAUSED,
+    ROUNDED,
     UNDERFLOW,
     Floats,
     Integration,
@@ -50,7 +51,7 @@ PROJECTION = "/* PROJECTION */\n"  # line of taylor.c that is replaced by projec
 ENCLOSURE = "/* ENCLOSURE */\n"  # line that is replaced by enclosure.h
 NO_INVARIANT = "#define SYMROT_INVARIANTS 0\n"
 NO_INVARIANTS = NO_INVARIANT + "#define SYMROT_INVARIANT_PARAMETERS 0\n"
-NO_ENCLOSURE = "#define SYMROT_ENCLOSED 0\n"
+NO_ENCLOSURE = "#define SYMROT_ENCLOSED 0\n#define SYMROT_ROUNDS 0\n"
 MIDDLE_REACH = 3  # index of the first disc to try in symrot.codegen.enclosure.terms.REACHES
 PROJECTED_EVERY = 16  # steps: by measurement, seldom enough to cost a few percent and often enough to lose nothing
 MANY_PRODUCTS = 40  # from this number of products on, the sums of a step (order squared) dominate its cost
@@ -124,7 +125,7 @@ def translation_unit(
     InputError
         If the right-hand side is not smooth, for example because it contains abs.
     """
-    from symrot.codegen.enclosure.source import enclosure_source
+    from symrot.codegen.enclosure.source import enclosure_source, rounding_source
     from symrot.codegen.taylor.source import ORDER, taylor_definitions
 
     order = ORDER if order is None else order
@@ -134,7 +135,7 @@ def translation_unit(
     # without invariants projection.c would call a missing function: an error in C that only optimizers overlook
     projection = "" if NO_INVARIANT in invariants else own["projection.c"]
     stepper = own["taylor.c"].replace(PROJECTION, projection)
-    bounds = enclosure_source(program, order, blocks) if enclosed else NO_ENCLOSURE
+    bounds = enclosure_source(program, order, blocks) + rounding_source(program) if enclosed else NO_ENCLOSURE
     stepper = stepper.replace(ENCLOSURE, own["enclosure.h"])
     arithmetic = (own["library.h"], own["taylor.h"], own["error_free.h"], own["pairs.h"])
     parts = (*arithmetic, definitions, own["series.h"], invariants, own["disc.h"], bounds, stepper)
@@ -175,13 +176,14 @@ class _Stepper(Stepper):
     """A loaded library that computes Taylor coefficients (a jet) and steps, built from :func:`translation_unit`."""
 
     name = "taylor"
-    reals = ("t", "t_low", "unit", "stop", "tail", "pace", "max_step", "proven")
+    reals = ("t", "t_low", "unit", "stop", "tail", "pace", "max_step", "proven", "rounded", "largest")
     integers = ("next", "accepted", "jets", "recorded", "reach", "every", "since", "projected")
     vectors = ("y", "carry")
     tail = ("kept",)
     steps_per_call, rows_per_call = 50_000, 64
     reasons: ClassVar = {
         NOT_FINITE: "its derivatives are not finite there",
+        ROUNDED: "its torque, a formula of the time, changes by more than the tolerance when the formula is rounded",
         UNDERFLOW: "the step shrank to nothing, as it does before a singularity",
         PAUSED: "{steps} steps were not enough",
     }
