@@ -227,7 +227,7 @@ class _Context:
 
     @staticmethod
     def _dd_pair(high: Bounded, low: Any) -> list[Any]:
-        if low is None or high.pair is not None or not (low.is_exact and low.low == 0):
+        if low is None or not (low.is_exact and low.low == 0):
             return [high, low]
         return [Bounded(high.low, high.high, high.error, high.relative, high), low]
 

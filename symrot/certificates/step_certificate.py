@@ -42,7 +42,9 @@ __all__ = [
     "formula_section",
     "is_step",
     "rates_of",
+    "rates_section",
     "step_certificate",
+    "step_section",
     "trusted",
     "with_bounds",
 ]
@@ -99,8 +101,8 @@ def step_certificate(step: StepUnderTest) -> str:
             "title": step.title,
             "regenerate": step.command,
             "method": step.method.formula,
-            "step": _step_section(step.method),
-            "rates": _rates_section(step.rates, step.values),
+            "step": step_section(step.method),
+            "rates": rates_section(step.rates, step.values),
             "files": {path: sha256(text.encode()).hexdigest() for path, text in step.files.items()},
             "formula": formula_section(step.name, step.rates, step.method, step.files[f"{step.name}.c"]),
             "trusted": trusted(step.method.name, has_bounds=False),
@@ -120,7 +122,7 @@ def trusted(method: str, has_bounds: bool, elliptic: bool = False) -> Data:
     return assumptions if has_bounds else assumptions | NOT_STATED
 
 
-def _step_section(method: Method) -> Data:
+def step_section(method: Method) -> Data:
     """Return the name of a step's method and what distinguishes it from others of this name, such as its order."""
     if isinstance(method, SteadyRotations):
         return {"method": method.name, "axis": None if method.axis is None else method.axis + 1}
@@ -139,7 +141,7 @@ def with_bounds(data: Data, bounds: Data) -> Data:
     return bare | {"bounds": bounds, "trusted": trusted(data["step"]["method"], True, "scene" in data)}
 
 
-def _rates_section(rates: Program, values: Sequence[float]) -> Data:
+def rates_section(rates: Program, values: Sequence[float]) -> Data:
     """Return the rates ``dy/dt`` of a motion as data for JSON: formulas as text, parameters with their ``values``."""
     parameters = [c for a in rates.signature.arguments if a.name == "p" for c in a.components]
     return {

@@ -6,6 +6,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+from symrot.checker.approximation import verdict_on_approximation
 from symrot.checker.claim.size import MOST_NESTED, nesting
 from symrot.checker.claim.source.file import Refusal, read_entries
 from symrot.checker.claim.source.text import functions_of_time, is_latex
@@ -135,6 +136,8 @@ def _checked(
         typed = _without_backticks(left).lstrip()  # places in the text count from its first character
         if not assume and not stated and (of_frames := verdict_on_rates(typed)) is not None:
             return of_frames
+        if not assume and not stated and (approximate := verdict_on_approximation(typed)) is not None:
+            return approximate
         typed, of_mark = without_marks(typed)
         with_axes, of_axis = with_axis(typed)
         left = with_plain_signs(without_brackets(with_axes))

@@ -107,9 +107,13 @@ def _sweep(options: Namespace) -> int:
             f"symrot: interrupted; complete chunks are in {options.out}; run the same command again to go on\n"
         )
         return INTERRUPTED
-    except OSError as reason:  # such as a full disk
+    except (OSError, InputError) as reason:
+        cause = reason if isinstance(reason, OSError) else reason.__cause__
+        if not isinstance(cause, OSError):
+            raise
+        # such as a full disk
         advice = "; the complete chunks are saved, run the same command again to go on" if options.out.exists() else ""
-        raise InputError(f"{options.out}: {reason.strerror or reason}{advice}") from None
+        raise InputError(f"{options.out}: {cause.strerror or cause}{advice}") from None
     progress("")
     facts = {
         "written": str(result.path),

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from symrot.errors import InputError
 from symrot.exchange.surface import Surface, shells
 
-__all__ = ["require_boundary"]
+__all__ = ["interior_points", "require_boundary"]
 
 Floats = NDArray[np.float64]
 
@@ -250,15 +250,28 @@ def _windings(corners: Floats, points: Floats) -> Floats:
 
     It is 0 for a point on the surface.
     """
+    windings = np.zeros(len(points))
     # Source: van Oosterom & Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125.
-    a, b, c = (corners[None, :, k] - points[:, None] for k in range(3))
-    lengths = [np.sqrt((end * end).sum(axis=2)) for end in (a, b, c)]
-    products = [(x * y).sum(axis=2) for x, y in ((b, c), (c, a), (a, b))]
-    below = lengths[0] * lengths[1] * lengths[2] + sum(d * n for d, n in zip(products, lengths, strict=True))
-    angles: Floats = 2 * np.arctan2((a * np.cross(b, c)).sum(axis=2), below)
-    is_on_surface = np.abs(angles).max(axis=1) > 2 * np.pi - 1e-6
-    windings: Floats = np.where(is_on_surface, 0, np.round(angles.sum(axis=1) / (4 * np.pi)))
+    for number, point in enumerate(points):
+        a, b, c = (corners[:, k] - point for k in range(3))
+        lengths = [np.sqrt((end * end).sum(axis=1)) for end in (a, b, c)]
+        products = [(x * y).sum(axis=1) for x, y in ((b, c), (c, a), (a, b))]
+        below = lengths[0] * lengths[1] * lengths[2] + sum(d * n for d, n in zip(products, lengths, strict=True))
+        angles = 2 * np.arctan2((a * np.cross(b, c)).sum(axis=1), below)
+        if np.abs(angles).max() <= 2 * np.pi - 1e-6:
+            windings[number] = np.round(angles.sum() / (4 * np.pi))
     return windings
+
+
+def interior_points(surface: Surface) -> Floats:
+    """Return some points inside a surface; none if it has too many triangles."""
+    lowest, size = surface.vertices.min(axis=0), np.ptp(surface.vertices, axis=0)
+    lattice = np.stack(np.meshgrid(*[np.linspace(0, 1, 9)[1:-1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    count = min(len(lattice), MOST_ANGLES // len(surface.triangles))
+    chosen = lattice[np.linspace(0, len(lattice) - 1, count).astype(np.int64)]
+    corners = ((surface.vertices - lowest) / size)[surface.triangles]
+    points: Floats = lowest + size * chosen[_windings(corners, chosen) == 1]
+    return points
 
 
 def _sides(surface: Surface, a: Any, b: Any, c: Any, d: Any) -> NDArray[np.int64]:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from symrot.errors import InputError
-from symrot.exchange.crossing import require_boundary
+from symrot.exchange.crossing import interior_points, require_boundary
 from symrot.exchange.inertial import Inertial
 from symrot.exchange.mesh_file import read_surface
 from symrot.exchange.surface import Surface, require_closed
@@ -156,8 +156,8 @@ def polyhedron(surface: Surface, name: str, where: str, mass: Any, density: Any,
             f"{float(body.mass[0]):.6g} kg"
         )
     if density is not None and polynomial[0] != "number":
-        corners = (surface.vertices * float(unit)).tolist()
-        points = (dict(zip("xyz", corner, strict=True)) for corner in corners)
+        places = np.concatenate([surface.vertices, interior_points(surface)]) * float(unit)
+        points = (dict(zip("xyz", place, strict=True)) for place in places.tolist())
         require_not_negative(polynomial, points, density, f"{where}: ")
     assert result is not None
     total, center, tensor, error = result

@@ -47,8 +47,12 @@ def _obj(content: bytes) -> int:
 
 
 def _ply(content: bytes) -> None:
-    """Raise InputError for a PLY file in text form with corners that are no whole numbers, which trimesh rounds."""
+    """Raise InputError for a PLY file as text with corners that are no whole numbers, or with surplus lines."""
+    # trimesh rounds the former and leaves out the latter
     header, _, numbers = content.partition(b"end_header")
+    lines = sum(map(int, re.findall(rb"^element \w+ (\d+)", header, re.MULTILINE)))
+    if b"format ascii" in header and len(numbers.strip().splitlines()) > lines:
+        raise InputError(f"expected a PLY file with {lines} lines after its header, got more")
     faces = re.search(rb"element face (\d+)\s+property list \w+ \w+ \w+\s*$", header)
     if b"format ascii" in header and faces:
         rows = numbers.rstrip().splitlines()[-int(faces[1]) :]
@@ -78,6 +82,7 @@ def _glb(content: bytes) -> None:
 
 def _faults_of_node(node: Mapping[str, Any]) -> list[str]:
     faults = ["instances by an extension"] * ("EXT_mesh_gpu_instancing" in node.get("extensions", {}))
+    faults += ["a camera at the node of a mesh"] * ("camera" in node and ("mesh" in node or "children" in node))
     return faults + ["a skin"] * ("skin" in node) + ["a rotation of zero"] * (not any(node.get("rotation", (1,))))
 
 

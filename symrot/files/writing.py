@@ -63,4 +63,4 @@ def write(path: Path, content: Callable[[BinaryIO], object]) -> None:
         finally:
             passing.unlink(missing_ok=True)
     except OSError as reason:
-        raise _refusal(path, reason) from None
+        raise _refusal(path, reason) from reason  # a sweep sees by the cause that it can go on

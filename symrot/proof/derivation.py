@@ -389,7 +389,8 @@ def _as_side(display: Any, side: Any) -> Any:
 
 def _frozen(side: Any) -> Any:
     side = sympify(side)
-    if isinstance(side, MatrixExpr):
+    if isinstance(side, MatrixExpr) and not isinstance(side, MatrixBase):
+        side = side.doit()  # a product of matrices; as_explicit alone would write a sum for each entry, 20 times slower
         side = side.as_explicit()
     return ImmutableMatrix(side) if isinstance(side, MatrixBase) else side
 

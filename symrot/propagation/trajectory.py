@@ -291,7 +291,7 @@ class Trajectory(MotionSamples):
         return self._sampled(times, self._path(times))
 
     def resample(self, times: ArrayLike | int) -> "Trajectory":
-        """Return the trajectory at the given times, or at a number of evenly spaced times of its span.
+        """Return the trajectory at the given times, or at a number of evenly spaced times of its span, without events.
 
         Parameters
         ----------

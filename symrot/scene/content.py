@@ -45,7 +45,7 @@ def plain(value: Any, where: str, depth: int = 0) -> Any:
         return plain(list(value) if 1 in value.shape else value.tolist(), where, depth + 1)
     if hasattr(value, "tolist") and hasattr(value, "dtype"):
         return plain(value.tolist(), where, depth + 1)
-    if getattr(value, "free_symbols", None):  # an expression of SymPy; 17 digits keep the value of a double
+    if getattr(value, "is_commutative", False) and value.free_symbols:  # of SymPy; 17 digits keep the value of a double
         return str(value.replace(lambda part: part.is_Float, lambda part: part.func(part, 17)))
     return value
 

@@ -345,7 +345,7 @@ def audit(
     --------
     >>> import symrot, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     certificate = symrot.certify("euler_zxz_body_rates", directory=folder)
+    ...     certificate = symrot.certify("euler_zxz_body_rates", rounding=False, directory=folder)
     ...     audit = symrot.audit(*(path for path in certificate.files if path.suffix == ".json"))
     >>> len(audit.statements)
     1

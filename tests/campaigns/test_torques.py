@@ -1,7 +1,5 @@
 """Tests of the campaign of random torques: two ways to the same truth agree, and wrong trajectories are found wrong."""
 
-import os
-import time
 from dataclasses import replace
 from itertools import pairwise
 from math import asinh, erf, exp, pi, sinh, sqrt
@@ -16,6 +14,7 @@ from tests.campaigns.torques.checks import contradiction
 from tests.campaigns.torques.collocation import Feature, follow
 from tests.campaigns.torques.pool import run_all
 from tests.campaigns.torques.references import Problem, Truth, attitude_apart, reference
+from tests.campaigns.torques.rehearsal import rehearse
 from tests.campaigns.torques.verdict import Answer, Result, measure
 
 PULSE = Problem(
@@ -249,18 +248,9 @@ def test_all_cases_are_dealt_out():
     assert {family for family, _ in jobs} == set(torques.FAMILIES)
 
 
-def work(job, started):
-    started()
-    if job == "hang":
-        time.sleep(60)
-    if job == "die":
-        os._exit(3)
-    return f"done {job}"
-
-
 def test_a_case_that_hangs_or_dies_is_counted_and_the_others_go_on(monkeypatch):
     monkeypatch.setattr("tests.campaigns.torques.pool.STARTING", 0.0)
-    ended = run_all(work, ["a", "hang", "b", "die", "c"], 2, 1.0, lambda job, why: f"{why}: {job}")
+    ended = run_all(rehearse, ["a", "hang", "b", "die", "c"], 2, 1.0, lambda job, why: f"{why}: {job}")
     assert sorted(ended) == ["done a", "done b", "done c", "no end: hang", "traceback: die"]
 
 

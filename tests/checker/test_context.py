@@ -306,6 +306,12 @@ def test_every_moment_of_a_body_is_of_a_body_that_words_can_name():
     assert [repair.text for repair in rod.repairs] == ["I = M*L^2/12"]
 
 
+@pytest.mark.parametrize("axes", ["a and b", "a, b"])
+def test_the_meaning_of_a_name_states_all_dimensions_of_its_body(axes):
+    meaning = f"I_z = moment of inertia of an elliptical disk with semi-axes {axes}"
+    assert symrot.check("I_z = m(a² + b²)/4", where=[meaning]).verdict == "true"
+
+
 def test_every_quantity_is_read_from_its_phrases():
     for quantity in QUANTITIES:
         for phrase in quantity.phrases:

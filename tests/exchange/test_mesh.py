@@ -275,6 +275,24 @@ def test_degenerate_triangles_of_a_closed_surface_are_harmless():
     assert body(Surface(surface.vertices, extra), mass=6).inertia == body(surface, mass=6).inertia
 
 
+@pytest.mark.parametrize(
+    "density", ["x**2 + y**2 + z**2 - 1/2", "x**2 - 1/100", "1 - 5*(1 - x**2)*(1 - y**2)*(1 - z**2)/2"]
+)
+@pytest.mark.parametrize("unit", [1, F(1, 1000)])
+def test_a_density_that_is_negative_inside_alone_is_refused(density, unit):
+    size = 2 / float(unit)
+    surface = box((size, size, size), (-size / 2, -size / 2, -size / 2))
+    with pytest.raises(InputError, match="a density that is negative nowhere in the body"):
+        body(surface, density=density, unit=unit)
+
+
+def test_points_inside_are_not_in_a_cavity():
+    hollow = joined(box((4, 4, 4)), box((2, 2, 2), (1, 1, 1)).flipped())
+    assert body(hollow, density="(x - 2)**2 + (y - 2)**2 + (z - 2)**2 - 1").mass > 0
+    with pytest.raises(InputError, match="negative nowhere"):
+        body(box((4, 4, 4)), density="(x - 2)**2 + (y - 2)**2 + (z - 2)**2 - 1")
+
+
 def test_a_density_without_mass_is_refused():
     with pytest.raises(InputError, match=r"part: density: expected a density with a positive mass, got 'x - 1'"):
         body(box(), density="x - 1")

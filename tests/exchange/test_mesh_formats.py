@@ -141,6 +141,7 @@ def test_a_ply_file_is_read_whole_or_refused(tmp_path, content, expected):
 
 @pytest.mark.parametrize("content", [
     ply(CORNERS + FAR, TRIANGLES + [[k + 8 for k in t] for t in TRIANGLES])[:-170], ply(CORNERS, TRIANGLES, BINARY[0])[:-13],
+    ply(CORNERS + FAR, SQUARES + [[k + 8 for k in face] for face in SQUARES]).replace(b"element face 12", b"element face 6"),
     ply(CORNERS, TRIANGLES, BINARY[0]) + b"\0", *(PLY.replace(old, new).encode() for old, new in [
         ("vertex_indices", "corners"), ("property double z", "property double w"), ("double z", "quad z"), ("format ascii 1.0\n", ""),
         ("4 3 2 1 0", "4 3 2 1 0.5"), ("4 3 2 1 0", "4 3 2 1 a"), ("4 3 2 1 0", "-4 3 2 1 0"), ("element face", "element tristrips"),
@@ -183,6 +184,7 @@ def _sparse(document):
     (lambda d: d.update(extensionsRequired=["KHR_draco_mesh_compression"]), "got the required extension 'KHR_draco_mesh_compression'"),
     (lambda d: d["nodes"][0].update(extensions={"EXT_mesh_gpu_instancing": {}}), "got instances by an extension"),
     (lambda d: d["nodes"][0].update(skin=0), "got a skin"),
+    (lambda d: (d["nodes"].append({"mesh": 0, "camera": 0}), d["scenes"][0]["nodes"].append(1)), "got a camera at the node of a mesh"),
     (lambda d: d["meshes"][0].update(weights=[0, 1]), "got morph targets"),
     (lambda d: d["nodes"].append({"children": [0]}) or d["scenes"][0]["nodes"].append(1), "got a node in two places"),
     (lambda d: d["nodes"][0].update(rotation=[0, 0, 0, 0]), "got a rotation of zero"),

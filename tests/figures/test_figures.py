@@ -1,6 +1,7 @@
 """Figures: well-formed, described for readers of screens, the same bytes everywhere; and drawn where they must be."""
 
 import re
+from itertools import combinations
 from xml.etree import ElementTree
 
 import numpy as np
@@ -27,6 +28,11 @@ def texts():
     return {figure.name: figure.svg() for figure in ALL}
 
 
+@pytest.fixture(scope="module")
+def trees(texts):
+    return {name: ElementTree.fromstring(text) for name, text in texts.items()}
+
+
 def test_at_least_25_pages_have_figures_and_each_figure_has_its_own_file():
     assert set(FIGURES) <= set(names()) and sum(map(bool, FIGURES.values())) >= 25
     assert len({figure.name for figure in ALL}) == len(ALL)
@@ -44,38 +50,35 @@ def test_letters_of_wide_figures_are_enlarged_on_a_phone(texts):
         assert (not enlarged) or (390 < float(enlarged[1]) < width and 'class="sf sf' in text)
 
 
-@pytest.mark.parametrize("figure", ALL, ids=lambda figure: figure.name)
-def test_a_figure_is_a_document_that_stands_alone(figure, texts):
-    tree = ElementTree.fromstring(texts[figure.name])
-    assert tree.tag == f"{SVG}svg" and tree.get("role") == "img"
-    title, description = tree.findtext(f"{SVG}title"), tree.findtext(f"{SVG}desc")
-    assert title == figure.title and len(description) > 30 and not set("$\\{}`") & set(description)
-    text = texts[figure.name].replace('xmlns="http://www.w3.org/2000/svg"', "")
-    assert not re.search(r"http|href|url\(|@import|\bid=", text)
-    assert "prefers-color-scheme:dark" in text and "nan" not in text
-    assert figure.caption.endswith(".") and figure.caption.count("$") % 2 == 0
+def test_a_figure_is_a_document_that_stands_alone(texts, trees):
+    for figure in ALL:
+        tree, text = trees[figure.name], texts[figure.name].replace('xmlns="http://www.w3.org/2000/svg"', "")
+        assert tree.tag == f"{SVG}svg" and tree.get("role") == "img", figure.name
+        title, description = tree.findtext(f"{SVG}title"), tree.findtext(f"{SVG}desc")
+        assert title == figure.title and len(description) > 30, figure.name
+        assert not set("$\\{}`") & set(description), figure.name
+        assert not re.search(r"http|href|url\(|@import|\bid=", text), figure.name
+        assert "prefers-color-scheme:dark" in text and "nan" not in text, figure.name
+        assert figure.caption.endswith(".") and figure.caption.count("$") % 2 == 0, figure.name
 
 
-@pytest.mark.parametrize("figure", ALL, ids=lambda figure: figure.name)
-def test_nothing_is_drawn_outside_the_picture(figure, texts):
-    tree = ElementTree.fromstring(texts[figure.name])
-    x, y, width, height = map(float, tree.get("viewBox").split())
-    for path in tree.iter(f"{SVG}path"):
-        points = np.array(re.findall(r"-?[\d.]+", path.get("d")), dtype=float).reshape(-1, 2)
-        assert np.all((points >= (x, y)) & (points <= (x + width, y + height)))
-    for text in tree.iter(f"{SVG}text"):
-        assert x < float(text.get("x")) < x + width and y < float(text.get("y")) < y + height
+def test_nothing_is_drawn_outside_the_picture(trees):
+    for name, tree in trees.items():
+        x, y, width, height = map(float, tree.get("viewBox").split())
+        for path in tree.iter(f"{SVG}path"):
+            points = np.array(re.findall(r"-?[\d.]+", path.get("d")), dtype=float).reshape(-1, 2)
+            assert np.all((points >= (x, y)) & (points <= (x + width, y + height))), name
+        for text in tree.iter(f"{SVG}text"):
+            assert x < float(text.get("x")) < x + width and y < float(text.get("y")) < y + height, name
 
 
-@pytest.mark.parametrize("figure", ALL, ids=lambda figure: figure.name)
-def test_labels_do_not_overlap(figure, texts):
+def test_labels_do_not_overlap(trees):
     """Two labels are a line apart, or half their width."""
-    tree = ElementTree.fromstring(texts[figure.name])
-    labels = [(float(t.get("x")), float(t.get("y")), "".join(t.itertext())) for t in tree.iter(f"{SVG}text")]
-    for n, (x, y, text) in enumerate(labels):
-        for other_x, other_y, other in labels[:n]:
+    for name, tree in trees.items():
+        labels = [(float(t.get("x")), float(t.get("y")), "".join(t.itertext())) for t in tree.iter(f"{SVG}text")]
+        for (x, y, text), (other_x, other_y, other) in combinations(labels, 2):
             apart = 3.0 * (len(text) + len(other))
-            assert abs(y - other_y) > 8 or abs(x - other_x) > apart, (text, other)
+            assert abs(y - other_y) > 8 or abs(x - other_x) > apart, (name, text, other)
 
 
 def test_a_figure_for_a_section_that_a_page_lacks_is_refused(monkeypatch):

@@ -29,13 +29,13 @@ def root(u):
     return 2 / 3 * np.maximum(u, 0) ** 1.5
 
 
-MOTIONS = {  # torque -> omega_3 from rest, for a moment of inertia of 1
+MOTIONS = {  # torque -> omega_3 from rest, for a moment of inertia of 1; the first by every method
+    "where(t < 1, 1/(3/2 - t), 0)": lambda t: np.log(1.5 / (1.5 - np.minimum(t, 1))),
     "where(t < 1, sqrt(1 - t), 0)": lambda t: root(1) - root(1 - t),
     "where(t > 1, sqrt(t - 1), 0)": lambda t: root(t - 1),
     "where(t > 1, (t-1)**5, 0)": lambda t: np.maximum(t - 1, 0) ** 6 / 6,
     "where(t > 0, sin(t)/t, 1)": lambda t: sici(t)[0],
     "where(abs(t - 1) > 0, sin(t - 1)/(t - 1), 1)": lambda t: sici(t - 1)[0] + sici(1)[0],
-    "where(t < 1, 1/(3/2 - t), 0)": lambda t: np.log(1.5 / (1.5 - np.minimum(t, 1))),
     "where(t < 1, 1, where(sqrt(t-1) > 1/2, 1, 2))": lambda t: t + np.clip(t - 1, 0, 0.25),
     "where(t > 1, sign(sqrt(t-1) - 1/2), 0)": lambda t: np.abs(np.maximum(t, 1) - 1.25) - 0.25,
     "where(t > 1, 1/sqrt(t-1), 0)": lambda t: 2 * np.sqrt(np.maximum(t - 1, 0)),

@@ -325,11 +325,12 @@ def test_bad_rows_stay_in_their_row(name):
 
 
 @pytest.mark.parametrize("name", ROUND_TRIPS)
-@pytest.mark.parametrize("scale", [1e-320, 1e-200, 1e-160, 3.0, 1e150, 1e200, 1e307])
-def test_magnitude_does_not_matter(name, scale):
+def test_magnitude_does_not_matter(name):
     unit = np.array([0.5, -0.5, 0.1, 0.7])  # norm 1
-    back = ROUND_TRIPS[name](unit * scale)
-    assert apart(back, unit).max() < (1e-3 if scale < 1e-308 else 8e-16)  # a denormal has few digits itself
+    for scale in (1e-320, 1e-200, 1e-160, 3.0, 1e150, 1e200, 1e307):
+        back = ROUND_TRIPS[name](unit * scale)
+        limit = 1e-3 if scale < 1e-308 else 8e-16  # a denormal has few digits itself
+        assert apart(back, unit).max() < limit, scale
 
 
 @pytest.mark.parametrize("name", ROUND_TRIPS)

@@ -35,6 +35,24 @@ def test_json_names_trajectories_without_a_motion(tmp_path, capsys):
     assert facts["reasons"][0]["trajectory"] == 1 and "positive mass" in facts["reasons"][0]["reason"]
 
 
+def test_a_full_disk_is_a_sentence_that_says_how_to_go_on(tmp_path, capsys, monkeypatch):
+    pytest.importorskip("pyarrow")
+    from symrot.sweeps.stores import parquet_store
+
+    def fill(stream):
+        raise OSError(28, "No space left on device")
+
+    write = parquet_store.write
+    with monkeypatch.context() as patch:
+        patch.setattr(
+            parquet_store, "write", lambda path, content: write(path, fill if "02." in path.name else content)
+        )
+        assert main([*BASE, "--chunk", "2", "-o", str(tmp_path / "a.parquet")]) == 2
+    said = capsys.readouterr().err
+    assert "a.parquet: No space left on device; the complete chunks are saved, run the same command again" in said
+    assert main([*BASE, "--chunk", "2", "-o", str(tmp_path / "a.parquet")]) == 0
+
+
 @pytest.mark.parametrize(
     ("more", "message"),
     [

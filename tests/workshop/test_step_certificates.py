@@ -242,7 +242,7 @@ def test_a_constant_that_is_rounded_as_another_has_no_bounds(number, other):
 HEAD = '#include "tumbling_prism_rk4_step.h"\n'
 TEXTS = {  # C that the proof does not read, or that other compilers read otherwise: what is replaced, by what
     "another header": (HEAD, HEAD + '#include "other.h"\n'), "header of the system": (HEAD, HEAD + "#include <tgmath.h>\n"),
-    "header of functions": (HEAD, HEAD + '#include "symrot_math.h"\n'), "macro": (HEAD, HEAD + "#define t dt\n"),
+    "no header": (HEAD, ""), "header of functions": (HEAD, HEAD + '#include "symrot_math.h"\n'), "macro": (HEAD, HEAD + "#define t dt\n"),
     "pragma": (HEAD, HEAD + "#pragma STDC FP_CONTRACT OFF\n"),
     "function of the C library": (HEAD, HEAD + "double memcpy(double x)\n{\n    return x;\n}\n"),
     "static function of the C library": (HEAD, HEAD + "static inline double fmin(double x)\n{\n    return x;\n}\n"),
@@ -381,7 +381,16 @@ def _other_parameter(data, folder):
     data["rates"]["parameters"][0][2] = (1.0).hex()
 
 
+def _other_entry(section, name, value=1):
+    return lambda data, folder: (data[section] if section else data).update({name: value})
+
+
 @pytest.mark.parametrize(("change", "message"), [
+    (_other_entry("step", "tolerance"), "'step' in the form"), (_other_entry("rates", "error"), "'rates' in the form"),
+    (_other_entry("", "title", "a step without errors"), "'title' and 'kernel' to name the scene tumbling_prism"),
+    (_other_entry("", "regenerate", "symrot emit other"), "the command of the step"),
+    # otherwise the rates would not be compared with those of tumbling_prism
+    (_other_entry("", "regenerate", "symrot emit other --step taylor --order 3 --target c"), "to name the scene other"),
     (_smaller_truncation, "expected the bounds that symrot computes"), (_smaller_rounding, "expected"),
     (_other_rates, "expected next"), (_other_order, "expected the order|expected next"), (_other_text, "an edited one"),
     (_other_parameter, "the parameters that the certificate states"),

@@ -10,7 +10,7 @@ import pytest
 
 from symrot.certificates.step_certificate import step_certificate
 from symrot.cli.main import main
-from symrot.codegen.steps import RK4, WithDerivatives
+from symrot.codegen.steps import RK4, TaylorSeries, WithDerivatives
 from symrot.errors import CertificateError, InputError
 from symrot.scene.scene import Scene
 from symrot.workshop.emit import emit
@@ -47,9 +47,11 @@ def test_a_step_with_derivatives_is_certified_and_tested(tmp_path, capsys):
 
 
 def test_a_wrong_derivative_is_not_certified():
-    """The C text has the derivatives in another order than the formula."""
+    """The C text has the derivatives of another method, or in another order than the formula."""
     step = step_text(SCENE, "rk4", None, ["omega"]).certified
-    with pytest.raises(CertificateError, match="its derivatives by omega_2"):
+    with pytest.raises(CertificateError, match="its derivatives by omega, got another formula"):
+        step_certificate(replace(step, method=WithDerivatives(TaylorSeries(3), ("omega",))))
+    with pytest.raises(CertificateError, match="next_by_omega_2, next_by_omega_1, next_by_omega_3, of double"):
         step_certificate(replace(step, method=WithDerivatives(RK4, ("omega_2", "omega_1", "omega_3"))))
 
 

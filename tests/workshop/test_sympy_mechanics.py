@@ -151,6 +151,12 @@ def test_a_scene_takes_matrices_and_expressions_of_sympy():
     assert (symrot.propagate(taken, t=[1.0]).omega == symrot.propagate(typed, t=[1.0]).omega).all()
 
 
+@pytest.mark.parametrize("omega", [N.x, outer(N.x, N.x), [symbols("a") > 0, 0, 1], [Matrix([1, 2]), 0, 1]], ids=str)
+def test_other_values_of_sympy_are_refused_in_a_sentence(omega):
+    with pytest.raises(symrot.InputError, match=r"initial\.omega.*: expected"):
+        symrot.Scene.build(body={"principal": [1, 2, 2]}, initial={"omega": omega}, span={"t": [0, 1]})
+
+
 @pytest.mark.parametrize(("value", "frame", "sentence"), [
     (3, None, "a RigidBody, Inertia, Dyadic or ReferenceFrame, got int"),
     (outer(N.x, N.x), None, "the frame of the components, got NoneType"),

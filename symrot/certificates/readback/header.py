@@ -113,6 +113,8 @@ def check_source(source: str, name: str) -> None:
     for line in (line.strip() for line in lines if "#" in line):
         if line not in ("#include <math.h>", f'#include "{name}.h"'):
             raise CertificateError(f"{name}.c: expected no #include but <math.h> and {name}.h, got {line[:80]!r}")
+    if not any(line.strip() == f'#include "{name}.h"' for line in lines):
+        raise CertificateError(f"{name}.c: expected #include of {name}.h, got none")
     code = " ".join(line for line in lines if "#" not in line)
     if re.search(rf"\b{guard}\b", code):
         raise CertificateError(f"{name}.c: expected no name that the header defines, got {guard}")

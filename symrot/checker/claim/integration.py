@@ -75,7 +75,9 @@ def _antiderivative(term: Expr, variable: Symbol, divisors: list[Expr]) -> Expr:
     rate = exponent.expand().diff(variable)
     if rate == 0:
         return Mul(*constants) * exp(exponent) * variable ** (power + 1) / (power + 1)
+    # as a factor, not inside a sum: _value drops the imaginary terms, which are those with the factor i
     frequency = (rate / I).expand()
+    rate = I * frequency
     if not frequency.is_nonzero:
         divisors.append(frequency)
     parts = [
@@ -90,7 +92,10 @@ def _value(primitive: Expr, variable: Symbol, limit: Expr) -> Expr:
     value = primitive.subs(variable, limit)
     waves = {node: _wave(node.args[0]) for node in value.atoms(exp)}
     terms = Add.make_args(value.xreplace(waves).expand())
-    return Add(*(term for term in terms if not term.has(I)))
+    imaginary = [term for term in terms if term.has(I)]
+    if any((term / I).has(I) for term in imaginary):
+        raise InputError("expected an integral whose real part is known")
+    return Add(*terms) - Add(*imaginary)
 
 
 def _wave(exponent: Expr) -> Expr:

@@ -301,7 +301,7 @@ def _meaning(text: str, prefix: str) -> Meaning:
 def _original(rest: str, words: str) -> str:
     """Return the text ``rest``, a lower-case part of ``words``, with the capital letters that ``words`` have."""
     cases = {word.lower().strip(","): word.strip(",") for word in words.split()}
-    return " ".join(cases.get(word.strip(","), word) for word in rest.split())
+    return " ".join(cases.get(word.strip(","), word.strip(",")) + "," * word.endswith(",") for word in rest.split())
 
 
 def _readings_of_name(part: str, prefix: str, is_rate: bool = False) -> Iterator[str]:

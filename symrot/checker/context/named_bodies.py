@@ -43,7 +43,7 @@ def of_named_body(claim: Claim, named: NamedFormula, verdict: Verdict, judge: Ju
 
     ``judge`` returns the verdict on a claim in its context.
     """
-    match = re.fullmatch(r"[IJ]_(\w+)", named.name)
+    match = re.fullmatch(r"[IJ]_?(\w+)", named.name)
     words = match[1].split("_") if match else []
     body, part = next((BODIES_OF_WORD[word] for word in words if word in BODIES_OF_WORD), ("", ""))
     place = next((PLACE_OF_WORD[word] for word in words if word in PLACE_OF_WORD), "")

@@ -89,6 +89,6 @@ def with_guesses(context: Context, verdict: Verdict, stated: str) -> Verdict:
     words = guesses(context, likeliest.name, stated)
     # words that follow each other are one phrase: "yaw, rotation matrix" of "yaw angle of a rotation matrix"
     follow = [f"{first} {second}" in likeliest.name for first, second in pairwise(words)]
-    phrases = "".join(word + (" " if joined else ", ") for word, joined in zip(words, [*follow, False], strict=True))
+    phrases = "".join(word + (" " if joined else ", ") for word, joined in zip(words, [*follow, False], strict=False))
     what = ", ".join(filter(None, [phrases.removesuffix(", "), likeliest.how]))
     return replace(verdict, notes=(*verdict.notes, f"guessed, not stated: {what}")) if what else verdict

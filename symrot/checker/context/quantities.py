@@ -252,7 +252,7 @@ _SPELLINGS = (
     (r"\b(with|in|by) (the )?(euler )?angles? phi,? theta,?( and)? psi\b|\bat (the )?(finite )?angle theta\b", " "),
     (r"\baround\b|\bround (?=(a|an|the|its) )", "about "), (r"\b(the|an|its|their)\b", " "),
     (r"\b(with )?\s*(centred|centre) +(at|on|in) +(origin|o)\b", "about centre"),
-    (r"(?<!radius )(?<!length )(?<!height )(?<!side )(?<!sides )(?<!, )\ba (?=[a-z]{3})", ""),
+    (r"(?<!radius )(?<!length )(?<!height )(?<!side )(?<!sides )(?<!, )\ba (?!and )(?=[a-z]{3})", ""),
 )  # fmt: skip
 
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from symrot.errors import complaint
 from symrot.latex.tokens import GREEK
 
-__all__ = ["GREEK_WORDS", "SIGNS", "Token", "tokens_of", "without_dots"]
+__all__ = ["GREEK_WORDS", "LETTERS", "SIGNS", "Token", "tokens_of", "without_dots"]
 
 SIGNS = ("==", "=", "!=", ">=", "<=", ">", "<")
 """The signs of relations."""

@@ -9,7 +9,7 @@ from itertools import pairwise
 from typing import Any
 
 import sympy
-from sympy import Expr, Integer, Matrix, MatrixBase, diff, eye, sqrt
+from sympy import Add, Expr, Integer, Matrix, MatrixBase, diff, eye, sqrt
 from sympy.matrices.exceptions import MatrixError
 
 from symrot.errors import InputError
@@ -300,8 +300,9 @@ class _Interpreter(Cursor):
             yield _text(script)
 
     def rate(self, value: Any) -> Any:
-        terms = [value.diff(variable) * speed for variable, speed in self.rates.items()]
-        return sum(terms[1:], terms[0])
+        if isinstance(value, MatrixBase):
+            return value.applyfunc(self.rate)
+        return Add(*(value.diff(variable) * speed for variable, speed in self.rates.items() if value.has(variable)))
 
 
 READERS: dict[str, Callable[[_Interpreter, Any], Any]] = {

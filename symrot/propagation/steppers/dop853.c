@@ -47,6 +47,7 @@ typedef struct {
     double pace;
     double max_step;     /* positive */
     double proven;       /* the last step, if the enclosure held it back, or 0 */
+    double variation;    /* sum of the changes of all steps, relative to the sizes of the blocks */
     double epoch;        /* time from which the kernel counts its time */
     double far;          /* pause if the epoch is so many steps away, so that it can be moved; 0: never */
     int64_t reach;       /* number of the disc with the best bound in the last step */
@@ -138,6 +139,15 @@ static inline double symrot_scale_squared(const double *y, const double *y1, dou
     const double size = larger > least*least ? larger : least*least;
     return size < DBL_MAX ? size : DBL_MAX;  /* finite even for the shortest step */
 }
+
+#if SYMROT_ENCLOSED
+/* Return about how much a block changes in a step with the stages k, relative to its size. */
+static SYMROT_APART double symrot_change(double (*k)[SYMROT_WIDTH], double h, double size, int block)
+{
+    const double rate = symrot_length(k[1], block) + symrot_length(k[8], block) + symrot_length(k[12], block);
+    return fmin(fabs(h)*rate/(3.0*size), 1.0);
+}
+#endif
 
 /* Return the size of a block at the start; of a rate from rest, at least its size once the body has rotated. */
 static inline double symrot_first_size(const symrot_run *run, int block)
@@ -354,8 +364,16 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
             error5[i] = h*DOP853_ERROR_5(K);
         }
         const double share = run->tolerance*(fabs(h) < pace ? fabs(h)/pace : 1.0);
-        const double allowed = share > SYMROT_ROUND_OFF ? share : SYMROT_ROUND_OFF, weight = 1.0/(allowed*allowed);
-        double worst = 0.0;
+        double allowed = share > SYMROT_ROUND_OFF ? share : SYMROT_ROUND_OFF, worst = 0.0;
+#if SYMROT_ENCLOSED
+        /* In a pulse, the rounding of its phase looks like an error in proportion to the change. A step is allowed such
+         * an error, less and less, so that all of them together remain near the tolerance. */
+        double change = 0.0;
+        for (int b = 0; b < SYMROT_COUNT; ++b)
+            change = fmax(change, symrot_change(k, h, sqrt(symrot_scale_squared(y, y1, h, pace, b)), b));
+        allowed = fmax(allowed, run->tolerance*change/(1.0 + run->variation));
+#endif
+        const double weight = 1.0/(allowed*allowed);
         for (int b = 0; b < SYMROT_COUNT; ++b) {
             double e5 = symrot_square_sum(error5, b), e3 = symrot_square_sum(error3, b);
             double size = symrot_scale_squared(y, y1, h, pace, b);
@@ -415,6 +433,9 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
             continue;
         }
         ++accepted;
+#if SYMROT_ENCLOSED
+        run->variation += change;
+#endif
         if (!SYMROT_KNOWN) symrot_rate(last, y1, p, k[13]);
 
         const int sampled = next < count && (times[next] - t1)*side <= 0.0;

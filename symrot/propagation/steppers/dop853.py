@@ -187,7 +187,21 @@ class _Stepper(Stepper):
     """A loaded library with a kernel and the DOP853 stepper, built from :func:`translation_unit`."""
 
     name = "dop853"
-    reals = ("t", "h", "growth", "stop", "first", "last", "tolerance", "pace", "max_step", "proven", "epoch", "far")
+    reals = (
+        "t",
+        "h",
+        "growth",
+        "stop",
+        "first",
+        "last",
+        "tolerance",
+        "pace",
+        "max_step",
+        "proven",
+        "variation",
+        "epoch",
+        "far",
+    )
     integers = ("reach", "next", "accepted", "rejected", "evaluations", "recorded")
     vectors = ("y", "carry", "dy")
     steps_per_call, rows_per_call = 100_000, 256

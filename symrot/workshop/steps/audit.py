@@ -18,14 +18,18 @@ from symrot.certificates.step_certificate import (
     formula_section,
     is_step,
     rates_of,
+    rates_section,
+    step_section,
     trusted,
 )
 from symrot.codegen.printing.parameters_header import parameters_file, parameters_header
 from symrot.codegen.steps import Method, SteadyRotations, WithDerivatives
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
+from symrot.kernels.jacobian import jacobian_name
 from symrot.scene.file import shipped_names
 from symrot.scene.scene import SceneSource, load_scene
+from symrot.workshop.kernel_text import scene_kernel_name
 from symrot.workshop.step_text import ORDER, step_method, step_text
 from symrot.workshop.steps.elliptic_audit import audit_elliptic
 
@@ -101,7 +105,11 @@ def audit_step(
     check_source(source, name)
     check_header(texts[f"{name}.h"], source, name)
     # files, C text and bounds are compared with the rates that the certificate states
-    rates = rates_of(data)
+    rates, values = rates_of(data), [float.fromhex(value) for _, _, value in data["rates"]["parameters"]]
+    named = _scene_name(path, data, method)
+    for section, own in (("step", step_section(method)), ("rates", rates_section(rates, values))):
+        if data[section] != own:
+            raise CertificateError(f"{path}: expected {section!r} in the form that symrot prints, got another")
     progress("proving ..")
     if formula_section(name, rates, method, source) != data["formula"]:
         raise CertificateError(
@@ -114,7 +122,7 @@ def audit_step(
     ]
     if isinstance(method, SteadyRotations):
         report.append("the C text is the motion itself, not an approximation: it solves the equations of the rates")
-    report.append(_of_scene(path, data, method, scene))
+    report.append(_of_scene(path, data, method, scene or (named if named in shipped_names() else None)))
     if "bounds" in data:
         progress("bounding ..")
         report.append(_bounds(path, data, method, source, rerun))
@@ -168,25 +176,41 @@ def _method(path: Path, data: Data) -> Method:
     return method
 
 
+def _options(method: Method) -> tuple[int | None, tuple[str, ...]]:
+    """Return the order of a Taylor step, None for the usual one, and the inputs by which a step is differentiated."""
+    if isinstance(method, SteadyRotations):
+        return None, ()
+    order = method.order if method.name == "taylor" and method.order != ORDER else None
+    return order, method.by if isinstance(method, WithDerivatives) else ()
+
+
+def _scene_name(path: Path, data: Data, method: Method) -> str:
+    """Return the name of the scene that a certificate names; raise CertificateError if its parts name several."""
+    order, jacobian = _options(method)
+    options = f" --order {order}" * bool(order) + f" --jacobian {','.join(jacobian)}" * bool(jacobian)
+    command = rf"symrot emit (.+) --step {method.name}{re.escape(options)} --target c"
+    match = re.fullmatch(command, str(data["regenerate"]))
+    if match is None:
+        raise CertificateError(f"{path}: expected 'regenerate' to be the command of the step, got another text")
+    slopes = "; with its derivatives, row by row" if jacobian else ""
+    title = rf"one time step of the scene {re.escape(repr(match[1]))} \(.*\): next is the state at t \+ dt{slopes}"
+    kernel = f"{scene_kernel_name(match[1]).removesuffix('_rates')}_{method.name}_step"
+    if not re.fullmatch(title, str(data["title"])) or jacobian_name(kernel, jacobian) != data["kernel"]:
+        raise CertificateError(f"{path}: expected 'title' and 'kernel' to name the scene {match[1]}, got others")
+    return match[1]
+
+
 def _of_scene(path: Path, data: Data, method: Method, scene: SceneSource | None) -> str:
     """Compare a step's certificate with the user's scene, or with the shipped scene that it names; return a sentence.
 
     CertificateError is raised if they differ.
     """
     if scene is None:
-        options = r" --step \w+(?: --order \d+)?(?: --jacobian [\w,]+)?"
-        match = re.fullmatch(rf"symrot emit (\S+){options} --target c", str(data["regenerate"]))
-        if match is None or match[1] not in shipped_names():
-            return (
-                "the rates of the motion were not compared with a scene, because symrot has no scene of the name in "
-                "the certificate; pass yours by --scene"
-            )
-        scene = match[1]
-    own_scene = load_scene(scene)
-    order = None
-    if not isinstance(method, SteadyRotations) and method.name == "taylor" and method.order != ORDER:
-        order = method.order
-    jacobian = method.by if isinstance(method, WithDerivatives) else ()
+        return (
+            "the rates of the motion were not compared with a scene, because symrot has no scene of the name in "
+            "the certificate; pass yours by --scene"
+        )
+    own_scene, (order, jacobian) = load_scene(scene), _options(method)
     own = json.loads(step_text(own_scene, method.name, order, jacobian).certificate())
     for section in SECTIONS:
         if section not in ("bounds", "trusted", "seal") and own[section] != data[section]:
