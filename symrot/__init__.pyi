@@ -34,7 +34,7 @@ from symrot.propagation.events.events import Event
 from symrot.propagation.method import METHODS
 from symrot.propagation.propagate import propagate, propagator
 from symrot.propagation.propagator import Propagator
-from symrot.propagation.steppers.stepping import Stats
+from symrot.propagation.steppers.stats import Stats
 from symrot.propagation.trajectory import Invariant, Trajectory
 from symrot.report.output import save
 from symrot.report.plot import plot

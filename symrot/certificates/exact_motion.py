@@ -41,7 +41,7 @@ def require_limits(file: str, operations: Operations) -> None:
         limits = relation == "==" and nodes[zero] == ("const", Fraction(0)) and nodes[limit] == ("const", Fraction(1))
         sine = nodes[nodes[quotient][1]] if limits and nodes[quotient][0] == "div" else None
         if sine != ("call", "sin", (x,)) or nodes[quotient][2] != x:
-            raise CertificateError(f"{file}: expected no case except x == 0 ? 1 : sin(x)/x in a step, got another")
+            raise CertificateError(f"{file}: expected no choice in a step except x == 0 ? 1 : sin(x)/x, got another")
 
 
 def motion_section(file: str, rates: Program, places: Mapping[str, str], operations: Operations) -> dict[str, Any]:

@@ -710,8 +710,9 @@ def _with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], 
 
 
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
-    """Return the verdicts on a chain ``name = a = b``; if ``a = b`` is no identity, the verdict on ``name = b`` or
-    "definition" may replace its own.
+    """Return the verdicts on a chain ``name = a = b``.
+
+    If ``a = b`` is no identity, its verdict may be replaced by that on ``name = b``, or by "definition".
     """
     named = named_formula(line[0]) if len(line) > 1 else None
     if named is None or line[0].relation is None or line[0].relation[1] != named.side:

@@ -74,8 +74,8 @@ class ExerciseSheet:
             raise InputError(f"format: expected one of {', '.join((*HANDOUTS, *FORMATS))}, got {form!r}")
         if title or not (statements and solutions):
             raise InputError(
-                f"format of a sheet with a title of its own, or with a part alone: expected {', '.join(HANDOUTS)}, "
-                f"got {form!r}"
+                f"format: expected one of {', '.join(HANDOUTS)} for a sheet with a title, or with statements or "
+                f"solutions alone, got {form!r}"
             )
         return FORMATS[form](self.exercises)
 

@@ -40,7 +40,7 @@ def _joined(kind: str, left: Node, right: Node) -> Node:
 
 
 def _root_of_sum(node: Node) -> Node | None:
-    """Return the polynomial whose square is the formula ``node``; None if there is none or the formula is long."""
+    """Return the polynomial whose square is the formula ``node``; None for a number, or if it is not found."""
     generators: dict[str, Node] = {}
     polynomial = as_polynomial(node, generators)
     if polynomial is None or len(polynomial.terms) > MOST_TERMS or set(polynomial.terms) <= {()}:

@@ -296,7 +296,9 @@ _ABOUT_ADVICE = {
 
 
 def read_torque(value: Any, body: Body, where: str) -> Torque:
-    """Return the torque that one table ``[[torque]]`` describes; missing values are taken from the body.
+    """Return the torque that one table ``[[torque]]`` describes; missing values are the defaults of its kind.
+
+    Gravity takes a missing weight and centre of mass from the body.
 
     Raises
     ------

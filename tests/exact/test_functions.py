@@ -342,3 +342,21 @@ def test_normal_forms_of_new_functions_have_their_values():
 )
 def test_an_inverse_function_is_never_an_angle_beyond_its_range(claim):
     assert symrot.check(claim, repair=False).verdict == "false"
+
+
+@pytest.mark.parametrize("claim", [
+    "asin(pi/6) == pi/2 + acos(pi/6)", "acos(1/3) == asin(1/3) - pi/2", "asin(asin(1/2)) == pi/2 + acos(asin(1/2))",
+])  # fmt: skip
+def test_numbers_outside_of_a_range_make_a_claim_false_not_its_sides_undefined(claim):
+    """asin(y) == pi/2 + acos(y) holds for y = 1 alone; that pi/6 - 1 is negative says nothing about the sides."""
+    assert symrot.check(claim, repair=False).verdict == "false"
+    assert symrot.check("asin(1) == pi/2 + acos(1)").verdict == "true"
+
+
+@pytest.mark.parametrize("claim", [
+    "acos(tanh(10)) == 0", "tan(acos(tanh(cosh(3)))) == 0", "exp(acos(tanh(10))) == 1", "x*sin(acos(tanh(10))) == 0",
+    "log(tan(acos(tanh(cosh(3))))) > 0",
+])  # fmt: skip
+def test_an_arc_cosine_near_zero_is_not_zero(claim):
+    """SymPy rounds tanh(10) to 1, and then takes its arc cosine for zero."""
+    assert symrot.check(claim, repair=False).verdict == "false"

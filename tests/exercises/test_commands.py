@@ -60,8 +60,8 @@ def test_the_list_names_every_topic(capsys):
 
 
 @pytest.mark.parametrize("arguments, words", [
-    (("exercise", "gears", "--format", "moodle", "--no-solutions"), "expected markdown, latex, html, got 'moodle'"),
-    (("exercise", "gears", "--format", "json", "--title", "Week 3"), "a title of its own"),
+    (("exercise", "gears", "--format", "moodle", "--no-solutions"), "expected one of markdown, latex, html for a sheet"),
+    (("exercise", "gears", "--format", "json", "--title", "Week 3"), "for a sheet with a title"),
     (("exercise", "gears", "--only-solutions", "--no-solutions"), "not allowed with"),
     (("exercise", "cooking"), "expected a topic"), (("exercise", "gears", "rollin"), "did you mean 'rolling'"), (("exercise", "--count", "many"), "invalid whole number"),
     (("exercise", "--format", "pdf"), "invalid choice"), (("exercise", "gears", "--list"), "--list alone"),

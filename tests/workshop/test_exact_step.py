@@ -468,7 +468,7 @@ def test_a_value_at_a_single_point_is_no_way_around_the_proof(scene, step, edits
     for old, new in edits.items():
         assert old in double
         double = double.replace(old, new.replace("3", "3.0").replace("7", "7.0"))
-    with pytest.raises(CertificateError, match="expected no case except"):
+    with pytest.raises(CertificateError, match="expected no choice"):
         formula_section(text.name, text._rates_program, text.method, f"{double}{head}{single}")
 
 

@@ -148,7 +148,7 @@ def measure(case: Case, rounds: int, settings: Sequence[str]) -> list[Measured]:
 
 
 def main() -> None:
-    """Print times and errors for all cases, and the ratio of heyoka's time in its fastest setting to symrot's time."""
+    """Print time and error of symrot and of heyoka in each setting, and the ratios of their times to symrot's."""
     parser = argparse.ArgumentParser(description="derivatives of motions: symrot and heyoka")
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--settings", nargs="*", default=list(SETTINGS), choices=list(SETTINGS))

@@ -8,21 +8,9 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 __all__ = [
-    "INT",
-    "REAL",
-    "VOID",
-    "Frame",
-    "Function",
-    "Place",
-    "Return",
-    "Run",
-    "Struct",
-    "Type",
-    "Value",
-    "called",
-    "copied",
-    "pointer",
-]
+    "INT", "REAL", "VOID", "Frame", "Function", "Place", "Return", "Run", "Struct", "Type", "Value", "called",
+    "copied", "pointer",
+]  # fmt: skip
 
 Frame = list[Any]
 Run = Callable[[Frame], Any]

@@ -44,7 +44,7 @@ def _norm(parameters: tuple[str, ...], at: str = "") -> str:
 
 
 def _positive(parameters: tuple[str, ...], at: str = "") -> str:
-    """Return a Coq tactic that proves that the sum of :func:`_norm`, with the same arguments, is positive."""
+    """Return a Coq tactic: the formula that :func:`_norm` writes for the same arguments is positive."""
     return "(" + "; ".join(f"pose proof (pow2_ge_0 ({each}{at}))" for each in parameters) + "; lra)"
 
 

@@ -169,7 +169,7 @@ def _shifted(width: int, shift: Callable[[int, int, int], int]) -> Numeric:
             value = terms.constant(lane)
             # kernels shift only constants
             if value is None:
-                raise NotUnderstood("expected a constant as the number that is shifted, got a variable")
+                raise NotUnderstood("expected a constant as the number that a shift instruction shifts, got a variable")
             results += state.halves(
                 terms.bits(width, shift(value, constant, width) if constant < width else _out(shift, value, width))
             )

@@ -85,7 +85,9 @@ def _arc(function: Callable[[Expr], Expr]) -> Any:
         if (1 - value**2).is_negative:
             raise scope.fail(node.args[0], f"a number from -1 to 1 in {node.value}")
         scope.take_root(1 - value**2, node.args[0])
-        return function(value)
+        result = function(value)
+        # SymPy takes acos(tanh(10)) for zero, since it rounds tanh(10) to 1
+        return sympy.pi / 2 - sympy.asin(value) if result.is_zero and result != 0 and function == sympy.acos else result
 
     return call
 

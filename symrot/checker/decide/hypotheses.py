@@ -105,7 +105,8 @@ class Hypotheses:
         needs = list(dict.fromkeys([*self.needs, *further]))
         if not self.ring.hypotheses and not zeros and self._points_are_dense(needs):
             return True
-        needs = [need for need in needs if leaves_of([need.formula]) or not self._true_number(need)]
+        # only the sides' own needs say that they are not real; a condition that fails leaves no point
+        needs = [need for need in needs if leaves_of([need.formula]) or not self._true_number(need, need in self.needs)]
         if any(not leaves_of([need.formula]) for need in needs):
             return False
         if self.ring.hypotheses and not zeros and self._drawn_point(needs, FEW):
@@ -146,22 +147,22 @@ class Hypotheses:
         # the points where no divisor vanishes are dense; no other need than x != 0 may restrict them
         return is_dense(self.ring) and all(need.sign == "!= 0" for need in needs)
 
-    def _true_number(self, need: Need) -> bool:
+    def _true_number(self, need: Need, is_of_sides: bool) -> bool:
         """Return whether a condition without symbols, such as ``2 - 1 > 0``, is proven.
 
         Raises
         ------
         InputError
-            If it is proven to be false. The result False means that neither could be proven.
+            If a condition of the sides is proven to be false. The result False means that it could not be proven.
         """
         interval = enclosure(need.formula)
         if interval is None:
             return False
         zero = 0 in interval and is_zero(need.formula)
         fails = (interval.b < 0 and need.sign != "!= 0") or (zero and need.sign != ">= 0")
-        if fails:
+        if fails and is_of_sides:
             raise InputError(f"the sides are not real numbers: {_need_text(need)} does not hold")
-        return zero or holds(need, {})
+        return not fails and (zero or holds(need, {}))
 
     def _drawn_point(self, needs: Sequence[Need], attempts: int) -> bool:
         """Return whether one of ``attempts`` random points obeys the hypotheses exactly and meets ``needs``."""

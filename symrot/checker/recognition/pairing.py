@@ -241,7 +241,7 @@ def absent_name(known: str, renaming: dict[str, str | None], unused: Collection[
 def _absent_entry(known: str, renaming: dict[str, str | None]) -> str | None:
     """Return a name for the entry ``known`` of a rotation matrix: r_21 for R_21 if R_11 is r_11.
 
-    None without entries in the claim, or if they have other indices.
+    None if the claim has no entry of the matrix, or if an entry has other indices than in the known formula.
     """
     pairs = [(mine, other) for mine, other in renaming.items() if other is not None and MATRIX_ENTRY.fullmatch(mine)]
     if MATRIX_ENTRY.fullmatch(known) is None or not pairs or any(mine[-2:] != other[-2:] for mine, other in pairs):

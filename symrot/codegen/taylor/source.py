@@ -272,7 +272,7 @@ class _Jet:
         return f"V_SET({', '.join(lanes)})"
 
     def _clock_seed(self, row: Row, name: str) -> list[str]:
-        """Return the C statements that set ``name`` to coefficient 0 of the four functions of ``a t + b`` in a row."""
+        """Return the C statements that set ``name`` to coefficient 0 of four series, sines and cosines of a t + b."""
         series = [self.layout.series[i] for i in row.lanes if i is not None]
         rates = self.constant(tuple(s.weights[0] for s in series))  # type: ignore[misc]
         offsets = self.constant(row.constant) if row.constant and set(row.constant) != {("number", 0)} else ""

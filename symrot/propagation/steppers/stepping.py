@@ -26,24 +26,10 @@ from symrot.propagation.steppers.segments import Segment, segments, split_at
 from symrot.propagation.steppers.stats import Stats
 
 __all__ = [
-    "DONE",
-    "MAX_STEPS",
-    "NOT_FINITE",
-    "NOT_FINITE_SENTENCE",
-    "PAUSED",
-    "ROUNDED",
-    "UNDERFLOW",
-    "Floats",
-    "Integration",
-    "PathLike",
-    "Run",
-    "SteppedRecording",
-    "Stepper",
-    "Window",
-    "check_longest_step",
-    "check_tolerance",
+    "DONE", "MAX_STEPS", "NOT_FINITE", "NOT_FINITE_SENTENCE", "PAUSED", "ROUNDED", "UNDERFLOW", "Floats",
+    "Integration", "PathLike", "Run", "SteppedRecording", "Stepper", "Window", "check_longest_step", "check_tolerance",
     "is_sorted",
-]
+]  # fmt: skip
 
 MAX_STEPS = 100_000_000  # default limit of a motion: a minute or two
 MOST_RECORDED = 2 << 30  # bytes of recorded steps
