@@ -179,13 +179,15 @@ static SYMROT_APART int symrot_steady(symrot_run *run, symrot_v4 (*x)[SYMROT_ORD
     symrot_roundings(t, t_low, y, p, error);
     for (int i = symrot_borders[0]; i < symrot_borders[1]; ++i)
         if (!(error[i] <= worst)) worst = error[i] == error[i] ? error[i] : INFINITY;
-    for (int n = SYMROT_ORDER; n >= 0; --n) size = size*fabs(s) + symrot_size(x, n, 0);
     worst *= s*unit;
     run->rounded += worst*worst;  /* errors of different steps are independent */
+    run->largest = symrot_larger(run->largest, symrot_size(x, 0, 0));
+    const double fixed = symrot_scales[0], limit = SYMROT_ROUNDED_LIMIT*run->tail;
+    const double least = limit*(fixed > 0.0 ? fixed : symrot_larger(run->largest, SYMROT_RATE_FLOOR/run->pace));
+    if (run->rounded <= least*least) return 1;
+    for (int n = SYMROT_ORDER; n >= 0; --n) size = size*fabs(s) + symrot_size(x, n, 0);  /* in this step */
     run->largest = symrot_larger(run->largest, size);
-    const double fixed = symrot_scales[0], least = SYMROT_RATE_FLOOR/run->pace;
-    const double reference = fixed > 0.0 ? fixed : symrot_larger(run->largest, least);
-    return sqrt(run->rounded) <= SYMROT_ROUNDED_LIMIT*run->tail*reference;
+    return fixed == 0.0 && sqrt(run->rounded) <= limit*run->largest;
 }
 #endif
 
