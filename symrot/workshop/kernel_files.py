@@ -115,7 +115,7 @@ def stored_bounds(kernel: KernelText, directory: Path | None) -> Mapping[str, An
 
 
 def _slots(path: Path) -> dict[str, Any]:
-    """Return the content of the certificate at ``path``, or an empty dict if there is no certificate."""
+    """Return the content of the certificate at ``path``, or an empty dict if it cannot be read."""
     try:
         certificate = json.loads(read_input(path, LARGEST))
     except (OSError, ValueError, RecursionError):

@@ -6,6 +6,7 @@ from sympy import Integer, Rational, cos, sin, symbols
 
 import symrot
 from symrot.checker.claim.integration import definite_integral
+from symrot.errors import InputError
 
 x, a, b, c = symbols("x a b c", real=True)
 VALUES = {a: Rational(3, 2), b: Rational(7, 3), c: Rational(2, 5)}
@@ -29,3 +30,9 @@ def test_an_integral_has_the_value_of_quadrature(integrand):
 ])  # fmt: skip
 def test_waves_are_orthogonal_for_whole_frequencies_only(claim, verdict):
     assert symrot.check(claim, repair=False).verdict == verdict
+
+
+@pytest.mark.parametrize("integrand", [(1 + x) ** 100_000, (1 + x) ** 41, (a + b + c + x) ** 40 * (a + x) ** 40, x**50])
+def test_an_integrand_that_takes_too_long_to_multiply_out_is_refused(integrand):
+    with pytest.raises(InputError, match="expected an integrand of"):
+        definite_integral(integrand, x, Integer(0), Integer(1))

@@ -160,6 +160,7 @@ def test_each_vector_of_a_file_is_an_attribute_also_without_omega_and_quaternion
 
 
 def test_the_table_of_a_file_says_where_an_euler_sequence_is_at_gimbal_lock(tmp_path):
+    pytest.importorskip("pandas")
     motion = symrot.propagate("heavy_top_loops", t=[0, 0.5, 1])
     motion.save(tmp_path / "motion.npz", ["euler", "omega"])
     table = symrot.load(tmp_path / "motion.npz").to_dataframe(["euler", "omega"])

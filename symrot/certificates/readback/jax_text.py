@@ -73,7 +73,8 @@ def _as_c(text: str, name: str, model: CFunction, where: str) -> str:
         functions.append(_function(function, lines, inputs, where))
     if rules != needed:
         raise CertificateError(
-            f"{where}: expected a rule for the derivative of each function that is marked with jax.custom_jvp"
+            f"{where}: expected a rule for the derivative of each function that is marked with jax.custom_jvp, and no "
+            "other rules"
         )
     return "\n".join(functions)
 

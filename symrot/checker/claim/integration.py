@@ -1,8 +1,9 @@
 """Exact definite integrals of polynomials times sines and cosines whose angles are linear in the variable."""
 
 from functools import lru_cache
+from math import comb, prod
 
-from sympy import Add, Expr, I, Integer, Mul, Symbol, cos, exp, factorial, sin
+from sympy import Add, Expr, I, Integer, Mul, Pow, Symbol, cos, exp, factorial, sin
 
 from symrot.errors import InputError
 
@@ -10,6 +11,7 @@ __all__ = ["definite_integral"]
 
 LARGEST_DEGREE = 40
 MOST_TERMS = 2000
+MOST_PRODUCTS = 20_000  # that are formed while an integrand is multiplied out
 
 
 @lru_cache(maxsize=64)
@@ -49,12 +51,26 @@ def _rewritten(integrand: Expr, variable: Symbol) -> Expr:
         exponentials[node] = (forward + backward) / 2 if node.func is cos else (forward - backward) / (2 * I)
     plain = integrand.xreplace(exponentials)
     # refuses an integrand that takes too long to expand
-    if any(node.exp.is_Integer and node.exp > LARGEST_DEGREE for node in plain.atoms() if node.is_Pow):
+    if any(node.exp.is_Integer and node.exp > LARGEST_DEGREE and node.base.has(variable) for node in plain.atoms(Pow)):
         raise InputError(f"expected an integrand of degree at most {LARGEST_DEGREE}, got {integrand}")
+    if _products(plain) > MOST_PRODUCTS:
+        raise InputError(f"expected an integrand of at most {MOST_TERMS} terms when it is multiplied out, got more")
     expanded = plain.expand()
     if len(Add.make_args(expanded)) > MOST_TERMS:
         raise InputError(f"expected an integrand of at most {MOST_TERMS} terms when it is multiplied out, got more")
     return expanded
+
+
+def _products(formula: Expr) -> int:
+    """Return how many products of terms :meth:`expand` forms of a formula, before equal ones are collected."""
+    if formula.is_Add:
+        return sum(map(_products, formula.args))
+    if formula.is_Mul:
+        return prod(map(_products, formula.args))
+    if formula.is_Pow and formula.exp.is_Integer and formula.exp > 0:
+        terms, power = _products(formula.base), int(formula.exp)
+        return comb(power + terms - 1, terms - 1)
+    return 1
 
 
 def _antiderivative(term: Expr, variable: Symbol, divisors: list[Expr]) -> Expr:

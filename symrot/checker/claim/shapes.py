@@ -149,7 +149,7 @@ def _with_unit_matrices(node: Node, shapes: Mapping[str, Shape]) -> Node:
 
 
 def _as_matrix(node: Node, shape: Shape) -> Node | None:
-    """Return ``eye(3)`` for a term I or 1, and ``cos(a)*eye(3)`` for ``cos(a)*I``; None for other terms."""
+    """Return ``eye(n)`` for a term I or 1, and ``cos(a)*eye(n)`` for ``cos(a)*I``; None for other terms. n: rows."""
     assert shape is not None
     unit = Node("call", "eye", (number(shape[0]),), node.span)
     if node == number(1) or (node.kind == "name" and node.value in UNIT_MATRICES):

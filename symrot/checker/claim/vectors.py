@@ -101,7 +101,7 @@ def is_tensor(name: str) -> bool:
 
 
 def is_components(name: str, tree: Node) -> bool:
-    """Return whether a definition only names the components of a vector or matrix, as ``Matrix([a_x, a_y])`` does."""
+    """Return whether ``tree`` only names the components of the vector or matrix a: ``Matrix([a_x, a_y, a_z])``."""
     if any(tree == Vector(name, timed, axes=axes).components for timed in (False, True) for axes in AXES):
         return True
     base = name.partition("_")[0]

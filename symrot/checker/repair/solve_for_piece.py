@@ -108,7 +108,7 @@ class Vocabulary:
         return made
 
     def values(self, node: Node) -> Values | None:
-        """Return the values of a scalar formula at the test points; None for a matrix, or if a value is zero."""
+        """Return a scalar formula's values at the test points; None for a matrix, or if one is zero or undefined."""
         try:
             values = [point.value(node) for point in self.numeric.points]
         except UndefinedValue:

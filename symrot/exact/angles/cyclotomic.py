@@ -85,7 +85,7 @@ def doubled_cosine(times: int, n: int) -> tuple[int, ...]:
 def multiples(turns: Fraction, n: int) -> tuple[int, int]:
     """Return whole numbers (k, l) with ``cos(turns*pi) = cos(k*pi/n)`` and ``sin(turns*pi) = cos(l*pi/n)``.
 
-    The product ``n * turns`` must be a whole number.
+    ``n`` must be even, and the product ``n * turns`` a whole number.
 
     Examples
     --------

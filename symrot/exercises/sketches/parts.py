@@ -88,7 +88,7 @@ def span(x: float, y: float, to_x: float, to_y: float) -> Part:
 def around(x: float, y: float, wide: float, high: float, first: float, last: float) -> Floats:
     """Return points, shape (n, 2), of the ellipse about (x, y) with the half axes ``wide`` and ``high``.
 
-    ``first`` and ``last`` are angles of the ellipse; there is a point at least every 5 degrees.
+    ``first`` and ``last`` are angles of the ellipse, degrees; there is a point at least every 5 degrees.
     """
     angles = np.radians(np.linspace(first, last, max(2, int(abs(last - first) / 5) + 2)))
     return np.stack([x + wide * np.cos(angles), y + high * np.sin(angles)], axis=1)
