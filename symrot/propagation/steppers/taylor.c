@@ -38,6 +38,7 @@ typedef struct {
     double proven;       /* the last step, if the enclosure held it back, or 0 */
     double rounded;      /* sum of the squares of the first block's rounding errors, from formulas of time */
     double largest;      /* largest size of that block so far */
+    double longest;      /* longest step so far */
     int64_t next;        /* first sample not yet written */
     int64_t accepted, jets, recorded;
     int64_t reach;       /* number of the disc with the best bound in the last step */
@@ -70,8 +71,9 @@ static const double SYMROT_SLACK = 30.0;        /* enclosures exceed errors by t
 static const double SYMROT_GROWTH = 1.5;         /* largest growth of a step after an enclosure shortened one */
 #endif
 #if SYMROT_ROUNDS
-static const double SYMROT_ROUNDED_LIMIT = 50.0;  /* tolerances: errors are nearly always below 0.4 of the bound */
+static const double SYMROT_ROUNDED_LIMIT = 100.0;  /* tolerances: true errors are about a fifth of the bound or less */
 enum { SYMROT_FIRST_STEPS = 8 };                 /* steps from rest, too short to show how large the rates become */
+enum { SYMROT_SEVERAL = 8 };                     /* long steps per bound of the rounding errors, which saves time */
 #endif
 static const double SYMROT_RATE_FLOOR = 1e-3;    /* rad: errors of rates are relative to at least this per step */
 
@@ -170,17 +172,18 @@ static inline double symrot_allowed(const symrot_run *run, double unit)
 #if SYMROT_ROUNDS
 /*
  * Return whether the rounding errors of the first block, from formulas of time, remain small enough up to the end of a
- * step of s units. Rounded, a formula such as t^2 - 25 moves a narrow pulse by another amount in each step.
+ * step of s units, which stands for that many `steps`. Rounded, a formula such as t^2 - 25 moves a narrow pulse by
+ * another amount in each step.
  */
 static SYMROT_APART int symrot_steady(symrot_run *run, symrot_v4 (*x)[SYMROT_ORDER + 1], double s, double unit,
-    double t, double t_low, const double *y, const double *p)
+    double t, double t_low, double steps, const double *y, const double *p)
 {
     double error[SYMROT_STATES], worst = 0.0, size = 0.0;
     symrot_roundings(t, t_low, y, p, error);
     for (int i = symrot_borders[0]; i < symrot_borders[1]; ++i)
         if (!(error[i] <= worst)) worst = error[i] == error[i] ? error[i] : INFINITY;
     worst *= s*unit;
-    run->rounded += worst*worst;  /* errors of different steps are independent */
+    run->rounded += steps*worst*worst;  /* errors of different steps are independent */
     run->largest = symrot_larger(run->largest, symrot_size(x, 0, 0));
     const double fixed = symrot_scales[0], limit = SYMROT_ROUNDED_LIMIT*run->tail;
     const double least = limit*(fixed > 0.0 ? fixed : symrot_larger(run->largest, SYMROT_RATE_FLOOR/run->pace));
@@ -445,10 +448,15 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
             break;
         }
 #if SYMROT_ROUNDS
-        const int steady = symrot_steady(run, x, s, unit, t, t_low, y, p);
-        if (!steady && (at_stop || run->accepted + accepted >= SYMROT_FIRST_STEPS)) {
-            status = SYMROT_ROUNDED;
-            break;
+        const int64_t before = run->accepted + accepted;
+        run->longest = symrot_larger(run->longest, fabs(h));
+        const int alone = at_stop || run->proven > 0.0 || fabs(h) < 0.25*run->longest;
+        if (alone || before%SYMROT_SEVERAL == 0) {
+            const int steady = symrot_steady(run, x, s, unit, t, t_low, alone ? 1.0 : SYMROT_SEVERAL, y, p);
+            if (!steady && (at_stop || before >= SYMROT_FIRST_STEPS)) {
+                status = SYMROT_ROUNDED;
+                break;
+            }
         }
 #endif
         double t1 = t + h, low1 = (h - (t1 - t)) + t_low;  /* a fast sum, for |t| > |h|, else exact enough: see below */

@@ -176,7 +176,7 @@ class _Stepper(Stepper):
     """A loaded library that computes Taylor coefficients (a jet) and steps, built from :func:`translation_unit`."""
 
     name = "taylor"
-    reals = ("t", "t_low", "unit", "stop", "tail", "pace", "max_step", "proven", "rounded", "largest")
+    reals = ("t", "t_low", "unit", "stop", "tail", "pace", "max_step", "proven", "rounded", "largest", "longest")
     integers = ("next", "accepted", "jets", "recorded", "reach", "every", "since", "projected")
     vectors = ("y", "carry")
     tail = ("kept",)
