@@ -29,7 +29,8 @@ def _function(name: str) -> Any:
     variables = dict(zip(input_names(name), heyoka.make_vars(*input_names(name)), strict=True))
     functions = {each: getattr(heyoka, each) for each in ("sin", "cos", "tan", "sqrt")}
     formulas = textbook_program(name).evaluate(variables, functions, float)
-    return heyoka.cfunc(list(formulas.values()), list(variables.values()), fast_math=True, batch_size=LANES)
+    outputs = [heyoka.expression(each) if isinstance(each, float) else each for each in formulas.values()]
+    return heyoka.cfunc(outputs, list(variables.values()), fast_math=True, batch_size=LANES)
 
 
 def heyoka_code(name: str) -> tuple[Any, Any, Any]:
