@@ -87,8 +87,12 @@ def with_guesses(context: Context, verdict: Verdict, stated: str) -> Verdict:
     verdict, likeliest = replace(verdict, recognised_as=tuple(readings)), readings[0]
     # a guess is a word in the formula's name that neither the context nor the claim's quantity states
     words = guesses(context, likeliest.name, stated)
-    # words that follow each other are one phrase: "yaw, rotation matrix" of "yaw angle of a rotation matrix"
-    follow = [f"{first} {second}" in likeliest.name for first, second in pairwise(words)]
-    phrases = "".join(word + (" " if joined else ", ") for word, joined in zip(words, [*follow, False], strict=False))
-    what = ", ".join(filter(None, [phrases.removesuffix(", "), likeliest.how]))
+    phrases = words[:1]
+    for first, second in pairwise(words):
+        # words that follow each other are one phrase: "yaw, rotation matrix" of "yaw angle of a rotation matrix"
+        if f"{first} {second}" in likeliest.name:
+            phrases[-1] += f" {second}"
+        else:
+            phrases.append(second)
+    what = ", ".join(filter(None, [*phrases, likeliest.how]))
     return replace(verdict, notes=(*verdict.notes, f"guessed, not stated: {what}")) if what else verdict
