@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from symrot.errors import InputError
-from symrot.exchange.mesh_format import TRIANGLES_IN
+from symrot.exchange.mesh_format import EARLY_END, TRIANGLES_IN
 from symrot.exchange.obj_file import read_plain_obj, refers_backwards
 from symrot.exchange.surface import Surface, merge
 from symrot.files.reading import read_input
@@ -70,10 +70,7 @@ def read_surface(path: Path, where: str) -> Surface:
     except MemoryError:
         raise InputError(f"{where}: expected a mesh that fits in memory, got a larger one") from None
     except ImportError:  # a reader of trimesh looks for the encoding of a file that is no text
-        form = suffix[1:].upper()
-        raise InputError(
-            f"{where}: expected a mesh in the format {form}, got a file of another format or one that ends early"
-        ) from None
+        raise InputError(f"{where}: {EARLY_END.format(suffix[1:].upper())}") from None
     except Exception as reason:  # a broken file raises errors of many kinds in the readers of trimesh
         fault = " ".join(str(reason).split())[:80] or type(reason).__name__
         raise InputError(f"{where}: expected a mesh in the format {suffix[1:].upper()}, got a fault: {fault}") from None

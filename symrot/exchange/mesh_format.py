@@ -9,13 +9,13 @@ from typing import Any
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import show
 
-__all__ = ["TRIANGLES_IN"]
+__all__ = ["EARLY_END", "TRIANGLES_IN"]
 
 _HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_mesh_quantization")
 """Starts of the names of extensions of GLB files that change no shape."""
 _STRIP, _FAN = 5, 6  # modes of primitives in GLB files; 4 are triangles, less are points and lines
 _OTHER_SHAPES = {"surf": "a free-form surface", "call": "a reference to another file", "fo": "a polygon in an old form"}
-_EARLY_END = "expected a mesh in the format STL, got a file of another format or one that ends early"
+EARLY_END = "expected a mesh in the format {}, got a file of another format or one that ends early"
 
 
 def _stl(content: bytes) -> int:
@@ -26,7 +26,7 @@ def _stl(content: bytes) -> int:
     text = content.lower()
     last = text[-1000:].splitlines() or [b""]
     if not next((line.strip() for line in reversed(last) if line.strip()), b"").startswith(b"endsolid"):
-        raise InputError(_EARLY_END)
+        raise InputError(EARLY_END.format("STL"))
     return text.count(b"endfacet")
 
 
@@ -50,11 +50,13 @@ def _ply(content: bytes) -> None:
     """Raise InputError for a PLY file as text with corners that are no whole numbers, or with surplus lines."""
     # trimesh rounds the former and leaves out the latter
     header, _, numbers = content.partition(b"end_header")
+    if b"format ascii" not in header:
+        return
     lines = sum(map(int, re.findall(rb"^element \w+ (\d+)", header, re.MULTILINE)))
-    if b"format ascii" in header and len(numbers.strip().splitlines()) > lines:
+    if len(numbers.strip().splitlines()) > lines:
         raise InputError(f"expected a PLY file with {lines} lines after its header, got more")
     faces = re.search(rb"element face (\d+)\s+property list \w+ \w+ \w+\s*$", header)
-    if b"format ascii" in header and faces:
+    if faces:
         rows = numbers.rstrip().splitlines()[-int(faces[1]) :]
         if not re.fullmatch(rb"[\d\s]*", b"\n".join(rows)):
             raise InputError("expected whole numbers as corners of polygons in a PLY file")
