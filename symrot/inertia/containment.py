@@ -228,11 +228,16 @@ def _farthest(disk: _Disk, point: Vec) -> float:
     return math.hypot(along, across + disk.radius) + disk.ball
 
 
+def _across(axis: Vec) -> Vec:
+    """Return a unit vector that is perpendicular to a unit vector."""
+    return _unit(cross(axis, _AXES[min(range(3), key=lambda k: abs(axis[k]))]))
+
+
 def _around(disk: _Disk) -> list[Vec]:
     """Return the corners of a polygon that contains a disk."""
     if not disk.radius:
         return [disk.center]
-    first = _unit(cross(disk.normal, _AXES[min(range(3), key=lambda k: abs(disk.normal[k]))]))
+    first = _across(disk.normal)
     second = cross(disk.normal, first)
     radius = disk.radius / math.cos(math.pi / CORNERS)
     turns = [2 * math.pi * k / CORNERS for k in range(CORNERS)]
@@ -248,7 +253,7 @@ def corners(solid: Solid3) -> list[Vec]:
         elif isinstance(piece, _Disk) and piece.radius:
             return []
         elif isinstance(piece, _Dome):
-            first = _unit(cross(piece.axis, _AXES[min(range(3), key=lambda k: abs(piece.axis[k]))]))
+            first = _across(piece.axis)
             axes = (first, cross(piece.axis, first), piece.axis)
             half = [point for point in _ball() if point[2] >= 0]
             points += [_combined(piece.center, axes, point, piece.radius) for point in half]

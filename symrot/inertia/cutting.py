@@ -2,6 +2,8 @@
 
 from collections.abc import Iterable
 
+from symrot.inertia.tensor import dot
+
 __all__ = ["cut"]
 
 Vec = tuple[float, float, float]
@@ -13,7 +15,7 @@ def cut(points: list[Vec], normal: Vec, height: float, rounding: float) -> tuple
     The plane has the unit normal ``normal`` and the distance ``height`` from the origin. Points that are nearer to it
     than ``rounding`` belong to both parts.
     """
-    heights = [sum(map(float.__mul__, point, normal)) - height for point in points]
+    heights = [dot(point, normal) - height for point in points]
     below = [point for point, h in zip(points, heights, strict=True) if h <= rounding]
     above = [point for point, h in zip(points, heights, strict=True) if h >= -rounding]
     between = []

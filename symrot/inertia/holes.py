@@ -18,6 +18,7 @@ from symrot.inertia.containment import Pose, Solid3, are_apart, excess, outside
 from symrot.inertia.cutting import cut
 from symrot.inertia.integration import shape_points
 from symrot.inertia.shapes import SHAPES, scalars
+from symrot.inertia.tensor import dot
 
 __all__ = ["Filled", "PointMass", "doubtful_holes", "filled", "pose", "require_points"]
 
@@ -159,7 +160,7 @@ def _is_covered(hole: Filled, near: Sequence[Filled], radius: float) -> bool:
 def _crosses(plane: tuple[Vec, float], points: Sequence[Vec], rounding: float) -> bool:
     """Return whether there are points on both sides of a plane, given by a unit normal and a distance."""
     normal, height = plane
-    heights = [sum(a * b for a, b in zip(point, normal, strict=True)) - height for point in points]
+    heights = [dot(point, normal) - height for point in points]
     return bool(heights) and min(heights) < -rounding and max(heights) > rounding
 
 
@@ -192,7 +193,7 @@ def _pieces(hole: Solid3, hosts: Sequence[Solid3]) -> list[Solid3]:
         half = hole.dimensions[name] / 2
         up = hole.pose.turn(tuple(float(k == axis) for k in range(3)))  # type: ignore[arg-type]
         down = -up[0], -up[1], -up[2]
-        origin = sum(a * b for a, b in zip(hole.pose.at, up, strict=True))
+        origin = dot(hole.pose.at, up)
         ends = {containment.height(host, up) - origin for host in hosts}
         ends |= {-containment.height(host, down) - origin for host in hosts}
         inside = sorted(end for end in ends if abs(end) < half * (1 - ROUNDING))
