@@ -4,13 +4,12 @@ import json
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, partial
-from hashlib import sha256
 from importlib.metadata import version
 from itertools import repeat
 from pathlib import Path
 
 from symrot.build import cache as build_cache
-from symrot.build.code_digest import code_without_prose
+from symrot.build.code_digest import code_without_prose, text_digest
 from symrot.build.sources import PACKAGE
 from symrot.certificates.audit import LARGEST, audit, operations_of
 from symrot.certificates.certificate import Data, proven_statement, with_sections
@@ -84,17 +83,13 @@ def _programs() -> str:
     # part of keys of the cache: after any change of the programs that prove statements, stored ones are no longer used
     paths = sorted(path for path in PACKAGE.rglob("*") if path.suffix in (".py", ".toml", ".v", ".c"))
     texts = {path: path.read_text(encoding="utf-8") for path in paths}
-    key = f"code in {_sha256([version('sympy'), *texts.values()])}"
+    key = f"code in {text_digest([version('sympy'), *texts.values()])}"
     digest = build_cache.fetch(key)  # it takes half a second to compute
     if digest is None:
         code = (code_without_prose(text) if path.suffix == ".py" else text for path, text in texts.items())
-        digest = _sha256([version("sympy"), *code])
+        digest = text_digest([version("sympy"), *code])
         build_cache.store(key, digest)
     return digest
-
-
-def _sha256(texts: Iterable[str]) -> str:
-    return sha256("\0".join(texts).encode()).hexdigest()
 
 
 def audit_file(
