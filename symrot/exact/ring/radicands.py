@@ -121,13 +121,13 @@ def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr
     return relations
 
 
-def without_circles(found: Mapping[Root, Dependence], known: Mapping[Root, Dependence]) -> dict[Root, Dependence]:
-    """Return those of the dependences ``found`` in which no root is expressed by itself, not even through others.
+def without_circles(new: Mapping[Root, Dependence], known: Mapping[Root, Dependence]) -> dict[Root, Dependence]:
+    """Return those of the dependences ``new`` in which no root is expressed by itself, not even through others.
 
     ``known`` holds dependences that were accepted before.
     """
     accepted: dict[Root, Dependence] = {}
-    for root, dependence in found.items():
+    for root, dependence in new.items():
         stack, seen = dependence.needs, set[Root]()
         while stack:
             other = stack.pop()
