@@ -158,7 +158,7 @@ def polyhedron(surface: Surface, name: str, where: str, mass: Any, density: Any,
     if density is not None and polynomial[0] != "number":
         places = np.concatenate([surface.vertices, interior_points(surface)]) * float(unit)
         points = (dict(zip("xyz", place, strict=True)) for place in places.tolist())
-        require_not_negative(polynomial, points, density, f"{where}: ")
+        require_not_negative(polynomial, points, density, where)
     assert result is not None
     total, center, tensor, error = result
     require_admissible(principal_axes(tensor, where), where)
