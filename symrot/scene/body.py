@@ -79,7 +79,7 @@ class Body(NamedTuple):
     facets : tuple of triangles
         The surface of a body given by a small mesh, for pictures: the corners, m, of each triangle.
     warnings : tuple of str
-        Sentences about holes that could not be proven to lie within the body.
+        Sentences about holes that could not be proven to lie within the body, and about polygons that are not flat.
 
     Examples
     --------
@@ -369,7 +369,8 @@ def _about_point(properties: MassProperties, values: Mapping[str, Any], where: s
 
 def _read_mesh(value: Mapping[str, Any], where: str, folders: Folders) -> Body:
     body, values = read_mesh_table(value, where, _PLACED, Entry(_density("kg/m^3")), folders)
-    return _about_point(body.properties, values, where, "mesh")._replace(facets=body.facets)
+    about = _about_point(body.properties, values, where, "mesh")
+    return about._replace(facets=body.facets, warnings=body.warnings)
 
 
 def _read_shape(value: Mapping[str, Any], where: str, folders: Folders) -> Body:
