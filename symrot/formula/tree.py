@@ -17,7 +17,7 @@ from symrot.errors import InputError
 
 __all__ = [
     "FUNCTIONS", "LOGIC", "SWITCHING", "Node", "children", "evaluate", "names", "operations", "parse", "rename", "text",
-    "vanishes",
+    "vanishes", "with_operands",
 ]  # fmt: skip
 
 Node = tuple[Any, ...]
@@ -229,19 +229,29 @@ def children(node: Node) -> tuple[Node, ...]:
     return (node[1],) if kind in ("**", "neg") else (node[1], node[2])
 
 
+def with_operands(node: Node, change: Callable[[Node], Node]) -> Node:
+    """Return the formula in which ``change`` of each operand at the root replaces it: ``x + y`` gives ``f(x) + f(y)``.
+
+    A number or a symbol has no operands and is returned unchanged.
+    """
+    kind = node[0]
+    if kind in ("number", "symbol"):
+        return node
+    if kind == "call":
+        return (kind, node[1], tuple(map(change, node[2])))
+    if kind == "**":
+        return (kind, change(node[1]), node[2])
+    return (kind, *map(change, node[1:]))
+
+
 def rename(node: Node, symbols: Mapping[str, str] | None = None, functions: Mapping[str, str] | None = None) -> Node:
     """Return the formula with symbols and functions renamed as the two mappings say; other names are unchanged."""
     kind = node[0]
-    if kind == "number":
-        return node
     if kind == "symbol":
         return ("symbol", (symbols or {}).get(node[1], node[1]))
     if kind == "call":
-        name = (functions or {}).get(node[1], node[1])
-        return ("call", name, tuple(rename(argument, symbols, functions) for argument in node[2]))
-    if kind == "**":
-        return ("**", rename(node[1], symbols, functions), node[2])
-    return (kind, *(rename(child, symbols, functions) for child in node[1:]))
+        node = ("call", (functions or {}).get(node[1], node[1]), node[2])
+    return with_operands(node, lambda operand: rename(operand, symbols, functions))
 
 
 def names(node: Node) -> set[str]:
