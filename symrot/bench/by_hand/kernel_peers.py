@@ -24,7 +24,7 @@ from symrot.conventions import INTRINSIC_SEQUENCES
 from symrot.dynamics.equations import angular_acceleration, inverse
 from symrot.errors import InputError
 from symrot.formula.program import Program, Signature
-from symrot.formula.tree import Node, with_operands
+from symrot.formula.tree import Node, children, with_children
 from symrot.kernels.dynamics import TENSOR
 from symrot.kernels.jacobian import BY
 from symrot.kinematics.euler import rate_jacobian
@@ -138,7 +138,7 @@ def products(node: Node) -> Node:
     """Return the formula ``node`` with integer powers written as products (x*x), since C has no power operator."""
     if node[0] == "**":
         return chain("*", [products(node[1])] * node[2])
-    return with_operands(node, products)
+    return with_children(node, list(map(products, children(node))))
 
 
 def _sympy(name: str) -> str:

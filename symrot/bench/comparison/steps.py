@@ -26,7 +26,7 @@ from symrot.codegen.lowering.formulas import to_node
 from symrot.codegen.printing.c_function import c_function, c_name
 from symrot.codegen.steps import step_signature, stepped
 from symrot.formula.program import Program
-from symrot.formula.tree import Node, with_operands
+from symrot.formula.tree import Node, children, with_children
 from symrot.scene.scene import load_scene
 from symrot.workshop.step_text import StepText, step_method
 
@@ -46,7 +46,9 @@ def _plain_rates(rates: Program) -> Program:
     known: dict[str, Node] = {}
 
     def explicit(node: Node) -> Node:
-        return known.get(node[1], node) if node[0] == "symbol" else with_operands(node, explicit)
+        if node[0] == "symbol":
+            return known.get(node[1], node)
+        return with_children(node, list(map(explicit, children(node))))
 
     for name, node in rates.temporaries:
         known[name] = explicit(node)

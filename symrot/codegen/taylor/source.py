@@ -14,7 +14,7 @@ from symrot.codegen.taylor.linear_forms import ONE, ZERO
 from symrot.codegen.taylor.recurrences import Recurrences, recurrences
 from symrot.errors import InputError
 from symrot.formula.program import Program
-from symrot.formula.tree import Node, children, names, rename, with_operands
+from symrot.formula.tree import Node, children, names, rename, with_children
 
 __all__ = ["ORDER", "checked_system", "jet_source", "taylor_definitions"]
 
@@ -456,7 +456,7 @@ def _with_calls(node: Node, calls: Mapping[Node, str]) -> Node:
     """
     if node in calls:
         return ("symbol", calls[node])
-    return with_operands(node, lambda operand: _with_calls(operand, calls))
+    return with_children(node, [_with_calls(child, calls) for child in children(node)])
 
 
 def _indented(lines: Iterable[str]) -> list[str]:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from symrot.codegen.printing.c_function import c_function
 from symrot.codegen.taylor.linear_forms import ONE, ZERO
 from symrot.formula.program import Argument, Program, Signature
-from symrot.formula.tree import Node, children, evaluate, names, with_operands
+from symrot.formula.tree import Node, children, evaluate, names, with_children
 from symrot.planning.scene_kernel import EPOCH, Parameters, SceneKernel
 
 __all__ = ["from_epoch", "moved", "moved_formulas"]
@@ -219,7 +219,9 @@ class _Mover:
 
     def resolved(self, node: Node) -> Node:
         """Return a constant formula in which each parameter is replaced by its formula: p0 becomes ``(B - C)/A``."""
-        return self.formulas[node[1]] if node[0] == "symbol" else with_operands(node, self.resolved)
+        if node[0] == "symbol":
+            return self.formulas[node[1]]
+        return with_children(node, list(map(self.resolved, children(node))))
 
 
 def _is_shifted(form: _Form) -> bool:
