@@ -6,13 +6,13 @@ The name of a library contains the checksum of its content, so a damaged one is 
 
 import os
 import re
-import stat
 import sys
 from collections.abc import Callable
 from functools import cache as cache_once
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from symrot.build.directories import Temporary, foreign, user_directory
 from symrot.errors import CompilerError
 
 try:
@@ -54,7 +54,7 @@ TUNING = (*SCHEDULED, "-fno-tree-pre", "-fno-gcse", "-fno-ivopts")  # so that nu
 COMPILERS = ("cc", "gcc", "clang")
 SECONDS_TO_COMPILE = 300  # a compiler that takes longer is stopped
 SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
-CACHE_SUBDIR = "kernels"  # the only directory inside the cache that is written, checked and cleared
+_temporary = Temporary()
 OWN_FILE = re.compile(r"(\w+-[0-9a-f]{32}\.(so|dll|dylib|index|text)|\.symrot-\w+)\Z")
 
 
@@ -114,7 +114,7 @@ def cache(probe: bool = False) -> Cache:
         _keep(_text_name("probe"), b"")
     if _temporary.path is not None:
         return Cache(_temporary.path, _temporary.reason)
-    directory, reason = _user_directory()
+    directory, reason = user_directory()
     return Cache(_temporary.use(reason) if reason else directory, reason)
 
 
@@ -294,134 +294,20 @@ def _processor() -> str:
     return "\n".join(line for line in first.splitlines() if line.startswith(telling))
 
 
-# ------------------------------------------------------------------------------------------------ places
-
-
-class _Temporary:
-    """The private cache directory of this process, created on first use and removed when the process ends."""
-
-    def __init__(self) -> None:
-        self.path: Path | None = None
-        self.reason = ""
-        self.texts: dict[str, str] = {}  # used when no disk can be written
-
-    def use(self, reason: str) -> Path:
-        if self.path is None:
-            import atexit
-            import shutil
-            import tempfile
-
-            try:
-                self.path = Path(tempfile.mkdtemp(prefix="symrot-"))
-            except OSError as error:
-                raise CompilerError(
-                    f"compiled kernels need a directory: {reason}, and a temporary directory cannot be created: {error}"
-                ) from error
-            atexit.register(shutil.rmtree, self.path, ignore_errors=True)
-            self.reason = reason
-        return self.path
-
-
-_temporary = _Temporary()
-
-
-def _cache_directory() -> Path:
-    if chosen := os.environ.get("SYMROT_CACHE"):
-        return Path(chosen)
-    if chosen := os.environ.get("XDG_CACHE_HOME"):
-        return Path(chosen) / "symrot"
-    if sys.platform == "win32" and (chosen := os.environ.get("LOCALAPPDATA")):
-        return Path(chosen) / "symrot"
-    return Path("~").expanduser() / ("Library/Caches" if sys.platform == "darwin" else ".cache") / "symrot"
-
-
-def _foreign(path: Path) -> str:
-    """Return why a file or directory must not be trusted, such as another owner; an empty text if it can be trusted."""
-    status = path.lstat()
-    if hasattr(os, "getuid") and status.st_uid != os.getuid():
-        return f"{path} belongs to another user (uid {status.st_uid})"
-    if stat.S_ISLNK(status.st_mode):
-        return f"{path} is a symbolic link"
-    if not (stat.S_ISREG(status.st_mode) or stat.S_ISDIR(status.st_mode)):
-        return f"{path} is no regular file"
-    return ""
-
-
-@cache_once
-def _exposed(directory: Path) -> str:
-    """Return why another user could replace the cache ``directory``; an empty text if nobody could."""
-    if not hasattr(os, "getuid"):
-        return ""
-    # Who may write to a directory may rename its entries, even those of others; in a sticky directory such as /tmp,
-    # only the owner of the entry, the owner of the directory and root may.
-    for path in dict.fromkeys((*directory.absolute().parents, *directory.resolve().parents)):
-        for status in (path.lstat(), path.stat()):  # a symbolic link, and its target
-            if status.st_uid not in (0, os.getuid()):
-                return (
-                    f"{path} belongs to another user (uid {status.st_uid}), who could replace {directory}; set "
-                    "SYMROT_CACHE to a directory below one of your own"
-                )
-        mode = status.st_mode
-        others = mode & stat.S_IWOTH or (mode & stat.S_IWGRP and _shared_group(status.st_gid))
-        if others and not mode & stat.S_ISVTX:
-            return (
-                f"{path} can be written by other users, who could replace {directory}; forbid them to write (chmod "
-                "go-w), or set SYMROT_CACHE to another directory"
-            )
-    return ""
-
-
-def _shared_group(group: int) -> bool:
-    """Return whether a group may have members other than the user.
-
-    True if the system does not know the group or the user.
-    """
-    import grp
-    import pwd
-
-    try:
-        user, members = pwd.getpwuid(os.getuid()), grp.getgrgid(group)
-    except KeyError:
-        return True
-    # the user's own group has the name of the user and no other members
-    return members.gr_name != user.pw_name or not {user.pw_name}.issuperset(members.gr_mem)
-
-
-def _user_directory() -> tuple[Path, str]:
-    """Return the user's cache directory, and the reason why it cannot be used, or an empty text.
-
-    A missing directory is created.
-    """
-    directory = _cache_directory() / CACHE_SUBDIR
-    try:
-        if not directory.is_dir():
-            for place in (*reversed(directory.parents), directory):
-                place.mkdir(mode=0o700, exist_ok=True)
-        reason = _foreign(directory) or _exposed(directory)
-        if not reason and directory.stat().st_mode & 0o077:
-            # private, so that nobody else can add libraries
-            directory.chmod(0o700)
-        if not reason and not os.access(directory, os.W_OK):
-            reason = f"{directory} cannot be written"
-    except OSError as error:
-        reason = f"{directory} cannot be used: {error.strerror or error}"
-    return directory, reason
+# ------------------------------------------------------------------------------------------------ files
 
 
 def _directories() -> list[Path]:
     """Return the directories that may hold compiled libraries: the user's, if it can be used, and the temporary one."""
-    directory, reason = _user_directory()
+    directory, reason = user_directory()
     return [*([] if reason else [directory]), *([] if _temporary.path is None else [_temporary.path])]
-
-
-# ------------------------------------------------------------------------------------------------ files
 
 
 def _read(path: Path) -> bytes | None:
     """Return the content of the file ``path``, or None if it is missing, unreadable, or not to be trusted."""
     try:
         # another user could have put foreign machine code into the cache
-        return None if _foreign(path) else path.read_bytes()
+        return None if foreign(path) else path.read_bytes()
     except OSError:
         return None
 
@@ -442,7 +328,7 @@ def _keep(name: str, content: bytes) -> Path:
     If that fails, the file is written to the temporary directory.
     """
     if _temporary.path is None:
-        directory, reason = _user_directory()
+        directory, reason = user_directory()
         if not reason:
             try:
                 _replace(directory / name, content)

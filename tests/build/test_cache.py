@@ -14,6 +14,7 @@ import pytest
 
 from symrot.build import cache as library
 from symrot.build import compiler as compiler_run
+from symrot.build import directories
 from symrot.errors import CompilerError
 
 SOURCE = "double answer(void) { return 42.0; }\n"
@@ -23,7 +24,7 @@ SOURCE = "double answer(void) { return 42.0; }\n"
 def own_cache(tmp_path, monkeypatch):
     """Give every test its own cache, and no temporary directory of another test."""
     monkeypatch.setenv("SYMROT_CACHE", str(tmp_path / "cache"))
-    temporary = library._Temporary()
+    temporary = library.Temporary()
     monkeypatch.setattr(library, "_temporary", temporary)
     yield tmp_path / "cache" / "kernels"
     if temporary.path is not None:
@@ -318,7 +319,7 @@ def open_grandparent(room, monkeypatch):
 def shared_by_a_group(room, monkeypatch):
     room.mkdir(parents=True)
     room.parent.chmod(0o770)
-    monkeypatch.setattr(library, "_shared_group", lambda group: True)
+    monkeypatch.setattr(directories, "_shared_group", lambda group: True)
 
 
 def foreign_parent(room, monkeypatch):
