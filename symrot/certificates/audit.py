@@ -95,9 +95,10 @@ def _refused(text: str) -> Any:
 
 
 def audit(path: Path, symrot_statement: Callable[[Data], Data | None]) -> tuple[Data, list[str]]:
-    """Check every statement of a certificate but its verdicts on object code; return its content, and sentences.
+    """Check every statement of a certificate, except its verdicts on object code.
 
-    There is one sentence for each check that it passed, and for each that was not made.
+    Return the content of the certificate, and a list of sentences: one for each check that was passed, and one for each
+    check that was not made.
 
     Parameters
     ----------

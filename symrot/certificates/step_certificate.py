@@ -69,7 +69,7 @@ ELLIPTIC_NOT_STATED = {"not stated": "errors of rounding, and of truncation belo
 WHOLE_STATE = {"rates": "the formulas of the rates, which symrot derives from Euler's equations for the whole state"}
 NOT_STATED = {"not stated": "errors of rounding and truncation"}
 EVALUATIONS = 32
-"""Boxes that the search for a bound of rounding errors evaluates per output; more hardly lower the bound of a step."""
+"""Number of boxes that are evaluated per output to bound rounding errors; more hardly lower the bound of a step."""
 
 
 @dataclass(frozen=True)
@@ -204,7 +204,7 @@ def bounds_of_step(
     operations: Operations, rates: Program, method: Method, box: Mapping[str, tuple[Fraction, Fraction]],
     fresh: bool = False,
 ) -> Data:  # fmt: skip
-    """Return the section ``bounds`` of the certificate of a step: rounding and truncation on a box.
+    """Return the section ``bounds`` of a step's certificate: bounds of the errors of rounding and truncation on a box.
 
     Parameters
     ----------

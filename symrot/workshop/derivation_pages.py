@@ -57,7 +57,7 @@ CONVERTER = "rsvg-convert"
 """The program that converts SVG to PDF for LaTeX; without it, LaTeX prints the caption of a figure alone."""
 
 Say = Callable[[str], object]
-"""Hears what is being derived."""
+"""A function that is called with a line of text about progress."""
 
 
 def _quiet(text: str) -> None:

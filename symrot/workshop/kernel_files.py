@@ -108,7 +108,7 @@ def stored_bounds(kernel: KernelText, directory: Path | None) -> Mapping[str, An
 
 
 def _slots(path: Path) -> dict[str, Any]:
-    """Return the content of the certificate at ``path``, or an empty dict if it cannot be read."""
+    """Return the content of the certificate at ``path``, or an empty dict if it is missing or cannot be read."""
     try:
         certificate = json.loads(read_input(path, LARGEST))
     except (OSError, ValueError, RecursionError):

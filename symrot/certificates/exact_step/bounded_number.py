@@ -43,7 +43,11 @@ def _known(x: float) -> float:
 
 
 class Bounded:
-    """The results of one operation: an interval of exact values, and bounds of their errors."""
+    """The result of one operation for all inputs of a set: an interval of exact values, and bounds of their errors.
+
+    For instance, the product of 3 and the doubles from 1 to 2 has the interval from 3 to 6, an error of at most 6*2^-53
+    and a relative error of at most 2^-53.
+    """
 
     __slots__ = ("error", "high", "low", "pair", "relative")
 
@@ -70,7 +74,7 @@ class Bounded:
         return self.low == self.high and self.error == 0
 
     def clipped(self, low: float, high: float) -> "Bounded":
-        """Return the number, of which it is known that its exact value is between ``low`` and ``high``."""
+        """Return the number with its interval cut to ``low .. high``, between which its exact value is known to be."""
         return Bounded(min(max(self.low, low), high), max(min(self.high, high), low), self.error, self.relative)
 
     def rounded(self, unit: float) -> "Bounded":

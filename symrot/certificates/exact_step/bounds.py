@@ -46,7 +46,7 @@ SMALL_MODULUS = 0.7
 
 
 class _Context:
-    """What is known of the part of the box for which the machine runs."""
+    """The machine that runs the C text of a free body, with facts about the part of the box for which it runs."""
 
     def __init__(self, source: str, prefix: str) -> None:
         self.scale = 1.0  # the power of two by which omega is divided
@@ -146,7 +146,7 @@ class _Context:
     def _turn(
         self, phase: Place, slope: Bounded, count: int, t: Place, whole: Place, sine: Place, cosine: Place
     ) -> None:
-        """Sine and cosine of a phase, for the function ``turn`` of the C text."""
+        """Store sine and cosine of a phase, as the function ``turn`` of the C text does."""
         values, first = phase
         rate, start = pair_total([values[first], values[first + 1]]), pair_total([values[first + 2], values[first + 3]])
         size = t[0][t[1]]
@@ -185,7 +185,7 @@ class _Context:
         self.motion = motion[0]
 
     def after(self, size: Bounded) -> list[Bounded]:
-        """Return the state after a step, for the present part of the phase."""
+        """Return the state after a step of a size, for phases of the elliptic functions in ``self.phase``."""
         result: list[Any] = [point(0.0)] * 7
         self.machine.call(f"{self.prefix}_at", ([self.motion], 0), 1, ([size], 0), (result, 0), (result, 3))
         return result
@@ -211,7 +211,7 @@ def _pairs_at(place: Place, count: int) -> list[Bounded]:
 
 
 def _exact_defect(moments: Place, omega: Place) -> list[Any]:
-    """|L|^2 - 2 T I_mid: the C text sums it exactly, and rounds it once."""
+    """Return |L|^2 - 2 T I_mid, which the C text sums exactly and rounds once."""
     inertia, rates = _pairs_at(moments, 3), _pairs_at(omega, 3)
     middle = sorted(range(3), key=lambda i: inertia[i].low)[1]
     total = point(0.0)
@@ -232,7 +232,7 @@ def _normalise(q: Place) -> None:
 
 
 def _quaternion_product(a: Place, b: Place, c: Place) -> None:
-    """The product of two quaternions of norm 1, and with the quaternion 0 of a body at rest."""
+    """Store the product of two quaternions of norm 1; one may also be the quaternion 0 of a body at rest."""
     left, right = _pairs_at(a, 4), _pairs_at(b, 4)
     error = 4 * (max(x.error for x in left) + max(x.error for x in right)) + 64 * PAIR
     for i in range(4):
@@ -240,7 +240,7 @@ def _quaternion_product(a: Place, b: Place, c: Place) -> None:
 
 
 def _put_quaternion(rows: Place, count: int, *columns: Any) -> None:
-    """The product of an orthogonal matrix and a unit vector: errors of the vector keep their length.
+    """Store the product of an orthogonal matrix and a unit vector: errors of the vector keep their length.
 
     The rows and the vector have length 1, so that all partial sums are at most 1. Each of four products, three sums and
     the rounding of the matrix to doubles makes an error of at most 2^-53 of terms that sum to 1 in squares.

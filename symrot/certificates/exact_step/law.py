@@ -26,7 +26,7 @@ DIGITS = 15
 LIMIT = Decimal(10) ** -DIGITS
 PRECISION = 60  # digits of the numbers
 STATES = 12
-"""States at which they are checked: at three of them no axis is preferred, at nine omega is near an axis."""
+"""Number of states at which the equations are checked: three with any omega, nine with omega near a body axis."""
 LAW = "for dt = 0 the step is the identity, and its derivative by dt is the rates at its result"
 _TERMS = 60  # of the series of a sine or cosine of at most pi/4
 
@@ -168,7 +168,7 @@ _OWN: Mapping[str, tuple[str, Callable[..., Any]]] = {
 
 
 def _states(source: str, omega_scale: Fraction) -> list[_State]:
-    """Return states and sizes of steps that follow from the hash of a text: (omega and unit quaternion, dt)."""
+    """Return pairs (omega and unit quaternion, size dt of a step) that follow from the hash of a C text."""
     states = []
     for k in range(STATES):
         a, b, c, d, *four = sha256(f"{k} {source}".encode()).digest()[:8]
@@ -237,9 +237,9 @@ def _violation(
     machine: Machine, name: str, rates: Program, constants: Mapping[str, Decimal], p: list[Decimal],
     state: list[Decimal], dt: Decimal, omega_scale: Decimal,
 ) -> Decimal:  # fmt: skip
-    """Return by how much a step of size ``dt`` from a state violates the law, relative to the size of the numbers.
+    """Return the largest error of the law in a step of size ``dt`` from a state, relative to the size of the numbers.
 
-    CertificateError is raised if this is 10^-DIGITS or more.
+    CertificateError is raised if the error is 10^-DIGITS or more.
     """
     states = [component[0] for component in rates.signature.argument("y").components]
     scale = max(omega_scale, *map(abs, state[:3]))

@@ -71,7 +71,7 @@ def narrowed(boxes: Array, region: Region, places: Sequence[str]) -> Array:
 
 
 def _left_by(others: Sequence[Array], count: int) -> tuple[Array, Array]:
-    """Return (least, largest) values of |x| on each box for which x^2 and the squares of ``others`` sum to 1."""
+    """Return the least and the largest |x| on each box for which x^2 and the squares of ``others`` sum to 1."""
     # the sum may differ from 1 by the tolerance UNIT_NORM
     rest = intervals.point(1.0, count) + np.array([[-UNIT_NORM], [UNIT_NORM]])
     for other in others:

@@ -132,14 +132,14 @@ def _require_polynomial(rates: Program) -> None:
 
 @dataclass(frozen=True)
 class _Problem:
-    """The rates, the method and the states of a step whose truncation is bounded."""
+    """A step whose truncation error is bounded on boxes: its rates, its method and the names of its states."""
 
     rates: Program
     method: RungeKutta | TaylorSeries | WithDerivatives
     states: Sequence[str]
     # first coefficients of the difference between motion and method, for each order and state; none without polynomials
     leading: tuple[list[Terms], ...]
-    # of the order conditions, from ``require_order``
+    # largest defects of the order conditions, from ``require_order``
     defects: tuple[Fraction, ...]
 
     def bounds(self, box: Box) -> list[float]:
@@ -197,7 +197,7 @@ class _Problem:
         ]
 
     def _enclosure(self, values: Mapping[str, Any], span: Any) -> dict[str, Any] | None:
-        """Return ranges that contain all motions from ``values`` at the times ``span``; None if none are found."""
+        """Return ranges that contain all motions from ``values`` at the times ``span``, or None if none are found."""
         around = dict(values) | {"t": values["t"] + span}
         for _ in range(ATTEMPTS):
             slopes = self.rates.evaluate(around, Functions(FUNCTIONS), number).values()

@@ -20,7 +20,7 @@ from symrot.workshop.steps.exact import ExactStepText, plain_content
 __all__ = ["audit_elliptic"]
 
 NEAR = 1 + 1e-6
-"""The factor within which bounds are the same; they are stated larger by more than this."""
+"""Bounds that differ by at most this factor are equal; certificates state them larger than computed by more than it."""
 
 
 def audit_elliptic(path: Path, data: Data, scene: SceneSource | None = None) -> list[str]:
