@@ -76,7 +76,7 @@ class KernelUnderTest:
     @property
     def places(self) -> dict[str, tuple[str, str]]:
         """A map from each input component, such as ``"q[1]"``, to its symbol and unit."""
-        return {place: (name, unit) for a in self.inputs for place, (name, unit, _) in _places(a)}
+        return {place: (name, unit) for a in self.inputs for place, (name, unit, _) in a.places.items()}
 
     @property
     def formulas(self) -> dict[str, tuple[str, Expr]]:
@@ -84,18 +84,8 @@ class KernelUnderTest:
         return {
             place: (component[0], formula)
             for target, formulas in self.outputs
-            for (place, component), formula in zip(_places(target), formulas, strict=True)
+            for (place, component), formula in zip(target.places.items(), formulas, strict=True)
         }
-
-
-def _places(argument: Argument) -> list[tuple[str, tuple[str, str, str]]]:
-    """Return pairs (C name, (symbol, unit, description)), one for each component of an argument.
-
-    The C name of a component is, for example, ``"q[1]"``.
-    """
-    if argument.is_scalar:
-        return [(argument.name, argument.components[0])]
-    return [(f"{argument.name}[{i}]", component) for i, component in enumerate(argument.components)]
 
 
 def certificate_text(kernel: KernelUnderTest) -> str:

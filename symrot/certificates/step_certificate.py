@@ -291,12 +291,8 @@ def _intended(value: Fraction) -> Fraction | None:
 
 def _symbols_by_place(signature: Signature) -> dict[str, str]:
     """Return a map from each input component, such as ``"x[0]"``, to its symbol."""
-    return {
-        (a.name if a.is_scalar else f"{a.name}[{i}]"): component[0]
-        for a in signature.arguments
-        if a.role == "in"
-        for i, component in enumerate(a.components)
-    }
+    inputs = (a for a in signature.arguments if a.role == "in")
+    return {place: component[0] for a in inputs for place, component in a.places.items()}
 
 
 def formula_section(name: str, rates: Program, method: Method, source: str) -> Data:

@@ -31,6 +31,13 @@ class Argument:
     def size(self) -> int:
         return len(self.components)
 
+    @property
+    def places(self) -> dict[str, tuple[str, str, str]]:
+        """A map from each component as emitted functions write it, such as ``"q[1]"`` or ``"t"``, to the component."""
+        if self.is_scalar:
+            return {self.name: self.components[0]}
+        return {f"{self.name}[{i}]": component for i, component in enumerate(self.components)}
+
 
 @dataclass(frozen=True)
 class Signature:

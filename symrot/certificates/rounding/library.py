@@ -48,11 +48,7 @@ class RoundingProblem:
 
 def library_problem(kernel: Definition, operations: Operations) -> RoundingProblem:
     """Return the box of a library kernel's inputs and the restrictions of the inputs in it, such as unit norm."""
-    symbols = {
-        (each.name if each.is_scalar else f"{each.name}[{i}]"): component[0]
-        for each in kernel.inputs
-        for i, component in enumerate(each.components)
-    }
+    symbols = {place: component[0] for each in kernel.inputs for place, component in each.places.items()}
     box = {place: kernel.box[symbol] for place, symbol in symbols.items()}
     # a matrix is any nine numbers in [-1, 1], a quaternion any four
     if not any(node[0] == "call" and node[1] == "atan2" for node in operations.nodes):

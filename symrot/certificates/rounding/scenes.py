@@ -38,11 +38,7 @@ class SceneInputs:
     @property
     def components(self) -> dict[str, tuple[str, str]]:
         """A map from each input component, such as ``"y[0]"``, to its symbol and unit."""
-        return {
-            (each.name if each.is_scalar else f"{each.name}[{i}]"): component[:2]
-            for each in self.arguments
-            for i, component in enumerate(each.components)
-        }
+        return {place: component[:2] for each in self.arguments for place, component in each.places.items()}
 
 
 def scene_problem(inputs: SceneInputs, operations: Operations) -> RoundingProblem:
