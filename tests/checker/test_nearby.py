@@ -5,16 +5,10 @@ import pytest
 import symrot
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import text
-from symrot.checker.recognition.pairing import absent_name, renamings
-from symrot.checker.recognition.parts import (
-    LACKING,
-    Letters,
-    PointOfLetters,
-    is_superfluous,
-    multiples,
-    parts,
-    variants,
-)
+from symrot.checker.recognition.single_faults.absent_names import absent_name
+from symrot.checker.recognition.single_faults.parts import Letters, PointOfLetters, is_superfluous, multiples, parts
+from symrot.checker.recognition.single_faults.renamings import renamings
+from symrot.checker.recognition.single_faults.variants import LACKING, variants
 from tests.campaigns.checker.printed import names_fault, offers
 
 FAULTS = (

@@ -4,7 +4,8 @@ from collections.abc import Callable, Sequence
 from itertools import combinations
 
 from symrot.checker.claim.tree import Node, Path, replaced
-from symrot.checker.repair.edits import COST, Edit, single_edits
+from symrot.checker.repair.edits.faults import COST
+from symrot.checker.repair.edits.single import Edit, single_edits
 from symrot.checker.repair.filter import Candidate, Change, NumericFilter, at, matrix_entries
 from symrot.checker.repair.points import UndefinedValue, agree, entries_of
 

@@ -10,7 +10,8 @@ from sympy import Add, Expr, Integer
 
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, Path, number, product, replaced, sum_of, text, walk
-from symrot.checker.repair.edits import COST, Edit
+from symrot.checker.repair.edits.faults import COST
+from symrot.checker.repair.edits.single import Edit
 from symrot.checker.repair.entries import replacement
 from symrot.checker.repair.filter import (
     Candidate,

@@ -12,7 +12,10 @@ from itertools import combinations_with_replacement, islice
 
 from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.tree import TIME, Node, Path, negated, number, product, replaced, sum_of, walk
-from symrot.checker.repair.edits import COST, OPPOSITE, Edit, flattened, neighbours, normalise_factors, scaled
+from symrot.checker.repair.edits.faults import COST
+from symrot.checker.repair.edits.names import OPPOSITE, neighbours
+from symrot.checker.repair.edits.single import Edit
+from symrot.checker.repair.edits.trees import flattened, normalise_factors, scaled
 from symrot.checker.repair.filter import SIDES, Candidate, Change, NumericFilter, is_nontrivial
 from symrot.checker.repair.points import Point, UndefinedValue, entries_of
 

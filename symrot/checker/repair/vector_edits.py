@@ -3,7 +3,8 @@
 from collections.abc import Iterator
 
 from symrot.checker.claim.tree import Node, Path, negated, number, product, replaced, sum_of, walk
-from symrot.checker.repair.edits import COST, Edit
+from symrot.checker.repair.edits.faults import COST
+from symrot.checker.repair.edits.single import Edit
 from symrot.checker.repair.entries import replacement
 from symrot.checker.repair.filter import Candidate, Change, NumericFilter
 

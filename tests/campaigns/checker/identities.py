@@ -18,7 +18,7 @@ from typing import Any
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, number, product, replaced, sum_of, text, walk
 from symrot.checker.interface import check
-from symrot.checker.repair.edits import single_edits
+from symrot.checker.repair.edits.single import single_edits
 from symrot.errors import InputError
 from tests.campaigns.checker.oracle import ANGLES, FUNCTIONS, QUATERNIONS, SYMBOLS
 from tests.campaigns.checker.oracle_extended import EXPONENTS, HYPOTHESES, INVERSES, truth_under

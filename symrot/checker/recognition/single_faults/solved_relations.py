@@ -12,7 +12,7 @@ from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint
 
-__all__ = ["SolvedRelation", "put_back", "solved_claims", "solved_relations"]
+__all__ = ["put_back", "solved_claims", "solved_relations"]
 
 SQUARED = ", squared"
 

@@ -11,8 +11,12 @@ from itertools import chain, combinations, islice
 from typing import Any, NamedTuple
 
 from symrot.checker.claim.tree import Node, number, product, replaced, walk, with_names
-from symrot.checker.recognition.parts import FUNCTIONS, LACKING, Letters, Values, near, values_of
-from symrot.checker.repair.edits import COST, Edit, bracketed, flattened, single_edits
+from symrot.checker.recognition.single_faults.parts import Letters, Values, near, values_of
+from symrot.checker.recognition.single_faults.variants import FUNCTIONS, LACKING
+from symrot.checker.repair.edits.faults import COST
+from symrot.checker.repair.edits.single import Edit, single_edits
+from symrot.checker.repair.edits.sums_and_products import bracketed
+from symrot.checker.repair.edits.trees import flattened
 from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.repair.rows import entries_of, is_matrix, shape_of
 

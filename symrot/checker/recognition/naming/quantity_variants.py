@@ -14,11 +14,14 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula, is_name_or_rate
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.tree import TIME, Node, negated, number, product, sum_of, text, walk
-from symrot.checker.recognition.evidence import LEAST_SYMBOLS_EDITED, names_in, quantity_name
-from symrot.checker.repair.edits import COST, OPPOSITE, scaled
+from symrot.checker.recognition.naming.evidence import LEAST_SYMBOLS_EDITED
+from symrot.checker.recognition.naming.quantities import names_in, quantity_name
+from symrot.checker.repair.edits.faults import COST
+from symrot.checker.repair.edits.names import OPPOSITE
+from symrot.checker.repair.edits.trees import scaled
 from symrot.checker.verdict import Verdict
 
-__all__ = ["QuantityVariant", "by_lengths", "is_evident_by_quantity", "quantity_variants", "without_inverse"]
+__all__ = ["by_lengths", "is_evident_by_quantity", "quantity_variants", "without_inverse"]
 
 TWO = number(2)
 FUNCTION_OF = {"acos": "cos", "asin": "sin"}

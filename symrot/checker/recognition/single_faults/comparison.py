@@ -1,0 +1,225 @@
+"""The comparison of a claim's formula with one known formula: the single changes that make their values equal."""
+
+from bisect import bisect_left
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import NamedTuple
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.named_formula import NamedFormula
+from symrot.checker.claim.tree import TIME, Node, Path, number, replaced, walk
+from symrot.checker.recognition.known_formulas import Known, ending_of
+from symrot.checker.recognition.single_faults.absent_names import absent_name
+from symrot.checker.recognition.single_faults.array_faults import ArrayFault, agree, array_faults, has_arrays, matching
+from symrot.checker.recognition.single_faults.known_values import (
+    RANDOM,
+    ids_of_known,
+    needed_values,
+    tree_of,
+    views,
+    with_other_signs,
+)
+from symrot.checker.recognition.single_faults.letters import POINTS, is_atom, nodes_of, text_of
+from symrot.checker.recognition.single_faults.moments import is_shifted_moment, is_symmetric_body
+from symrot.checker.recognition.single_faults.parts import (
+    Change,
+    Letters,
+    Part,
+    PointOfLetters,
+    Values,
+    is_multiple,
+    is_superfluous,
+    multiples,
+    near,
+    parts,
+    values_of,
+)
+from symrot.checker.recognition.single_faults.renamings import strangeness
+from symrot.checker.recognition.single_faults.units_by_value import has_other_unit
+from symrot.checker.recognition.single_faults.variants import LACKING, Variant, variants
+from symrot.checker.repair.edits.faults import COST
+from symrot.checker.repair.edits.trees import flattened, normalise_factors
+from symrot.checker.repair.filter import NumericFilter
+from symrot.checker.repair.rows import is_matrix
+
+__all__ = ["Near", "compare", "search_of"]
+
+
+class Near(NamedTuple):
+    """A candidate for a repair: the claim's formula after one change has the values of a known formula."""
+
+    cost: float
+    code: str  # of the fault that the change corrects
+    tree: Node  # the claim's formula after the change
+    known: Known
+    renamed: int  # the number of symbols of ``known`` that have another letter in the claim
+    has_other_unit: bool  # the claim's formula has another unit than ``known``
+    is_shifted: bool  # the claim's formula is ``known`` plus m d^2, for a parallel axis
+    is_symmetric: bool  # the claim's formula is ``known`` for a body with two equal moments of inertia
+    letter: str  # the changed part, if it is a symbol
+    array_letters: int = 0  # letters of a formula with vectors, each component as one letter; 0 for other formulas
+    renaming: tuple[tuple[str, str], ...] = ()  # (symbol of ``known``, letter of the claim)
+
+
+class Search(NamedTuple):
+    """A claim's formula, its values, and its changes that undo usual faults, sorted by the values that they give."""
+
+    named: NamedFormula
+    letters: Letters
+    variants: dict[Path, list[tuple[float, Variant]]]  # for each part: (value at the first test point, change)
+    arrays: list[ArrayFault]  # edits of the whole formula
+    has_arrays: bool
+    values: Values
+
+    def matching(self, part: Part) -> Iterator[Variant]:
+        """Yield the changes that give a part the values ``part.needed``, with which the whole formula is right."""
+        values = self.variants.get(part.path, [])
+        (first, *_) = part.needed
+        if is_matrix(first) or not values:
+            return
+        slack = abs(first) * CLOSE
+        place = bisect_left(values, first - slack, key=lambda pair: pair[0])
+        while place < len(values) and values[place][0] <= first + slack:
+            variant = values[place][1]
+            if all(map(near, variant.values, part.needed)):
+                yield variant
+            place += 1
+
+
+CLOSE = 1e-8
+"""The largest relative difference between values that are compared further."""
+
+
+def search_of(claim: Claim, named: NamedFormula, letters: Letters, values: Values) -> Search:
+    everything = Letters({**letters.atoms, LACKING: RANDOM}, letters.angles, [
+        replace(point, symbols={**point.symbols, str(LACKING.value): value})
+        for point, value in zip(letters.points, RANDOM, strict=True)
+    ], letters.aliases)  # fmt: skip
+    kinds = {path: node.kind for path, node in walk(named.formula)}
+    by_path = {}
+    for path, node in walk(named.formula):
+        parent = kinds[path[:-1]] if path else ""
+        made = [(variant.values[0], variant) for variant in variants(node, parent, everything)]
+        by_path[path] = sorted(made, key=lambda pair: pair[0])
+    numeric = NumericFilter(claim)
+    arrays = array_faults(named.formula, numeric, everything)
+    return Search(named, letters, by_path, arrays, has_arrays(named.formula, numeric), values)
+
+
+def compare(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near] | None:
+    """Return the single changes after which the claim's formula has the values of ``known``.
+
+    None if the claim's formula has the values of ``known`` already.
+    """
+    named, letters = search.named, search.letters
+    # renaming: known symbol -> name in the claim, or None for a symbol that the claim lacks
+    atoms = {text_of(atom): atom for atom in letters.atoms}
+    values = {mine: RANDOM if other is None else letters.atoms[atoms[other]] for mine, other in renaming.items()}
+    own = [
+        PointOfLetters({mine: value[n] for mine, value in values.items()}, {}, {}, ids_of_known(known))
+        for n in range(POINTS)
+    ]
+    target = values_of(tree_of(known), own)
+    if target is None:
+        return []
+    changes: list[tuple[Path, Change, str]] = []
+    by_edit: list[tuple[float, str, Node, str]] = []
+    for view in (*views(known, target), *with_other_signs(known, own)):
+        needed = needed_values(named, known, view, letters)
+        if needed is not None and not known.scaled and all(map(agree, search.values, needed)):
+            return None
+        if needed is not None and _is_promising(search, needed):
+            for part in parts(named.formula, letters.points, needed):
+                letter = text_of(part.node) if is_atom(part.node) else ""
+                changes += ((part.path, change, letter) for change in _changes(search, part))
+        if needed is not None:
+            by_edit += ((edit.cost, edit.code, edit.tree, "") for edit in matching(search.arrays, needed))
+    trees = [
+        (change.cost, change.code, _repaired(named.formula, path, change), letter) for path, change, letter in changes
+    ]
+    trees += by_edit
+    actual = values_of(named.formula, letters.points)
+    if actual and named.side.kind in ("name", "call") and not ending_of(known.name):
+        for part in parts(tree_of(known), own, actual):
+            if is_superfluous(part):
+                code = "missing_term" if part.parent == "sum" else "factor"
+                cost = COST["missing_term" if part.parent == "sum" else "solved_factor"]
+                trees.append(
+                    (
+                        cost,
+                        code,
+                        _renamed(
+                            tree_of(known),
+                            {mine: LACKING if other is None else atoms[other] for mine, other in renaming.items()},
+                        ),
+                        "",
+                    )
+                )
+    if not trees:
+        return []
+    absent = next((name for name, other in renaming.items() if other is None), None)
+    unused = [text_of(atom) for atom in letters.atoms if text_of(atom) not in renaming.values()]
+    name, is_similar = absent_name(absent, renaming, unused) if absent is not None else ("", False)
+    lacking = _lacking_letter(absent, name, letters) if absent is not None else None
+    if lacking in letters.atoms:
+        return []
+    nodes = {mine: lacking if other is None else atoms[other] for mine, other in renaming.items()}
+    other_unit = has_other_unit(named, known, {mine: node for mine, node in nodes.items() if node}, letters)
+    renamed = strangeness(renaming)
+    is_central = "about its centre of mass" in known.name
+    is_shifted = actual is not None and is_central and is_shifted_moment(actual, target, letters)
+    array_letters = len(letters.atoms) if search.has_arrays else 0
+    near_ones = []
+    texts = tuple((mine, text_of(node)) for mine, node in nodes.items() if node is not None)
+    written = [text_of(node) for node in nodes_of(named.formula) if is_atom(node)]
+    for cost, code, tree, letter in trees:
+        has_lacking = LACKING in nodes_of(tree)
+        if has_lacking and (lacking is None or (code == "wrong_symbol" and not is_similar)):
+            continue
+        whole = _renamed(tree, {str(LACKING.value): lacking}) if lacking is not None else tree
+        times = written.count(letter)
+        is_symmetric = absent is not None and is_symmetric_body(absent, letter, renaming, times)
+        flags = other_unit, is_shifted, is_symmetric
+        near_ones.append(Near(cost, code, whole, known, renamed, *flags, letter, array_letters, texts))
+    return near_ones
+
+
+def _lacking_letter(absent: str, name: str, letters: Letters) -> Node:
+    """Return the tree for ``name``, the claim's name for the known symbol ``absent``: diff(theta(t), t) for dtheta."""
+    moving = {node.args[0] for atom in letters.atoms if atom.kind == "call" for node in nodes_of(atom) if node.args}
+    timed = Node("call", name, (TIME,))  # if its rate occurs in the claim
+    if absent.startswith("d") and name.startswith("d") and any(atom.value == "diff" for atom in letters.atoms):
+        return Node("call", "diff", (Node("call", name[1:], (TIME,)), TIME))
+    return timed if timed in moving else Node("name", name)
+
+
+def _is_promising(search: Search, needed: Values) -> bool:
+    """Return whether a change of one part gives the whole formula the values ``needed`` at the first two points."""
+    # quicker than the full comparison, which follows
+    formula, at = search.named.formula, search.letters.points[:2]
+    return any(
+        is_superfluous(part) or is_multiple(part) or any(search.matching(part))
+        for part in parts(formula, at, needed[:2])
+    )
+
+
+def _changes(search: Search, part: Part) -> Iterator[Change]:
+    if is_superfluous(part):
+        code, cost = ("extra_term", 0.0) if part.parent == "sum" else ("factor", COST["factor_removed"])
+        yield Change(number(int(part.parent == "product")), code, COST[code] + cost)
+    elif is_multiple(part):
+        yield from multiples(part)
+    yield from (variant.change for variant in search.matching(part))
+
+
+def _repaired(formula: Node, path: Path, change: Change) -> Node:
+    """Return ``formula`` with the part at ``path`` changed."""
+    tree = flattened(replaced(formula, path, lambda _: change.made))
+    # a new factor may leave factors 1 and fractions in fractions; other numbers stay as typed
+    return normalise_factors(tree) if change.code == "factor" else tree
+
+
+def _renamed(tree: Node, nodes: dict[str, Node]) -> Node:
+    if tree.kind == "name":
+        return nodes.get(str(tree.value), tree)
+    return Node(tree.kind, tree.value, tuple(_renamed(child, nodes) for child in tree.args))
