@@ -18,7 +18,7 @@ from symrot.checker.claim.reader import read_relation, readings_of
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.source.lines import claims_of_reading
 from symrot.checker.claim.source.text import ON_PAULI, claim_of_relation, functions_of_time
-from symrot.checker.claim.tree import TIME, Node, number, walk, with_names
+from symrot.checker.claim.tree import TIME, Node, exchanged, number, walk, with_names
 from symrot.checker.claim_verdict import check_claim, is_unfinished, within_limits
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
 from symrot.checker.inequality import OPPOSITE, is_inequality, verdict_on_inequality
@@ -527,11 +527,7 @@ def _as_typed(source: str, written: Sequence[tuple[Node, Node]]) -> str:
     if relation is None:
         return source
     sign, left, right = relation
-    return relation_text((sign, _exchanged(left, dict(written)), _exchanged(right, dict(written))))
-
-
-def _exchanged(tree: Node, trees: Mapping[Node, Node]) -> Node:
-    return trees.get(tree) or replace(tree, args=tuple(_exchanged(child, trees) for child in tree.args))
+    return relation_text((sign, exchanged(left, dict(written)), exchanged(right, dict(written))))
 
 
 def _keeps(repair: Repair, written: Sequence[tuple[Node, Node]]) -> bool:

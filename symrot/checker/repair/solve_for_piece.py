@@ -228,7 +228,7 @@ def _pieces(tree: Node, path: Path = (), term: bool = False) -> Iterator[tuple[P
 
 def _candidate(numeric: NumericFilter, place: str, path: Path, made: Node, edit: tuple[str, float]) -> Candidate:
     code, cost = edit
-    tree = flattened(replaced(numeric.tree_at(place), path, lambda _: made))
+    tree = flattened(replaced(numeric.tree_at(place), path, made))
     tree = normalise_factors(tree) if code == "factor" else tree
     change = Change(place, Edit(code, cost + COST["per_level"] * len(path), path, tree))
     return Candidate(change.cost, code, (change,))
@@ -240,7 +240,7 @@ def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: V
     There is one value for each test point; None if the search for a value fails.
     """
     # the unknown is the node HOLE in made, which replaces the part at path of a side or definition
-    tree = replaced(numeric.tree_at(place), path, lambda _: made)
+    tree = replaced(numeric.tree_at(place), path, made)
     if place not in SIDES and not numeric.sensible(place, tree):
         return None
     change = [Change(place, Edit("none", 0.0, path, tree))]

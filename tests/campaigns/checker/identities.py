@@ -193,7 +193,7 @@ def rewritten(tree: Node, source: Random, rules: Rules = _COMPILED) -> Node:
         found: dict[str, Node] = {}
         if _matched(left, node, found) and (found or node.kind != "name"):
             made = _filled(right, found)
-            return read_expression(text(replaced(tree, path, lambda _, made=made: made)))  # type: ignore[misc]
+            return read_expression(text(replaced(tree, path, made)))
     return tree
 
 

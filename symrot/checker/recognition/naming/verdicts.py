@@ -16,7 +16,7 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula, related_formula
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
-from symrot.checker.claim.tree import Node, is_derivative, negated, number, product, text
+from symrot.checker.claim.tree import Node, exchanged, is_derivative, negated, number, product, text
 from symrot.checker.recognition.naming.edited import doubtful, with_other_products
 from symrot.checker.recognition.naming.evidence import (
     is_steady,
@@ -196,19 +196,13 @@ def _slowing_down(claim: Claim, named: NamedFormula) -> tuple[Identification, ..
     """Return the known formulas for constant angular acceleration that a claim gives with alpha as a deceleration."""
     letters = sorted(name for name in names_in(named.formula) if re.fullmatch(DECELERATION, name))
     for letter in letters:
-        other = named._replace(formula=_with_sign_of(named.formula, letter))
+        tree = Node("name", letter)
+        other = named._replace(formula=exchanged(named.formula, {tree: negated(tree)}))
         readings = readings_of_claim(claim, other, other.formula, LEAST_SYMBOLS)
         slowing = [replace(known, how=f"{letter} is the deceleration") for known in readings if is_steady(known.name)]
         if slowing:
             return tuple(slowing)
     return ()
-
-
-def _with_sign_of(tree: Node, name: str) -> Node:
-    """Return a tree with ``-name`` in place of ``name``."""
-    if tree == Node("name", name):
-        return negated(tree)
-    return replace(tree, args=tuple(_with_sign_of(child, name) for child in tree.args))
 
 
 def _on_signs_of_products(claim: Claim, named: NamedFormula, readings: Collection[Identification]) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
-from symrot.checker.claim.tree import TIME, Node, Path, number, replaced, walk
+from symrot.checker.claim.tree import TIME, Node, Path, exchanged, number, replaced, walk
 from symrot.checker.recognition.known_formulas import Known, ending_of
 from symrot.checker.recognition.single_faults.absent_names import absent_name
 from symrot.checker.recognition.single_faults.array_faults import ArrayFault, agree, array_faults, has_arrays, matching
@@ -148,9 +148,12 @@ def compare(search: Search, known: Known, renaming: dict[str, str | None]) -> li
                     (
                         cost,
                         code,
-                        _renamed(
+                        exchanged(
                             tree_of(known),
-                            {mine: LACKING if other is None else atoms[other] for mine, other in renaming.items()},
+                            {
+                                Node("name", mine): LACKING if other is None else atoms[other]
+                                for mine, other in renaming.items()
+                            },
                         ),
                         "",
                     )
@@ -176,7 +179,7 @@ def compare(search: Search, known: Known, renaming: dict[str, str | None]) -> li
         has_lacking = LACKING in nodes_of(tree)
         if has_lacking and (lacking is None or (code == "wrong_symbol" and not is_similar)):
             continue
-        whole = _renamed(tree, {str(LACKING.value): lacking}) if lacking is not None else tree
+        whole = exchanged(tree, {LACKING: lacking}) if lacking is not None else tree
         times = written.count(letter)
         is_symmetric = absent is not None and is_symmetric_body(absent, letter, renaming, times)
         flags = other_unit, is_shifted, is_symmetric
@@ -214,12 +217,6 @@ def _changes(search: Search, part: Part) -> Iterator[Change]:
 
 def _repaired(formula: Node, path: Path, change: Change) -> Node:
     """Return ``formula`` with the part at ``path`` changed."""
-    tree = flattened(replaced(formula, path, lambda _: change.made))
+    tree = flattened(replaced(formula, path, change.made))
     # a new factor may leave factors 1 and fractions in fractions; other numbers stay as typed
     return normalise_factors(tree) if change.code == "factor" else tree
-
-
-def _renamed(tree: Node, nodes: dict[str, Node]) -> Node:
-    if tree.kind == "name":
-        return nodes.get(str(tree.value), tree)
-    return Node(tree.kind, tree.value, tuple(_renamed(child, nodes) for child in tree.args))

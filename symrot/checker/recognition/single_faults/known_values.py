@@ -8,7 +8,7 @@ from typing import Any
 
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.reader import read_expression
-from symrot.checker.claim.tree import Node, number, walk
+from symrot.checker.claim.tree import Node, walk
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, ending_of
 from symrot.checker.recognition.single_faults.letters import (
     ids_of_nodes,
@@ -21,6 +21,7 @@ from symrot.checker.recognition.single_faults.parts import (
     values_of,
 )
 from symrot.checker.repair.edits.names import PRODUCT_OF_INERTIA
+from symrot.checker.repair.edits.trees import square_of
 from symrot.checker.repair.points import UndefinedValue
 from symrot.checker.repair.rows import entries_of, is_matrix, shape_of, times, transposed
 
@@ -127,7 +128,7 @@ def needed_values(named: NamedFormula, known: Known, target: Values, letters: Le
         return None
     if named.solve is None:
         return None
-    if ending_of(known.name) == SQUARED and named.side == Node("power", None, (quantity_node(named), number(2))):
+    if ending_of(known.name) == SQUARED and named.side == square_of(quantity_node(named)):
         return target
     if (named.side.value, ending_of(known.name)) in (("cos", ", acos"), ("sin", ", asin")) and is_atom(
         named.side.args[0]

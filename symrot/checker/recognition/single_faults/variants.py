@@ -10,7 +10,7 @@ from symrot.checker.claim.tree import Node, negated, number, product, sum_of
 from symrot.checker.recognition.single_faults.parts import Change, Letters, Values, near, rational, values_of
 from symrot.checker.repair.edits.faults import COST
 from symrot.checker.repair.edits.names import OPPOSITE, neighbours
-from symrot.checker.repair.edits.trees import scaled
+from symrot.checker.repair.edits.trees import scaled, square_of, with_cofunctions
 
 __all__ = ["FUNCTIONS", "LACKING", "Variant", "variants"]
 
@@ -98,21 +98,14 @@ def _of_square(node: Node, parent: str, values: Values, letters: Letters) -> Ite
     """Yield (a/b)^2 for a part a/b, and a^2 - b^2 for a part (a - b)^2."""
     factors = [factor.args[0] if factor.kind == "inv" else factor for factor in node.args]
     if node.kind == "product" and len(factors) > 1 and parent == "sum" and all(f in letters.atoms for f in factors):
-        squares = [_square_of(factor) for factor in node.args]
+        squares = [square_of(factor) for factor in node.args]
         yield Variant(Change(product(squares), "exponent", COST["exponent"]), tuple(v**2 for v in values))
     if node.kind == "power" and node.args[0].kind == "sum" and node.args[1] == number(2):
-        terms = [negated(_square_of(t.args[0])) if t.kind == "neg" else _square_of(t) for t in node.args[0].args]
+        terms = [negated(square_of(t.args[0])) if t.kind == "neg" else square_of(t) for t in node.args[0].args]
         made = sum_of(terms)
         changed = values_of(made, letters.points)
         if changed is not None:
             yield Variant(Change(made, "exponent", COST["exponent"]), changed)
-
-
-def _square_of(tree: Node) -> Node:
-    """Return the square of a tree; for 1/a it is 1/a^2."""
-    if tree.kind == "inv":
-        return Node("inv", None, (_square_of(tree.args[0]),))
-    return Node("power", None, (tree, number(2)))
 
 
 def _of_function(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
@@ -146,7 +139,7 @@ def _of_factor(node: Node, parent: str, values: Values, letters: Letters) -> Ite
     cost = COST["solved_factor"] + COST["per_piece_added"]
     for atom, factors in _factors(letters):
         for power in (1, -1, 2, -2) if all(factors) else (1, 2):
-            factor = atom if abs(power) == 1 else Node("power", None, (atom, number(2)))
+            factor = atom if abs(power) == 1 else square_of(atom)
             factor = factor if power > 0 else Node("inv", None, (factor,))
             made = tuple(value * other**power for value, other in zip(values, factors, strict=True))
             yield Variant(Change(product([node, factor]), "factor", cost), made)
@@ -176,7 +169,7 @@ def _of_terms(node: Node, parent: str, values: Values, letters: Letters) -> Iter
                 terms = [_powered(term, base, power) for term, base in zip(node.args, bases, strict=True) if base]
                 trees.append((sum_of(terms), "exponent"))
     if node.kind in ("sum", "product"):
-        trees += [(_exchanged(node, angle), "sin_cos_swap") for angle in letters.angles]
+        trees += [(with_cofunctions(node, angle), "sin_cos_swap") for angle in letters.angles]
     for made, code in trees:
         changed = values_of(made, letters.points)
         if changed is not None and made != node:
@@ -192,13 +185,6 @@ def _base(term: Node) -> Node | None:
 def _powered(term: Node, base: Node, power: int) -> Node:
     made = base if power == 1 else Node("power", None, (base, number(power)))
     return negated(made) if term.kind == "neg" else made
-
-
-def _exchanged(tree: Node, angle: Node) -> Node:
-    """Return a tree with the sine and the cosine of an angle exchanged."""
-    if tree.kind == "call" and tree.value in OPPOSITE and tree.args == (angle,):
-        return replace(tree, value=OPPOSITE[tree.value])
-    return replace(tree, args=tuple(_exchanged(child, angle) for child in tree.args))
 
 
 _VARIANTS = (_of_letter, _of_exponent, _of_square, _of_function, _of_factor, _of_terms)

@@ -12,7 +12,7 @@ from symrot.checker.repair.edits.calls import edits_of_call, edits_of_quaternion
 from symrot.checker.repair.edits.faults import COST
 from symrot.checker.repair.edits.names import OPPOSITE, PRODUCT_OF_INERTIA, neighbours
 from symrot.checker.repair.edits.sums_and_products import PartEdit, edits_of_product, edits_of_sum
-from symrot.checker.repair.edits.trees import put, substituted
+from symrot.checker.repair.edits.trees import put, square_of, substituted, with_cofunctions
 
 __all__ = ["Edit", "single_edits"]
 
@@ -70,7 +70,7 @@ def single_edits(
             code = "exponent" if is_exponent else code
             yield Edit(code, COST[code] + extra, path, put(tree, path, made))
         if id(node) not in closed and _is_scalar(node, matrices):
-            squared = Node("power", None, (node, number(2)))
+            squared = square_of(node)
             yield Edit("exponent", COST["exponent"], path, put(tree, path, squared))
 
 
@@ -150,7 +150,7 @@ def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
         ):
             cost = COST["angle_everywhere" if arguments.count(angle) <= FEW else "angle_everywhere_often"]
             yield Edit(code, cost, (), substituted(tree, angle, made, inside=OPPOSITE))
-        swapped = _swapped_functions(tree, angle)
+        swapped = with_cofunctions(tree, angle)
         yield Edit("sin_cos_swap", COST["sin_cos_swap_everywhere"], (), swapped)
     # a matrix that occurs several times is transposed
     names = sorted({node.value for node in nodes if node.kind == "name"})
@@ -165,9 +165,3 @@ def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
         for name in products:
             made = substituted(made, Node("name", name), negated(Node("name", name)))
         yield Edit("inertia_product_sign", COST["inertia_product_sign"], (), made)
-
-
-def _swapped_functions(tree: Node, angle: Node) -> Node:
-    if tree.kind == "call" and tree.value in OPPOSITE and tree.args[0] == angle:
-        return replace(tree, value=OPPOSITE[tree.value])
-    return replace(tree, args=tuple(_swapped_functions(child, angle) for child in tree.args))

@@ -5,16 +5,20 @@ from dataclasses import replace
 from fractions import Fraction
 
 from symrot.checker.claim.tree import Node, Path, negated, number, product, replaced, sum_of
+from symrot.checker.repair.edits.names import OPPOSITE
 
-__all__ = ["flattened", "normalise_factors", "put", "scaled", "substituted"]
+__all__ = ["flattened", "normalise_factors", "put", "scaled", "square_of", "substituted", "with_cofunctions"]
 
 
 def put(tree: Node, path: Path, made: Node) -> Node:
     """Return a tree with the node ``made`` at ``path``; a sum in a sum, or a product in a product, is merged."""
     if path and made.kind in ("neg", "sum", "product"):
         *above, place = path
-        return replaced(tree, tuple(above), lambda node: _regrouped(node, place, made))
-    return replaced(tree, path, lambda _: made)
+        around = tree
+        for step in above:
+            around = around.args[step]
+        return replaced(tree, tuple(above), _regrouped(around, place, made))
+    return replaced(tree, path, made)
 
 
 def _regrouped(node: Node, place: int, made: Node) -> Node:
@@ -35,6 +39,20 @@ def substituted(tree: Node, old: Node, new: Node, inside: Collection[str] | None
     if args == tree.args:
         return tree
     return _rebuilt(replace(tree, args=args))
+
+
+def square_of(tree: Node) -> Node:
+    """Return the square of a tree; for 1/a it is 1/a^2."""
+    if tree.kind == "inv":
+        return Node("inv", None, (square_of(tree.args[0]),))
+    return Node("power", None, (tree, number(2)))
+
+
+def with_cofunctions(tree: Node, angle: Node) -> Node:
+    """Return a tree with the sine and the cosine of an angle exchanged, and likewise tan and cot, sec and csc."""
+    if tree.kind == "call" and tree.value in OPPOSITE and tree.args == (angle,):
+        return replace(tree, value=OPPOSITE[tree.value])
+    return replace(tree, args=tuple(with_cofunctions(child, angle) for child in tree.args))
 
 
 def _rebuilt(node: Node) -> Node:
