@@ -27,6 +27,7 @@ from symrot.checker.latex.reader import read_latex_formula
 from symrot.checker.recognition.fingerprint import PRIME, Fingerprint, NotInField, fingerprint, values_at
 from symrot.checker.recognition.formulas.attitudes import CROSS_PRODUCT
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, relation_key
+from symrot.checker.recognition.printed_text import read_printed
 from symrot.checker.recognition.renaming import component, is_consistent
 from symrot.checker.recognition.signature_pairs import MOST_TRIES, name_of, pairings
 from symrot.checker.recognition.usual_letters import UNIT_OF_NAME, agree_in_unit, has_usual_letter, plain_name
@@ -251,7 +252,7 @@ def _permuted(entries: Sequence[Expr], shape: tuple[int, int] | None) -> Iterato
 @cache
 def known_value(text: str) -> Any:
     """Return the SymPy value of a known formula's text, whose names become real symbols."""
-    tree = read_expression(text)
+    tree = read_printed(text)
     names = {str(node.value) for _, node in walk(tree) if node.kind == "name" and node.value != "pi"}
     interpreter = Interpreter(values={name: Symbol(name, real=True) for name in names}, implied=True)
     return interpreter.read(tree, text)

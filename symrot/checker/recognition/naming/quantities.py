@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from functools import cache
 
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.tree import TIME, Node, walk
@@ -69,7 +70,12 @@ MOST_COMPONENTS = 4
 def has_word(known: str, words: Sequence[str] | None) -> bool:
     """Return whether ``known``, the name of a known formula, contains one of ``words``. True if ``words`` is None."""
     # "velocity" does not stand for "angular velocity"
-    return words is None or any(re.search(f"(?<!angular ){re.escape(word)}", known) for word in words)
+    return words is None or _pattern(tuple(words)).search(known) is not None
+
+
+@cache
+def _pattern(words: tuple[str, ...]) -> re.Pattern[str]:
+    return re.compile(f"(?<!angular )(?:{'|'.join(map(re.escape, words))})")
 
 
 def has_terms(formula: Node) -> bool:

@@ -1,6 +1,6 @@
 """The comparison of a claim's formula with one known formula: the single changes that make their values equal."""
 
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import NamedTuple
@@ -26,6 +26,7 @@ from symrot.checker.recognition.single_faults.parts import (
     Letters,
     Part,
     PointOfLetters,
+    Valued,
     Values,
     is_multiple,
     is_superfluous,
@@ -66,24 +67,24 @@ class Search(NamedTuple):
 
     named: NamedFormula
     letters: Letters
-    variants: dict[Path, list[tuple[float, Variant]]]  # for each part: (value at the first test point, change)
+    formula: Valued  # the claim's formula
+    at_two_points: Valued  # the same at the first two points only, for a quick look
+    variants: dict[Path, tuple[list[float], list[Variant]]]  # path of a part -> values at the first point, changes
     arrays: list[ArrayFault]  # edits of the whole formula
     has_arrays: bool
-    values: Values
+    values: Values  # of the claim's formula
+    atoms: dict[str, Node]  # text of a symbol or rate -> its node
 
     def matching(self, part: Part) -> Iterator[Variant]:
         """Yield the changes that give a part the values ``part.needed``, with which the whole formula is right."""
-        values = self.variants.get(part.path, [])
-        (first, *_) = part.needed
+        values, made = self.variants[part.path]
+        first = part.needed[0]
         if is_matrix(first) or not values:
             return
         slack = abs(first) * CLOSE
-        place = bisect_left(values, first - slack, key=lambda pair: pair[0])
-        while place < len(values) and values[place][0] <= first + slack:
-            variant = values[place][1]
-            if all(map(near, variant.values, part.needed)):
-                yield variant
-            place += 1
+        for place in range(bisect_left(values, first - slack), bisect_right(values, first + slack)):
+            if all(map(near, made[place].values, part.needed)):
+                yield made[place]
 
 
 CLOSE = 1e-8
@@ -99,11 +100,14 @@ def search_of(claim: Claim, named: NamedFormula, letters: Letters, values: Value
     by_path = {}
     for path, node in walk(named.formula):
         parent = kinds[path[:-1]] if path else ""
-        made = [(variant.values[0], variant) for variant in variants(node, parent, everything)]
-        by_path[path] = sorted(made, key=lambda pair: pair[0])
+        made = sorted(variants(node, parent, everything), key=lambda variant: variant.values[0])
+        by_path[path] = [variant.values[0] for variant in made], made
     numeric = NumericFilter(claim)
     arrays = array_faults(named.formula, numeric, everything)
-    return Search(named, letters, by_path, arrays, has_arrays(named.formula, numeric), values)
+    formula, at_two_points = Valued(named.formula, letters.points), Valued(named.formula, letters.points[:2])
+    atoms = {text_of(atom): atom for atom in letters.atoms}
+    has_vectors = has_arrays(named.formula, numeric)
+    return Search(named, letters, formula, at_two_points, by_path, arrays, has_vectors, values, atoms)
 
 
 def compare(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near] | None:
@@ -111,9 +115,8 @@ def compare(search: Search, known: Known, renaming: dict[str, str | None]) -> li
 
     None if the claim's formula has the values of ``known`` already.
     """
-    named, letters = search.named, search.letters
+    named, letters, atoms = search.named, search.letters, search.atoms
     # renaming: known symbol -> name in the claim, or None for a symbol that the claim lacks
-    atoms = {text_of(atom): atom for atom in letters.atoms}
     values = {mine: RANDOM if other is None else letters.atoms[atoms[other]] for mine, other in renaming.items()}
     own = [
         PointOfLetters({mine: value[n] for mine, value in values.items()}, {}, {}, ids_of_known(known))
@@ -129,7 +132,7 @@ def compare(search: Search, known: Known, renaming: dict[str, str | None]) -> li
         if needed is not None and not known.scaled and all(map(agree, search.values, needed)):
             return None
         if needed is not None and _is_promising(search, needed):
-            for part in parts(named.formula, letters.points, needed):
+            for part in parts(search.formula, needed):
                 letter = text_of(part.node) if is_atom(part.node) else ""
                 changes += ((part.path, change, letter) for change in _changes(search, part))
         if needed is not None:
@@ -138,9 +141,8 @@ def compare(search: Search, known: Known, renaming: dict[str, str | None]) -> li
         (change.cost, change.code, _repaired(named.formula, path, change), letter) for path, change, letter in changes
     ]
     trees += by_edit
-    actual = values_of(named.formula, letters.points)
-    if actual and named.side.kind in ("name", "call") and not ending_of(known.name):
-        for part in parts(tree_of(known), own, actual):
+    if named.side.kind in ("name", "call") and not ending_of(known.name):
+        for part in parts(Valued(tree_of(known), own), search.values):
             if is_superfluous(part):
                 code = "missing_term" if part.parent == "sum" else "factor"
                 cost = COST["missing_term" if part.parent == "sum" else "solved_factor"]
@@ -170,7 +172,7 @@ def compare(search: Search, known: Known, renaming: dict[str, str | None]) -> li
     other_unit = has_other_unit(named, known, {mine: node for mine, node in nodes.items() if node}, letters)
     renamed = strangeness(renaming)
     is_central = "about its centre of mass" in known.name
-    is_shifted = actual is not None and is_central and is_shifted_moment(actual, target, letters)
+    is_shifted = is_central and is_shifted_moment(search.values, target, letters)
     array_letters = len(letters.atoms) if search.has_arrays else 0
     near_ones = []
     texts = tuple((mine, text_of(node)) for mine, node in nodes.items() if node is not None)
@@ -199,10 +201,9 @@ def _lacking_letter(absent: str, name: str, letters: Letters) -> Node:
 def _is_promising(search: Search, needed: Values) -> bool:
     """Return whether a change of one part gives the whole formula the values ``needed`` at the first two points."""
     # quicker than the full comparison, which follows
-    formula, at = search.named.formula, search.letters.points[:2]
     return any(
         is_superfluous(part) or is_multiple(part) or any(search.matching(part))
-        for part in parts(formula, at, needed[:2])
+        for part in parts(search.at_two_points, needed[:2])
     )
 
 

@@ -7,9 +7,9 @@ from functools import cache
 from typing import Any
 
 from symrot.checker.claim.named_formula import NamedFormula
-from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, ending_of
+from symrot.checker.recognition.printed_text import read_printed
 from symrot.checker.recognition.single_faults.letters import (
     ids_of_nodes,
     is_atom,
@@ -81,7 +81,7 @@ def has_angles(known: Known) -> bool:
 
 @cache
 def tree_of(known: Known) -> Node:
-    return read_expression(known.text)
+    return read_printed(known.text)
 
 
 def with_other_signs(known: Known, own: Sequence[PointOfLetters]) -> Iterator[Values]:

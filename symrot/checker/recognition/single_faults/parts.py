@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import reduce
+from functools import cached_property, reduce
 from typing import Any, NamedTuple
 
 from symrot.checker.claim.tree import TIME, Node, Path, is_derivative, negated, number, product
@@ -24,6 +24,7 @@ __all__ = [
     "Letters",
     "Part",
     "PointOfLetters",
+    "Valued",
     "Values",
     "is_multiple",
     "is_superfluous",
@@ -108,48 +109,98 @@ def values_of(node: Node, points: Sequence[Point]) -> Values | None:
         return None
 
 
-def parts(tree: Node, points: Sequence[Point], needed: Values, path: Path = (), parent: str = "") -> Iterator[Part]:
+@dataclass(eq=False)
+class Valued:
+    """A part of a formula with its values at test points, each computed once, however often the search passes it."""
+
+    node: Node
+    points: Sequence[Point]
+    path: Path = ()  # from the whole formula to the part
+    parent: str = ""  # the kind of the node above, such as "sum"
+
+    @cached_property
+    def values(self) -> Values | None:
+        """The values of the part, or None if it has no value at one of the points."""
+        return values_of(self.node, self.points)
+
+    def child(self, path: Path) -> "Valued | None":
+        """Return the part at a path inside this part, or None if there is no such path."""
+        node = at(self.node, path)
+        parent = self.node.kind if len(path) == 1 else "list"
+        return None if node is None else Valued(node, self.points, (*self.path, *path), parent)
+
+    @cached_property
+    def entries(self) -> Mapping[int, "Valued"]:
+        """The entries of a written-out matrix or list by their numbers, counted row by row; empty for other parts."""
+        paths = matrix_entries(self.node) or (
+            {n: (n,) for n in range(len(self.node.args))} if self.node.kind == "list" else {}
+        )
+        return {n: entry for n, path in paths.items() if (entry := self.child(path)) is not None}
+
+    @cached_property
+    def arguments(self) -> Sequence[tuple["Valued", "Inward"]]:
+        """The arguments of the part, each with the function from the part's needed values to the argument's."""
+        inward = _INWARD.get((self.node.kind, self.node.value if self.node.kind == "call" else None))
+        children = [Valued(child, self.points, (*self.path, place), self.node.kind)
+                    for place, child in enumerate(self.node.args)]  # fmt: skip
+        values = [child.values for child in children]
+        if inward is None or any(value is None for value in values):
+            return ()
+        by_point = list(zip(*(value or () for value in values), strict=True))
+        return [(child, _inward(inward, by_point, place)) for place, child in enumerate(children)]
+
+
+Inward = Callable[[Values], Values | None]
+"""The function from the values that a part should have to those that its argument should have, or to None."""
+
+
+def _inward(function: "OfArgument", by_point: Sequence[Sequence[Any]], place: int) -> Inward:
+    """Return the function from the needed values of a part to those of its argument number ``place``.
+
+    ``by_point`` has the values of all arguments, ``function`` is that of the part in ``_INWARD``.
+    """
+    others = [[value for n, value in enumerate(own) if n != place] for own in by_point]
+    if not any(is_matrix(value) for own in by_point for value in own):
+        if function is _of_sum:
+            sums = [math.fsum(own) for own in others]
+            return lambda needed: tuple([value - rest for value, rest in zip(needed, sums, strict=True)])
+        if function is _of_product:
+            divisors = [math.prod(own) for own in others]
+            if not all(divisors):
+                return lambda needed: None
+            return lambda needed: tuple([value / by for value, by in zip(needed, divisors, strict=True)])
+
+    def general(needed: Values) -> Values | None:
+        try:
+            inner = tuple(function(own, place, value) for own, value in zip(by_point, needed, strict=True))
+        except (ArithmeticError, ValueError, TypeError, UndefinedValue, IndexError):
+            return None
+        return None if any(value is None for value in inner) else inner
+
+    return general
+
+
+def parts(whole: Valued, needed: Values) -> Iterator[Part]:
     """Yield the parts of a formula whose right values follow from ``needed``, those of the whole formula, each with
     these values.
     """
-    values = values_of(tree, points)
+    values = whole.values
     if values is None or [*map(shape_of, values)] != [*map(shape_of, needed)]:
         return
-    yield Part(path, tree, values, needed, parent)  # in the sum a + b, the right value of a is the whole minus b
-    for own, child, inner in _children(tree, points, values, needed):
-        if inner is not None:
-            yield from parts(child, points, inner, (*path, *own), tree.kind if len(own) == 1 else "list")
-
-
-def _children(
-    tree: Node, points: Sequence[Point], values: Values, needed: Values
-) -> Iterator[tuple[Path, Node, Values | None]]:
-    """Yield (path, child, values that the child should have) for each child of a part, or for the only wrong entry of a
-    matrix. The values are None if nothing determines them.
-    """
-    cells = matrix_entries(tree) or ({n: (n,) for n in range(len(tree.args))} if tree.kind == "list" else {})
-    if cells:
+    # in a + b, the right value of a is that of the whole minus b
+    yield Part(whole.path, whole.node, values, needed, whole.parent)
+    if whole.entries:
         lists = [[*map(entries_of, side)] for side in (values, needed)]
-        wrong = [n for n in cells if not all(near(a[n], b[n]) for a, b in zip(*lists, strict=True))]
-        cell = at(tree, cells[wrong[0]]) if len(wrong) == 1 else None
-        if cell is not None:
-            yield cells[wrong[0]], cell, tuple(entries[wrong[0]] for entries in lists[1])
+        wrong = [n for n in whole.entries if not all(near(a[n], b[n]) for a, b in zip(*lists, strict=True))]
+        if len(wrong) == 1:  # the only wrong entry of a matrix
+            yield from parts(whole.entries[wrong[0]], tuple(entries[wrong[0]] for entries in lists[1]))
         return
-    if tree.kind == "product" and is_matrix(needed[0]) and (row := _wrong_row(values, needed)) is not None:
-        yield from _row_of_matrix(tree, points, values, needed, row)
-    inward = _INWARD.get((tree.kind, tree.value if tree.kind == "call" else None))
-    if inward is None:
-        return
-    arguments = [values_of(child, points) for child in tree.args]
-    if any(values is None for values in arguments):
-        return
-    by_point = list(zip(*(values or () for values in arguments), strict=True))
-    for place, child in enumerate(tree.args):
-        try:
-            inner = tuple(inward(own, place, value) for own, value in zip(by_point, needed, strict=True))
-        except (ArithmeticError, ValueError, TypeError, UndefinedValue, IndexError):
-            inner = (None,)
-        yield (place,), child, None if any(value is None for value in inner) else inner
+    if whole.node.kind == "product" and is_matrix(needed[0]) and (row := _wrong_row(values, needed)) is not None:
+        for entry, inner in _row_of_matrix(whole, needed, row):
+            yield from parts(entry, inner)
+    for argument, inward in whole.arguments:
+        if (inner_values := inward(needed)) is not None:
+            yield from parts(argument, inner_values)
 
 
 def _wrong_row(values: Values, needed: Values) -> int | None:
@@ -159,27 +210,24 @@ def _wrong_row(values: Values, needed: Values) -> int | None:
     return wrong[0] if len(wrong) == 1 and (shape_of(values[0]) or (0, 0))[1] == 1 else None
 
 
-def _row_of_matrix(
-    tree: Node, points: Sequence[Point], values: Values, needed: Values, row: int
-) -> Iterator[tuple[Path, Node, Values | None]]:
-    """Yield (path, entry, needed values) for the matrix entries in a row, where ``tree`` is a matrix times a column."""
-    # tree is the product of the matrix and the column
-    place, matrix = next(((n, part) for n, part in enumerate(tree.args) if matrix_entries(part)), (0, tree))
-    others = [part for n, part in enumerate(tree.args) if n != place]
-    columns = values_of(product(others), points) if place < len(tree.args) - 1 else None
-    rows = values_of(matrix, points) if matrix is not tree else None
+def _row_of_matrix(whole: Valued, needed: Values, row: int) -> Iterator[tuple[Valued, Values]]:
+    """Yield (entry, needed values) for the matrix entries in a row, where ``whole`` is a matrix times a column."""
+    factors = whole.node.args
+    place, matrix = next(((n, factor) for n, factor in enumerate(factors) if matrix_entries(factor)), (0, whole.node))
+    others = [factor for n, factor in enumerate(factors) if n != place]
+    columns = values_of(product(others), whole.points) if place < len(factors) - 1 else None
+    rows = values_of(matrix, whole.points) if matrix is not whole.node else None
     if columns is None or rows is None or any(shape_of(column) != (len(row_of[0]), 1)
                                               for column, row_of in zip(columns, rows, strict=True)):  # fmt: skip
         return
     cells = matrix_entries(matrix)
     for n in range(len(rows[0][0])):
-        factors = [column[n][0] for column in columns]
-        cell = at(matrix, cells[row * len(rows[0][0]) + n])
-        if cell is not None and all(factors):
+        by = [column[n][0] for column in columns]
+        entry = whole.child((place, *cells[row * len(rows[0][0]) + n]))
+        if entry is not None and all(by):
             # the values that make the product right, if only this entry changes
-            lacking = [other[row][0] - value[row][0] for value, other in zip(values, needed, strict=True)]
-            entries = [own[row][n] + less / factor for own, less, factor in zip(rows, lacking, factors, strict=True)]
-            yield (place, *cells[row * len(rows[0][0]) + n]), cell, tuple(entries)
+            lacking = [other[row][0] - value[row][0] for value, other in zip(whole.values or (), needed, strict=True)]
+            yield entry, tuple(own[row][n] + less / factor for own, less, factor in zip(rows, lacking, by, strict=True))
 
 
 def _of_sum(arguments: Sequence[Any], place: int, needed: Any) -> Any:
@@ -217,7 +265,10 @@ def _of_power(arguments: Sequence[Any], place: int, needed: Any) -> Any:
     return None if needed < 0 and even else math.copysign(size, base if even else needed)
 
 
-_INWARD: dict[tuple[str, str | None], Callable[[Sequence[Any], int, Any], Any]] = {
+OfArgument = Callable[[Sequence[Any], int, Any], Any]
+"""A function of the values of all arguments, the number of one of them, and the value that the part should have."""
+
+_INWARD: dict[tuple[str, str | None], OfArgument] = {
     ("sum", None): _of_sum, ("product", None): _of_product, ("power", None): _of_power,
     ("neg", None): lambda arguments, place, needed: mapped(minus, needed),
     ("inv", None): lambda arguments, place, needed: 1 / needed,
@@ -244,9 +295,11 @@ def is_superfluous(part: Part) -> bool:
 
 def is_multiple(part: Part) -> bool:
     """Return whether a part's needed values are its values times one number other than 1."""
-    ratios = [_ratio(needed, value) for value, needed in zip(part.values, part.needed, strict=True)]
-    first = ratios[0]
-    return first is not None and abs(first - 1) > CLOSE and all(r is not None and near(r, first) for r in ratios)
+    first = _ratio(part.needed[0], part.values[0])
+    if first is None or abs(first - 1) <= CLOSE:
+        return False
+    ratios = (_ratio(needed, value) for value, needed in zip(part.values[1:], part.needed[1:], strict=True))
+    return all(ratio is not None and near(ratio, first) for ratio in ratios)
 
 
 def multiples(part: Part) -> Iterator[Change]:

@@ -8,9 +8,9 @@ from functools import cache
 from typing import NamedTuple
 
 from symrot.checker.claim.named_formula import NamedFormula, Solve
-from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint
+from symrot.checker.recognition.printed_text import read_printed
 from symrot.checker.repair.edits.trees import square_of
 
 __all__ = ["put_back", "solved_claims", "solved_relations"]
@@ -41,7 +41,7 @@ def solved_relations() -> tuple[SolvedRelation, ...]:
     """Return every known relation solved for each symbol for which that is possible."""
     solved = []
     for known in (known for group in by_fingerprint().values() for known in group if known.is_relation):
-        tree = read_expression(known.text)
+        tree = read_printed(known.text)
         for name in dict.fromkeys(str(node.value) for _, node in walk(tree) if node.kind == "name"):
             solution = _solution(_terms(tree), Node("name", name)) if name != "pi" else None
             if solution is not None:
