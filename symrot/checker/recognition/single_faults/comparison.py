@@ -13,11 +13,10 @@ from symrot.checker.recognition.single_faults.absent_names import absent_name
 from symrot.checker.recognition.single_faults.array_faults import ArrayFault, agree, array_faults, has_arrays, matching
 from symrot.checker.recognition.single_faults.known_values import (
     RANDOM,
-    ids_of_known,
+    KnownValues,
     needed_values,
     tree_of,
     views,
-    with_other_signs,
 )
 from symrot.checker.recognition.single_faults.letters import POINTS, is_atom, nodes_of, text_of
 from symrot.checker.recognition.single_faults.moments import is_shifted_moment, is_symmetric_body
@@ -25,7 +24,6 @@ from symrot.checker.recognition.single_faults.parts import (
     Change,
     Letters,
     Part,
-    PointOfLetters,
     Valued,
     Values,
     is_multiple,
@@ -33,7 +31,6 @@ from symrot.checker.recognition.single_faults.parts import (
     multiples,
     near,
     parts,
-    values_of,
 )
 from symrot.checker.recognition.single_faults.renamings import strangeness
 from symrot.checker.recognition.single_faults.units_by_value import has_other_unit
@@ -118,16 +115,13 @@ def compare(search: Search, known: Known, renaming: dict[str, str | None]) -> li
     named, letters, atoms = search.named, search.letters, search.atoms
     # renaming: known symbol -> name in the claim, or None for a symbol that the claim lacks
     values = {mine: RANDOM if other is None else letters.atoms[atoms[other]] for mine, other in renaming.items()}
-    own = [
-        PointOfLetters({mine: value[n] for mine, value in values.items()}, {}, {}, ids_of_known(known))
-        for n in range(POINTS)
-    ]
-    target = values_of(tree_of(known), own)
+    own = KnownValues(known, [{mine: value[n] for mine, value in values.items()} for n in range(POINTS)])
+    target = own.whole
     if target is None:
         return []
     changes: list[tuple[Path, Change, str]] = []
     by_edit: list[tuple[float, str, Node, str]] = []
-    for view in (*views(known, target), *with_other_signs(known, own)):
+    for view in (*views(known, target), *own.with_other_signs()):
         needed = needed_values(named, known, view, letters)
         if needed is not None and not known.scaled and all(map(agree, search.values, needed)):
             return None
@@ -142,24 +136,12 @@ def compare(search: Search, known: Known, renaming: dict[str, str | None]) -> li
     ]
     trees += by_edit
     if named.side.kind in ("name", "call") and not ending_of(known.name):
-        for part in parts(Valued(tree_of(known), own), search.values):
-            if is_superfluous(part):
-                code = "missing_term" if part.parent == "sum" else "factor"
-                cost = COST["missing_term" if part.parent == "sum" else "solved_factor"]
-                trees.append(
-                    (
-                        cost,
-                        code,
-                        exchanged(
-                            tree_of(known),
-                            {
-                                Node("name", mine): LACKING if other is None else atoms[other]
-                                for mine, other in renaming.items()
-                            },
-                        ),
-                        "",
-                    )
-                )
+        nodes_of_known = {
+            Node("name", mine): LACKING if other is None else atoms[other] for mine, other in renaming.items()
+        }
+        for part in own.superfluous(search.values):
+            code, cost = ("missing_term", "missing_term") if part.parent == "sum" else ("factor", "solved_factor")
+            trees.append((COST[cost], code, exchanged(tree_of(known), nodes_of_known), ""))
     if not trees:
         return []
     absent = next((name for name, other in renaming.items() if other is None), None)

@@ -2,8 +2,9 @@
 
 import math
 import re
-from collections.abc import Callable, Iterator, Sequence
-from functools import cache
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
 from typing import Any
 
 from symrot.checker.claim.named_formula import NamedFormula
@@ -16,10 +17,15 @@ from symrot.checker.recognition.single_faults.letters import (
 )
 from symrot.checker.recognition.single_faults.parts import (
     Letters,
+    Part,
     PointOfLetters,
+    Valued,
     Values,
+    is_superfluous,
+    parts,
     values_of,
 )
+from symrot.checker.recognition.single_faults.tapes import Tape, tape_of_tree
 from symrot.checker.repair.edits.names import PRODUCT_OF_INERTIA
 from symrot.checker.repair.edits.trees import square_of
 from symrot.checker.repair.points import UndefinedValue
@@ -27,6 +33,7 @@ from symrot.checker.repair.rows import entries_of, is_matrix, shape_of, times, t
 
 __all__ = [
     "RANDOM",
+    "KnownValues",
     "formulas_of_quantities",
     "has_angles",
     "ids_of_known",
@@ -36,7 +43,6 @@ __all__ = [
     "quantity_node",
     "tree_of",
     "views",
-    "with_other_signs",
 ]
 
 SQUARED = ", squared"
@@ -84,14 +90,53 @@ def tree_of(known: Known) -> Node:
     return read_printed(known.text)
 
 
-def with_other_signs(known: Known, own: Sequence[PointOfLetters]) -> Iterator[Values]:
-    """Yield the values of a known formula with the signs of its products of inertia reversed, if it has any."""
-    names = [name for name in names_of(known) if PRODUCT_OF_INERTIA.fullmatch(name)]
-    if names:
-        changed = [{**point.symbols, **{name: -point.symbols[name] for name in names}} for point in own]
-        values = values_of(tree_of(known), [PointOfLetters(symbols, {}, {}) for symbols in changed])
-        if values is not None:
-            yield values
+@cache
+def tape_of(known: Known) -> Tape | None:
+    """Return the tape of a known formula, or None for a matrix."""
+    return tape_of_tree(tree_of(known))
+
+
+@dataclass
+class KnownValues:
+    """The values of a known formula at points, which give its symbols the values of a claim's letters."""
+
+    known: Known
+    symbols: Sequence[Mapping[str, float]]  # one dictionary for each point
+
+    @cached_property
+    def points(self) -> list[PointOfLetters]:
+        return [PointOfLetters(dict(values), {}, {}, ids_of_known(self.known)) for values in self.symbols]
+
+    @cached_property
+    def on_tape(self) -> list[list[float]] | None:
+        """The values of all parts of a scalar formula at each point; None for a matrix, and without a value."""
+        tape = tape_of(self.known)
+        values = [] if tape is None else [tape.values(symbols) for symbols in self.symbols]
+        return None if None in values or not values else [own for own in values if own is not None]
+
+    @cached_property
+    def whole(self) -> Values | None:
+        """The values of the formula, or None if it has no value at one of the points."""
+        if tape_of(self.known) is None:
+            return values_of(tree_of(self.known), self.points)
+        return None if self.on_tape is None else tuple(own[-1] for own in self.on_tape)
+
+    def superfluous(self, needed: Values) -> Iterator[Part]:
+        """Yield the terms and factors of the formula without which it would have the values ``needed``."""
+        tape = tape_of(self.known)
+        if tape is not None and self.on_tape is not None and (
+            is_matrix(needed[0]) or not tape.may_have_too_much(self.on_tape, needed[0])
+        ):  # fmt: skip
+            return
+        yield from filter(is_superfluous, parts(Valued(tree_of(self.known), self.points), needed))
+
+    def with_other_signs(self) -> Iterator[Values]:
+        """Yield the values with the signs of the products of inertia reversed, if the formula has any."""
+        names = [name for name in names_of(self.known) if PRODUCT_OF_INERTIA.fullmatch(name)]
+        if names:
+            changed = [{**values, **{name: -values[name] for name in names}} for values in self.symbols]
+            if (values := KnownValues(self.known, changed).whole) is not None:
+                yield values
 
 
 def views(known: Known, values: Values) -> Iterator[Values]:

@@ -20,6 +20,8 @@ from symrot.checker.repair.points import Point, UndefinedValue
 from symrot.checker.repair.rows import entries_of, is_matrix, mapped, plus, shape_of, times
 
 __all__ = [
+    "CLOSE",
+    "NEUTRAL",
     "Change",
     "Letters",
     "Part",
@@ -38,6 +40,8 @@ __all__ = [
 
 CLOSE = 1e-9
 """The largest relative difference between values that count as equal."""
+NEUTRAL = {"sum": 0.0, "product": 1.0}
+"""Kind of a part -> the value of an argument that could as well be left out."""
 LARGEST = 400
 """The largest numerator and denominator of a rational number that is recognised by its value."""
 
@@ -286,7 +290,7 @@ _INWARD: dict[tuple[str, str | None], OfArgument] = {
 
 def is_superfluous(part: Part) -> bool:
     """Return whether a part should be left out: a term that should be 0, or a factor that should be 1."""
-    neutral = {"sum": 0.0, "product": 1.0}.get(part.parent)
+    neutral = NEUTRAL.get(part.parent)
     if neutral is None or any(map(is_matrix, part.needed)) or part.node.kind == "number":
         return False
     size = max(map(abs, part.values))
