@@ -158,6 +158,7 @@ def _selected(
         yield relation_key(own.key(shape, range(len(entries))), is_relation), known
 
 
+@cache
 def ending_of(name: str) -> str:
     """Return the end ", squared" or ", acos" of a known formula's name, or "" if the name has no such end."""
     # the formula then is a function of the quantity: its square, cosine, or half angle's cosine

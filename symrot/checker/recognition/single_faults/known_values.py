@@ -173,6 +173,8 @@ def needed_values(named: NamedFormula, known: Known, target: Values, letters: Le
         return None
     if named.solve is None:
         return None
+    if function is _same and named.side == Node("name", named.name):
+        return target
     if ending_of(known.name) == SQUARED and named.side == square_of(quantity_node(named)):
         return target
     if (named.side.value, ending_of(known.name)) in (("cos", ", acos"), ("sin", ", asin")) and is_atom(
@@ -202,6 +204,10 @@ def needed_values(named: NamedFormula, known: Known, target: Values, letters: Le
     return tuple(values)
 
 
+def _same(value: Any) -> Any:
+    return value
+
+
 def _root(value: Any) -> float:
     return math.sqrt(value)
 
@@ -211,7 +217,7 @@ def _multiple_of_arc(factor: int, function: Callable[..., float]) -> Callable[[A
 
 
 _FUNCTIONS_OF_ENDINGS: dict[str, Callable[[Any], Any]] = {
-    "": lambda value: value, SQUARED: _root, ", acos": _multiple_of_arc(1, math.acos),
+    "": _same, SQUARED: _root, ", acos": _multiple_of_arc(1, math.acos),
     ", 2 acos": _multiple_of_arc(2, math.acos), ", asin": _multiple_of_arc(1, math.asin),
     ", atan2": _multiple_of_arc(1, math.atan2), ", 2 atan2": _multiple_of_arc(2, math.atan2),
 }  # fmt: skip

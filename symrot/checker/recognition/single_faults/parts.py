@@ -302,8 +302,11 @@ def is_multiple(part: Part) -> bool:
     first = _ratio(part.needed[0], part.values[0])
     if first is None or abs(first - 1) <= CLOSE:
         return False
-    ratios = (_ratio(needed, value) for value, needed in zip(part.values[1:], part.needed[1:], strict=True))
-    return all(ratio is not None and near(ratio, first) for ratio in ratios)
+    for value, needed in zip(part.values[1:], part.needed[1:], strict=True):
+        ratio = _ratio(needed, value)
+        if ratio is None or not near(ratio, first):
+            return False
+    return True
 
 
 def multiples(part: Part) -> Iterator[Change]:

@@ -53,6 +53,7 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
     inside = {node for angle in letters.angles for node in nodes_of(angle)}
     angles = {text_of(atom) for atom in letters.atoms if atom in inside}
     nearest: dict[tuple[Node, str], Near] = {}
+    fitting: dict[tuple[str, ...], list[dict[str, str | None]]] = {}  # names of a known formula -> their renamings
     pairs = 0
     quantity = text_of(quantity_node(named))
     for mine, known in chain((("", known) for known in formulas_of_quantities() if fits(known)), _relations(quantity)):
@@ -65,8 +66,10 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
         is_wrong_kind = is_wrong_kind or (is_other and not is_of_body)
         if is_wrong_kind or abs(len(names_of(known)) - len(letters.atoms)) > 1:
             continue
+        if names_of(known) not in fitting:
+            fitting[names_of(known)] = renamings(names_of(known), names, angles)
         of_product = renaming_of_product(names) if "quaternion product" in known.name else None
-        for renaming in [of_product] if of_product else renamings(names_of(known), names, angles):
+        for renaming in [of_product] if of_product else fitting[names_of(known)]:
             own = [(old, new) for old, new in renaming.items() if new is not None]
             if mine and not is_consistent([*own, (mine, quantity)]):
                 continue
