@@ -134,6 +134,13 @@ def test_one_wrong_entry_of_a_matrix_is_repaired(wrong, entry):
     assert (verdict.verdict, verdict.diagnosis.code) == ("doubtful", entry)
 
 
+def test_a_wrong_row_of_a_diagonal_matrix_times_a_column_is_repaired():
+    """The zeros beside the diagonal of ``diag`` are no parts of the formula, so they cannot be at fault."""
+    verdict = symrot.check("L = diag(I_1, I_2, I_3)*(w_1, w_2, 2*w_3)")
+    assert verdict.repairs[0].text == "L = diag(I_1, I_2, I_3/2)*[w_1, w_2, 2*w_3]"
+    assert symrot.check("L = diag(I_1, I_2, I_3)*(w_1, w_2, w_2)").verdict == "definition"
+
+
 def test_the_matrix_of_a_quaternion_may_have_any_letters():
     matrix = ("[[1 - 2(y² + z²), 2(x y - z w), 2(x z + y w)], [2(x y + z w), 1 - 2(x² + z²), 2(y z - x w)], "
               "[2(x z - y w), 2(y z + x w), 1 - 2(x² + y²)]]")  # fmt: skip

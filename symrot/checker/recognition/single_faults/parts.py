@@ -227,7 +227,8 @@ def _row_of_matrix(whole: Valued, needed: Values, row: int) -> Iterator[tuple[Va
     cells = matrix_entries(matrix)
     for n in range(len(rows[0][0])):
         by = [column[n][0] for column in columns]
-        entry = whole.child((place, *cells[row * len(rows[0][0]) + n]))
+        cell = cells.get(row * len(rows[0][0]) + n)  # None for a zero beside the diagonal of diag(a, b, c)
+        entry = None if cell is None else whole.child((place, *cell))
         if entry is not None and all(by):
             # the values that make the product right, if only this entry changes
             lacking = [other[row][0] - value[row][0] for value, other in zip(whole.values or (), needed, strict=True)]
