@@ -3,7 +3,7 @@
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
@@ -39,8 +39,9 @@ from symrot.checker.repair.edits.faults import COST
 from symrot.checker.repair.edits.trees import flattened, normalise_factors
 from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.repair.rows import is_matrix
+from symrot.exact.limits.operations import operations_left, spend
 
-__all__ = ["Near", "compare", "search_of"]
+__all__ = ["Near", "Search", "compare", "search_of"]
 
 
 class Near(NamedTuple):
@@ -71,6 +72,7 @@ class Search(NamedTuple):
     has_arrays: bool
     values: Values  # of the claim's formula
     atoms: dict[str, Node]  # text of a symbol or rate -> its node
+    comparisons: dict[Any, tuple[list["Near"] | None, int]]  # results of `compare` so far, with their operations
 
     def matching(self, part: Part) -> Iterator[Variant]:
         """Yield the changes that give a part the values ``part.needed``, with which the whole formula is right."""
@@ -104,16 +106,28 @@ def search_of(claim: Claim, named: NamedFormula, letters: Letters, values: Value
     formula, at_two_points = Valued(named.formula, letters.points), Valued(named.formula, letters.points[:2])
     atoms = {text_of(atom): atom for atom in letters.atoms}
     has_vectors = has_arrays(named.formula, numeric)
-    return Search(named, letters, formula, at_two_points, by_path, arrays, has_vectors, values, atoms)
+    return Search(named, letters, formula, at_two_points, by_path, arrays, has_vectors, values, atoms, {})
 
 
 def compare(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near] | None:
     """Return the single changes after which the claim's formula has the values of ``known``.
 
-    None if the claim's formula has the values of ``known`` already.
+    None if the claim's formula has the values of ``known`` already. ``renaming`` maps the symbols of ``known`` to names
+    in the claim, or to None for a symbol that the claim lacks.
     """
+    key = known, tuple(renaming.items())
+    if key not in search.comparisons:
+        before = operations_left() or 0
+        result = _compared(search, known, renaming)
+        search.comparisons[key] = result, before - (operations_left() or 0)
+        return result
+    result, operations = search.comparisons[key]
+    spend(operations)  # as in the first comparison: the budget of a claim does not depend on those before it
+    return result
+
+
+def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> list[Near] | None:
     named, letters, atoms = search.named, search.letters, search.atoms
-    # renaming: known symbol -> name in the claim, or None for a symbol that the claim lacks
     values = {mine: RANDOM if other is None else letters.atoms[atoms[other]] for mine, other in renaming.items()}
     own = KnownValues(known, [{mine: value[n] for mine, value in values.items()} for n in range(POINTS)])
     target = own.whole
@@ -140,8 +154,8 @@ def compare(search: Search, known: Known, renaming: dict[str, str | None]) -> li
             Node("name", mine): LACKING if other is None else atoms[other] for mine, other in renaming.items()
         }
         for part in own.superfluous(search.values):
-            code, cost = ("missing_term", "missing_term") if part.parent == "sum" else ("factor", "solved_factor")
-            trees.append((COST[cost], code, exchanged(tree_of(known), nodes_of_known), ""))
+            code, kind = ("missing_term", "missing_term") if part.parent == "sum" else ("factor", "solved_factor")
+            trees.append((COST[kind], code, exchanged(tree_of(known), nodes_of_known), ""))
     if not trees:
         return []
     absent = next((name for name, other in renaming.items() if other is None), None)

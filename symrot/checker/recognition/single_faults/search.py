@@ -6,13 +6,14 @@ should have. It then looks for a single part whose change gives these values.
 
 from collections.abc import Callable, Iterator
 from itertools import chain
+from typing import Any
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.recognition.known_formulas import Known
 from symrot.checker.recognition.renaming import is_consistent
-from symrot.checker.recognition.single_faults.comparison import Near, compare, search_of
+from symrot.checker.recognition.single_faults.comparison import Near, Search, compare, search_of
 from symrot.checker.recognition.single_faults.known_values import (
     formulas_of_quantities,
     has_angles,
@@ -25,11 +26,14 @@ from symrot.checker.recognition.single_faults.parts import values_of
 from symrot.checker.recognition.single_faults.renamings import is_fitting, renaming_of_product, renamings, strangeness
 from symrot.checker.recognition.single_faults.solved_relations import solved_relations
 from symrot.checker.repair.rows import is_matrix
+from symrot.exact.limits.operations import operations_left, spend
 
 __all__ = ["near_formulas"]
 
 MOST_PAIRS = 1500
 """The most pairs of a known formula and a renaming that are compared."""
+MOST_SEARCHES = 4
+"""The number of searches that are stored."""
 MOST_NODES = 500
 """The most symbols and operations of a formula that is searched."""
 FEW = 3
@@ -40,15 +44,10 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
     """Return changes of a claim's formula that may turn it into a known formula with ``fits(known)``, the cheapest
     first. The code "none" means that no change is needed.
     """
-    if sum(1 for _ in walk(named.formula)) > MOST_NODES:
+    search = _search(claim, named)
+    if search is None:
         return []
-    letters = letters_of_formula(claim, named)
-    if letters is None:
-        return []
-    scale = values_of(named.formula, letters.points)
-    if scale is None:
-        return []
-    search = search_of(claim, named, letters, scale)
+    letters, scale = search.letters, search.values
     names = [text_of(atom) for atom in letters.atoms]
     inside = {node for angle in letters.angles for node in nodes_of(angle)}
     angles = {text_of(atom) for atom in letters.atoms if atom in inside}
@@ -91,6 +90,32 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
                 if key not in nearest or candidate.cost < nearest[key].cost:
                     nearest[key] = candidate
     return sorted(nearest.values(), key=lambda candidate: candidate.cost)
+
+
+def _search(claim: Claim, named: NamedFormula) -> Search | None:
+    """Return the search for faults of a claim's formula; None for a formula without values, or one that is too long.
+
+    The latest searches are stored: a claim is searched once for each context that it may have.
+    """
+    equations = claim.define, claim.hypotheses, claim.relation
+    key = equations, claim.symbols, claim.functions, claim.implied, named[:4], named.solve is None
+    if key in _latest:
+        search, operations = _latest[key]
+        spend(operations)  # as at the first time: the budget of a claim does not depend on those before it
+        return search
+    before = operations_left() or 0
+    is_short = sum(1 for _ in walk(named.formula)) <= MOST_NODES
+    letters = letters_of_formula(claim, named) if is_short else None
+    values = None if letters is None else values_of(named.formula, letters.points)
+    search = search_of(claim, named, letters, values) if letters is not None and values is not None else None
+    if len(_latest) == MOST_SEARCHES:
+        del _latest[next(iter(_latest))]
+    _latest[key] = search, before - (operations_left() or 0)
+    return search
+
+
+_latest: dict[Any, tuple[Search | None, int]] = {}
+"""The latest searches by what they depend on in a claim, each with the operations that it took to prepare it."""
 
 
 def has_root_of_sum(formula: Node) -> bool:
