@@ -1,4 +1,4 @@
-"""Approximations for small values of a letter: the right side is the Taylor polynomial, or the claim is no identity."""
+"""Approximations for small values of a letter: true if both sides begin with the same terms of a Taylor series."""
 
 import pytest
 

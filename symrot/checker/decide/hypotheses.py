@@ -278,7 +278,7 @@ class Hypotheses:
         self, point: RealPoint, left: Expr, right: Expr, entry: tuple[int, int] | None
     ) -> Counterexample:
         numbers = {n: point.number(value) for n, value in point.values.items()}
-        pairs = coordinates_of(self.ring, numbers, (left, right, *self.ring.hypotheses))
+        pairs = list(coordinates_of(self.ring, numbers, (left, right, *self.ring.hypotheses)))
         sides = [self._value(side, point) for side in (left, right)]
         roots = sorted({root for value in (*sides, *(v for _, v in pairs)) for root in value.atoms(CRootOf)}, key=str)
         names = {root: Symbol("root" + "_" * number) for number, root in enumerate(roots, start=0)}
