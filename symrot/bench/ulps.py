@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 from sympy import Symbol, lambdify
 
 from symrot.build import cache
-from symrot.codegen.printing.c_source import DOUBLE, FLOAT, MATH_HEADER, Real
+from symrot.codegen.printing.c_function import DOUBLE, FLOAT, Real
+from symrot.codegen.printing.c_source import MATH_HEADER
 from symrot.codegen.printing.math_header import FAR, math_header
 from symrot.kernels.removable import REMOVABLE
 from symrot.workshop.emit import emit

@@ -191,7 +191,7 @@ def _on_name(
     from symrot.checker.context.exchanged_letters import by_exchanged_letters
     from symrot.checker.context.named_bodies import of_named_body
     from symrot.checker.context.sizes import by_other_sizes
-    from symrot.checker.recognition.naming import verdict_on_name
+    from symrot.checker.recognition.naming.verdicts import verdict_on_name
 
     start = perf_counter()
 
@@ -241,7 +241,7 @@ def _was_near_relation(claim: Claim) -> bool:
 
 def _near_relation(claim: Claim, verdict: Verdict) -> Verdict:
     """Return ``verdict``, on a false claim, with repairs that turn the claim into a known relation, if any."""
-    from symrot.checker.recognition.naming import verdict_near_relation
+    from symrot.checker.recognition.naming.near_verdicts import verdict_near_relation
 
     nearest = verdict_near_relation(claim)
     if nearest is None and verdict.dimension.status == "inconsistent":  # then even a short formula has a fault
@@ -258,7 +258,7 @@ def _on_motion(claim: Claim, verdict: Verdict) -> Verdict:
     if claim.hypotheses or claim.define or claim.context.obscure:
         return verdict
     from symrot.checker.context.relations.motion import by_motion
-    from symrot.checker.recognition.naming import AS_IT_STANDS
+    from symrot.checker.recognition.naming.verdicts import AS_IT_STANDS
 
     if any(note.startswith(AS_IT_STANDS) for note in verdict.notes):
         return verdict
@@ -270,7 +270,7 @@ def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
     """Return (None, verdict) for a known relation, such as an impulse equation; None for other claims."""
     if claim.relation is None or claim.hypotheses:
         return None
-    from symrot.checker.recognition.naming import verdict_on_relation
+    from symrot.checker.recognition.naming.verdicts import verdict_on_relation
 
     start = perf_counter()
     verdict = verdict_on_relation(claim)

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from typing import Any, NoReturn
 
 from symrot.dynamics.torque_kinds import TABLE_KIND, TORQUE_KINDS
-from symrot.ensemble.variation import FIXED, PLACES, constant_places
+from symrot.ensemble.reading import FIXED, constant_places
+from symrot.ensemble.variation import PLACES
 from symrot.errors import InputError, with_hint
 from symrot.formula.exact_numbers import read, show
 from symrot.scene.changes import Path, number_path, path_of

@@ -15,7 +15,7 @@ from symrot.closed_form.heavy_top import motion as heavy_top
 from symrot.closed_form.spin_up import compiled as spin_up_compiled
 from symrot.ensemble import exact, variation
 from symrot.ensemble.exact import forms_of
-from symrot.ensemble.variation import read_variation
+from symrot.ensemble.reading import read_variation
 from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
 from symrot.inertia import principal

@@ -18,16 +18,26 @@ UNNAMED = Description("right-hand side for SciPy", "all states", "derivations/eu
 FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log", "tan", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
 
 
-def heyoka_system(rates: Program, parameters: Mapping[str, float]) -> list[Any]:
-    """Return the right-hand side dy/dt in heyoka's form: pairs (variable, formula), with the parameters' values
-    inserted.
+def heyoka_system(
+    rates: Program, parameters: Mapping[str, Any], number: Callable[[Any], Any] = float
+) -> list[tuple[Any, Any]]:
+    """Return the right-hand side dy/dt in heyoka's form: pairs (variable, formula), in the order of the states.
+
+    Parameters
+    ----------
+    rates : Program
+        The rates dy/dt.
+    parameters : mapping
+        The values of the parameters of the rates, numbers or expressions of heyoka, which replace their names.
+    number : callable
+        Converts the constants in the formulas, for example to long double.
     """
     import heyoka
 
     names = [name for name, *_ in rates.signature.argument("y").components]
     variables = dict(zip(names, heyoka.make_vars(*names), strict=True))
     functions = {name: getattr(heyoka, name) for name in FUNCTIONS}
-    derivatives = rates.evaluate({**variables, **parameters, "t": heyoka.time}, functions, float)
+    derivatives = rates.evaluate({**variables, **parameters, "t": heyoka.time}, functions, number)
     return [(variables[name], derivatives[f"d{name}"]) for name in names]
 
 

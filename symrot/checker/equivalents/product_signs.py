@@ -10,7 +10,7 @@ from symrot.checker.claim.tree import TIME, Node, is_derivative, negated
 from symrot.checker.context.context import Context, Meaning
 from symrot.checker.context.quantities import QUANTITIES
 from symrot.checker.equivalents.equivalent_claim import EquivalentClaim
-from symrot.checker.repair.edits import PRODUCT_OF_INERTIA
+from symrot.checker.repair.edits.names import PRODUCT_OF_INERTIA
 from symrot.checker.typed.readings import Relation
 
 __all__ = ["sign_by_integral", "with_minus_sign", "with_sign"]
