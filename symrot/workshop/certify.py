@@ -3,6 +3,7 @@
 import json
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from fractions import Fraction
 from functools import cache, partial
 from importlib.metadata import version
 from itertools import repeat
@@ -374,7 +375,8 @@ def lines(data: Data, compared: bool = True) -> list[str]:
         rows.append(("Coq", f"theorem {data['coq']['theorem']} of {data['coq']['file']} (`symrot prove` checks it)"))
     for name, function in data["readback"].items():
         series = "".join(
-            f"; the series of {s[0]} is truncated by less than {_short(s[3])} of its value" for s in function["series"]
+            f"; the series of {s[0]} is truncated by less than {float(Fraction(s[3])):.2g} of its value"
+            for s in function["series"]
         )
         count = sum(function["operations"].values())
         rows.append(("C text", f"{name} and its batch function compute the formulas in {count} operations{series}"))
@@ -389,8 +391,3 @@ def lines(data: Data, compared: bool = True) -> list[str]:
     required = ", ".join(data["flags"]["required"])
     rows.append(("flags", f"required {required}; void under {', '.join(data['flags']['void'])}"))
     return [f"{data['kernel']}: {data['title']}", *fields((f"  {label:<{LABEL - 2}}", text) for label, text in rows)]
-
-
-def _short(text: str) -> str:
-    above, _, below = text.partition("/")
-    return f"{int(above) / int(below or 1):.2g}"

@@ -6,7 +6,7 @@ kernel's rounding errors; only the kernel's C comment and certificate depend on 
 
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, ClassVar
@@ -43,10 +43,15 @@ from symrot.planning.scene_kernel import bind
 from symrot.scene.file import shipped_names
 from symrot.scene.scene import Scene, SceneSource, load_scene
 
-__all__ = ["SUFFIX", "Bounds", "KernelText", "SceneText", "kernel_text", "scene_kernel_name", "scene_text"]
+__all__ = ["PRINTERS", "SUFFIX", "Bounds", "KernelText", "SceneText", "kernel_text", "scene_kernel_name", "scene_text"]
 
 SUFFIX = {"c": ".c", "numpy": ".py", "js": ".js", "jax": "_jax.py"}
 """The ending of a source file in each language that kernels are printed in; NumPy and JAX are both Python."""
+
+PRINTERS: Mapping[str, Callable[[Program, Description], str]] = {
+    "numpy": numpy_source, "js": js_source, "jax": jax_source,
+}  # fmt: skip
+"""Language -> the function that prints a program in it, with a head comment; C is printed otherwise."""
 
 Bounds = Mapping[str, Any]
 
@@ -67,20 +72,9 @@ class KernelText(ABC):
     def c(self, bounds: Bounds | None = None) -> tuple[str, str]:
         """Return the pair (C source, header); ``bounds`` are rounding bounds for the comment at the head."""
 
-    @property
     @abstractmethod
-    def numpy(self) -> str:
-        """The kernel as a Python module that uses NumPy."""
-
-    @property
-    @abstractmethod
-    def js(self) -> str:
-        """The kernel as a JavaScript module."""
-
-    @property
-    @abstractmethod
-    def jax(self) -> str:
-        """The kernel as a Python module that uses JAX."""
+    def _printed(self, target: str) -> str:
+        """Return the source in the language ``target``, a key of :data:`PRINTERS`."""
 
     @abstractmethod
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
@@ -106,8 +100,14 @@ class KernelText(ABC):
         """Return the source in the language ``target``: ``"c"``, ``"numpy"``, ``"js"`` or ``"jax"``."""
         if target == "c":
             return self.c(bounds)[0]
-        text: str = getattr(self, target)
-        return text
+        if target not in self._sources:
+            self._sources[target] = self._printed(target)
+        return self._sources[target]
+
+    @cached_property
+    def _sources(self) -> dict[str, str]:
+        """The sources that were printed so far, by language, except C."""
+        return {}
 
     def files(self, target: str, bounds: Bounds | None = None) -> dict[str, str]:
         """Return the files in the language ``target`` as a map from name to text; in C the header comes first."""
@@ -155,20 +155,8 @@ class LibraryText(KernelText):
         description = kernel_description(self._definition, "c", bounds_sentence(self.name, self._section))
         return with_head(program, description, self._functions), c_header(program, description, (DOUBLE, FLOAT))
 
-    @cached_property
-    def numpy(self) -> str:
-        """The NumPy source."""
-        return numpy_source(kernel_program(self.name), kernel_description(self._definition, "numpy"))
-
-    @cached_property
-    def js(self) -> str:
-        """The JavaScript source."""
-        return js_source(kernel_program(self.name), kernel_description(self._definition, "js"))
-
-    @cached_property
-    def jax(self) -> str:
-        """The JAX source."""
-        return jax_source(kernel_program(self.name), kernel_description(self._definition, "jax"))
+    def _printed(self, target: str) -> str:
+        return PRINTERS[target](kernel_program(self.name), kernel_description(self._definition, target))
 
     def rounding(self, bounds: Bounds | None) -> Bounds | None:
         """Return the bounds of this kernel's rounding errors that come with symrot; None if there are none."""
@@ -243,20 +231,8 @@ class SceneText(KernelText):
         description = self._description("c", header_lines(self.inputs, bounds) if bounds else ())
         return with_head(self.program, description, self._functions), c_header(self.program, description)
 
-    @cached_property
-    def numpy(self) -> str:
-        """The NumPy source."""
-        return numpy_source(self.program, self._description("numpy"))
-
-    @cached_property
-    def js(self) -> str:
-        """The JavaScript source."""
-        return js_source(self.program, self._description("js"))
-
-    @cached_property
-    def jax(self) -> str:
-        """The JAX source."""
-        return jax_source(self.program, self._description("jax"))
+    def _printed(self, target: str) -> str:
+        return PRINTERS[target](self.program, self._description(target))
 
     def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
         """Return the kernel with its texts and equations, for proofs that the texts compute the equations."""

@@ -9,9 +9,6 @@ from symrot.certificates.step_certificate import StepUnderTest, step_certificate
 from symrot.codegen.printing.banner import Description
 from symrot.codegen.printing.c_function import DOUBLE, FLOAT, Real, c_name
 from symrot.codegen.printing.c_source import c_functions, c_header, with_head
-from symrot.codegen.printing.jax_source import jax_source
-from symrot.codegen.printing.js_source import js_source
-from symrot.codegen.printing.numpy_source import numpy_source
 from symrot.codegen.printing.parameters_header import parameters_file
 from symrot.codegen.scene_kernels import corner_note
 from symrot.codegen.steps import (
@@ -33,7 +30,7 @@ from symrot.kernels.jacobian import jacobian_name
 from symrot.kernels.library import is_kernel
 from symrot.propagation.steppers.tableau import NODES, STAGE_WEIGHTS, WEIGHTS
 from symrot.scene.scene import Scene, SceneSource, load_scene
-from symrot.workshop.kernel_text import Bounds, KernelText, SceneText
+from symrot.workshop.kernel_text import PRINTERS, Bounds, KernelText, SceneText
 from symrot.workshop.steps.files import StepFiles, constant_table
 from symrot.workshop.steps.whole_state import WholeState
 
@@ -208,20 +205,8 @@ class StepText(StepFiles):
             c_header(self._program, description, reals),
         )
 
-    @cached_property
-    def numpy(self) -> str:
-        """The NumPy source."""
-        return numpy_source(self._program, self._description("numpy"))
-
-    @cached_property
-    def js(self) -> str:
-        """The JavaScript source."""
-        return js_source(self._program, self._description("js"))
-
-    @cached_property
-    def jax(self) -> str:
-        """The JAX source."""
-        return jax_source(self._program, self._description("jax"))
+    def _printed(self, target: str) -> str:
+        return PRINTERS[target](self._program, self._description(target))
 
     @cached_property
     def certified(self) -> StepUnderTest:

@@ -68,9 +68,9 @@ def test_derivatives_of_a_scene_agree_with_the_emitted_ones(jax):
     """jax.jacfwd of the rates is what --jacobian prints, in NumPy."""
     rates, slopes = (kernel_text("heavy_top_loops", variables) for variables in ((), ("y",)))
     y, p = np.array([0.3, -0.2, 0.1, 0.7, -0.5, 0.5]), np.array(rates.inputs.parameters)
-    ours = jax.jacfwd(function_of(rates.jax, rates.name), argnums=1)(0.0, y, p)
+    ours = jax.jacfwd(function_of(rates.source("jax"), rates.name), argnums=1)(0.0, y, p)
     parameters = np.array(slopes.inputs.parameters)
-    _, theirs = function_of(slopes.numpy, slopes.name)(0.0, y, parameters)
+    _, theirs = function_of(slopes.source("numpy"), slopes.name)(0.0, y, parameters)
     np.testing.assert_allclose(np.ravel(ours), theirs, rtol=0, atol=1e-13 * np.abs(theirs).max())
 
 
@@ -87,7 +87,7 @@ def test_derivatives_at_the_zero_rotation_are_never_wrong(jax):
     """jax.jacfwd gives NaN there, since a root divides by zero; the kernel with its derivatives gives them."""
     slopes = kernel_text("rotation_vector_dcm", ("v",))
     naive = jax.jacfwd(function_of(text_of("rotation_vector_dcm"), "rotation_vector_dcm"))(np.zeros(3))
-    _, exact = function_of(slopes.jax, slopes.name)(np.zeros(3))
+    _, exact = function_of(slopes.source("jax"), slopes.name)(np.zeros(3))
     generators = -np.cross(np.eye(3)[:, None], np.eye(3)[None, :]).transpose(1, 2, 0)
     assert np.isnan(naive).any()
     np.testing.assert_array_equal(np.reshape(exact, (3, 3, 3)), generators)
@@ -98,7 +98,9 @@ def test_a_step_is_emitted_too(jax):
 
     step = step_text("heavy_top_loops", "rk4")
     x, p = np.array([0.3, -0.2, 0.1, 0.7, -0.5, 0.5]), np.array(step.rates.inputs.parameters)
-    ours, theirs = (function_of(text, step.name)(0.0, x, p, 1e-3) for text in (step.jax, step.numpy))
+    ours, theirs = (
+        function_of(text, step.name)(0.0, x, p, 1e-3) for text in (step.source("jax"), step.source("numpy"))
+    )
     np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-14)
 
 

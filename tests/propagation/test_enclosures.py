@@ -114,6 +114,20 @@ def test_no_product_of_three_functions_leaves_its_disc():
     assert bounded > 300
 
 
+@pytest.mark.parametrize("centre", [-744.0, -745.2, -746.0, -800.0])
+def test_a_pulse_that_underflows_is_not_taken_for_zero(centre):
+    """exp(-746) is 0 as a double, but 1e300 times this number is not nothing."""
+    import mpmath
+
+    pulse, large = FUNCTIONS["exp"](Disc(centre, 0.25)), Disc(1e300, 0.0)
+    strong = product(product(pulse, Disc(0.1, 0.0)), product(Disc(10.0, 0.0), large))
+    for z in circle(Disc(centre, 0.25), 8):
+        value = mpmath.exp(mpmath.mpc(z))
+        assert abs(value - pulse.centre) <= pulse.radius
+        assert abs(value * mpmath.mpf(1e300) - strong.centre) <= strong.radius * (1 + 1e-9)
+    assert strong.radius < 1e-22  # logarithms and the underflow keep it small
+
+
 def test_an_unbounded_factor_is_not_taken_for_zero():
     """The square of an unbounded bump in the angle, times a distant pulse whose bound overflows, is unbounded."""
     bump = FUNCTIONS["sech"](Disc(-19.7, math.inf))
@@ -163,8 +177,8 @@ void image(int which, double c, double r, double *out)
     function.argtypes = (ctypes.c_int, ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
     for k, name in enumerate(names):
         low, high = DOMAINS.get(name, (-20.0, 20.0))
-        for _ in range(100):
-            disc = Disc(RANDOM.uniform(low, high), 10 ** RANDOM.uniform(-5, 0.5))
+        discs = [Disc(RANDOM.uniform(low, high), 10 ** RANDOM.uniform(-5, 0.5)) for _ in range(100)]
+        for disc in [*discs, *([Disc(-746.0, 0.5), Disc(-900.0, 2.0)] if name == "exp" else [])]:
             function(k, disc.centre, disc.radius, out)
             expected = image_of(name, disc, 7.0)
             assert list(out) == pytest.approx(list(expected[:2]), rel=1e-12, nan_ok=True), (name, disc)

@@ -347,7 +347,7 @@ def test_the_bound_of_rounding_contains_the_errors_of_one_step(certified):
     (precision,) = bounds["rounding"]["precisions"]
     most = np.array([float.fromhex(output["absolute"]) for output in precision["outputs"]])
     text, room = step_text("axisymmetric_satellite", "exact"), {}
-    exec(text.numpy, room)
+    exec(text.source("numpy"), room)
     p, draw, worst = np.array(text.rates.inputs.parameters), np.random.default_rng(2), np.zeros(7)
     functions = {name: abs if name == "abs" else getattr(mpmath, name) for name in (*FUNCTIONS, "sinc")}
     names = [name for name, *_ in text._rates_program.signature.argument("y").components]

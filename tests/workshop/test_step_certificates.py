@@ -26,6 +26,7 @@ from symrot.codegen.steps import RK4, TaylorSeries, stepped
 from symrot.errors import CertificateError, InputError
 from symrot.formula.tree import FUNCTIONS, parse
 from symrot.workshop.step_text import step_text
+from symrot.workshop.steps import exact
 from symrot.workshop.steps.certify import certify_step
 
 BOX = {"omega_1": (-1, 1), "omega_2": (-1, 1), "omega_3": (-1, 1), "dt": (0, "1/100")}
@@ -437,8 +438,9 @@ def test_a_quotient_of_whole_numbers_is_enclosed():
 
 
 @pytest.mark.parametrize("words", [[], ["--jacobian", "omega"], ["--step", "rk4"], ["--step", "exact"]], ids=" ".join)
-def test_an_audit_compares_with_the_scene_of_the_user(tmp_path, capsys, words):
+def test_an_audit_compares_with_the_scene_of_the_user(tmp_path, capsys, monkeypatch, words):
     """Kernel and steps of a scene outside the package are those of its file, and not those of a file with another moment."""
+    monkeypatch.setattr(exact, "CHECKED", 1)  # states at which an exact step is checked
     text = symrot.load_scene("tumbling_prism").with_(principal=[1, 2, "5/2"]).to_toml()
     (tmp_path / "own.toml").write_text(text, encoding="utf-8")
     (tmp_path / "other").mkdir()

@@ -27,7 +27,7 @@ needs_cc = pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc")
 def _stepper(scene, step, order=None):
     """The step of a scene as a function (t, x, dt) of NumPy, with its parameters, and its emitted text."""
     text, room = step_text(scene, step, order), {}
-    exec(text.numpy, room)
+    exec(text.source("numpy"), room)
     parameters = [np.array(text.rates.inputs.parameters)] if text._parameter_names else []
     return lambda t, x, dt: room[text.name](t, x, *parameters, dt)
 

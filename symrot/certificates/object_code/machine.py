@@ -29,6 +29,7 @@ from symrot.certificates.object_code.state import (
     Words,
 )
 from symrot.certificates.object_code.terms import Outcomes, Terms
+from symrot.certificates.readback.readback import LIBRARY
 
 __all__ = ["ExecutionPath", "execution_paths", "state_at_call"]
 
@@ -37,8 +38,6 @@ MAX_PATHS = 4096  # through one function
 CALLEE_SAVED = ("rbx", "rbp", "r12", "r13", "r14", "r15")
 CALLER_SAVED = ("rax", "rcx", "rdx", "rsi", "rdi", "r8", "r9", "r10", "r11")
 POINTERS = ("rdi", "rsi", "rdx", "rcx", "r8", "r9")
-LIBRARY = {"sin": 1, "cos": 1, "tan": 1, "asin": 1, "acos": 1, "atan": 1, "atan2": 2, "exp": 1, "log": 1, "sinh": 1,
-           "cosh": 1, "tanh": 1}  # fmt: skip
 EXACT: dict[str, tuple[int, Callable[..., int]]] = {
     "sqrt": (1, Terms.sqrt), "fabs": (1, Terms.abs), "copysign": (2, Terms.copysign),
 }  # fmt: skip

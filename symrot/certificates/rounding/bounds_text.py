@@ -3,7 +3,6 @@
 Both texts come from the operations that are read from the C text, so that they agree.
 """
 
-from collections.abc import Mapping
 from fractions import Fraction
 from functools import lru_cache
 from math import frexp
@@ -14,14 +13,14 @@ from symrot.certificates.rounding.adjoint import LIBM_ULP
 from symrot.certificates.rounding.bounds import BUDGET
 from symrot.certificates.rounding.library import library_problem, operations_of
 from symrot.certificates.rounding.region import UNIT_NORM, Region
-from symrot.certificates.rounding.section import rounding_section
+from symrot.certificates.rounding.section import region_of, rounding_section
 from symrot.errors import InputError
 from symrot.kernels.jacobian import BY
 from symrot.kernels.library import definition
 
-__all__ = ["bounds_sentence", "library_region", "library_section", "region_of", "region_phrases", "rounded_up"]
+__all__ = ["bounds_sentence", "library_region", "library_section", "region_phrases", "rounded_up"]
 
-DIGITS = 3
+DIGITS = 3  # of a bound in a comment
 Section = dict[str, Any]
 
 
@@ -95,8 +94,8 @@ def _result_phrase(section: Section, name: str, units: list[str]) -> str:
     return f"{double} [{single}]{unit} in {name}"
 
 
-def rounded_up(value: Fraction) -> str:
-    """Return a number as decimal text, rounded up to three significant digits, so that a bound stays a bound."""
+def rounded_up(value: Fraction, count: int = DIGITS) -> str:
+    """Return a number as decimal text, rounded up to ``count`` significant digits, so that a bound stays a bound."""
     if not value:
         return "0"
     exponent = 0
@@ -104,16 +103,11 @@ def rounded_up(value: Fraction) -> str:
         exponent += 1
     while Fraction(10) ** exponent > value:
         exponent -= 1
-    digits = -(-value // Fraction(10) ** (exponent - DIGITS + 1))
-    if digits == 10**DIGITS:
+    digits = -(-value // Fraction(10) ** (exponent - count + 1))
+    if digits == 10**count:
         digits, exponent = digits // 10, exponent + 1
     text = str(digits)
     return f"{text[0]}.{text[1:]}e{exponent:+03d}"
-
-
-def region_of(section: Mapping[str, Any]) -> Region:
-    """Return the restrictions of inputs, such as unit norm, under which the bounds in a section ``rounding`` hold."""
-    return Region(tuple(map(tuple, section["unit_groups"])), float.fromhex(section["clearance"]))
 
 
 def region_phrases(region: Region) -> list[str]:

@@ -9,10 +9,11 @@ from fractions import Fraction
 from typing import Any
 
 from symrot.certificates.readback.operations import Operations
-from symrot.certificates.rounding.bounds_text import region_of, region_phrases, rounded_up
+from symrot.certificates.rounding.bounds_text import region_phrases, rounded_up
 from symrot.certificates.rounding.library import RoundingProblem
 from symrot.certificates.rounding.output_graph import output_graph
 from symrot.certificates.rounding.region import EVERYWHERE, Region
+from symrot.certificates.rounding.section import region_of
 from symrot.formula.program import Argument
 from symrot.formula.tree import Node
 

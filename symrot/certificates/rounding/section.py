@@ -30,7 +30,7 @@ from symrot.certificates.rounding.intervals import DIGITS
 from symrot.certificates.rounding.region import EVERYWHERE, Region
 from symrot.errors import CertificateError, InputError
 
-__all__ = ["check_bounds", "check_section", "rounding_section"]
+__all__ = ["box_of", "check_bounds", "check_section", "region_of", "rounding_section"]
 
 MEANING = (
     "absolute error of the computed output against the exact formula at the same floating-point inputs; "
@@ -150,6 +150,19 @@ def _units(value: Fraction) -> str:
     return f"{digits // 1000}.{digits % 1000:03}0e+{exponent:02}"
 
 
+def box_of(section: Mapping[str, Any]) -> dict[str, tuple[Fraction, Fraction]]:
+    """Return the box on which the bounds in a section ``rounding`` hold: a range for each input, such as ``"q[1]"``."""
+    return {
+        place: (Fraction(float.fromhex(low)), Fraction(float.fromhex(high)))
+        for place, (low, high) in section["box"].items()
+    }
+
+
+def region_of(section: Mapping[str, Any]) -> Region:
+    """Return the restrictions of inputs, such as unit norm, under which the bounds in a section ``rounding`` hold."""
+    return Region(tuple(map(tuple, section["unit_groups"])), float.fromhex(section["clearance"]))
+
+
 def check_section(
     section: Mapping[str, Any], operations_double: Operations, operations_float: Operations | None, rerun: bool = False
 ) -> None:
@@ -162,11 +175,7 @@ def check_section(
     """
     kernels = {kernel.precision: kernel for kernel in (operations_double, operations_float) if kernel is not None}
     try:
-        box = {
-            place: (Fraction(float.fromhex(low)), Fraction(float.fromhex(high)))
-            for place, (low, high) in section["box"].items()
-        }
-        region = Region(tuple(map(tuple, section["unit_groups"])), float.fromhex(section["clearance"]))
+        box, region = box_of(section), region_of(section)
         libm_ulp, budget = float.fromhex(section["libm_ulp"]), int(section["budget"])
         for part in section["precisions"]:
             _check_precision(part, kernels[part["precision"]], box, region, libm_ulp)
@@ -206,11 +215,7 @@ def check_bounds(
     CertificateError
         If a bound differs; the message names the first such output.
     """
-    region = Region(tuple(map(tuple, section["unit_groups"])), float.fromhex(section["clearance"]))
-    box = {
-        place: (Fraction(float.fromhex(low)), Fraction(float.fromhex(high)))
-        for place, (low, high) in section["box"].items()
-    }
+    box, region = box_of(section), region_of(section)
     if not 0 <= section["budget"] <= BUDGET:
         raise CertificateError(
             f"expected a search for bounds with at most {BUDGET} evaluations of boxes, got {section['budget']}"

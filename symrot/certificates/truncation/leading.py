@@ -69,9 +69,9 @@ def leading_terms(
     values |= dict(zip(names, variables(names), strict=True))
     expanded = {name: each.terms() for name, each in rates.evaluate(values, {}, number).items()}
     bare = Program(rates.signature, (), tuple((name, _sum_of(terms)) for name, terms in expanded.items()))
-    count = orders[-1] + 1
+    system, count = recurrences(bare), orders[-1] + 1
     for order in range(1, count):  # the polynomials grow with the order, so that too long ones are noticed early
-        exact = coefficients(recurrences(bare), order, values, {}, number)
+        exact = coefficients(system, order, values, {}, number)
         if max(len(zero + state[order]) for state in exact) > MOST_TERMS:
             return bare, ()
     size = PowerSeries((0, number(Fraction(1)), *(0,) * (count - 2)))

@@ -41,13 +41,17 @@ static inline symrot_disc symrot_disc_rounded(symrot_disc a, double size)
     return a;
 }
 
+/* More than the error of a number that underflows: exp(-746) is 0 as a double, and 1e-324 in truth. */
+static const double SYMROT_UNDERFLOW_UNIT = 1e-323;
+
 /* The logarithms bound the product of a pulse that underflows and a wave whose bound overflows. */
 static inline symrot_disc symrot_disc_product(symrot_disc a, symrot_disc b)
 {
     symrot_disc d = symrot_disc_of(a.c*b.c, fabs(a.c)*b.r + fabs(b.c)*a.r + a.r*b.r);
     if (a.g == a.g || b.g == b.g) {
         d.g = symrot_disc_log(a) + symrot_disc_log(b);
-        if (!(d.r < INFINITY)) d = symrot_disc_up_to(0.0, exp(d.g), d.g);
+        if (!(d.r < INFINITY) || d.c == 0.0)
+            d = symrot_disc_up_to(0.0, fmin(d.r, exp(d.g)) + SYMROT_UNDERFLOW_UNIT, d.g);
     }
     return d;
 }
@@ -81,7 +85,8 @@ static inline symrot_disc symrot_disc_sqrt(symrot_disc a, double whole)
 static inline symrot_disc symrot_disc_exp(symrot_disc a)
 {
     const double value = exp(a.c);
-    return symrot_disc_up_to(value, a.r < 1.0 ? value*expm1(a.r) : exp(a.c + a.r) - value, a.c + a.r);
+    const double radius = a.r < 1.0 ? value*expm1(a.r) : exp(a.c + a.r) - value;
+    return symrot_disc_up_to(value, radius + SYMROT_UNDERFLOW_UNIT, a.c + a.r);
 }
 
 static inline symrot_disc symrot_disc_ln(symrot_disc a)

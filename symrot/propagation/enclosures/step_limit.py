@@ -19,6 +19,7 @@ __all__ = ["Deviations", "Disc", "longest_followed"]
 
 LARGEST_EXPONENT = 700.0  # exponent of e, well within the range of doubles
 LEAST_EXPONENT = -745.0  # exponent of e below which exp underflows to zero
+UNDERFLOW_UNIT = 1e-323  # above the error of a number that underflows: exp(-746) is 0 as a double, 1e-324 in truth
 SHRINK = 0.3  # smallest factor by which a step is multiplied at once
 
 
@@ -44,7 +45,9 @@ def _product(a: Parts, b: Parts) -> Parts:
     if log_x is None and log_y is None:
         return centre, radius, None
     size = _or_infinite(_log_size(*a) + _log_size(*b))
-    return (centre, radius, size) if radius < math.inf else (0.0, _exp_of(size), size)
+    if radius < math.inf and centre:
+        return centre, radius, size
+    return 0.0, min(radius, _exp_of(size)) + UNDERFLOW_UNIT, size
 
 
 def _or_infinite(bound: float) -> float:
@@ -90,7 +93,8 @@ def _sqrt(a: Disc, whole: float) -> Disc:
 
 def _exp(a: Disc) -> Disc:
     value, size = math.exp(a.centre), a.centre + a.radius
-    return Disc(value, value * math.expm1(a.radius) if a.radius < 1.0 else _exp_of(size) - value, size)
+    radius = value * math.expm1(a.radius) if a.radius < 1.0 else _exp_of(size) - value
+    return Disc(value, radius + UNDERFLOW_UNIT, size)
 
 
 def _log(a: Disc) -> Disc:

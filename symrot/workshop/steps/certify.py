@@ -9,6 +9,7 @@ from typing import Any
 
 from symrot.certificates.certificate import Data, certificate_json
 from symrot.certificates.readback.readback import read_kernel
+from symrot.certificates.rounding.bounds_text import rounded_up
 from symrot.certificates.rounding.library import RoundingProblem
 from symrot.certificates.rounding.region import EVERYWHERE
 from symrot.certificates.rounding.scenes import scene_problem
@@ -127,11 +128,11 @@ def _law_rows(data: Data) -> list[tuple[str, str]]:
             *rows,
             ("errors", "not bounded; --box bounds those of a free body away from its middle axis"),
         ]
-    for label in ("rounding", "truncation"):
-        errors = {state: float.fromhex(value) for state, value in data["bounds"][label].items()}
-        worst = max(errors, key=errors.__getitem__)
-        rows.append((label, f"at most {_up(errors[worst])} in one step on the box, in double precision ({worst})"))
-    return rows
+    bounds = {kind: data["bounds"][kind] for kind in ("rounding", "truncation")}
+    return rows + [
+        _error_row(kind, {state: float.fromhex(value) for state, value in errors.items()})
+        for kind, errors in bounds.items()
+    ]
 
 
 def _printed(data: Data, rows: Sequence[tuple[str, str]]) -> list[str]:
@@ -144,19 +145,15 @@ def _bound_rows(bounds: Mapping[str, Any], states: Sequence[str]) -> list[tuple[
         for state, output in zip(states, bounds["rounding"]["precisions"][0]["outputs"], strict=True)
     }
     truncation = {state: float.fromhex(value) for state, value in bounds["truncation"].items()}
-    return [
-        (label, f"at most {_up(errors[worst])} in one step on the box, in double precision ({worst})")
-        if errors[worst]
-        else (label, "none")
-        for label, errors in (("rounding", rounding), ("truncation", truncation))
-        for worst in (max(errors, key=errors.__getitem__),)
-    ]
+    return [_error_row("rounding", rounding), _error_row("truncation", truncation)]
 
 
-def _up(value: float) -> str:
-    """Return a positive number as text, rounded up to two significant digits: 0.00121 -> ``1.3e-03``."""
-    text = f"{value:.1e}"
-    if Fraction(text) >= Fraction(value):
-        return text
-    mantissa, exponent = text.split("e")
-    return f"{float(mantissa) + 0.1:.1f}e{exponent}"
+def _error_row(kind: str, errors: Mapping[str, float]) -> tuple[str, str]:
+    """Return a pair (label, text) about the largest bound of the ``errors`` of states, such as of rounding errors."""
+    worst = max(errors, key=errors.__getitem__)
+    if not errors[worst]:
+        return kind, "none"
+    return (
+        kind,
+        f"at most {rounded_up(Fraction(errors[worst]), 2)} in one step on the box, in double precision ({worst})",
+    )

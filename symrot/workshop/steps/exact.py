@@ -168,23 +168,8 @@ class ExactStepText(StepFiles):
     def _parameters(self) -> list[tuple[str, float]]:
         return [(name, float(value)) for name, _, value in self.form.parameters]
 
-    def _other(self, target: str) -> str:
+    def _printed(self, target: str) -> str:
         raise InputError(f"step: expected the target 'c' for the step 'exact', got {target}")
-
-    @property
-    def numpy(self) -> str:
-        """Raise InputError: an exact step exists in C only."""
-        return self._other("numpy")
-
-    @property
-    def js(self) -> str:
-        """Raise InputError: an exact step exists in C only."""
-        return self._other("js")
-
-    @property
-    def jax(self) -> str:
-        """Raise InputError: an exact step exists in C only."""
-        return self._other("jax")
 
     def certificate(self, bounds: Bounds | None = None) -> str:
         """Return the text of the certificate; raise CertificateError if the C text violates the equations of motion."""
