@@ -175,10 +175,11 @@ RELEASED = [  # torque, and omega_1 at 4 s; another switch ends the sliding of o
 ]
 
 
-@pytest.mark.parametrize("method", ["auto", "scipy:DOP853"])
+@pytest.mark.thinned(3)
+@pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
 @pytest.mark.parametrize(("torque", "omega"), RELEASED)
 def test_another_switch_may_end_a_slide(torque, omega, method):
-    """It was said that the motion would slide, but not in exactly one way, or that motions lead away from it."""
+    """Taylor steps were refused for another reason; DOP853 and SciPy kept omega_1 at zero, in silence."""
     trajectory = symrot.propagator(scene(torque, stop=4), method, 1e-10)([0, 2, 4])
     assert trajectory.omega[:, 0] == pytest.approx([0, 0, omega], abs=1e-9)
 

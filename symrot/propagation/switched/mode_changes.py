@@ -82,14 +82,24 @@ class ModeChanges(Guards):
         if mode in self.held:
             released = self._released_by_another()
             if released is None and (change == 0 or not self._still_attracts(regime)):
-                raise IntegrationStopped(
-                    self.t,
-                    f"the motion slides along the jump of {self._names_of_held()}, but from this time on nearby "
-                    "motions lead away from it: its continuation is not unique; end the motion here",
-                    self.end,
-                )
+                raise self._not_unique()
             mode, change = released or (mode, change)
         self._change(mode, change)
+
+    def _not_unique(self) -> IntegrationStopped:
+        return IntegrationStopped(
+            self.t,
+            f"the motion slides along the jump of {self._names_of_held()}, but from this time on nearby motions lead "
+            "away from it: its continuation is not unique; end the motion here",
+            self.end,
+        )
+
+    def _no_longer_held(self) -> None:
+        """Release a guard that the equations no longer keep at zero since another function switched."""
+        released = self._released_by_another(solvable=False)
+        if released is None:
+            raise self._not_unique()
+        self._change(*released)
 
     def _change(self, mode: str, change: int) -> None:
         """Change a mode as :attr:`Guard.change` says, or hold its guard at zero."""
@@ -150,7 +160,7 @@ class ModeChanges(Guards):
     def _released_by_another(self, solvable: bool = True) -> tuple[str, int] | None:
         """Return a held mode that another function's switch now releases, with its new value; None if there is none.
 
-        ``solvable``: the present equations have exactly one motion in which all held guards stay at zero.
+        ``solvable``: for some values of the held modes, all held guards stay at zero.
         """
         # without the other switch, the value of the mode that keeps the guard at zero says when the sliding ends
         for mode in sorted(self.held):

@@ -76,14 +76,7 @@ class SwitchedRun(ModeChanges):
                     raise self.interrupt
                 while self.t != self.end:
                     progress.report(self.t, 0.0, self.end)
-                    try:
-                        regime = self._regime(self.modes)
-                    except IntegrationStopped:
-                        released = self._released_by_another(solvable=False)
-                        if released is None:
-                            raise
-                        self._change(*released)
-                        continue
+                    regime = self._regime(self.modes)
                     if self._comes_to_rest(regime):
                         continue
                     guard = self._segment(regime, consume)
@@ -126,8 +119,13 @@ class SwitchedRun(ModeChanges):
         active = regime.active(self.modes)
         if self.held:
             self._check_held_alone()
+            attraction = regime.attraction(self.modes, self.zero, self.t, self.y)
+            if not all(value > 0.0 for value in attraction):
+                if (guard := self._coincident(regime, active, values, -1)) is None:
+                    self._no_longer_held()
+                return guard
             if self.attraction[0] != self.held:
-                self.attraction = self.held, regime.attraction(self.modes, self.zero, self.t, self.y)
+                self.attraction = self.held, attraction
         if not all(map(math.isfinite, rates)):
             if (guard := self._coincident(regime, active, values, 0)) is None:
                 raise IntegrationStopped(self.t, NOT_FINITE_SENTENCE, self.end)
