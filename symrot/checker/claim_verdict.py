@@ -20,11 +20,12 @@ from symrot.checker.claim.named_formula import (
 from symrot.checker.claim.values import decide_value
 from symrot.checker.decide.decision import decide_equation, for_positive_bases, is_large
 from symrot.checker.decide.ranges.text import condition_texts
-from symrot.checker.equivalents import inverse_factor
 from symrot.checker.equivalents.aircraft_names import with_usual_letters
 from symrot.checker.equivalents.inertia_in_frames import on_inertia_in_frames
+from symrot.checker.equivalents.inverse_factor import multiplied
+from symrot.checker.equivalents.product_signs import with_minus_sign
 from symrot.checker.equivalents.rotation_rates import tested_on_rotations
-from symrot.checker.equivalents.symmetry_axis import in_claim, with_axis_z
+from symrot.checker.equivalents.symmetry_axis import with_axis_z
 from symrot.checker.time_limit import TimeUp, processor_seconds
 from symrot.checker.units.check import check_dimensions
 from symrot.checker.verdict import Diagnosis, Verdict
@@ -174,22 +175,13 @@ def _on_name(
 
     Return None for other claims.
     """
-    if claim.context.sign_of_products == "plus":
-        from symrot.checker.equivalents import product_signs
-
-        result = _on_name(product_signs.with_minus_sign(claim), repair, formula_of)
-        return result and (None, replace(product_signs.in_claim(result[1]), text=claim.text))
-    if claim.context.body is not None and (axis := claim.context.body.symmetry_axis):
-        result = _on_name(with_axis_z(claim), repair, formula_of)
-        return result and (None, replace(in_claim(result[1], axis), text=claim.text))
-    if (renamed := with_usual_letters(claim)) is not None:
-        result = _on_name(renamed.claim, repair, formula_of)
-        if result and result[1].verdict in ("recognised", "doubtful"):
-            return None, replace(renamed.in_claim(result[1]), text=claim.text)
-    if (product := inverse_factor.multiplied(claim)) is not None:
-        result = _on_name(product[0], repair, related_formula)
-        if result and result[1].verdict in ("recognised", "doubtful"):
-            return None, replace(inverse_factor.in_claim(result[1], product[1]), text=claim.text)
+    if (other := with_minus_sign(claim) or with_axis_z(claim)) is not None:
+        result = _on_name(other.claim, repair, formula_of)
+        return result and (None, replace(other.in_typed_form(result[1]), text=claim.text))
+    for other, formula in ((with_usual_letters(claim), formula_of), (multiplied(claim), related_formula)):
+        result = None if other is None else _on_name(other.claim, repair, formula)
+        if other and result and result[1].verdict in ("recognised", "doubtful"):
+            return None, replace(other.in_typed_form(result[1]), text=claim.text)
     if (on_frames := on_inertia_in_frames(claim)) is not None:
         return None, on_frames
     named = formula_of(claim) if claim.relation is not None else None
