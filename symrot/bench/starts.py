@@ -121,21 +121,26 @@ def _in_c(motion: Any, initial: Any, rounds: int) -> float:
 
     0 for steppers, which have no such constants, and for motions driven about an axis, whose constants count as Python.
     """
-    functions = forms._bound.get(motion.form.library) if motion.choice.method == "exact" else None
-    if functions is None:
+    if motion.choice.method != "exact" or motion.form.library in ("axial", "spin_up"):
         return 0.0
-    calls: list[tuple[Any, ...]] = []
+    functions, calls = forms.functions, list[tuple[Any, ...]]()
 
-    def recorded(*arguments: Any) -> Any:
-        calls.append(arguments)
-        return functions[0](*arguments)
+    def recorded(name: str, arguments: int) -> tuple[Any, Any, Any]:
+        prepare, evaluate, record = functions(name, arguments)
 
-    forms._bound[motion.form.library] = (recorded, *functions[1:])
+        def prepared(*addresses: Any) -> Any:
+            calls.append((prepare, addresses))
+            return prepare(*addresses)
+
+        return prepared, evaluate, record
+
+    forms.functions = recorded  # type: ignore[assignment]
     try:
         alive = motion.from_start(initial).exact
     finally:
-        forms._bound[motion.form.library] = functions
-    return _median(lambda alive=alive: functions[0](*calls[0]), rounds)  # type: ignore[misc]  # keeps the memory alive
+        forms.functions = functions
+    prepare, addresses = calls[0]
+    return _median(lambda alive=alive: prepare(*addresses), rounds)  # type: ignore[misc]  # keeps the memory alive
 
 
 def changed_starts(scenes: list[str], rounds: int) -> None:

@@ -15,6 +15,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
@@ -122,8 +123,6 @@ def reference(name: str, scale: float = 1.0) -> Floats:
 
 def compute_reference(name: str, scale: float = 1.0) -> list[Any]:
     """Return the last state of a motion over ``scale`` times its span, by Taylor series in 40 digits."""
-    import mpmath
-
     problem = SteppedProblem(name, scale)
     with mpmath.workdps(DIGITS):
         # from the rounded parameters that all contestants use
@@ -132,8 +131,6 @@ def compute_reference(name: str, scale: float = 1.0) -> list[Any]:
 
 def references_text() -> str:
     """Return the TOML text of the file :data:`REFERENCES`, with all references computed again."""
-    import mpmath
-
     lines = [
         "# Last states of the motions of symrot.bench.taylor, in 40 digits and rounded to 25.",
         "# Printed by `python -m symrot.bench.taylor --reference`.",

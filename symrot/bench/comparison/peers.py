@@ -2,18 +2,13 @@
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from importlib.util import module_from_spec, spec_from_file_location
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
-from symrot.codegen.printing.banner import Description
+from symrot.codegen.numpy_kernel import UNNAMED, function_in
 from symrot.codegen.printing.numpy_source import numpy_source
 from symrot.formula.program import Program
 
 __all__ = ["heyoka_integrator", "heyoka_system", "scalar_kernel"]
-
-UNNAMED = Description("right-hand side for SciPy", "all states", "derivations/euler_equations.md", "symrot bench")
 
 FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log", "tan", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
 
@@ -73,12 +68,4 @@ def scalar_kernel(program: Program) -> Callable[..., Any]:
         text = text.replace(f"np.{name}(", f"math.{name}(")
     for name in ("sin", "cos", "tan", "tan2"):
         text = text.replace(f"np.arc{name}(", f"math.a{name}(")
-    with TemporaryDirectory(prefix="symrot-") as directory:
-        path = Path(directory) / "scalar_rates.py"
-        path.write_text(text, encoding="utf-8")
-        spec = spec_from_file_location("scalar_rates", path)
-        assert spec is not None and spec.loader is not None
-        module = module_from_spec(spec)
-        spec.loader.exec_module(module)
-    function: Callable[..., Any] = getattr(module, program.signature.name)
-    return function
+    return function_in(text, program.signature.name)

@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
@@ -57,8 +58,6 @@ STATES = 7
 
 def reference(case: Case, variable: str) -> Floats:
     """Return the derivatives of the seven states by ``variable`` at the last time, from motions in 40 digits."""
-    import mpmath
-
     scene = motion_scene(case.motion)
     value = Fraction(scene.value(variable))
     key = f"derivatives {DIGITS} {ORDER} {TAIL} {STEP} {variable} {case.duration}\n{scene.to_toml()}"
