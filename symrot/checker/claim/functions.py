@@ -288,9 +288,8 @@ def _vector_part(scope: Scope, node: Node) -> ImmutableMatrix:
 
 def _dcm_of(scope: Scope, node: Node) -> ImmutableMatrix:
     components = dict(zip(symbols.quaternion, _components(scope, node, 4), strict=True))
-    return quaternion_to_dcm(form="homogeneous").xreplace(
-        components
-    )  # nothing is multiplied out: components may be long
+    # nothing is multiplied out: components may be long
+    return quaternion_to_dcm(form="homogeneous").xreplace(components)
 
 
 def _diff(scope: Scope, node: Node) -> Any:

@@ -14,7 +14,7 @@ from sympy import sin as sine_of
 from sympy.core.function import AppliedUndef
 from sympy.polys.rings import PolyElement
 
-from symrot.checker.claim.atoms import atoms_of
+from symrot.checker.claim.interpreter import atoms_of
 from symrot.checker.decide.constraints import Constraints, constraints_of, occurring
 from symrot.checker.decide.infeasibility import Infeasibility, infeasibility_proof, vanishes_on
 from symrot.checker.decide.real_points import ATTEMPTS, RealPoint, real_points, value_at

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from symrot.checker.arrays.quaternions import CONJUGATE
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
-from symrot.checker.claim.tree import TIME, Node, is_derivative, negated, number, sum_of
+from symrot.checker.claim.tree import TIME, Node, column_vector, is_derivative, negated, number, sum_of
 from symrot.checker.claim.vectors import MARK, direction, is_tensor
 from symrot.checker.latex.cursor import CLOSING, UPRIGHT, is_letter
 from symrot.checker.latex.sums import SumsPart
@@ -84,8 +84,7 @@ class NamesPart(SumsPart):
             else:
                 subscript = self.subscript(mark)
         if subscript == PART:
-            entries = tuple(Node("name", self.resolved(name, digit)) for digit in "123")
-            return Node("call", "Matrix", (Node("list", ("[", "]"), entries),))
+            return column_vector([Node("name", self.resolved(name, digit)) for digit in "123"])
         known = self.resolved(name, subscript)
         if known.partition("_prime")[0] in ROTATIONS and self.at("(") and known not in self.names:
             known = known.partition("_prime")[0]  # R_{y'} rotates about an axis that the rotations before it have moved
@@ -188,7 +187,7 @@ class NamesPart(SumsPart):
             name = str(node.value)
             forms = ["d" * times + name, name + "dot", name + "d" * times]
             # the claim may declare a symbol such as dx for the derivative of x
-            declared = [form for form in forms if form in self.names.symbols] if times == 1 else forms[:0]
+            declared = [form for form in forms if form in self.names.symbols] if times == 1 else []
             if declared:
                 return Node("name", declared[0])
             if not self.names.implied:

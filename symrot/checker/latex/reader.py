@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, ClassVar
 
-from symrot.checker.claim.reader import read_expression, read_relation
-from symrot.checker.claim.tree import TIME, Node, is_derivative, sum_of, text, walk
+from symrot.checker.claim.reader import read_expression, read_relation, with_time
+from symrot.checker.claim.tree import TIME, Node, is_derivative, nodes_of, sum_of, text
 from symrot.checker.claim.vectors import Vector, may_be_mixed, on_direction, used_vectors, without_marks
 from symrot.checker.latex.calculus import DOTS, CalculusPart
 from symrot.checker.latex.cursor import JOINTS, UPRIGHT, Names, is_letter
@@ -69,7 +69,7 @@ def read_latex(source: str, where: str = "", names: Names | None = None) -> Equa
     'diff(theta(t), t, t) == -g/l*sin(theta(t))'
     """
     ((_, sides),), reader = _read(source, where, names or Names(), _Interpreter.equation)
-    sides, vectors = without_marks([_timed(side, reader.timed) for side in sides], reader.vectors)
+    sides, vectors = without_marks([with_time(side, reader.timed) for side in sides], reader.vectors)
     claim = " == ".join(map(text, sides))
     return Equation(read_relation(claim, where), claim, used_vectors(sides, vectors))
 
@@ -104,7 +104,7 @@ def _reading(source: str, names: Names, flips: Collection[tuple[str, int]]) -> R
     lines, reader = _read(source, "", names, _Interpreter.equations, flips)
     if reader.both_signs:
         lines += _read(source, "", names, _Interpreter.equations, flips, upper=False)[0]
-    timed = [_timed(side, reader.timed) for _, sides in lines for side in sides]
+    timed = [with_time(side, reader.timed) for _, sides in lines for side in sides]
     sides, vectors = without_marks(timed, reader.vectors)
     remaining = iter([read_expression(text(side)) for side in sides])
     return Reading(
@@ -137,7 +137,7 @@ def _read(
             if reader.crossed == crossed:
                 raise
         else:
-            names_in_lines = {node.value for _, sides in lines for side in sides for _, node in walk(side)}
+            names_in_lines = {node.value for _, sides in lines for node in nodes_of(*sides)}
             both = frozenset(filter(may_be_mixed, reader.hatted & ({*+reader.bare} | names_in_lines)))
             if reader.crossed == crossed and both == mixed:
                 reader.notes += map(on_direction, sorted(mixed))
@@ -148,9 +148,9 @@ def _read(
 
 def _on_constants(sides: Sequence[Node], vectors: Collection[str]) -> tuple[str, ...]:
     """Return (note,) on the symbols that time derivatives in ``sides`` treat as constants; () without such symbols."""
-    nodes = [node for side in sides for _, node in walk(side)]
+    nodes = nodes_of(*sides)
     rates = [node.args[0] for node in nodes if is_derivative(node) and node.args[-1] == TIME]
-    parts = (part for rate in rates if rate.kind != "call" for _, part in walk(rate))
+    parts = (part for rate in rates if rate.kind != "call" for part in nodes_of(rate))
     inner = {argument for node in nodes if node.kind == "call" for argument in node.args if argument == TIME}
     names = sorted({str(part.value) for part in parts if part.kind == "name" and part not in inner} - {"pi", *vectors})
     if not names:
@@ -168,17 +168,8 @@ def read_latex_formula(source: str, where: str = "") -> tuple[str, tuple[Vector,
         As :func:`read_latex`.
     """
     ((_, (formula,)),), reader = _read(source, where, Names(), _Interpreter.formula)
-    (formula,), vectors = without_marks([_timed(formula, reader.timed)], reader.vectors)
+    (formula,), vectors = without_marks([with_time(formula, reader.timed)], reader.vectors)
     return text(formula), used_vectors([formula], vectors)
-
-
-def _timed(node: Node, names: Collection[str]) -> Node:
-    """Return a tree with ``f(t)`` for each name f in ``names``."""
-    if node.kind == "name" and node.value in names:
-        return Node("call", node.value, (TIME,))
-    if node.kind == "call" and node.value in names:
-        return node
-    return Node(node.kind, node.value, tuple(_timed(child, names) for child in node.args), node.span)
 
 
 class _Interpreter(CalculusPart):

@@ -12,7 +12,7 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.tree import TIME, Node, walk
 from symrot.checker.context.admission import ANGLES, COMPONENTS, admits_letters, admits_name
-from symrot.checker.context.angle_orders import are_roll_pitch_yaw
+from symrot.checker.context.angle_orders import USUAL_SEQUENCES, are_roll_pitch_yaw
 from symrot.checker.context.context import Context
 from symrot.checker.recognition.formulas.kinematics import OF_ONE_ENTRY
 from symrot.checker.recognition.identification import plain_name, unit_of
@@ -169,9 +169,6 @@ ENTRY = r"[RrACQ]_?([1-3]{2})"
 
 FIRST_ANGLE, LAST_ANGLE = r"(var)?phi|alpha|\w+_1", r"psi|gamma|\w+_3"
 """Patterns of the names of the first and of the third of three Euler angles."""
-
-USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
-"""The sequences of Euler angles that books use most, in this order."""
 
 
 def says_too_little(claim: Claim, named: NamedFormula, near: Near) -> bool:

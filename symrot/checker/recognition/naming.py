@@ -13,12 +13,12 @@ from typing import Any
 
 from sympy import Function, Matrix, Mul, Pow, Rational, S, Symbol, acos, asin, atan, atan2, fraction, pi
 
-from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.interpreter import Interpreter, time
-from symrot.checker.claim.named_formula import NamedFormula, related_formula, solution
+from symrot.checker.claim.interpreter import Interpreter, atoms_of, time
+from symrot.checker.claim.named_formula import NamedFormula, related_formula
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
+from symrot.checker.claim.solving import solution
 from symrot.checker.claim.tree import Node, is_derivative, negated, number, product, sum_of, text, walk, with_names
 from symrot.checker.context.context import letters_of
 from symrot.checker.decide.decision import decide_equation

@@ -11,8 +11,9 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.named_formula import NamedFormula, is_name_or_rate
+from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.reader import read_relation
+from symrot.checker.claim.solving import is_name_or_rate
 from symrot.checker.claim.tree import TIME, Node, negated, number, product, sum_of, text, walk
 from symrot.checker.recognition.evidence import LEAST_SYMBOLS_EDITED, names_in, quantity_name
 from symrot.checker.repair.edits import COST, OPPOSITE, scaled

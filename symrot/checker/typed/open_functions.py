@@ -5,7 +5,7 @@ A ``place`` counts tokens from the cursor.
 
 import re
 
-from symrot.checker.claim.tree import TIME, Node, negated, number, product, walk
+from symrot.checker.claim.tree import TIME, Node, negated, nodes_of, number, product
 from symrot.checker.typed.cursor import ADDING, FACTOR_MARKS, Cursor
 from symrot.checker.typed.defined_functions import DEFINED, DISPUTED, INVERSES, instead
 from symrot.checker.typed.tokens import Token
@@ -116,7 +116,7 @@ class OpenFunctionsPart(Cursor):
             return False  # sin x cos y
         if token.tight and token.kind == "name":
             return True  # sin ωt
-        only_numbers = not any(node.kind in ("name", "call") for factor in factors for _, node in walk(factor))
+        only_numbers = not any(node.kind in ("name", "call") for node in nodes_of(*factors))
         if self.token(1).kind in ("prime", "dots") and not only_numbers:
             return False  # sin θ φ'
         usual = only_numbers or (token.text == "t" and TIME not in factors)
@@ -283,7 +283,7 @@ class OpenFunctionsPart(Cursor):
 
     def varies(self, operand: Node) -> None:
         """Record that the names in ``operand``, a formula after d/dt, may be functions of time."""
-        for _, node in walk(operand):
+        for node in nodes_of(operand):
             is_open = node.kind == "name" and node.value not in ("t", "pi", *self.vocabulary.symbols)
             if is_open or (node.kind == "call" and node.args == (TIME,)):
                 self.differentiated.add(str(node.value))

@@ -10,7 +10,7 @@ from functools import reduce
 from typing import Any
 
 from symrot.checker.claim.functions import ROTATIONS
-from symrot.checker.claim.tree import Node, text, walk
+from symrot.checker.claim.tree import Node, nodes_of, text
 from symrot.checker.units.units import (
     NOTHING,
     Dimension,
@@ -278,11 +278,11 @@ class UnitInference:
 
 def angles_of(tree: Node) -> Iterator[str]:
     """Yield the single letters that must be angles: ``g`` in ``sin(2*g)``, but not ``t`` in ``sin(w*t)``."""
-    for _, node in walk(tree):
+    for node in nodes_of(tree):
         if node.kind == "call" and node.value in ANGLE_FUNCTIONS:
             for argument in node.args:
                 for term in argument.args if argument.kind == "sum" else (argument,):
-                    named = [piece for _, piece in walk(term) if piece.kind in ("name", "call")]
+                    named = [piece for piece in nodes_of(term) if piece.kind in ("name", "call")]
                     if named and (len(named) == 1 or named[0].args == tuple(named[1:])):
                         yield from (named[0].value,) if len(named[0].value) == 1 else ()
 
@@ -301,14 +301,14 @@ def _minor(rows: Rows, row: int, column: int) -> Rows:
 
 def _bare(tree: Node) -> bool:
     """Return whether a tree has only numbers, as ``Matrix([1, 2*pi])`` has, and no symbols."""
-    loose = (node for _, node in walk(tree) if node.kind in ("name", "call"))
+    loose = (node for node in nodes_of(tree) if node.kind in ("name", "call"))
     return all(node.value in ("pi", "Matrix", "sqrt", "diag", "transpose") for node in loose)
 
 
 def _is_unit(tree: Node) -> bool:
     """Return whether a tree has only the numbers 0 and 1, and no names, as ``Matrix([0, 0, 1])`` has."""
-    return all(node.value in (0, 1) for _, node in walk(tree) if node.kind == "number") and not any(
-        node.kind == "name" for _, node in walk(tree)
+    return all(node.value in (0, 1) for node in nodes_of(tree) if node.kind == "number") and not any(
+        node.kind == "name" for node in nodes_of(tree)
     )
 
 
