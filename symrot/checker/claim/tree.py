@@ -24,10 +24,12 @@ from fractions import Fraction
 from typing import Any
 
 __all__ = [
+    "MOST_DERIVATIVES",
     "TIME",
     "Node",
     "column_vector",
     "derivative",
+    "differentiated",
     "factors_of",
     "is_derivative",
     "is_inverse",
@@ -65,6 +67,8 @@ class Node:
 
 
 MOST_DERIVATIVES = 8
+"""The highest order of a derivative."""
+
 TIME = Node("name", "t")
 """The name t, by which the derivatives ``diff(omega_1, t)`` are taken."""
 
@@ -87,6 +91,12 @@ def derivative(args: Sequence[Node], span: tuple[int, int] = (0, 0)) -> Node:
             else:
                 variables.append(argument)
     return Node("call", "diff", (inner, *variables), span)
+
+
+def differentiated(formula: Node, variable: Node, order: int = 1) -> Node:
+    """Return the derivative of a formula by a variable; for ``diff(x, t)`` and t, return ``diff(x, t, t)``."""
+    is_rate_of_time = is_derivative(formula) and formula.args[-1] == variable == TIME
+    return Node("call", "diff", (*(formula.args if is_rate_of_time else (formula,)), *[variable] * order))
 
 
 def number(value: int | Fraction) -> Node:

@@ -3,9 +3,9 @@
 from dataclasses import replace
 from itertools import takewhile
 
-from symrot.checker.claim.tree import TIME, Node, negated, nodes_of, number, product, quotient
+from symrot.checker.claim.tree import TIME, Node, differentiated, negated, nodes_of, number, product, quotient
 from symrot.checker.latex.cursor import CLOSING, is_d, is_letter
-from symrot.checker.latex.names import NamesPart, appended
+from symrot.checker.latex.names import NamesPart
 from symrot.checker.latex.sums import FUNCTIONS
 from symrot.checker.typed.defined_functions import DEFINED, DISPUTED, INVERSES, instead
 from symrot.checker.typed.densities import over_mass
@@ -154,7 +154,7 @@ class CalculusPart(NamesPart):
                 raise self.fail("brackets around the formula to differentiate")
         for variable in variables:
             in_time = variable == TIME
-            operand = self.derivative(operand, 1, fraction) if in_time else appended(operand, variable)
+            operand = self.derivative(operand, 1, fraction) if in_time else differentiated(operand, variable)
         return operand
 
     def differentiated(self) -> tuple[int, Node | None]:

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 from symrot.checker.arrays.quaternions import CONJUGATE
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
-from symrot.checker.claim.tree import TIME, Node, column_vector, is_derivative, negated, number, sum_of
+from symrot.checker.claim.tree import TIME, Node, column_vector, differentiated, negated, number, sum_of
 from symrot.checker.claim.vectors import MARK, direction, is_tensor
 from symrot.checker.latex.cursor import CLOSING, UPRIGHT, is_letter
 from symrot.checker.latex.sums import SumsPart
 from symrot.latex import tree
 
-__all__ = ["NAME_MARKS", "OPERATORS", "VECTOR_MARKS", "NamesPart", "appended"]
+__all__ = ["NAME_MARKS", "OPERATORS", "VECTOR_MARKS", "NamesPart"]
 
 OPERATORS = {
     "\\max": "max", "\\min": "min",
@@ -194,9 +194,7 @@ class NamesPart(SumsPart):
                 raise self.fail(f"{name} to be declared as a function of t (it is differentiated)", item)
             # an undeclared name becomes a function of time
             self.timed.add(name)
-        for _ in range(times):
-            node = appended(node, TIME)
-        return node
+        return differentiated(node, TIME, times)
 
     def take_time_call(self, name: str) -> None:
         """Skip ``(t)`` after the function of time ``name``; raise InputError for brackets with another argument."""
@@ -332,10 +330,3 @@ class NamesPart(SumsPart):
             return Node("call", name, (self.factor(),))
         self.next()
         return Node("call", name, tuple(self.listed(self.expression, CLOSING[opening.text])))
-
-
-def appended(node: Node, variable: Node) -> Node:
-    """Return the derivative of a formula by a variable; for ``diff(x, t)`` and t return ``diff(x, t, t)``."""
-    if is_derivative(node) and node.args[-1] == variable == TIME:
-        return Node("call", "diff", (*node.args, variable))
-    return Node("call", "diff", (node, variable))

@@ -15,7 +15,7 @@ from symrot.checker.claim.vectors import Vector, may_be_mixed, on_direction, use
 from symrot.checker.latex.calculus import DOTS, CalculusPart
 from symrot.checker.latex.cursor import JOINTS, UPRIGHT, Names, is_letter
 from symrot.checker.latex.names import NAME_MARKS, OPERATORS, VECTOR_MARKS
-from symrot.checker.latex.sums import FUNCTIONS, SIGNS
+from symrot.checker.latex.sums import FUNCTIONS, SEVERAL_LINES, SIGNS
 from symrot.checker.typed.readings import Chain, Reading, Relation, distinct_readings, each_reading
 from symrot.errors import InputError
 from symrot.latex import tree
@@ -25,8 +25,7 @@ __all__ = ["Equation", "Names", "latex_readings", "read_latex", "read_latex_form
 Line = tuple[list[str], list[Node]]
 """The signs of a chain, and its sides."""
 
-ALIGNED = ("align", "aligned", "alignat", "gather", "gathered", "eqnarray", "split", "cases", "dcases", "flalign",
-           "multline", "array")  # fmt: skip
+ALIGNED = (*SEVERAL_LINES, "array")
 """Environments whose lines hold equations."""
 
 AROUND = ("equation", "subequations", "displaymath", "math")

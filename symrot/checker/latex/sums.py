@@ -19,7 +19,7 @@ from symrot.checker.typed.defined_functions import DEFINED
 from symrot.checker.typed.words import ALIASES
 from symrot.latex import tree
 
-__all__ = ["FUNCTIONS", "SIGNS", "SumsPart"]
+__all__ = ["FUNCTIONS", "SEVERAL_LINES", "SIGNS", "SumsPart"]
 
 FUNCTIONS = {
     f"\\{command}": ALIASES.get(command, command)
@@ -34,8 +34,8 @@ LONGEST_MATRIX_NAME = 2
 """The most letters of the name of a matrix in brackets: ``[C]`` and ``[FB]``."""
 
 MATRICES = {"matrix": "", "pmatrix": "", "bmatrix": "", "Bmatrix": "", "smallmatrix": "", "array": "", "vmatrix": "det"}
-SEVERAL_LINES = ("align", "aligned", "alignat", "gather", "gathered", "eqnarray", "split", "multline", "cases",
-                 "flalign")  # fmt: skip
+SEVERAL_LINES = ("align", "aligned", "alignat", "gather", "gathered", "eqnarray", "split", "cases", "dcases", "flalign",
+                 "multline")  # fmt: skip
 SIGNS = {
     "=": "==", "\\ge": ">=", "\\geq": ">=", "\\geqslant": ">=", ">": ">", "\\gt": ">", "\\le": "<=", "\\leq": "<=",
     "\\leqslant": "<=", "<": "<", "\\lt": "<",

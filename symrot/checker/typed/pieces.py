@@ -14,8 +14,8 @@ from symrot.checker.claim.tree import (
     TIME,
     Node,
     derivative,
+    differentiated,
     factors_of,
-    is_derivative,
     listed,
     number,
     product,
@@ -195,9 +195,7 @@ class PiecesPart(OpenFunctionsPart):
                 self.index += 3
             self.timed.add(name)
             node = Node("call", name, (TIME,), node.span)
-        elif is_derivative(node) and node.args[-1] == TIME:
-            return Node("call", "diff", (*node.args, *[TIME] * order), self.span(start))
-        return Node("call", "diff", (node, *[TIME] * order), self.span(start))
+        return replace(differentiated(node, TIME, order), span=self.span(start))
 
     def atom(self) -> Node:
         token = self.next()

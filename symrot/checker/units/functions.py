@@ -158,7 +158,7 @@ def _inverse_of(inference: UnitInference, node: Node) -> Value:
 
 CALLS: dict[str, Callable[[UnitInference, Node], Any]] = {
     **dict.fromkeys(("sin", "cos", "tan", "cot", "sec", "csc", "asin", "acos", "atan", "acot", "exp", "log", "sinh",
-                     "cosh", "tanh", "asinh", "acosh", "atanh", "sinc", "factorial"), _of_number),
+                     "cosh", "tanh", "sinc", "factorial"), _of_number),
     "atan2": _alike, **{name: _rotation("XYZ".index(axis)) for name, axis in ROTATIONS.items()},
     "sqrt": lambda inference, node: inference.power(inference.scalar(node.args[0]), Fraction(1, 2)),
     "abs": lambda inference, node: inference.scalar(node.args[0]),
@@ -168,5 +168,5 @@ CALLS: dict[str, Callable[[UnitInference, Node], Any]] = {
     "det": lambda inference, node: inference.determinant(inference.matrix(node.args[0])), "inverse": _inverse_of,
     "cross": _cross, "dot": _dot, "vee": _vee, "Matrix": _matrix, "diag": _diagonal, "eye": _eye, "hstack": _hstack,
     "qmul": _product_of_quaternions, "dcm_of": _dcm_of, "trace": _trace, "diff": _derivative,
-    **dict.fromkeys(("integrate", "Integral"), _integral),
+    "integrate": _integral,
 }  # fmt: skip

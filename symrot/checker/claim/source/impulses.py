@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from symrot.checker.claim.solving import terms_of
-from symrot.checker.claim.tree import TIME, Node, negated, nodes_of, product, without_sign
+from symrot.checker.claim.tree import TIME, Node, differentiated, negated, nodes_of, product, without_sign
 from symrot.checker.typed.readings import Reading, Relation
 from symrot.errors import InputError
 
@@ -116,7 +116,7 @@ def _rate_of_change(terms: Sequence[Node], vectors: Mapping[str, bool]) -> tuple
 def _derivative(name: str, is_vector: bool) -> Node:
     """Return ``diff(L, t)`` for a vector L, ``diff(L(t), t)`` for a number."""
     inner = Node("name", name) if is_vector else Node("call", name, (TIME,))
-    return Node("call", "diff", (inner, TIME))
+    return differentiated(inner, TIME)
 
 
 def _base(name: str) -> str:
