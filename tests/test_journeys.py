@@ -68,7 +68,7 @@ def test_a_claim_gets_its_meaning_once_on_its_way_to_a_verdict(text):
 def certified(kernel, folder):
     """Return all files of a kernel, as `symrot emit --all` and `symrot certify` make them."""
     bounds = files.stored_bounds(kernel, folder)
-    texts = files.kernel_files(kernel, "c", bounds) | files.kernel_files(kernel, "numpy")
+    texts = kernel.files("c", bounds) | kernel.files("numpy")
     return texts | files.certificate_files(kernel, folder, bounds)
 
 

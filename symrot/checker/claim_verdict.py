@@ -19,7 +19,7 @@ from symrot.checker.claim.named_formula import (
 )
 from symrot.checker.claim.values import decide_value
 from symrot.checker.decide.decision import decide_equation, for_positive_bases, is_large
-from symrot.checker.decide.ranges import condition_texts
+from symrot.checker.decide.ranges.text import condition_texts
 from symrot.checker.equivalents import inverse_factor
 from symrot.checker.equivalents.aircraft_names import with_usual_letters
 from symrot.checker.equivalents.inertia_in_frames import on_inertia_in_frames
@@ -32,7 +32,15 @@ from symrot.errors import InputError
 from symrot.exact.decision import Decision
 from symrot.exact.limits.operations import MOST_OPERATIONS, OutOfOperations, one_claim
 
-__all__ = ["check_claim", "check_readings", "is_unfinished", "unfinished", "verdict_of_decision", "within_limits"]
+__all__ = [
+    "check_claim",
+    "check_readings",
+    "ended_note",
+    "is_unfinished",
+    "verdict_of_decision",
+    "within_budget",
+    "within_limits",
+]
 
 Limit = OutOfOperations | TimeUp
 
@@ -96,7 +104,7 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
             late = verdict_of_decision(unfinished(limit), claim.text, start)
             verdict = replace(late, id=claim.id, where=claim.where)
         else:
-            verdict = replace(verdict, notes=(*verdict.notes, _ended(limit)))
+            verdict = replace(verdict, notes=(*verdict.notes, ended_note(limit)))
     if other_verdict is not None:
         return verdict, other_verdict
     return replace(verdict, seconds=perf_counter() - start), None
@@ -104,18 +112,29 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
 
 @contextmanager
 def within_limits() -> Iterator[None]:
-    """Return a context with the budget for one claim; it raises OutOfOperations or TimeUp beyond it."""
+    """Run a ``with`` block within the budget for one claim; beyond it, OutOfOperations or TimeUp is raised."""
     with one_claim(MOST_OPERATIONS), processor_seconds(MOST_SECONDS):
         yield
+
+
+def within_budget(decide: Callable[[], Verdict], text: str) -> Verdict:
+    """Return ``decide()``, the verdict on the claim ``text``, or "undecided" if the budget for a claim ends before."""
+    start = perf_counter()
+    try:
+        with within_limits():
+            return decide()
+    except (OutOfOperations, TimeUp) as limit:
+        return verdict_of_decision(unfinished(limit), text, start)
 
 
 def is_unfinished(verdict: Verdict) -> bool:
     """Return whether the budget for a claim ended before it was decided, or before all repairs were tried."""
     limits: tuple[Limit, ...] = OutOfOperations(), TimeUp()
-    return any(verdict.reason == unfinished(limit).reason or _ended(limit) in verdict.notes for limit in limits)
+    return any(verdict.reason == unfinished(limit).reason or ended_note(limit) in verdict.notes for limit in limits)
 
 
-def _ended(limit: Limit) -> str:
+def ended_note(limit: Limit) -> str:
+    """Return the note that the budget for a claim ended before all other readings and repairs were tried."""
     if isinstance(limit, OutOfOperations):
         return f"the search for other readings and for repairs was stopped after {_operations()}"
     return (
@@ -359,6 +378,7 @@ def _domain(claim: Claim) -> Diagnosis:
 
 
 def verdict_of_decision(decision: Decision, text: str, start: float) -> Verdict:
+    """Return a decision as the verdict on the claim ``text``, whose check began at the time ``start``."""
     return Verdict(
         verdict=decision.verdict,
         conditions=condition_texts(decision.conditions),

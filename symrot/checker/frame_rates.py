@@ -18,7 +18,7 @@ from symrot.checker.claim.interpreter import time
 from symrot.checker.claim.reader import readings_of
 from symrot.checker.claim.source.lines import claims_of_reading
 from symrot.checker.claim.source.text import is_latex
-from symrot.checker.claim_verdict import verdict_of_decision, within_limits
+from symrot.checker.claim_verdict import verdict_of_decision, within_budget
 from symrot.checker.decide.decision import decide_equation
 from symrot.checker.decide.equation import Equation
 from symrot.checker.latex.reader import latex_readings
@@ -108,7 +108,7 @@ def verdict_on_rates(source: str) -> Verdict | None:
     vectors = {"".join(rate.vector.split()) for rate in rates}
     if len(frames) != 2 or len(vectors) != 1:
         return None
-    start = perf_counter()
+    start, text = perf_counter(), typed.strip()
     still, moving = sorted(frames, key=lambda frame: frame not in INERTIAL)
     letters = [letter for letter in NAMES if not re.search(rf"(?<![A-Za-z\\]){letter}(?![A-Za-z])", source)]
     if len(letters) < 2:
@@ -125,12 +125,14 @@ def verdict_on_rates(source: str) -> Verdict | None:
     if len(own) != 1 or len(others) != 2 or None in sides:
         return None
     (angular,) = (name for name in others if name != own[0])
-    with within_limits():
-        decisions = [
-            decide_equation(Equation(*(side.xreplace(values) for side in sides)))
-            for values in (_values(names, still, moving, own[0], angular, sign) for sign in (1, -1))
-        ]
-    first, second = (verdict_of_decision(decision, typed.strip(), start) for decision in decisions)
+    equations = [
+        Equation(*(side.xreplace(values) for side in sides))
+        for values in (_values(names, still, moving, own[0], angular, sign) for sign in (1, -1))
+    ]
+    first, second = (
+        within_budget(lambda: verdict_of_decision(decide_equation(equation), text, start), text)  # noqa: B023 called at once
+        for equation in equations
+    )
     words = {still: _frame(still), moving: _frame(moving)}
     notes: tuple[str, ...] = (f"the rates are those of {own[0]} seen from {words[still]} and from {words[moving]}",)
     if direction < 0:

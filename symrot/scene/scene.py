@@ -91,7 +91,7 @@ class Scene:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences about what may be meant otherwise: holes that may reach out of the body, parameters without use."""
+        """Sentences about what may be a mistake: holes that may reach out, bent polygons, parameters without use."""
         return (*self.body.warnings, *(warning for torque in self.torques for warning in torque.warnings))
 
     @classmethod

@@ -10,12 +10,13 @@ from typing import Any
 
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.readback.readback import read_kernel
-from symrot.certificates.rounding.bounds import bound_outputs, rounding_section
+from symrot.certificates.rounding.bounds import bound_outputs
 from symrot.certificates.rounding.bounds_text import region_phrases
 from symrot.certificates.rounding.intervals import DIGITS
 from symrot.certificates.rounding.library import RoundingProblem, largest_box, library_problem
 from symrot.certificates.rounding.region import UNIT_NORM, Region
 from symrot.certificates.rounding.scenes import ANY, scene_problem
+from symrot.certificates.rounding.section import rounding_section
 from symrot.errors import InputError, nearest
 from symrot.kernels.library import definition, is_kernel, kernel_names
 from symrot.report.layout import apart, columns

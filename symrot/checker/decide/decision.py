@@ -13,7 +13,7 @@ from sympy import Abs, Expr, I, Poly, Symbol, fraction, nan, oo, preorder_traver
 from symrot.checker.decide.branch_cuts import BranchCut, branch_cuts
 from symrot.checker.decide.equation import Equation, sides_of, stated_needs
 from symrot.checker.decide.large_powers import LARGEST_DEGREE, degree_of, point_of_difference, shorter_powers
-from symrot.checker.decide.ranges import positive_symbols, range_text
+from symrot.checker.decide.ranges.text import positive_symbols, range_text
 from symrot.checker.decide.stages import STAGES, ClaimCase, domain_of_text, leave_open, nearby_witness
 from symrot.checker.decide.unordered import is_unordered
 from symrot.errors import InputError

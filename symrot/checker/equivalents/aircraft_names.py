@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.tree import Node, is_derivative, walk, with_names
+from symrot.checker.claim.tree import TIME, Node, is_derivative, walk
 from symrot.checker.equivalents.equivalent_claim import brought_back
 from symrot.checker.typed.readings import Relation
 from symrot.checker.verdict import Verdict
@@ -58,7 +58,7 @@ def with_usual_letters(claim: Claim) -> Renamed | None:
 
 
 def _is_quantity(node: Node) -> bool:
-    return node.kind == "name" or (node.kind == "call" and [argument.value for argument in node.args] == ["t"])
+    return node.kind == "name" or (node.kind == "call" and node.args == (TIME,))
 
 
 def _renamed(relation: Relation, names: Mapping[str, str]) -> Relation:
@@ -68,6 +68,6 @@ def _renamed(relation: Relation, names: Mapping[str, str]) -> Relation:
 
 def _with_names(tree: Node, names: Mapping[str, str]) -> Node:
     """Return a tree with other names of its symbols and functions of time."""
-    if tree.kind == "call" and tree.value in names and [argument.value for argument in tree.args] == ["t"]:
+    if _is_quantity(tree) and tree.value in names:
         return replace(tree, value=names[str(tree.value)])
-    return replace(with_names(tree, names), args=tuple(_with_names(child, names) for child in tree.args))
+    return replace(tree, args=tuple(_with_names(child, names) for child in tree.args))

@@ -6,7 +6,7 @@ So each claim is decided with the opposite sign of every product of inertia.
 from dataclasses import replace
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.tree import Node, is_derivative, negated
+from symrot.checker.claim.tree import TIME, Node, is_derivative, negated
 from symrot.checker.context.context import Context, Meaning
 from symrot.checker.context.quantities import QUANTITIES
 from symrot.checker.equivalents.equivalent_claim import brought_back
@@ -68,19 +68,15 @@ def _changed(relation: Relation) -> Relation:
     sign, *sides = relation
     left, right = (_with_other_sign(side) for side in sides)
     if any(map(_is_product, sides)):  # I_xy = -a, not -I_xy = a
-        left, right = _negative(left), _negative(right)
+        left, right = negated(left), negated(right)
     return sign, left, right
-
-
-def _negative(tree: Node) -> Node:
-    return tree.args[0] if tree.kind == "neg" else negated(tree)
 
 
 def _is_product(tree: Node) -> bool:
     """Return whether a tree has the name of a product of inertia: I_xy, I_xy(t), or the time derivative of one."""
     if is_derivative(tree):
         return _is_product(tree.args[0])
-    is_function = tree.kind == "call" and [argument.value for argument in tree.args] == ["t"]
+    is_function = tree.kind == "call" and tree.args == (TIME,)
     stem = str(tree.value).removesuffix("_prime").removesuffix("_bar")
     return (tree.kind == "name" or is_function) and PRODUCT_OF_INERTIA.fullmatch(stem) is not None
 

@@ -11,7 +11,7 @@ from symrot.certificates.audit import LARGEST
 from symrot.certificates.certificate import Data, certificate_json, seal
 from symrot.certificates.readback.header import check_header, check_source
 from symrot.certificates.readback.readback import read_kernel
-from symrot.certificates.rounding.bounds import check_section
+from symrot.certificates.rounding.section import check_section
 from symrot.certificates.step_certificate import (
     SCHEMA,
     bounds_of_step,

@@ -2,167 +2,46 @@
 
 The C text runs on numbers with bounds of their errors (bounded_number.py), for parts of the box: of each sign of each
 component of omega, and of the phase of the elliptic functions. Operations on sums of two doubles have the relative
-errors that are proven for them, generously; every operation on doubles, which makes nearly all of the error, is bounded
-where the C text has it. Some intervals are cut to what is known of exact values, such as 0 <= m <= 1 of the modulus.
+errors of functions.py; every operation on doubles, which makes nearly all of the error, is bounded where the C text has
+it. Some intervals are cut to what is known of exact values, such as 0 <= m <= 1 of the modulus.
 
 Bounds exist where the modulus m is below 0.7, that is not near the rotation about the middle axis. There the series
 in the nome q are cut after q^15, with an error below 40 q^16 of the elliptic functions.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 from fractions import Fraction
-from math import ceil, cos, exp, floor, frexp, inf, ldexp, pi, sin, sqrt, ulp
+from math import exp, inf, pi, sqrt
 from typing import Any
 
-from symrot.certificates.bounded_number import DOUBLE, PAIR, Bounded, UndecidedError, point
 from symrot.certificates.c_machine.machine import Machine
 from symrot.certificates.c_machine.values import Place, called
+from symrot.certificates.exact_step.bounded_number import DOUBLE, PAIR, Bounded, UndecidedError, point
+from symrot.certificates.exact_step.box import MIDDLE, Box, halves, power_near, shells, signed_parts
+from symrot.certificates.exact_step.functions import (
+    ELLIPTIC,
+    SLACK,
+    SMALL,
+    agm,
+    carlson_rf,
+    exponential,
+    mean_of,
+    pair,
+    pair_total,
+    sine_and_cosine,
+    unit_quaternion,
+    widened,
+    with_pairs,
+)
 from symrot.errors import CertificateError, InputError
 
 __all__ = ["free_body_bounds"]
 
-ELLIPTIC = 2.0**-90
-"""Relative error of R_F, of the mean and of exp of sums of two doubles, apart from errors of their arguments.
-
-Their C text sums series to 1e-31 and loses at most 800 roundings of 2^-104; as measured, they are below 1e-30."""
-TINY = 1e-100  # smaller components of omega, relative to the largest, are not covered; the C text takes some as zero
 CELLS = 64  # parts of the phase of a period
 MOST_PARTS = 600  # of the box of omega
 LONGEST = 2.0**20  # revolutions of a phase
 SIZES = 1e298  # products of dt and the scale of omega, of which the C text computes rounding errors without overflow
-LEAST_POWER, LARGEST_POWER = -1000, 1000  # of the scale of omega in the C text
-SMALL = 1e-250  # smaller numbers lose digits in sums of two doubles
 SMALL_MODULUS = 0.7
-SLACK = 1e-12  # relative error of intervals computed with doubles from <math.h>
-
-MIDDLE = (
-    "expected a box of omega away from the rotation about the middle axis, where the modulus of the elliptic functions "
-    "is below 0.7"
-)
-
-Box = Mapping[str, tuple[Fraction, Fraction]]
-
-
-# --- sums of two doubles ----------------------------------------------------------------------------------------------
-
-
-def _pair(value: Bounded) -> list[Any]:
-    """Return a sum of two doubles: its high part, which knows the sum, and its low part, which no operation reads."""
-    high = value.rounded(DOUBLE)
-    return [Bounded(high.low, high.high, high.error, high.relative, value), point(0.0) if value.is_exact else None]
-
-
-def _sum(pair: list[Any]) -> Bounded:
-    """Return the number that a sum of two doubles stands for."""
-    high: Bounded = pair[0]
-    low = pair[1]
-    if high.pair is not None:
-        return high.pair
-    if low.is_exact and low.low == 0:
-        return high
-    # a constant such as pi, to 31 digits
-    total = high.low + low.low
-    return Bounded(total * (1 - 2.0**-52), total * (1 + 2.0**-52), abs(total) * 2.0**-104, 2.0**-104)
-
-
-def _with_pairs(operation: Callable[..., Bounded]) -> Callable[..., list[Any]]:
-    return lambda *pairs: _pair(operation(*map(_sum, pairs)))
-
-
-def _absolute(x: Bounded) -> Bounded:
-    size: Bounded = abs(x)
-    return size
-
-
-def _mean_of(a: float) -> float:
-    """Return the arithmetic-geometric mean of 1 and a."""
-    b = 1.0
-    for _ in range(60):
-        a, b = sqrt(a * b), (a + b) / 2
-    return b
-
-
-def _widened(low: float, high: float) -> tuple[float, float]:
-    return low - abs(low) * SLACK, high + abs(high) * SLACK
-
-
-def _mean(a: Bounded) -> Bounded:
-    if a.low < 1e-160:
-        raise UndecidedError
-    low, high = _widened(_mean_of(a.low), _mean_of(min(a.high, 1.0)))
-    return Bounded(low, high, inf, a.relative + ELLIPTIC)
-
-
-def _carlson(x: float, y: float, z: float) -> float:
-    for _ in range(400):
-        near = (x + y + z) / 3
-        if max(abs(x - near), abs(y - near), abs(z - near)) <= near * 1e-7:
-            break
-        shift = sqrt(x * y) + sqrt(y * z) + sqrt(z * x)
-        x, y, z = (x + shift) / 4, (y + shift) / 4, (z + shift) / 4
-    return 1 / sqrt(near)
-
-
-def _rf(x: Bounded, y: Bounded, z: Bounded) -> Bounded:
-    if any(each.high > 0 and each.low < SMALL and not each.is_exact for each in (x, y, z)):
-        raise UndecidedError
-    if z.is_exact and z.low == 1:  # of squares of cn and dn
-        x, y = x.clipped(0.0, 1.0), y.clipped(0.0, 1.0)
-    # decreasing in each argument; homogeneous of degree -1/2, so that relative errors are at most halved
-    low = _carlson(*(min(each.high, 1e300) for each in (x, y, z)))
-    high = _carlson(*(max(each.low, 1e-310) for each in (x, y, z)))
-    relative = max(each.relative for each in (x, y, z))
-    return Bounded(*_widened(low, high), inf, relative + ELLIPTIC if relative < 0.5 else inf)
-
-
-def _exponential(x: Bounded) -> Bounded:
-    low, high = exp(max(x.low, -740.0)) if x.low > -740 else 0.0, exp(min(x.high, 700.0)) if x.high < 700 else inf
-    # e^-|x| |x| is at most 1/e
-    from_relative = (
-        1.01 * x.relative * max(1.0, abs(x.high) * high if x.high > 0 else 0.0) if x.relative < 1e-3 else inf
-    )
-    error = min(from_relative, high * 1.01 * x.error if x.error < 1e-3 else inf) + high * ELLIPTIC + 1e-300
-    relative = 1.01 * x.error + ELLIPTIC if x.error < 1e-3 and low > SMALL else inf
-    return Bounded(*_widened(low, high), error, relative)
-
-
-def _range_of(function: Callable[[float], float], low: float, high: float, peak: float) -> tuple[float, float]:
-    """Return the range of sine or cosine of angles in revolutions; ``peak`` is where the function is 1."""
-    ends = sorted((function(2 * pi * low), function(2 * pi * high)))
-    top = 1.0 if floor(high - peak + 1e-9) >= ceil(low - peak - 1e-9) else min(ends[1] + 1e-14, 1.0)
-    bottom = -1.0 if floor(high - peak - 0.5 + 1e-9) >= ceil(low - peak - 0.5 - 1e-9) else max(ends[0] - 1e-14, -1.0)
-    return bottom, top
-
-
-def _turn(turns: Bounded, error: float) -> tuple[Bounded, Bounded]:
-    """Return sine and cosine of an angle in revolutions, computed with an absolute error."""
-    sine = _range_of(sin, turns.low, turns.high, 0.25)
-    cosine = _range_of(cos, turns.low, turns.high, 0.0)
-    return Bounded(*sine, error, inf), Bounded(*cosine, error, inf)
-
-
-def _unit(q: list[Bounded]) -> list[Bounded]:
-    """Return a quaternion divided by its norm."""
-    least, most = sqrt(sum(x.least**2 for x in q)), sqrt(sum(x.most**2 for x in q))
-    if most == 0:
-        return q
-    error = max(x.error for x in q)
-    relative = max(x.relative for x in q)
-    result = []
-    for x in q:
-        if x.is_exact and x.low == 0:
-            result.append(x)
-            continue
-        low = x.low / (most if x.low > 0 else least) if least else -1.0
-        high = x.high / (least if x.high > 0 else most) if least else 1.0
-        # |q/|q| - p/|p|| <= (e + 2 e)/(|q| - 2 e) for errors of at most e of each component
-        of_norm = 6 * error / least if least > 4 * error else inf
-        own = 2.1 * relative + 64 * PAIR if relative < 0.01 else inf
-        result.append(Bounded(*_widened(low, high), of_norm + 64 * PAIR, own).clipped(-1.0, 1.0))
-    return result
-
-
-# --- the machine ------------------------------------------------------------------------------------------------------
 
 
 class _Context:
@@ -200,25 +79,25 @@ class _Context:
         pairs: dict[str, tuple[str, Callable[..., Any]]] = {
             "dd_of": ("s", lambda x: [Bounded(x.low, x.high, x.error, x.relative, x), point(0.0)]),
             "dd_pair": ("s", self._dd_pair),
-            "dd_negative": ("s", _with_pairs(lambda x: -x)),
-            "dd_abs": ("s", _with_pairs(_absolute)),
-            "dd_add": ("s", _with_pairs(lambda x, y: x.plus(y, PAIR))),
-            "dd_sub": ("s", _with_pairs(lambda x, y: x.plus(-y, PAIR))),
-            "dd_mul": ("s", _with_pairs(lambda x, y: x.times(y, PAIR))),
-            "dd_square": ("s", _with_pairs(lambda x: abs(x).times(abs(x), PAIR))),
-            "dd_div": ("s", _with_pairs(lambda x, y: x.over(y, PAIR))),
-            "dd_sqrt": ("s", _with_pairs(lambda x: x.root(PAIR))),
-            "dd_scale": ("s", lambda a, power: _pair(_sum(a).times(power, PAIR))),
-            "dd_agm": ("s", _with_pairs(_mean)),
-            "dd_rf": ("s", _with_pairs(_rf)),
-            "dd_exp": ("s", _with_pairs(_exponential)),
-            "known_nome": ("s", _with_pairs(lambda x: x.clipped(0.0, self.nome))),
-            "known_positive": ("s", _with_pairs(lambda x: x.clipped(0.0, inf))),
-            "known_sine": ("s", _with_pairs(lambda x: x.clipped(-1.0, 1.0))),
+            "dd_negative": ("s", with_pairs(lambda x: -x)),
+            "dd_abs": ("s", with_pairs(abs)),
+            "dd_add": ("s", with_pairs(lambda x, y: x.plus(y, PAIR))),
+            "dd_sub": ("s", with_pairs(lambda x, y: x.plus(-y, PAIR))),
+            "dd_mul": ("s", with_pairs(lambda x, y: x.times(y, PAIR))),
+            "dd_square": ("s", with_pairs(lambda x: abs(x).times(abs(x), PAIR))),
+            "dd_div": ("s", with_pairs(lambda x, y: x.over(y, PAIR))),
+            "dd_sqrt": ("s", with_pairs(lambda x: x.root(PAIR))),
+            "dd_scale": ("s", lambda a, power: pair(pair_total(a).times(power, PAIR))),
+            "dd_agm": ("s", with_pairs(agm)),
+            "dd_rf": ("s", with_pairs(carlson_rf)),
+            "dd_exp": ("s", with_pairs(exponential)),
+            "known_nome": ("s", with_pairs(lambda x: x.clipped(0.0, self.nome))),
+            "known_positive": ("s", with_pairs(lambda x: x.clipped(0.0, inf))),
+            "known_sine": ("s", with_pairs(lambda x: x.clipped(-1.0, 1.0))),
         }
         return pairs | {
             "fabs": ("rr", abs), "sqrt": ("rr", lambda x: x.root(DOUBLE)), "rint": ("rr", _nearest),
-            "dd_less": ("", lambda a, b: int(_sum(a) < _sum(b))), "dd_sound": ("", lambda: 1),
+            "dd_less": ("", lambda a, b: int(pair_total(a) < pair_total(b))), "dd_sound": ("", lambda: 1),
             "near_power": ("", self._near_power), "exact_defect": ("", _exact_defect), "normalise": ("", _normalise),
             "quaternion_product": ("", _quaternion_product), "dd_sincos_turns": ("", _sincos),
             "canonical": ("vppppp", self._canonical), "put_quaternion": ("", _put_quaternion), "turn": ("", self._turn),
@@ -237,7 +116,7 @@ class _Context:
         if count == 4:  # a quaternion, which is divided by its norm
             return point(1.0)
         if all(each.is_exact for each in numbers):
-            return point(_power_near(max(each.most for each in numbers)))
+            return point(power_near(max(each.most for each in numbers)))
         return point(self.scale)
 
     def _canonical(self, inertia: Place, omega: Place, differences: Place, defect: Any, c: Place) -> None:
@@ -247,8 +126,8 @@ class _Context:
 
         def clip(name: str, low: float, high: float) -> Bounded:
             place = names.index(name)
-            value = _sum(fields[place]).clipped(low, high)
-            fields[place] = _pair(value)
+            value = pair_total(fields[place]).clipped(low, high)
+            fields[place] = pair(value)
             return value
 
         modulus = clip("modulus", 0.0, 1.0)
@@ -259,16 +138,16 @@ class _Context:
         # m + m' = 1, and |u| <= K
         most = min(modulus.high, 1 - complement.low, SMALL_MODULUS)
         clip("complement", 1 - most - 1e-15, 1.0)
-        quarter = pi / 2 / _mean_of(sqrt(1 - most)) * (1 + SLACK)
+        quarter = pi / 2 / mean_of(sqrt(1 - most)) * (1 + SLACK)
         clip("u", -quarter, quarter)
-        self.nome = exp(-pi * _mean_of(sqrt(1 - most)) / _mean_of(sqrt(max(most, 1e-300)))) * (1 + 1e-9) + 1e-300
+        self.nome = exp(-pi * mean_of(sqrt(1 - most)) / mean_of(sqrt(max(most, 1e-300)))) * (1 + 1e-9) + 1e-300
 
     def _turn(
         self, phase: Place, slope: Bounded, count: int, t: Place, whole: Place, sine: Place, cosine: Place
     ) -> None:
         """Sine and cosine of a phase, for the function ``turn`` of the C text."""
         values, first = phase
-        rate, start = _sum([values[first], values[first + 1]]), _sum([values[first + 2], values[first + 3]])
+        rate, start = pair_total([values[first], values[first + 1]]), pair_total([values[first + 2], values[first + 3]])
         size = t[0][t[1]]
         turns = rate.most * size.most
         if not (slope.is_exact and slope.low == 0 and turns <= LONGEST):
@@ -286,7 +165,7 @@ class _Context:
         # of the polynomials in `sincos_quarters`: rounding, coefficients and the rest of the series
         both = 2 * pi * error * (1 + SLACK) + self.series_error
         cell = self.phase if values is self.motion[self.fields.index("axial")] else (0.0, 1.0)
-        s, c = _turn(Bounded(*cell, 0.0, 0.0), both)
+        s, c = sine_and_cosine(Bounded(*cell, 0.0, 0.0), both)
         for i in range(count):
             sine[0][sine[1] + i], cosine[0][cosine[1] + i] = s, c
 
@@ -327,7 +206,7 @@ def _nearest(x: Bounded) -> Bounded:
 
 
 def _pairs_at(place: Place, count: int) -> list[Bounded]:
-    return [_sum(place[0][place[1] + i]) for i in range(count)]
+    return [pair_total(place[0][place[1] + i]) for i in range(count)]
 
 
 def _exact_defect(moments: Place, omega: Place) -> list[Any]:
@@ -338,14 +217,17 @@ def _exact_defect(moments: Place, omega: Place) -> list[Any]:
     for i in range(3):
         if i != middle:
             share = Fraction(inertia[i].low) * (Fraction(inertia[i].low) - Fraction(inertia[middle].low))
-            ends = sorted(float(share) * x * x for x in (rates[i].least, rates[i].most))
-            total = total.plus(Bounded(*_widened(*ends), 0.0, 0.0), 0.0)
-    return _pair(Bounded(total.low, total.high, inf, PAIR))
+            sizes = rates[i].least, rates[i].most
+            ends = sorted(float(share) * x * x for x in sizes)
+            if share and any(x and abs(end) < SMALL for x in sizes for end in ends):
+                raise UndecidedError  # the product may underflow
+            total = total.plus(Bounded(*widened(*ends), 0.0, 0.0), 0.0)
+    return pair(Bounded(total.low, total.high, inf, PAIR))
 
 
 def _normalise(q: Place) -> None:
-    for i, x in enumerate(_unit(_pairs_at(q, 4))):
-        q[0][q[1] + i] = _pair(x)
+    for i, x in enumerate(unit_quaternion(_pairs_at(q, 4))):
+        q[0][q[1] + i] = pair(x)
 
 
 def _quaternion_product(a: Place, b: Place, c: Place) -> None:
@@ -353,7 +235,7 @@ def _quaternion_product(a: Place, b: Place, c: Place) -> None:
     left, right = _pairs_at(a, 4), _pairs_at(b, 4)
     error = 4 * (max(x.error for x in left) + max(x.error for x in right)) + 64 * PAIR
     for i in range(4):
-        c[0][c[1] + i] = _pair(Bounded(-1.0, 1.0, error, inf))
+        c[0][c[1] + i] = pair(Bounded(-1.0, 1.0, error, inf))
 
 
 def _put_quaternion(rows: Place, count: int, *columns: Any) -> None:
@@ -371,9 +253,9 @@ def _put_quaternion(rows: Place, count: int, *columns: Any) -> None:
 
 
 def _sincos(turns: list[Any], sine: Place, cosine: Place) -> None:
-    value = _sum(turns)
-    s, c = _turn(value, 2 * pi * value.error * (1 + SLACK) + ELLIPTIC)
-    sine[0][sine[1]], cosine[0][cosine[1]] = _pair(s), _pair(c)
+    value = pair_total(turns)
+    s, c = sine_and_cosine(value, 2 * pi * value.error * (1 + SLACK) + ELLIPTIC)
+    sine[0][sine[1]], cosine[0][cosine[1]] = pair(s), pair(c)
 
 
 def _series_error(machine: Machine) -> float:
@@ -385,71 +267,6 @@ def _series_error(machine: Machine) -> float:
     angle = 2 * pi * 0.1251
     coefficients = 2.0**-53 * exp(angle)
     return float(rounding + coefficients + angle**18 / 6.4e15) * (1 + SLACK)
-
-
-# --- the parts of a box -----------------------------------------------------------------------------------------------
-
-_Part = tuple[tuple[float, float], ...]  # the range of each component of omega
-
-
-def _signed(box: Box) -> Iterator[_Part]:
-    """Yield the parts of a box of omega in which each component is negative, zero or positive."""
-    ends = [(float(low), float(high)) for low, high in (box[f"omega_{i}"] for i in (1, 2, 3))]
-    least = max(max(max(abs(low), abs(high)) for low, high in ends) * TINY, ulp(0.0))
-    choices = []
-    for i, (low, high) in enumerate(ends, start=1):
-        parts = [(0.0, 0.0)] if low <= 0 <= high else []
-        parts += [(max(low, least), high)] if high >= least else []
-        parts += [(low, min(high, -least))] if low <= -least else []
-        if not parts:
-            raise InputError(
-                f"expected a range of omega_{i} with numbers that are 0 or at least {TINY:g} of the largest |omega| in "
-                f"the box, got {low:g} to {high:g}"
-            )
-        choices.append(parts)
-    for first in choices[0]:
-        for second in choices[1]:
-            for third in choices[2]:
-                yield first, second, third
-
-
-def _shells(part: _Part) -> Iterator[tuple[float, _Part]]:
-    """Yield the powers of two by which omega is divided in a part of the box, each with the part of omega for it."""
-    smallest = max(min(abs(low), abs(high)) for low, high in part)
-    largest = max(max(abs(low), abs(high)) for low, high in part)
-    if largest == 0:
-        yield 1.0, part
-        return
-    first, last = frexp(smallest)[1] if smallest else -1100, frexp(largest)[1]
-    if last - first > 8:
-        raise InputError(f"{MIDDLE}, got one that contains omega = 0, or nearly")
-    for exponent in range(first, last + 1):
-        most = ldexp(1.0, exponent) if exponent < 1024 else inf
-        clipped = tuple((max(low, -most), min(high, most)) for low, high in part)
-        largest = max(max(abs(a), abs(b)) for a, b in clipped)
-        if all(low <= high for low, high in clipped) and largest >= ldexp(1.0, exponent - 1):
-            yield _power(exponent), clipped
-
-
-def _power(exponent: int) -> float:
-    """Return the power of two by which the C text divides numbers whose largest has an exponent."""
-    return 2.0 ** min(max(exponent, LEAST_POWER), LARGEST_POWER)
-
-
-def _power_near(largest: float) -> float:
-    return _power(frexp(largest)[1]) if largest else 1.0
-
-
-def _halves(part: _Part) -> tuple[_Part, _Part]:
-    widths = [abs(high - low) for low, high in part]
-    place = widths.index(max(widths))
-    low, high = part[place]
-    middle = (low + high) / 2
-    if not low < middle < high:
-        raise InputError(f"{MIDDLE}, got one on the border")
-    return tuple((low, middle) if i == place else each for i, each in enumerate(part)), tuple(
-        (middle, high) if i == place else each for i, each in enumerate(part)
-    )
 
 
 def free_body_bounds(source: str, name: str, moments: list[float], box: Box) -> tuple[list[float], list[float]]:
@@ -478,7 +295,7 @@ def free_body_bounds(source: str, name: str, moments: list[float], box: Box) -> 
     low, high = (float(end) for end in box["dt"])
     size = Bounded(low, high, 0.0, 0.0)
     rounding, truncation = [0.0] * 7, [0.0] * 7
-    parts = [(scale, each) for part in _signed(box) for scale, each in _shells(part)]
+    parts = [(scale, each) for part in signed_parts(box) for scale, each in shells(part)]
     count = 0
     while parts:
         scale, part = parts.pop()
@@ -497,7 +314,7 @@ def free_body_bounds(source: str, name: str, moments: list[float], box: Box) -> 
                 sizes = [b.most for b in errors[:3]] + [2.0] * 4
                 truncation = [max(a, cut * b + 2.0**-100 * b) for a, b in zip(truncation, sizes, strict=True)]
         except UndecidedError:
-            parts += [(scale, half) for half in _halves(part)]
+            parts += [(scale, half) for half in halves(part)]
     if not all(x < inf for x in rounding):
         raise InputError("expected a smaller box, on which the errors of the step have bounds, got one without bounds")
     return rounding, truncation

@@ -5,7 +5,7 @@ bounds of the difference between the computed and the exact result: an absolute 
 """
 
 from fractions import Fraction
-from math import frexp, inf, isnan, nextafter, sqrt
+from math import frexp, inf, isnan, nextafter, sqrt, ulp
 from typing import Any
 
 __all__ = ["DOUBLE", "PAIR", "Bounded", "UndecidedError", "point"]
@@ -16,6 +16,7 @@ PAIR = 2.0**-102
 """Relative error of one operation on sums of two doubles; the proven ones are below 13*2^-106 (double_double.h)."""
 _UNDER = 2.0**-1060  # above the error of a result too small for all its digits
 _SMALL = 2.0**-900  # above numbers whose sums of two doubles lack digits
+_LEAST = ulp(0.0)  # the smallest positive double: a smaller product is computed as 0
 _GROW = 1 + 2.0**-40  # more than the rounding errors of a computed bound
 
 
@@ -29,6 +30,11 @@ def _down(x: float) -> float:
 
 def _up(x: float) -> float:
     return nextafter(x, inf)
+
+
+def _scaled_up(a: float, b: float) -> float:
+    """Return at least the product of two numbers that are not negative; it is 0 only if one of them is."""
+    return _known(a * b) * _GROW + _LEAST if a and b else 0.0
 
 
 def _known(x: float) -> float:
@@ -45,8 +51,9 @@ class Bounded:
         low, high = (-inf if isnan(low) else low), (inf if isnan(high) else high)
         self.low, self.high = low, high
         error, relative = _known(error), _known(relative)
-        self.error = min(error, _known(relative * self.most) * _GROW) if relative < inf else error
-        self.relative = min(relative, error / self.least * _GROW) if self.least > 0 else relative
+        most, least = self.most, self.least
+        self.error = min(error, _scaled_up(relative, most)) if relative < inf else error
+        self.relative = min(relative, error / least * _GROW + _LEAST * (error > 0)) if least > 0 else relative
         # of the high part of a sum of two doubles: that sum
         self.pair = pair
 
