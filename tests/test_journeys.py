@@ -17,7 +17,8 @@ from symrot.checker.claim.claims import Claim
 from symrot.closed_form.registry import exact_form
 from symrot.codegen.library_kernels import kernel_program
 from symrot.codegen.lowering.lower import lower
-from symrot.codegen.printing.c_source import c_function, c_functions
+from symrot.codegen.printing.c_function import c_function
+from symrot.codegen.printing.c_source import c_functions
 from symrot.codegen.printing.numpy_source import numpy_source
 from symrot.codegen.scene_kernels import derive_scene_kernel, rates_program
 from symrot.dynamics.equations import equations_of_motion

@@ -15,7 +15,7 @@ from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.source.text import claim_of_text, is_latex
 from symrot.checker.claim_verdict import unfinished, verdict_of_decision, within_limits
 from symrot.checker.latex.writing import LatexNotation
-from symrot.checker.repair.edits import COST
+from symrot.checker.repair.edits.faults import COST
 from symrot.checker.time_limit import TimeUp
 from symrot.checker.typed.copied_signs import with_plain_signs
 from symrot.checker.typed.tokens import LETTERS

@@ -20,11 +20,12 @@ from symrot.checker.claim.named_formula import (
 from symrot.checker.claim.values import decide_value
 from symrot.checker.decide.decision import decide_equation, for_positive_bases, is_large
 from symrot.checker.decide.ranges.text import condition_texts
-from symrot.checker.equivalents import inverse_factor
 from symrot.checker.equivalents.aircraft_names import with_usual_letters
 from symrot.checker.equivalents.inertia_in_frames import on_inertia_in_frames
+from symrot.checker.equivalents.inverse_factor import multiplied
+from symrot.checker.equivalents.product_signs import with_minus_sign
 from symrot.checker.equivalents.rotation_rates import tested_on_rotations
-from symrot.checker.equivalents.symmetry_axis import in_claim, with_axis_z
+from symrot.checker.equivalents.symmetry_axis import with_axis_z
 from symrot.checker.time_limit import TimeUp, processor_seconds
 from symrot.checker.units.check import check_dimensions
 from symrot.checker.verdict import Diagnosis, Verdict
@@ -174,22 +175,13 @@ def _on_name(
 
     Return None for other claims.
     """
-    if claim.context.sign_of_products == "plus":
-        from symrot.checker.equivalents import product_signs
-
-        result = _on_name(product_signs.with_minus_sign(claim), repair, formula_of)
-        return result and (None, replace(product_signs.in_claim(result[1]), text=claim.text))
-    if claim.context.body is not None and (axis := claim.context.body.symmetry_axis):
-        result = _on_name(with_axis_z(claim), repair, formula_of)
-        return result and (None, replace(in_claim(result[1], axis), text=claim.text))
-    if (renamed := with_usual_letters(claim)) is not None:
-        result = _on_name(renamed.claim, repair, formula_of)
-        if result and result[1].verdict in ("recognised", "doubtful"):
-            return None, replace(renamed.in_claim(result[1]), text=claim.text)
-    if (product := inverse_factor.multiplied(claim)) is not None:
-        result = _on_name(product[0], repair, related_formula)
-        if result and result[1].verdict in ("recognised", "doubtful"):
-            return None, replace(inverse_factor.in_claim(result[1], product[1]), text=claim.text)
+    if (other := with_minus_sign(claim) or with_axis_z(claim)) is not None:
+        result = _on_name(other.claim, repair, formula_of)
+        return result and (None, replace(other.in_typed_form(result[1]), text=claim.text))
+    for other, formula in ((with_usual_letters(claim), formula_of), (multiplied(claim), related_formula)):
+        result = None if other is None else _on_name(other.claim, repair, formula)
+        if other and result and result[1].verdict in ("recognised", "doubtful"):
+            return None, replace(other.in_typed_form(result[1]), text=claim.text)
     if (on_frames := on_inertia_in_frames(claim)) is not None:
         return None, on_frames
     named = formula_of(claim) if claim.relation is not None else None
@@ -199,7 +191,7 @@ def _on_name(
     from symrot.checker.context.exchanged_letters import by_exchanged_letters
     from symrot.checker.context.named_bodies import of_named_body
     from symrot.checker.context.sizes import by_other_sizes
-    from symrot.checker.recognition.naming import verdict_on_name
+    from symrot.checker.recognition.naming.verdicts import verdict_on_name
 
     start = perf_counter()
 
@@ -249,7 +241,7 @@ def _was_near_relation(claim: Claim) -> bool:
 
 def _near_relation(claim: Claim, verdict: Verdict) -> Verdict:
     """Return ``verdict``, on a false claim, with repairs that turn the claim into a known relation, if any."""
-    from symrot.checker.recognition.naming import verdict_near_relation
+    from symrot.checker.recognition.naming.near_verdicts import verdict_near_relation
 
     nearest = verdict_near_relation(claim)
     if nearest is None and verdict.dimension.status == "inconsistent":  # then even a short formula has a fault
@@ -266,7 +258,7 @@ def _on_motion(claim: Claim, verdict: Verdict) -> Verdict:
     if claim.hypotheses or claim.define or claim.context.obscure:
         return verdict
     from symrot.checker.context.relations.motion import by_motion
-    from symrot.checker.recognition.naming import AS_IT_STANDS
+    from symrot.checker.recognition.naming.verdicts import AS_IT_STANDS
 
     if any(note.startswith(AS_IT_STANDS) for note in verdict.notes):
         return verdict
@@ -278,7 +270,7 @@ def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
     """Return (None, verdict) for a known relation, such as an impulse equation; None for other claims."""
     if claim.relation is None or claim.hypotheses:
         return None
-    from symrot.checker.recognition.naming import verdict_on_relation
+    from symrot.checker.recognition.naming.verdicts import verdict_on_relation
 
     start = perf_counter()
     verdict = verdict_on_relation(claim)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symrot.ensemble.ensemble import propagate_ensemble
-from symrot.ensemble.variation import own_rates, read_variation, to_body
+from symrot.ensemble.reading import own_rates, read_variation, to_body
 from symrot.errors import InputError, PropagationError
 from symrot.results.tables import BY
 from symrot.scene.scene import Scene

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symrot.ensemble.variation import read_times
+from symrot.ensemble.reading import read_times
 from symrot.errors import InputError, with_hint
 from symrot.formula.exact_numbers import show
 from symrot.planning.plan import Plan, make_plan

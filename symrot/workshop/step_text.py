@@ -7,7 +7,8 @@ from typing import Any
 
 from symrot.certificates.step_certificate import StepUnderTest, step_certificate
 from symrot.codegen.printing.banner import Description
-from symrot.codegen.printing.c_source import DOUBLE, FLOAT, Real, c_functions, c_header, c_name, with_head
+from symrot.codegen.printing.c_function import DOUBLE, FLOAT, Real, c_name
+from symrot.codegen.printing.c_source import c_functions, c_header, with_head
 from symrot.codegen.printing.jax_source import jax_source
 from symrot.codegen.printing.js_source import js_source
 from symrot.codegen.printing.numpy_source import numpy_source

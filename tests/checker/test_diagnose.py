@@ -8,7 +8,7 @@ import symrot
 from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.reader import read_expression, read_relation
 from symrot.checker.repair.canonical_form import canonical, terms_of_equation
-from symrot.checker.repair.edits import FAULT_DESCRIPTIONS
+from symrot.checker.repair.edits.faults import FAULT_DESCRIPTIONS
 from symrot.checker.repair.points import Point, UndefinedValue, agree, points
 from symrot.errors import InputError
 

@@ -8,7 +8,7 @@ import pytest
 import symrot
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.repair.canonical_form import canonical
-from symrot.checker.repair.edits import FAULT_DESCRIPTIONS
+from symrot.checker.repair.edits.faults import FAULT_DESCRIPTIONS
 from symrot.checker.verdict import Repair
 from tests.campaigns.checker import repairs as module
 from tests.campaigns.checker.mutations import MUTATIONS, mutated, places

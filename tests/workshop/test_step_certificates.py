@@ -414,7 +414,6 @@ def test_the_rates_in_a_certificate_are_those_of_the_scene():
 
 @pytest.mark.parametrize(("options", "message"), [
     ({"step": "rk4", "box": {"omega_1": (-1, 1)}}, "expected --box omega_2=LOW:HIGH .* --box dt=LOW:HIGH"),
-    ({"step": "exact", "box": BOX}, "away from the rotation about the middle axis"),
     ({"step": "rk4", "objects": True}, "neither objects nor rounding=False"), ({"order": 3}, "expected a step as well"),
     ({"step": "rk4", "box": BOX | {"weight": (1, 2)}}, "an input of the kernel or a constant"),
 ])  # fmt: skip

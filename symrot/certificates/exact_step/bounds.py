@@ -11,6 +11,7 @@ in the nome q are cut after q^15, with an error below 40 q^16 of the elliptic fu
 
 from collections.abc import Callable
 from fractions import Fraction
+from functools import lru_cache
 from math import exp, inf, pi, sqrt
 from typing import Any
 
@@ -272,6 +273,8 @@ def _series_error(machine: Machine) -> float:
 def free_body_bounds(source: str, name: str, moments: list[float], box: Box) -> tuple[list[float], list[float]]:
     """Return bounds of rounding and of truncation of an exact step of a free body: of omega, then of the quaternion.
 
+    Equal calls are computed once per process.
+
     Parameters
     ----------
     source : str
@@ -290,6 +293,15 @@ def free_body_bounds(source: str, name: str, moments: list[float], box: Box) -> 
     CertificateError
         If the C text is no exact step of a free body.
     """
+    rounding, truncation = _bounds(source, name, tuple(moments), tuple(box.items()))
+    return list(rounding), list(truncation)
+
+
+@lru_cache(maxsize=16)
+def _bounds(
+    source: str, name: str, moments: tuple[float, ...], ranges: tuple[tuple[str, tuple[Fraction, Fraction]], ...]
+) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    box = dict(ranges)
     context = _Context(source, name)
     context.series_error = _series_error(context.machine)
     low, high = (float(end) for end in box["dt"])
@@ -304,7 +316,7 @@ def free_body_bounds(source: str, name: str, moments: list[float], box: Box) -> 
             raise InputError(f"{MIDDLE}, got one with such states; the step taylor of order 16 has bounds there")
         context.scale = scale
         try:
-            context.prepare(moments, [point(a) if a == b else Bounded(a, b, 0.0, 0.0) for a, b in part])
+            context.prepare(list(moments), [point(a) if a == b else Bounded(a, b, 0.0, 0.0) for a, b in part])
             cells = 1 if context.is_steady else CELLS
             for k in range(cells):
                 context.phase = (k / cells, (k + 1) / cells)
@@ -317,4 +329,4 @@ def free_body_bounds(source: str, name: str, moments: list[float], box: Box) -> 
             parts += [(scale, half) for half in halves(part)]
     if not all(x < inf for x in rounding):
         raise InputError("expected a smaller box, on which the errors of the step have bounds, got one without bounds")
-    return rounding, truncation
+    return tuple(rounding), tuple(truncation)

@@ -8,6 +8,7 @@ follow from the hash of the text. So constants, signs, series and where they end
 from collections.abc import Callable, Mapping, Sequence
 from decimal import ROUND_HALF_EVEN, Context, Decimal, localcontext
 from fractions import Fraction
+from functools import lru_cache
 from hashlib import sha256
 from math import copysign, frexp
 from typing import Any
@@ -188,7 +189,9 @@ def law_section(
     source: str, name: str, rates: Program, values: Mapping[str, Fraction], parameters: Sequence[Fraction],
     omega_scale: Fraction, count: int = STATES,
 ) -> dict[str, Any]:  # fmt: skip
-    """Return what a step's certificate states of a C function: its law, the number of states, the largest violation.
+    """Check that a C function is the motion at some states, and return what the certificate of a step states about it.
+
+    The result has the law, the number of states, and the largest violation. Equal calls are computed once per process.
 
     Parameters
     ----------
@@ -212,10 +215,18 @@ def law_section(
     CertificateError
         If the C text violates the law, or is no C that symrot emits.
     """
+    return dict(_law(source, name, rates, tuple(values.items()), tuple(parameters), omega_scale, count))
+
+
+@lru_cache(maxsize=16)
+def _law(
+    source: str, name: str, rates: Program, values: tuple[tuple[str, Fraction], ...],
+    parameters: tuple[Fraction, ...], omega_scale: Fraction, count: int,
+) -> dict[str, Any]:  # fmt: skip
     machine = Machine(source, _number, _OWN)
     with localcontext(Context(prec=PRECISION)):
         p = [_number(x) for x in parameters]
-        constants = {symbol: _number(value) for symbol, value in values.items()} | {"t": Decimal(0)}
+        constants = {symbol: _number(value) for symbol, value in values} | {"t": Decimal(0)}
         worst = Decimal(0)
         for state, dt in _states(source, omega_scale)[:count]:
             worst = max(worst, _violation(machine, name, rates, constants, p, state, dt, _number(omega_scale)))

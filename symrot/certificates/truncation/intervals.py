@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from fractions import Fraction
+from functools import lru_cache
 from math import inf, nextafter
 from typing import Any
 
@@ -27,6 +28,11 @@ def precision() -> Iterator[None]:
 
 def number(value: Fraction) -> Any:
     """Return an interval that contains a fraction, as narrow as the precision allows."""
+    return _number(value, iv.prec)
+
+
+@lru_cache(maxsize=4096)
+def _number(value: Fraction, bits: int) -> Any:
     return iv.mpf(value.numerator) / value.denominator
 
 

@@ -18,7 +18,8 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, names_in, text
 from symrot.checker.context.angle_orders import USUAL_SEQUENCES
-from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, single_edits
+from symrot.checker.repair.edits.faults import FAULT_DESCRIPTIONS
+from symrot.checker.repair.edits.single import single_edits
 from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.conventions import SEQUENCES

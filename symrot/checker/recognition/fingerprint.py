@@ -14,7 +14,7 @@ from sympy import Expr, Mul, Rational, S, cancel
 
 from symrot.checker.claim.interpreter import atoms_of
 
-__all__ = ["PRIME", "Fingerprint", "NotInField", "fingerprint", "in_lowest_terms", "values_at"]
+__all__ = ["PRIME", "Fingerprint", "NotInField", "Values", "fingerprint", "in_lowest_terms", "values_at"]
 
 PRIME = 2**61 - 1  # different functions agree at a random point with a probability of 1e-18
 """A prime that is 3 modulo 4: the circle then has no points at infinity, and one power gives a square root."""

@@ -94,8 +94,8 @@ def _with_fitting_line(
     """
     if len(lines) != len(claims) or len(lines) > MOST_LINES or any(claim.hypotheses for claim in claims):
         return verdict
-    from symrot.checker.recognition.naming import recognised_edits  # it takes longer to import than most checks
-    from symrot.checker.repair.edits import FAULT_DESCRIPTIONS
+    from symrot.checker.recognition.naming.edited import recognised_edits  # it takes longer to import than most checks
+    from symrot.checker.repair.edits.faults import FAULT_DESCRIPTIONS
 
     nearest: tuple[tuple[int, float], Verdict] | None = None  # without such an edit, the verdict is unchanged
     for place, claim in enumerate(claims):

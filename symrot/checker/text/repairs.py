@@ -1,13 +1,13 @@
 """Repairs in the notation in which the claim was typed: ``q p`` for ``qmul(q, p)``, abbreviations, LaTeX."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from symrot.checker.arrays.as_written import as_written, has_arrays, is_odd, with_inverses
 from symrot.checker.claim.claims import Claim, relation_text
 from symrot.checker.claim.notation import Notation
 from symrot.checker.claim.reader import read_relation
-from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim.tree import Node, exchanged, walk
 from symrot.checker.marks import changed_entry, changed_spans
 from symrot.checker.typed.readings import Relation
 from symrot.checker.verdict import Repair
@@ -68,11 +68,7 @@ def as_typed(source: str, written: Sequence[tuple[Node, Node]]) -> str:
     if relation is None:
         return source
     sign, left, right = relation
-    return relation_text((sign, _exchanged(left, dict(written)), _exchanged(right, dict(written))))
-
-
-def _exchanged(tree: Node, trees: Mapping[Node, Node]) -> Node:
-    return trees.get(tree) or replace(tree, args=tuple(_exchanged(child, trees) for child in tree.args))
+    return relation_text((sign, exchanged(left, dict(written)), exchanged(right, dict(written))))
 
 
 def _keeps(repair: Repair, written: Sequence[tuple[Node, Node]]) -> bool:

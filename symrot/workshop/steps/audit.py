@@ -233,7 +233,7 @@ def _bounds(path: Path, data: Data, method: Method, source: str, rerun: bool) ->
             place: (Fraction(float.fromhex(low)), Fraction(float.fromhex(high)))
             for place, (low, high) in section["box"].items()
         }
-        check_section(section, operations, None, rerun)
+        check_section(section, operations, None)
         for index, (symbol, _, value) in enumerate(data["rates"]["parameters"]):
             low, high = box.get(f"p[{index}]", (Fraction(0), Fraction(0)))
             if f"p[{index}]" in box and not low <= Fraction(float.fromhex(value)) <= high:

@@ -19,7 +19,7 @@ from symrot.certificates.exact_step.law import law_section
 from symrot.certificates.step_certificate import SCHEMA, trusted
 from symrot.closed_form.build import joined
 from symrot.closed_form.registry import exact_form
-from symrot.codegen.printing.c_source import DOUBLE, FLOAT, Real
+from symrot.codegen.printing.c_function import DOUBLE, FLOAT, Real
 from symrot.codegen.printing.parameters_header import parameters_file
 from symrot.codegen.steady_rotations import STATES
 from symrot.errors import InputError

@@ -10,8 +10,8 @@ from dataclasses import replace
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.tree import TIME, Node, is_derivative, walk
-from symrot.checker.recognition.parts import Letters, PointOfLetters, Values, rates_of_entries, values_of
-from symrot.checker.repair.edits import OPPOSITE
+from symrot.checker.recognition.single_faults.parts import Letters, PointOfLetters, Values, rates_of_entries, values_of
+from symrot.checker.repair.edits.names import OPPOSITE
 from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.repair.points import points
 from symrot.checker.repair.rows import is_matrix

@@ -8,12 +8,13 @@ from functools import cache
 from typing import NamedTuple
 
 from symrot.checker.claim.named_formula import NamedFormula
-from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.solving import Solve
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint
+from symrot.checker.recognition.printed_text import read_printed
+from symrot.checker.repair.edits.trees import square_of
 
-__all__ = ["SolvedRelation", "put_back", "solved_claims", "solved_relations"]
+__all__ = ["put_back", "solved_claims", "solved_relations"]
 
 SQUARED = ", squared"
 
@@ -41,7 +42,7 @@ def solved_relations() -> tuple[SolvedRelation, ...]:
     """Return every known relation solved for each symbol for which that is possible."""
     solved = []
     for known in (known for group in by_fingerprint().values() for known in group if known.is_relation):
-        tree = read_expression(known.text)
+        tree = read_printed(known.text)
         for name in dict.fromkeys(str(node.value) for _, node in walk(tree) if node.kind == "name"):
             solution = _solution(_terms(tree), Node("name", name)) if name != "pi" else None
             if solution is not None:
@@ -80,7 +81,7 @@ def solved_claims(left: Node, right: Node, atoms: Sequence[Node]) -> Iterator[Na
         if coefficient.kind == "neg":
             coefficient, rest = negated(coefficient), sum_of([negated(term) for term in _terms(rest)])
         name = atom.args[0] if atom.value == "diff" else atom
-        power = atom if solution.exponent == 1 else Node("power", None, (atom, number(2)))
+        power = atom if solution.exponent == 1 else square_of(atom)
         side = product([coefficient, power]) if coefficient != number(1) else power
         yield NamedFormula(str(name.value), side, rest, name is not atom, _solve(coefficient, solution.exponent))
 
@@ -133,7 +134,7 @@ def _without(term: Node, letter: Node) -> tuple[Node, int] | None:
         inner = _without(term.args[0], letter)
         return None if inner is None else (negated(inner[0]), inner[1])
     factors = list(term.args) if term.kind == "product" else [term]
-    square = Node("power", None, (letter, number(2)))
+    square = square_of(letter)
     own = [factor for factor in factors if factor in (letter, square)]
     others = [factor for factor in factors if factor not in own]
     if len(own) != 1 or any(letter == node for factor in others for _, node in walk(factor)):

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from itertools import combinations, permutations
 
-from symrot.checker.recognition.parts import Letters, Values, near, rational
+from symrot.checker.recognition.single_faults.parts import Letters, Values, near, rational
 from symrot.checker.repair.rows import is_matrix
 
 __all__ = ["is_shifted_moment", "is_symmetric_body"]

@@ -14,12 +14,15 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.solving import is_name_or_rate
-from symrot.checker.claim.tree import TIME, Node, negated, number, product, sum_of, text, walk
-from symrot.checker.recognition.evidence import LEAST_SYMBOLS_EDITED, names_in, quantity_name
-from symrot.checker.repair.edits import COST, OPPOSITE, scaled
+from symrot.checker.claim.tree import TIME, Node, exchanged, negated, number, product, sum_of, text, walk
+from symrot.checker.recognition.naming.evidence import LEAST_SYMBOLS_EDITED
+from symrot.checker.recognition.naming.quantities import names_in, quantity_name
+from symrot.checker.repair.edits.faults import COST
+from symrot.checker.repair.edits.names import OPPOSITE
+from symrot.checker.repair.edits.trees import scaled, square_of
 from symrot.checker.verdict import Verdict
 
-__all__ = ["QuantityVariant", "by_lengths", "is_evident_by_quantity", "quantity_variants", "without_inverse"]
+__all__ = ["by_lengths", "is_evident_by_quantity", "quantity_variants", "without_inverse"]
 
 TWO = number(2)
 FUNCTION_OF = {"acos": "cos", "asin": "sin"}
@@ -50,11 +53,11 @@ def quantity_variants(named: NamedFormula) -> Iterator[QuantityVariant]:
     if side.kind == "power" and side.args[1] == TWO and is_name_or_rate(side.args[0]):
         yield QuantityVariant(side.args[0], formula, "exponent", COST["exponent"])
     if is_name_or_rate(side):
-        square = _square_of(side)
+        square = square_of(side)
         yield QuantityVariant(square, formula, "exponent", COST["exponent"])
         terms = [term.args[0] if term.kind == "neg" else term for term in formula.args]
         if formula.kind == "sum" and all(map(is_name_or_rate, terms)):
-            squares = [negated(_square_of(t.args[0])) if t.kind == "neg" else _square_of(t) for t in formula.args]
+            squares = [negated(square_of(t.args[0])) if t.kind == "neg" else square_of(t) for t in formula.args]
             yield QuantityVariant(square, sum_of(squares), "exponent", COST["exponent"])
 
 
@@ -79,10 +82,6 @@ def without_inverse(named: NamedFormula) -> NamedFormula | None:
     return named._replace(side=side, formula=call.args[0], solve=solve)
 
 
-def _square_of(tree: Node) -> Node:
-    return Node("power", None, (tree, TWO))
-
-
 def is_evident_by_quantity(claim: Claim, named: NamedFormula, changed: QuantityVariant) -> bool:
     """Return whether the author of a claim probably means the corrected claim ``changed``."""
     letters = names_in(named.formula)
@@ -105,14 +104,14 @@ def by_lengths(named: NamedFormula, judge: Callable[[NamedFormula], Verdict]) ->
     squares = dict(_squares(named.formula))
     if not squares:
         return None
-    verdict = judge(named._replace(formula=_exchanged(named.formula, squares)))
+    verdict = judge(named._replace(formula=exchanged(named.formula, squares)))
     if verdict.verdict == "definition":
         return None
     back = {whole: square for square, whole in squares.items()}
     repairs = []
     for repair in verdict.repairs:
         _, left, right = read_relation(repair.text)
-        repairs.append(replace(repair, text=f"{text(left)} == {text(_exchanged(right, back))}"))
+        repairs.append(replace(repair, text=f"{text(left)} == {text(exchanged(right, back))}"))
     notes = tuple(_note(square, whole) for square, whole in squares.items())
     return replace(verdict, repairs=tuple(repairs), notes=(*verdict.notes, *notes))
 
@@ -129,7 +128,7 @@ def _squares(formula: Node) -> Iterator[tuple[Node, Node]]:
         node for _, node in walk(formula) if node.kind == "name" or (node.kind == "call" and node.args == (TIME,))
     ]
     for letter in dict.fromkeys(letters):
-        square = Node("power", None, (letter, number(2)))
+        square = square_of(letter)
         if letters.count(letter) != sum(node == square for _, node in walk(formula)):
             continue
         for axes in AXES:
@@ -139,10 +138,4 @@ def _squares(formula: Node) -> Iterator[tuple[Node, Node]]:
                 stem = str(parts[0].value)[:-1]
                 written = {part.value: part for part in parts}
                 components = [written.get(stem + axis, Node("name", stem + axis)) for axis in axes]
-                yield square, sum_of([Node("power", None, (part, number(2))) for part in components])
-
-
-def _exchanged(tree: Node, trees: dict[Node, Node]) -> Node:
-    if tree in trees:
-        return trees[tree]
-    return replace(tree, args=tuple(_exchanged(child, trees) for child in tree.args))
+                yield square, sum_of([square_of(part) for part in components])

@@ -6,13 +6,17 @@ does not see such faults; so this module edits the whole formula and computes it
 
 import re
 from bisect import bisect_left
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import chain, combinations, islice
 from typing import Any, NamedTuple
 
 from symrot.checker.claim.tree import Node, number, product, replaced, walk, with_names
-from symrot.checker.recognition.parts import FUNCTIONS, LACKING, Letters, Values, near, values_of
-from symrot.checker.repair.edits import COST, Edit, bracketed, flattened, single_edits
+from symrot.checker.recognition.single_faults.parts import Letters, Values, near, values_of
+from symrot.checker.recognition.single_faults.variants import FUNCTIONS, LACKING
+from symrot.checker.repair.edits.faults import COST
+from symrot.checker.repair.edits.single import Edit, single_edits
+from symrot.checker.repair.edits.sums_and_products import bracketed
+from symrot.checker.repair.edits.trees import flattened, square_of
 from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.repair.rows import entries_of, is_matrix, shape_of
 
@@ -102,7 +106,7 @@ def _brackets(formula: Node) -> Iterator[Edit]:
         if node.kind == "sum" and len(node.args) <= MOST_TERMS:
             for made in bracketed(node.args):
                 cost = COST["lost_brackets"] + COST["per_level"] * len(path)
-                yield Edit("lost_brackets", cost, path, flattened(replaced(formula, path, _always(made))))
+                yield Edit("lost_brackets", cost, path, flattened(replaced(formula, path, made)))
 
 
 def _exchanges(formula: Node, letters: Letters) -> Iterator[Edit]:
@@ -114,21 +118,16 @@ def _exchanges(formula: Node, letters: Letters) -> Iterator[Edit]:
         yield Edit("wrong_symbol", COST["wrong_symbol"] + COST["names_exchanged"], (), tree)
 
 
-def _always(node: Node) -> Callable[[Node], Node]:
-    """Return a function that returns ``node`` for every argument."""
-    return lambda _: node
-
-
 def _powers(formula: Node, numeric: NumericFilter) -> Iterator[Edit]:
     """Yield edits of a formula that put ``R^2`` for a matrix ``R``, or ``R`` for ``R^2``."""
     kinds = {path: node.kind for path, node in walk(formula)}
     for path, node in walk(formula):
         if node.kind in ("name", "call") and numeric.is_matrix(node) and kinds.get(path[:-1]) != "power":
-            squared = Node("power", None, (node, number(2)))
-            yield Edit("exponent", COST["exponent"], path, replaced(formula, path, _always(squared)))
+            squared = square_of(node)
+            yield Edit("exponent", COST["exponent"], path, replaced(formula, path, squared))
         elif node.kind == "power" and numeric.is_matrix(node.args[0]):
             base = node.args[0]
-            yield Edit("exponent", COST["exponent"], path, replaced(formula, path, _always(base)))
+            yield Edit("exponent", COST["exponent"], path, replaced(formula, path, base))
 
 
 def _conjugates(formula: Node) -> Iterator[Edit]:
@@ -138,7 +137,7 @@ def _conjugates(formula: Node) -> Iterator[Edit]:
             is_conjugate = factor.kind == "call" and factor.value == "conjugate"
             made = factor.args[0] if is_conjugate else Node("call", "conjugate", (factor,))
             cost = COST["active_passive_transpose"] + COST["quaternion_conjugated"]
-            tree = replaced(formula, (*path, place), _always(made))
+            tree = replaced(formula, (*path, place), made)
             yield Edit("active_passive_transpose", cost, (*path, place), tree)
 
 
@@ -152,7 +151,7 @@ def _factors(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterato
             continue
         for factor in scalars:
             made = product([factor, node])
-            tree = flattened(replaced(formula, path, _always(made)))
+            tree = flattened(replaced(formula, path, made))
             yield Edit("factor", COST["solved_factor"] + COST["per_piece_added"], path, tree)
 
 
@@ -172,7 +171,7 @@ def _products(formula: Node, numeric: NumericFilter) -> Iterator[Edit]:
                 made = Node("call", "cross", (other, node))
             else:
                 continue
-            tree = flattened(replaced(formula, path, _always(made)))
+            tree = flattened(replaced(formula, path, made))
             yield Edit("factor", COST["missing_matrix"] + COST["per_level"] * len(path), path, tree)
 
 
@@ -202,5 +201,5 @@ def _scalars(formula: Node, numeric: NumericFilter, letters: Letters) -> Iterato
                 made[node] = None
     for node in tuple(made):
         yield node
-        yield Node("power", None, (node, number(2)))
+        yield square_of(node)
         yield Node("inv", None, (node,))
