@@ -113,10 +113,11 @@ def _name(interpreter: Interpreter, node: Node) -> Any:
 
 
 def _nearest(name: str, interpreter: Interpreter) -> str:
+    """Return words for an error message on an undeclared name: the known name nearest to it, or the declared names."""
     known = [*interpreter.values, *interpreter.functions, *CONSTANTS, *BUILT_IN]
     close = get_close_matches(name, known, 1, 0.6)
-    declared = ", ".join([*interpreter.values, *interpreter.functions]) or "none is"
-    return f"did you mean {close[0]!r}?" if close else f"declared: {declared[:80]}"
+    declared = ", ".join([*interpreter.values, *interpreter.functions])
+    return f"did you mean {close[0]!r}?" if close else f"declared: {declared[:80]}" if declared else "none is declared"
 
 
 def _sum(interpreter: Interpreter, node: Node) -> Any:

@@ -63,6 +63,8 @@ def _shape_of_call(node: Node, inner: list[Shape], shapes: Mapping[str, Shape]) 
         return (int(count), int(count)) if name == "diag" or node.args[0].kind == "number" else None
     if name in ("diff", "inverse", "adjugate", "integrate", "integral_over_body"):
         return inner[0]
+    if name == "hstack" and (parts := [shape for shape in inner if shape is not None]):
+        return parts[0][0], sum(columns for _, columns in parts)
     if name == "transpose":
         return inner[0] and (inner[0][1], inner[0][0])
     return FIXED.get(name)

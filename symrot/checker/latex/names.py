@@ -45,6 +45,7 @@ class NamesPart(SumsPart):
     """The methods of the LaTeX reader that parse names, and functions that are called by name."""
 
     def letter(self, item: tree.Node) -> Node:
+        """Parse what follows a letter; return the node of the name, or of a cosine or sine in short form."""
         if item.start in self.short:
             return self.cosine_or_sine(item)
         return self.named(item.text.removeprefix("\\"), item)

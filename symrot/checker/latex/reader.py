@@ -76,8 +76,8 @@ def read_latex(source: str, where: str = "", names: Names | None = None) -> Equa
 def latex_readings(source: str, names: Names | None = None) -> list[Reading]:
     r"""Return the readings (interpretations) of a LaTeX text, the usual one first.
 
-    In each further one, of at most six, an ambiguous part such as ``\cos^{-1} x``, or all of one kind, has its less
-    usual meaning.
+    There are at most six. In each but the first, an ambiguous part such as ``\cos^{-1} x``, or all parts of one kind,
+    have their less usual meaning.
 
     Raises
     ------

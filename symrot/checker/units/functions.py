@@ -38,6 +38,7 @@ def _rotation(axis: int) -> Callable[[UnitInference, Node], Value]:
 
 
 def _components(inference: UnitInference, node: Node) -> list[Any]:
+    """Return the dimensions of the arguments of a call, or of the entries of its only argument, a column."""
     if len(node.args) == 1:
         return [row[0] for row in inference.matrix(node.args[0])]
     return [inference.scalar(argument) for argument in node.args]
@@ -60,6 +61,7 @@ def _dot(inference: UnitInference, node: Node) -> Value:
 
 
 def _vee(inference: UnitInference, node: Node) -> Value:
+    """Return the dimensions of the vector of a skew matrix; require that opposite entries have the same one."""
     rows = inference.matrix(node.args[0])
     if shape_of(rows) != (3, 3):
         raise Unreadable
@@ -112,6 +114,7 @@ def _qmul(inference: UnitInference, p: list[Any], q: list[Any]) -> list[Any]:
 
 
 def _dcm_of(inference: UnitInference, node: Node) -> Value:
+    """Return the dimensions of a rotation matrix by the squares of the components of a quaternion."""
     q = _components(inference, node)
     if len(q) != 4:
         raise Unreadable

@@ -126,6 +126,7 @@ class UnitInference:
     # -- units of names ---------------------------------------------------------------------------------------------
 
     def unknown(self) -> Dimension:
+        """Return a new unknown unit, which equations may determine later."""
         self.fresh += 1
         return {f"?{self.fresh}": Fraction(1)}
 
@@ -174,10 +175,12 @@ class UnitInference:
         return first
 
     def in_words(self, dimension: Dimension) -> str:
+        """Return a dimension as text, with the units that the equations so far determine."""
         unit = unit_text(self.system.reduced(dimension))
         return "dimensionless" if unit == "1" else unit
 
     def same_matrices(self, first: Value, second: Value, words: str) -> Value:
+        """Return the dimensions of two matrices, entry by entry as :meth:`same`; zero may be a matrix of zeros."""
         shapes = [shape_of(value) for value in (first, second)]
         if None in shapes:
             zero = first if shapes[0] is None else second
@@ -209,12 +212,14 @@ class UnitInference:
         return _VALUE[node.kind](self, node)
 
     def scalar(self, node: Node) -> Dimension | None:
+        """Return the dimension of a scalar formula, None for zero; raise Unreadable for a matrix."""
         value: Value = self.value(node)
         if isinstance(value, tuple):
             raise Unreadable
         return value  # type: ignore[no-any-return]
 
     def matrix(self, node: Node) -> Rows:
+        """Return the dimensions of the entries of a matrix; raise Unreadable for any other formula."""
         value = self.value(node)
         if node.kind == "list" and isinstance(value, list):
             value = tuple((entry,) for entry in value)
@@ -230,6 +235,7 @@ class UnitInference:
         return dimension
 
     def times(self, first: Value, second: Value) -> Value:
+        """Return the dimension of a product of scalars or matrices; a scalar may be on either side of a matrix."""
         if not isinstance(first, tuple) and not isinstance(second, tuple):
             return ZERO if first is ZERO or second is ZERO else times(first, second)
         if not isinstance(second, tuple):
@@ -313,6 +319,7 @@ def _is_unit(tree: Node) -> bool:
 
 
 def piece_text(node: Node) -> str:
+    """Return the text of a formula for a message, cut after LONGEST_EXCERPT characters."""
     whole = text(node)
     return whole if len(whole) <= LONGEST_EXCERPT else whole[: LONGEST_EXCERPT - 2] + ".."
 
