@@ -133,8 +133,8 @@ def _checked(
             raise InputError("expected the whole claim 'left == right' as one text, got two arguments")
         if isinstance(assume, str) or not all(isinstance(hypothesis, str) for hypothesis in assume):
             raise InputError("assume: expected a list of texts like 'a == b', since the claim is a text")
-        check_length(left)
         typed = _without_backticks(left).lstrip()  # places in the text count from its first character
+        check_length(typed)  # before any search in the text, whose time grows with its length
         if not assume and not stated and (of_frames := verdict_on_rates(typed)) is not None:
             return of_frames
         if not assume and not stated and (approximate := verdict_on_approximation(typed)) is not None:

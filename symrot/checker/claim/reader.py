@@ -27,10 +27,10 @@ LONGEST_TEXT = 20_000
 MOST_PIECES = 5_000
 
 
-def check_length(source: str, prefix: str = "") -> None:
-    """Raise InputError, with a message that begins with ``prefix``, for a text of more than LONGEST_TEXT characters."""
+def check_length(source: str, place: str = "") -> None:
+    """Raise InputError for a text of more than LONGEST_TEXT characters; ``place`` is the beginning of the message."""
     if len(source) > LONGEST_TEXT:
-        raise InputError(f"{prefix}expected a formula of at most {LONGEST_TEXT} characters, got {len(source)}")
+        raise InputError(f"{place}expected a formula of at most {LONGEST_TEXT} characters, got {len(source)}")
 
 
 class _Text:
