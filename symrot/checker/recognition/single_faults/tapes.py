@@ -55,19 +55,19 @@ class Tape(NamedTuple):
         ``values`` are those of all operations at some points, the first of which is the one for ``needed``.
         """
         own = values[0]
-        needs: list[float | None] = [None] * len(own)
-        needs[-1] = needed
+        required: list[float | None] = [None] * len(own)
+        required[-1] = needed
         for place in range(len(own) - 1, -1, -1):
-            need, operation = needs[place], self.operations[place]
-            if need is None:
+            want, operation = required[place], self.operations[place]
+            if want is None:
                 continue
             neutral = NEUTRAL.get(operation.parent)
             if neutral is not None and operation.kind != "number":
                 size = max(abs(at_point[place]) for at_point in values)
-                if abs(need - neutral) <= SLACK * CLOSE * (size + neutral):
+                if abs(want - neutral) <= SLACK * CLOSE * (size + neutral):
                     return True
             for argument in operation.arguments:
-                needs[argument] = _of_argument(operation, own, place, argument, need)
+                required[argument] = _required_value(operation, own, place, argument, want)
         return False
 
 
@@ -91,26 +91,26 @@ def _value(kind: str, arguments: list[float], value: float | str, symbols: Mappi
     return FUNCTIONS[str(value)](*arguments)
 
 
-def _of_argument(operation: Operation, own: Sequence[float], place: int, argument: int, need: float) -> float | None:
-    """Return the value that an argument should have for its operation to have the value ``need``, or None."""
+def _required_value(operation: Operation, own: Sequence[float], place: int, argument: int, want: float) -> float | None:
+    """Return the value that an argument should have for its operation to have the value ``want``, or None."""
     try:
         if operation.kind == "sum":
-            return need - (own[place] - own[argument])
+            return want - (own[place] - own[argument])
         if operation.kind == "product":
-            return need * own[argument] / own[place]
+            return want * own[argument] / own[place]
         if operation.kind == "neg":
-            return -need
+            return -want
         if operation.kind == "inv":
-            return 1.0 / need
+            return 1.0 / want
         if operation.kind == "power" and argument == operation.arguments[0]:
             exponent = own[operation.arguments[1]]
-            size = abs(need) ** (1 / exponent)
+            size = abs(want) ** (1 / exponent)
             is_even = exponent.is_integer() and exponent % 2 == 0
-            return None if need < 0 and is_even else math.copysign(size, own[argument] if is_even else need)
+            return None if want < 0 and is_even else math.copysign(size, own[argument] if is_even else want)
         if operation.value == "abs":
-            return math.copysign(need, own[argument])
+            return math.copysign(want, own[argument])
         inverse = INVERSES.get(str(operation.value)) if operation.kind == "call" else None
-        return None if inverse is None else inverse(need)
+        return None if inverse is None else inverse(want)
     except (ArithmeticError, ValueError):
         return None
 
