@@ -148,7 +148,6 @@ def _directions(real: Real, count: int, kind: Any) -> Floats:
     return np.concatenate([directions * signs, few[:, few[1] >= 0]], axis=1).astype(kind).astype(float)
 
 
-@memoised
 def _text(kernel: str) -> str:
     """Return the C text of a kernel with a loop over arrays for each form of each function of :data:`FUNCTIONS`."""
     program, reals = kernel_program(kernel), (DOUBLE, FLOAT)
