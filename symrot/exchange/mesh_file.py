@@ -77,7 +77,7 @@ def read_surface(path: Path, where: str) -> Surface:
     except Exception as reason:  # a broken file raises errors of many kinds in the readers of trimesh
         fault = " ".join(str(reason).split())[:80] or type(reason).__name__
         raise InputError(f"{where}: expected a mesh in the format {suffix[1:].upper()}, got a fault: {fault}") from None
-    return _checked(*mesh, where)._replace(bent=facts.bent)
+    return _checked(mesh[0], mesh[1], where)._replace(bent=facts.bent)
 
 
 def _trimesh() -> Any:

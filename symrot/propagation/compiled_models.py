@@ -228,9 +228,10 @@ def enclosure_text(plan: Plan, rates: Callable[[], Program], edges: Sequence[int
     key = f"enclosure {DENSE_ORDER}\n{kernel_key(plan)}"
     text = library.fetch(key)
     if text is None:
-        from symrot.codegen.enclosure.source import enclosure_source
+        from symrot.codegen.enclosure.source import enclosure_source, rounding_source
 
         # rates() is called only here, as it may have to derive the program
-        text = enclosure_source(rates(), DENSE_ORDER, edges)
+        program = rates()
+        text = enclosure_source(program, DENSE_ORDER, edges) + rounding_source(program)
         library.store(key, text)
     return text

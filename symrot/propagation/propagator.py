@@ -24,7 +24,6 @@ from symrot.propagation.motions.methods import ClosedFormMotion
 from symrot.propagation.motions.motion import Motion, RestartableMotion
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.integration_stopped import Samples
-from symrot.propagation.steppers.stats import Stats
 from symrot.propagation.steppers.stepping import is_sorted
 from symrot.propagation.trajectory import Trajectory
 from symrot.scene.attitude import Attitude, read_attitude, refuse_two
@@ -265,7 +264,7 @@ class Propagator:
             ended = PropagationError(f"{self.scene.name}: {error}")
         if samples is not None:
             numbers = np.argsort(samples.numbers)  # in the order of the requested times
-            states, stats = samples.states[numbers], Stats(*samples.cost, perf_counter() - began)
+            states, stats = samples.states[numbers], samples.stats._replace(seconds=perf_counter() - began)
             reached = times[samples.numbers[numbers]]
             part = Trajectory(motion, reached, states, motion.choice.method, stats, "", propagator=self)
         if part is not None:

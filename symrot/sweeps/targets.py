@@ -13,7 +13,7 @@ from symrot.ensemble.reading import FIXED, constant_places
 from symrot.ensemble.variation import PLACES
 from symrot.errors import InputError, with_hint
 from symrot.formula.exact_numbers import read, show
-from symrot.scene.changes import Path, number_path, path_of
+from symrot.scene.changes import Path, SceneContent, number_path, path_of
 from symrot.scene.scene import Scene
 
 __all__ = ["OMEGA", "Content", "Path", "Target", "constants_of", "read_target"]
@@ -62,7 +62,7 @@ def read_target(name: str, scene: Scene, content: Content | None) -> Target:
         return Target(name, _unit_of_constant(scene, name))
     path = _path(name)
     if not path and content is not None:
-        short = number_path(dict(content), name, scene.initial.omega_b, scene.body, scene.torques)
+        short = number_path(SceneContent(dict(content), scene.initial.omega_b, scene.body, scene.torques), name)
         path = short if short and short[0] in VARIED_TABLES else ()
     if path and content is None:
         raise InputError(f"{name}: expected the scene as a file or a dict, to vary a number in it, got a Scene object")

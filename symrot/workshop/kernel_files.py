@@ -20,6 +20,7 @@ from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
 from symrot.files.writing import write
 from symrot.kernels.library import definition, kernel_names
+from symrot.report.layout import columns
 from symrot.scene.file import names_with_kernels
 from symrot.workshop.kernel_text import KernelText, SceneText, kernel_text
 from symrot.workshop.step_text import step_text
@@ -43,8 +44,7 @@ SCENES = "scenes"  # subfolder for the kernels of shipped scenes; library kernel
 
 def kernel_lines() -> list[str]:
     """Return the lines that `symrot emit --list` prints: the name and the title of each kernel of the library."""
-    width = max(map(len, kernel_names()))
-    return [f"{name:<{width}}  {definition(name).title}" for name in kernel_names()]
+    return columns([(name, definition(name).title) for name in kernel_names()])
 
 
 def chosen_text(kernel: str, jacobian: str | None, step: str | None, order: int | None) -> KernelText:

@@ -212,8 +212,8 @@ class Hypotheses:
         raise InputError(f"the hypotheses hold at no real point{divisors}: {reason}")
 
     def entails(self, numerators: Iterable[PolyElement]) -> bool:
-        """Return whether hypotheses provably make the ``numerators`` of left - right zero; False if there are no
-        hypotheses.
+        """Return whether hypotheses and assumed signs provably make the ``numerators`` of left - right zero; False
+        without any.
         """
         target = self.constraints.ring
         return self.present and all(vanishes_on(self.constraints, poly.set_ring(target)) for poly in numerators)

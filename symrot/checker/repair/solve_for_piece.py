@@ -29,11 +29,10 @@ HOLE = Node("name", "?")
 
 CLOSE = 1e-8
 """The largest relative difference between values that are taken to be equal."""
-MOST_ATOMS = 24
-MOST_PRODUCTS = 4000
-MOST_SUMS = 24
-MOST_MATRICES = 40
-MOST_COLUMNS = 5
+MOST_ATOMS, MOST_SUMS, MOST_PRODUCTS = 24, 24, 4000
+"""The most symbols and functions, and the most brackets, from which products are made, and the most products."""
+MOST_MATRICES, MOST_COLUMNS = 40, 5
+"""The most matrices of which a multiple is added to another one, and the most vectors in dot products."""
 LARGEST_RATIO = 60
 LARGEST_OF_SIDE = 1000
 """The largest denominator of a rational factor of a piece, and of a whole term of a side."""

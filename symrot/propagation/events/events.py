@@ -7,7 +7,7 @@ than the motion's error.
 
 import ctypes
 from bisect import bisect, insort
-from collections.abc import Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import closing
 from functools import cache
 from pathlib import Path
@@ -338,6 +338,7 @@ class SearchResult(NamedTuple):
 def search(
     path: Path | str, events: Sequence[Event], p: Sequence[float], pieces: Iterable[Piece], t0: float,
     error: float = 0.0, y0: Sequence[float] | None = None,
+    y1: Callable[[], Sequence[float] | None] = lambda: None,
 ) -> SearchResult:  # fmt: skip
     """Return the zeros of events along a motion, up to the terminal event if there is one.
 
@@ -355,6 +356,8 @@ def search(
         zero.
     y0 : sequence of float, optional
         The states at t0, if the polynomials of ``pieces`` have them only to rounding errors.
+    y1 : function, optional
+        Returns the states at the end of the last piece, for the same reason, or None; called after the search.
 
     Raises
     ------
@@ -377,7 +380,8 @@ def search(
                 searcher.arrived.add((int(entry[0]), entry[1]))
         last = float(piece.edges[-1])
         if previous is None and y0 is not None:
-            entries += _zero_at_start(searcher, len(events), t0, y0, entries)
+            known = {int(entry[0]) for entry in entries if entry[1] == t0}
+            entries += _zeros_at(searcher, set(range(len(events))) - known, t0, y0)
         whole, held = _merged(entries, last)
         # a zero at t0 is listed but does not end the motion; the sign just after it makes it rising or falling
         stop = _settled(searcher, piece, events, whole, t0, left, zeros)
@@ -388,19 +392,20 @@ def search(
             early.zeros = zeros
             raise early
         previous = piece
+    if previous is not None and (at_end := y1()) is not None:
+        last = float(previous.edges[-1])
+        near = NEAR * abs(last - t0)
+        known = {int(entry[0]) for entry in held} | {zero.event for zero in zeros if abs(zero.t - last) <= near}
+        held += _zeros_at(searcher, set(range(len(events))) - known, last, at_end)
     stop = _settled(searcher, previous, events, held, t0, left, zeros) if previous is not None and held else None
     return SearchResult(zeros, stop, _open_doubts(searcher.doubts, zeros, t0), searcher.flat)
 
 
-def _zero_at_start(
-    searcher: _Search, count: int, t0: float, y0: Sequence[float], entries: Sequence[list[float]]
-) -> list[list[float]]:
-    """Return an interval [event, t0, t0, 0, 0] for each event that is zero at the start and not among ``entries``."""
+def _zeros_at(searcher: _Search, events: Iterable[int], t: float, y: Sequence[float]) -> list[list[float]]:
+    """Return an interval [event, t, t, 0, 0] for each of the ``events`` that is zero at the time t and the states y."""
     # a fitted polynomial is zero there only up to rounding: a body at rest got a tiny velocity
-    still = Piece(np.array([t0, t0 + 1.0]), np.array([[t0, 1.0, 0.0, 1.0, *y0]]))
-    known = {int(entry[0]) for entry in entries if entry[1] == t0}
-    missing = [event for event in range(count) if event not in known and searcher.sign_or_none(event, t0, still) == 0]
-    return [[float(event), t0, t0, 0.0, 0.0] for event in missing]
+    still = Piece(np.array([t, t + 1.0]), np.array([[t, 1.0, 0.0, 1.0, *y]]))
+    return [[float(event), t, t, 0.0, 0.0] for event in sorted(events) if searcher.sign_or_none(event, t, still) == 0]
 
 
 def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: float) -> list[tuple[int, float]]:

@@ -73,6 +73,13 @@ class Motion(ABC):
         """Sentences about accuracy that cannot be guaranteed for this motion; empty if there are none."""
         return self.setup.warnings
 
+    def rounding_warning(self, t: float) -> str:
+        """Return a sentence that warns of errors beyond the time t, s, a time of ``Stats.rounded_beyond``."""
+        return (
+            f"beyond t = {t!r} s the rounding of the torque, a formula of the time, may change the motion by more than "
+            "the tolerance; choose a larger tolerance"
+        )
+
     @cached_property
     def rate_parameters(self) -> list[float]:
         """The values of the parameters of the rates, for this initial state, in the order of the kernel's array p."""
@@ -205,7 +212,8 @@ class ShiftableMotion(RestartableMotion):
         # all times lie near a late start, and keep more digits if counted from the start
         motion = self.on_own_clock
         try:
-            return motion.steps(times - motion.epoch, in_order)
+            states, stats = motion.steps(times - motion.epoch, in_order)
+            return states, stats.later(motion.epoch)
         except IntegrationStopped as error:
             raise error.later(motion.epoch) from None
 

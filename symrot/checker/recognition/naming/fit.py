@@ -1,4 +1,8 @@
-"""Whether a claim may mean a known formula, judged by names, units, axes and letters, and by the context."""
+"""Whether a claim may mean a known formula, judged by names, units, axes and letters, and by the context.
+
+A claim gives a formula for a quantity (``named``); ``known`` is a known formula that is equal to it, with the letters
+that its symbols have in the claim. The context is what a user states besides the claim.
+"""
 
 import re
 from collections.abc import Iterable

@@ -15,7 +15,7 @@ from symrot.checker.decide.decision import decide_equation
 from symrot.checker.decide.equation import Equation
 from symrot.checker.recognition.identification import known_value
 from symrot.checker.recognition.known_formulas import ending_of
-from symrot.checker.recognition.naming.edited import doubtful, verdict_by_edit, with_other_products
+from symrot.checker.recognition.naming.edited import doubtful, readings_by_other_products, verdict_by_edit
 from symrot.checker.recognition.naming.evidence import is_evident, is_inverted, is_of_body, says_too_little
 from symrot.checker.recognition.naming.fit import fits_context, fits_quantity, has_other_length
 from symrot.checker.recognition.naming.quantities import has_word, names_in, quantity_name, words_of
@@ -193,7 +193,7 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
             continue
         if says_too_little(claim, named, near) or _loses_letter(claim, near.tree):
             continue
-        readings = readings_of_claim(claim, named, near.tree, 1) or with_other_products(claim, named, near.tree)
+        readings = readings_of_claim(claim, named, near.tree, 1) or readings_by_other_products(claim, named, near.tree)
         readings = readings or _with_root(claim, named, near)
         if readings and not _has_equal(claim, near.tree, repairs):
             repairs[near.tree] = Repair(f"{text(named.side)} == {text(near.tree)}", near.code, near.cost), readings

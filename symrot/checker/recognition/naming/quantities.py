@@ -79,6 +79,7 @@ def _pattern(words: tuple[str, ...]) -> re.Pattern[str]:
 
 
 def has_terms(formula: Node) -> bool:
+    """Return whether a formula contains a sum, or a list such as the rows of a matrix."""
     return any(node.kind in ("sum", "list") for _, node in walk(formula))
 
 

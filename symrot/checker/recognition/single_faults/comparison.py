@@ -61,7 +61,7 @@ class Near(NamedTuple):
 
 
 class Search(NamedTuple):
-    """A claim's formula, its values, and its changes that undo usual faults, sorted by the values that they give."""
+    """The search for one fault of a claim's formula: what is computed once and compared with every known formula."""
 
     named: NamedFormula
     letters: Letters
@@ -91,6 +91,10 @@ CLOSE = 1e-8
 
 
 def search_of(claim: Claim, named: NamedFormula, letters: Letters, values: Values) -> Search:
+    """Return the search for faults of a claim's formula, which has the ``values`` at the points of ``letters``.
+
+    The changes of each part, with their values, are computed here once for all known formulas.
+    """
     everything = Letters({**letters.atoms, LACKING: RANDOM}, letters.angles, [
         replace(point, symbols={**point.symbols, str(LACKING.value): value})
         for point, value in zip(letters.points, RANDOM, strict=True)
@@ -204,6 +208,7 @@ def _is_promising(search: Search, needed: Values) -> bool:
 
 
 def _changes(search: Search, part: Part) -> Iterator[Change]:
+    """Yield the changes of a part that give it its needed values: left out, multiplied, or changed by a usual fault."""
     if is_superfluous(part):
         code, cost = ("extra_term", 0.0) if part.parent == "sum" else ("factor", COST["factor_removed"])
         yield Change(number(int(part.parent == "product")), code, COST[code] + cost)
