@@ -4,11 +4,12 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 from itertools import islice
 
-from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.named_formula import NamedFormula, solution
+from symrot.checker.claim.interpreter import atoms_of
+from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
+from symrot.checker.claim.solving import solution
 from symrot.checker.claim.tree import Node, number, text, walk, with_names
 from symrot.checker.context.context import letters_of
 from symrot.checker.decide.decision import decide_equation
