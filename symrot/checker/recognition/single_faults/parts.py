@@ -22,7 +22,7 @@ from symrot.checker.repair.rows import entries_of, is_matrix, mapped, plus, shap
 __all__ = [
     "CLOSE",
     "NEUTRAL",
-    "Change",
+    "Correction",
     "Letters",
     "Part",
     "PointOfLetters",
@@ -62,7 +62,7 @@ class Part(NamedTuple):
     parent: str  # the kind of the node above, such as "sum"
 
 
-class Change(NamedTuple):
+class Correction(NamedTuple):
     """A correction of a part: the tree ``made`` that takes the part's place, and the code and the cost of the fault."""
 
     made: Node
@@ -310,7 +310,7 @@ def is_multiple(part: Part) -> bool:
     return True
 
 
-def multiples(part: Part) -> Iterator[Change]:
+def multiples(part: Part) -> Iterator[Correction]:
     """Yield the change of a part's sign or numeric factor that gives the part its needed values, if there is one."""
     ratio = rational(tuple(_ratio(b, a) or 0.0 for a, b in zip(part.values, part.needed, strict=True)))
     if ratio is None or ratio == 1 or (ratio < 0 and ratio != -1) or part.node.kind == "neg":
@@ -320,14 +320,14 @@ def multiples(part: Part) -> Iterator[Change]:
         if value > 0:
             size = 0.0 if ratio in (2, Fraction(1, 2)) else COST["per_factor_e"] * abs(math.log(ratio))
             cost = COST["factor"] + size
-            yield Change(number(value), "factor", cost + COST["no_integer"] * (value.denominator > 1))
+            yield Correction(number(value), "factor", cost + COST["no_integer"] * (value.denominator > 1))
     elif part.parent not in ("product", "power", "inv") or part.node.kind == "sum":  # else the whole term is changed
         if ratio == -1:
-            yield Change(negated(part.node), "sign_of_term", COST["sign_of_term"])
+            yield Correction(negated(part.node), "sign_of_term", COST["sign_of_term"])
         else:
             cost = COST["solved_factor_2" if ratio in (2, Fraction(1, 2)) else "solved_rational_factor"]
             is_angle = part.node.value in ("acos", "asin", "atan", "atan2")
-            yield Change(scaled(part.node, ratio), HALVES.get(ratio, "factor") if is_angle else "factor", cost)
+            yield Correction(scaled(part.node, ratio), HALVES.get(ratio, "factor") if is_angle else "factor", cost)
 
 
 def rational(values: Sequence[float]) -> Fraction | None:
