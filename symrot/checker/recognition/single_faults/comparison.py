@@ -11,13 +11,7 @@ from symrot.checker.claim.tree import TIME, Node, Path, exchanged, number, repla
 from symrot.checker.recognition.known_formulas import Known, ending_of
 from symrot.checker.recognition.single_faults.absent_names import absent_name
 from symrot.checker.recognition.single_faults.array_faults import ArrayFault, agree, array_faults, has_arrays, matching
-from symrot.checker.recognition.single_faults.known_values import (
-    RANDOM,
-    KnownValues,
-    needed_values,
-    tree_of,
-    views,
-)
+from symrot.checker.recognition.single_faults.known_values import RANDOM, KnownValues, needed_values, tree_of, views
 from symrot.checker.recognition.single_faults.letters import POINTS, is_atom, nodes_of, text_of
 from symrot.checker.recognition.single_faults.moments import is_shifted_moment, is_symmetric_body
 from symrot.checker.recognition.single_faults.parts import (

@@ -20,23 +20,9 @@ from symrot.checker.repair.points import Point, UndefinedValue
 from symrot.checker.repair.rows import entries_of, is_matrix, mapped, plus, shape_of, times
 
 __all__ = [
-    "CLOSE",
-    "NEUTRAL",
-    "Correction",
-    "Letters",
-    "Part",
-    "PointOfLetters",
-    "Valued",
-    "Values",
-    "is_multiple",
-    "is_superfluous",
-    "multiples",
-    "near",
-    "parts",
-    "rates_of_entries",
-    "rational",
-    "values_of",
-]
+    "CLOSE", "NEUTRAL", "Correction", "Letters", "Part", "PointOfLetters", "Valued", "Values", "is_multiple",
+    "is_superfluous", "multiples", "near", "parts", "rates_of_entries", "rational", "values_of",
+]  # fmt: skip
 
 CLOSE = 1e-9
 """The largest relative difference between values that count as equal."""
