@@ -25,7 +25,8 @@ class Event(NamedTuple):
         A formula in t, omega_1..3 (rad/s, body components) and q0..q3, with the functions of scene formulas;
         ``"lhs == rhs"`` means lhs - rhs.
     terminal : bool or int
-        Whether the motion ends at the first zero; with a number n it ends at the n-th zero.
+        Whether the motion ends at the first zero after its start; with a number n it ends at the n-th such zero. Only
+        zeros in the requested direction count.
     direction : int
         1 to locate only zeros through which the formula rises along the motion, -1 only those through which it falls, 0
         all zeros, including touches.

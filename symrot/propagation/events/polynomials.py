@@ -35,9 +35,11 @@ FEWEST, MOST = 16, 1024  # pieces fitted at a time
 # rounding. Any other motion is interpolated at Chebyshev points, on intervals that are halved until polynomial and
 # motion agree up to rounding.
 class Piece(NamedTuple):
-    """Consecutive polynomials of a motion: row i, one polynomial per state, is valid from edge i to edge i + 1, s."""
+    """Consecutive polynomials of a motion: row i, one polynomial per state, is valid from edge i to edge i + 1, s.
 
-    # in the order of the motion: decreasing if it runs backward in time
+    The edges are in the order of the motion: they decrease if it runs backward in time.
+    """
+
     edges: Floats
     rows: Floats
 
@@ -61,7 +63,7 @@ def stepped(
 ) -> Generator[Piece, None, None]:
     """Integrate a motion from its start to ``end``, s, and yield its polynomials in groups of steps.
 
-    ``records`` gets the steps, ``broken`` an error.
+    The recorded steps are appended to ``records``. If the motion stops early, the error is appended to ``broken``.
     """
     room = integration.stepper.rows_per_call
     with closing(integration.runs(end)) as runs:

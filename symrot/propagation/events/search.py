@@ -114,12 +114,15 @@ class _Search:
         return count
 
     def sign(self, event: int, t: float, piece: Piece) -> int:
-        """Return the sign of an event's formula at the time t in a piece; 0 if rounding errors are larger."""
+        """Return the sign of an event's formula at the time t in a piece.
+
+        It is 0 if rounding errors are larger than the value, or if the formula has no value at t.
+        """
         sign = self.sign_or_none(event, t, piece)
         return 0 if sign is None else sign
 
     def sign_or_none(self, event: int, t: float, piece: Piece) -> int | None:
-        """Return :meth:`sign`, or None if the formula has no value at t, such as a root of a negative number."""
+        """Return the sign, 0 within rounding errors; None if there is no value at t, as of a negative number's root."""
         edges, side = piece.edges, 1.0 if piece.edges[-1] >= piece.edges[0] else -1.0
         place = int(np.searchsorted(side * edges, side * t, "left")) - 1
         row = np.ascontiguousarray(piece.rows[min(max(place, 0), len(piece.rows) - 1)])
@@ -223,8 +226,10 @@ def _zeros_at(searcher: _Search, events: Iterable[int], t: float, y: Sequence[fl
 
 
 def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: float) -> list[tuple[int, float]]:
-    """Return the extrema, (event, time), nearer to zero than the motion's error, without those that touch it."""
-    # a doubt is an extremum so close to zero that the error of the motion matters
+    """Return the ``doubts``, pairs (event, time) of extrema near zero, each once and without those listed as zeros.
+
+    A doubt is an extremum so close to zero that the error of the motion matters.
+    """
     settled: dict[int, list[float]] = {}
     for zero in zeros:
         if zero.kind == "touching" or zero.t == t0:
@@ -233,7 +238,6 @@ def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: fl
     for event, t in sorted(doubts, key=lambda doubt: (doubt[0], abs(doubt[1] - t0))):
         times = settled.setdefault(event, [])
         place = bisect(times, t)
-        # each only once
         if all(abs(t - other) > 4 * NEAR * max(abs(t), abs(other)) for other in times[max(place - 1, 0) : place + 1]):
             times.insert(place, t)
             own.append((event, t))
@@ -270,8 +274,9 @@ def _first_sign(searcher: _Search, number: int, piece: Piece) -> int:
 
 
 def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]], list[list[float]]]:
-    """Join adjacent intervals that may contain zeros; return those that end before ``last``, and those that
-    reach it.
+    """Join adjacent intervals that may contain zeros; return those that end before the time ``last``, and the others.
+
+    The others reach ``last``, the end of a piece, and may continue in the next piece.
     """
     whole: list[list[float]] = []
     open_ones: dict[float, list[float]] = {}
@@ -289,7 +294,6 @@ def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]],
             continue
         open_ones[entry[0]] = entry
         whole.append(entry)
-    # they reach the time last and may continue in the next piece of the motion
     at_end = [entry for entry in whole if entry[4] == 0 and abs(entry[2] - last) <= NEAR * abs(last)]
     return [entry for entry in whole if entry not in at_end], at_end
 

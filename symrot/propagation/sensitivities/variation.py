@@ -111,14 +111,15 @@ def _start(scene: Scene) -> dict[str, Fraction]:
 
 
 def columns_of(scene: Scene, variables: Sequence[Variable]) -> list[Column]:
+    """Return, for each variable, how the initial state and the constants of the scene depend on it."""
     general = general_structure(scene, switched(scene))
     return [Column(scene, variable, general) for variable in variables]
 
 
 def structure_of(scene: Scene, columns: Sequence[Column], varying: Collection[str] = ()) -> Structure:
-    """Return the form of the equations in which the constants ``varying`` are parameters, not numbers.
+    """Return the structure of the equations for derivatives by the variables of ``columns``.
 
-    So is each constant that a variable of ``columns`` changes.
+    In it the constants that these variables change, and the constants ``varying``, are parameters, not numbers.
     """
     # They become parameters even if they are now zero or one, since derivatives by them are needed; so do constants
     # that differ between the motions of an ensemble (varying). Other zeros and ones simplify the equations.
