@@ -103,7 +103,7 @@ class SceneKernel:
 
     @cached_property
     def rate_parameters(self) -> Parameters:
-        """The parameters of the rates in C order, as pairs such as ``("p0", (B - C)/A)``: name, formula in constants."""
+        """The parameters of the rates in C order, as pairs such as ``("p0", (B - C)/A)``: name and formula."""
         return _loaded(self.record["rate_parameters"])
 
     @cached_property
@@ -123,7 +123,7 @@ class SceneKernel:
 
     @property
     def source(self) -> str:
-        """The C text of the rates: the function ``symrot_rates``, which takes an array of parameters, even if unused."""
+        """The C text of the rates: the function ``symrot_rates``, which takes an array of parameters, used or not."""
         return self.record["source"]
 
 
