@@ -28,6 +28,7 @@ __all__ = [
     "EXTRINSIC_SEQUENCES",
     "INTRINSIC_SEQUENCES",
     "SEQUENCES",
+    "check_frame",
     "parse_sequence",
 ]
 
@@ -63,3 +64,13 @@ def parse_sequence(name: str) -> tuple[tuple[int, int, int], bool]:
         )
     first, second, third = (AXES.index(letter) for letter in name.upper())
     return (first, second, third), name.isupper()
+
+
+def check_frame(frame: str) -> str:
+    """Return ``frame``, which says whether omega has body or space components.
+
+    Anything but ``"body"`` and ``"space"`` raises ``InputError``.
+    """
+    if frame not in ("body", "space"):
+        raise InputError(f"frame: expected 'body' or 'space', the frame of the components of omega; got {frame!r}")
+    return frame

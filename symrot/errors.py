@@ -17,6 +17,7 @@ __all__ = [
     "SymrotError",
     "complaint",
     "nearest",
+    "prefix",
     "with_hint",
 ]
 
@@ -88,12 +89,16 @@ class CertificateError(SymrotError):
     """
 
 
+def prefix(where: str) -> str:
+    """Return the beginning of a message: a place followed by a colon and a blank, or an empty text for no place."""
+    return f"{where}: " if where else ""
+
+
 def complaint(source: str, where: str, position: int, expected: str) -> InputError:
     """Return an InputError that names the expected text and its position, with an excerpt of the source around it."""
     start = max(0, position - 25)
     excerpt = ("..." if start else "") + source[start : start + 50] + ("..." if len(source) > start + 50 else "")
-    prefix = f"{where}: " if where else ""
-    return InputError(f"{prefix}expected {expected} at position {position + 1}, near {excerpt!r}")
+    return InputError(f"{prefix(where)}expected {expected} at position {position + 1}, near {excerpt!r}")
 
 
 def nearest(word: object, known: Iterable[str]) -> str:

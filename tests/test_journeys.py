@@ -17,7 +17,8 @@ from symrot.checker.claim.claims import Claim
 from symrot.closed_form.registry import exact_form
 from symrot.codegen.library_kernels import kernel_program
 from symrot.codegen.lowering.lower import lower
-from symrot.codegen.printing.c_source import c_function, c_functions
+from symrot.codegen.printing.c_function import c_function
+from symrot.codegen.printing.c_source import c_functions
 from symrot.codegen.printing.numpy_source import numpy_source
 from symrot.codegen.scene_kernels import derive_scene_kernel, rates_program
 from symrot.dynamics.equations import equations_of_motion
@@ -68,7 +69,7 @@ def test_a_claim_gets_its_meaning_once_on_its_way_to_a_verdict(text):
 def certified(kernel, folder):
     """Return all files of a kernel, as `symrot emit --all` and `symrot certify` make them."""
     bounds = files.stored_bounds(kernel, folder)
-    texts = files.kernel_files(kernel, "c", bounds) | files.kernel_files(kernel, "numpy")
+    texts = kernel.files("c", bounds) | kernel.files("numpy")
     return texts | files.certificate_files(kernel, folder, bounds)
 
 

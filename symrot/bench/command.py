@@ -97,9 +97,14 @@ def _skip(options: Namespace, say: Progress) -> ModeReport:
 
 def _stability(options: Namespace, say: Progress) -> ModeReport:
     from symrot.bench.error_growth import stability
+    from symrot.scene.scene import load_scene
 
     _targets(options)
-    results = stability.report(options.scene, options.long, options.plot, say)
+    results = stability.stability(load_scene(options.scene) if options.scene else None, options.long, say)
+    if options.plot:
+        from symrot.bench.error_growth.stability_plot import save
+
+        save(results, options.plot)
     return ModeReport(results, stability.lines(results))
 
 
@@ -117,8 +122,14 @@ STUDIES: dict[str, str] = {
     "start": "`symrot run` with an empty and with a filled cache",
     "derive": "the time of derivations",
     "check": "`symrot check` on typical claims, on claims that name a formula and on conditional ones",
+    "switches": "motions with switched torques by steps, against closed forms",
+    "ulps": "the functions that kernels call, in units in the last place",
+    "comparison.steps": "one emitted time step against the step of other tools, in operations and nanoseconds",
+    "comparison.sensitivities": "derivatives of motions against heyoka's variational equations",
+    "comparison.sweeps": "a sweep against an ensemble of the same motions, and two Dask workers against one",
+    "comparison.meshes": "mass and inertia of a mesh of a million triangles",
 }
-"""Studies of a single question: the name of a module in :mod:`symrot.bench` -> the question."""
+"""Studies of a single question: a module ``symrot.bench.NAME`` that runs as a command -> the question."""
 
 
 def _list(options: Namespace, say: Progress) -> ModeReport:

@@ -8,29 +8,22 @@ symrot's fastest run whose error is not larger. Errors are those of the last sam
 
 import argparse
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from symrot.bench.comparison.peers import heyoka_system
 from symrot.bench.comparison.problem import Floats, Problem
-from symrot.bench.comparison.race import Measured, race, seconds_of
-from symrot.bench.taylor import MOTIONS, reference, scene
+from symrot.bench.comparison.race import Measured, raced
+from symrot.bench.taylor import MOTIONS, SteppedProblem, reference
 from symrot.closed_form.registry import exact_form
 from symrot.propagation.propagate import propagator
 
-__all__ = ["Sampled", "main", "measure"]
+__all__ = ["main", "measure"]
 
 OURS = tuple(10.0**-k for k in range(4, 15))  # symrot's tolerances; the errors of the first match heyoka's largest
 WHOLE = 7  # states: angular velocity and attitude
 PEERS = (1e-9, 1e-12, 2.0**-52)
-
-
-class Sampled(NamedTuple):
-    """One program at one tolerance: its times, its error, and how much its samples differ from symrot's best run."""
-
-    measured: Measured
-    apart: float
 
 
 def _heyoka(problem: Problem, tolerance: float, times: Floats) -> dict[str, Callable[[], Floats]]:
@@ -71,37 +64,20 @@ def _symrot(problem: Problem, method: str, tolerance: float, times: Floats) -> C
     return run
 
 
-def measure(name: str, samples: int, rounds: int) -> list[Sampled]:
+def measure(name: str, samples: int, rounds: int) -> list[Measured]:
     """Time all contestants on the motion ``name``, and return their runs with times and errors.
 
-    Each run computes ``samples`` samples and is timed ``rounds`` times.
+    Each run computes ``samples`` samples and is timed ``rounds`` times; its number of steps is not counted, and is 0.
     """
-    problem, exact = Problem(scene(name)), reference(name)
+    problem, exact = SteppedProblem(name, 1.0), reference(name)
     times = np.linspace(problem.start, problem.stop, samples)
     runs = {("taylor", tolerance): _symrot(problem, "taylor", tolerance, times) for tolerance in OURS}
     for tolerance in PEERS:
         runs |= {(way, tolerance): run for way, run in _heyoka(problem, tolerance, times).items()}
     if exact_form(problem.scene) is not None and len(problem.y0) == WHOLE:
         runs["exact", 0.0] = _symrot(problem, "exact", OURS[-1], times)
-    tightest = runs["taylor", OURS[-1]]()
-    sampled, entries = [], []
-    for (method, tolerance), run in runs.items():
-        states = run()
-        measured = Measured(method, tolerance, 0, _distance(states[-1:], exact), seconds_of(run))
-        sampled.append(Sampled(measured, _distance(states, tightest)))
-        entries.append((measured, run))
-    race(entries, rounds)
-    return sampled
-
-
-def _distance(states: Floats, exact: Floats) -> float:
-    """Return the largest difference between samples of two runs; differences of angular velocities are relative.
-
-    Samples are rows of angular velocity and quaternion.
-    """
-    apart, rates = abs(states - exact), states.shape[-1] - 4
-    size = float(np.linalg.norm(np.atleast_2d(exact)[-1, :rates]))
-    return max(float(apart[:, :rates].max()) / size, float(apart[:, rates:].max()))
+    tasks = [(method, tolerance, lambda run=run: (run(), 0)) for (method, tolerance), run in runs.items()]
+    return raced(tasks, lambda states: problem.largest_error(states[-1], exact), rounds)
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -115,14 +91,13 @@ def main(arguments: list[str] | None = None) -> None:
     for name in [options.motion] if options.motion else MOTIONS:
         rows = measure(name, options.samples, options.rounds)
         print(f"\n{name}, {options.samples} samples")
-        for measured, apart in rows:
+        for measured in rows:
             each = measured.median / options.samples * 1e9
             label = f"{measured.name} at {measured.tolerance:.0e}" if measured.tolerance else measured.name
-            print(f"  {label:24}{measured.median * 1e3:9.3f} ms{each:8.1f} ns a sample   error {measured.error:.1e}"
-                  f"   apart {apart:.1e}")  # fmt: skip
-        ours = [measured for measured, _ in rows if measured.name == "taylor"]
+            print(f"  {label:24}{measured.median * 1e3:9.3f} ms{each:8.1f} ns a sample   error {measured.error:.1e}")
+        ours = [measured for measured in rows if measured.name == "taylor"]
         for tolerance in PEERS:
-            peers = [one for one, _ in rows if one.name.startswith("heyoka") and one.tolerance == tolerance]
+            peers = [one for one in rows if one.name.startswith("heyoka") and one.tolerance == tolerance]
             peer = min(peers, key=lambda one: one.median, default=None)
             good = [one.median for one in ours if peer and one.error <= peer.error]
             if peer and good:

@@ -7,14 +7,15 @@ The error is the largest of the first 16 trajectories against heyoka in long dou
 """
 
 import argparse
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from functools import partial
-from time import process_time
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from symrot.bench.taylor import DECADES, MOTIONS, Floats, Run, SteppedProblem, best_of, raced, reference
+from symrot.bench.comparison.peers import heyoka_system
+from symrot.bench.comparison.race import EndState, Measured, Task, raced
+from symrot.bench.taylor import DECADES, MOTIONS, Floats, SteppedProblem, best_of, reference
 from symrot.build import cache
 from symrot.ensemble import lanes
 
@@ -60,7 +61,8 @@ def _references(problem: Any, y: Floats, stop: float) -> Floats:
     import heyoka
 
     real = np.longdouble
-    integrator = heyoka.taylor_adaptive(_system(problem, real), y[0].astype(real), tol=real(TIGHTEST), fp_type=real)
+    system = heyoka_system(problem.kernel.rates, {name: real(x) for name, x in problem.parameters.items()}, real)
+    integrator = heyoka.taylor_adaptive(system, y[0].astype(real), tol=real(TIGHTEST), fp_type=real)
     states = np.empty_like(y)
     for row, start in zip(states, y, strict=True):
         integrator.time = real(0)
@@ -70,55 +72,32 @@ def _references(problem: Any, y: Floats, stop: float) -> Floats:
     return states
 
 
-def _system(problem: Any, real: Callable[[float], Any] = float) -> list[tuple[Any, Any]]:
-    """Return the right-hand side dy/dt of a motion in heyoka's form, with its constants as numbers.
-
-    ``real`` converts the numbers, for example to long double.
-    """
-    import heyoka
-
-    names = [name for name, *_ in problem.kernel.rates.signature.argument("y").components]
-    variables = dict(zip(names, heyoka.make_vars(*names), strict=True))
-    values = [real(value) for value in problem.p]
-    parameters = dict(zip((name for name, _ in problem.kernel.rate_parameters), values, strict=True))
-    functions = {name: getattr(heyoka, name) for name in ("sqrt", "sin", "cos", "exp")}
-    rates = problem.kernel.rates.evaluate({**variables, **parameters, "t": heyoka.time}, functions, real)
-    return [(variables[name], rates[f"d{name}"]) for name in names]
-
-
 # ------------------------------------------------------------------------------------------------ contestants
 
-BatchEnd = tuple[int, Floats]  # steps of all trajectories, last states (n, N)
-BatchRun = tuple[str, float, Callable[[], BatchEnd]]
 
-
-def _library(problem: Any, order: int, width: int | None = None) -> Any:
-    source = lanes.translation_unit(problem.kernel.rates, problem.blocks, problem.scales, order, width)
+def _library(problem: Any, order: int) -> Any:
+    source = lanes.translation_unit(problem.kernel.rates, problem.blocks, problem.scales, order)
     return cache.build(source, "lanes", lanes.FLAGS)
 
 
-def _lanes(task: lanes.LaneIntegration) -> BatchEnd:
+def _lanes(task: lanes.LaneIntegration) -> EndState:
     result = task.run()
-    return int(result.steps.sum()), result.states[:, 0]
+    return result.states[:, 0], int(result.steps.sum())
 
 
-def _ours(
-    start: Start, tolerances: Sequence[float], orders: Iterable[int] = (), width: int | None = None
-) -> list[BatchRun]:
+def _ours(start: Start, tolerances: Sequence[float], orders: Iterable[int] = ()) -> list[Task]:
     p = np.tile(np.array(start.problem.p), (len(start.y), 1))
-    tasks: list[BatchRun] = []
+    tasks: list[Task] = []
     for order in sorted(set(orders)) or [0]:
         for tolerance in tolerances:
-            path = _library(start.problem, order or lanes.order_for(tolerance), width)
+            path = _library(start.problem, order or lanes.order_for(tolerance))
             task = lanes.LaneIntegration(path, p, start.y, 0.0, np.array([start.stop]), tolerance)
             tasks.append((f"{order}" if order else "lanes", tolerance, partial(_lanes, task)))
     return tasks
 
 
-def _batches(integrator: Any, width: int, start: Start) -> BatchEnd:
-    """Return number of steps and last states of an ensemble, computed by heyoka's integrator for batches of
-    ``width``.
-    """
+def _batches(integrator: Any, width: int, start: Start) -> EndState:
+    """Return the last states, (n, N), and the steps of an ensemble, by heyoka's integrator for batches of ``width``."""
     states, steps = np.empty_like(start.y), 0
     for first in range(0, len(start.y), width):
         integrator.set_time(0.0)
@@ -126,11 +105,11 @@ def _batches(integrator: Any, width: int, start: Start) -> BatchEnd:
         integrator.propagate_until(start.stop)
         states[first : first + width] = integrator.state.T
         steps += sum(result[3] for result in integrator.propagate_res)
-    return steps, states
+    return states, steps
 
 
-def _ensemble(propagate: Any, integrator: Any, width: int, start: Start) -> BatchEnd:
-    """Return steps and last states of an ensemble, computed by heyoka's ensemble function in one thread."""
+def _ensemble(propagate: Any, integrator: Any, width: int, start: Start) -> EndState:
+    """Return the last states, (n, N), and the steps of an ensemble, by heyoka's ensemble function in one thread."""
 
     def begin(integrator: Any, i: int) -> Any:
         if width == 1:
@@ -145,15 +124,15 @@ def _ensemble(propagate: Any, integrator: Any, width: int, start: Start) -> Batc
     results = propagate(integrator, start.stop, len(start.y) // width, begin, max_workers=1)
     states = np.vstack([one[0].state.T if width > 1 else one[0].state[None] for one in results])
     if width == 1:
-        return sum(int(one[4]) for one in results), states
-    return sum(int(result[3]) for one in results for result in one[0].propagate_res), states
+        return states, sum(int(one[4]) for one in results)
+    return states, sum(int(result[3]) for one in results for result in one[0].propagate_res)
 
 
-def _heyoka(start: Start, tolerances: Sequence[float], many: bool) -> list[BatchRun]:
+def _heyoka(start: Start, tolerances: Sequence[float], many: bool) -> list[Task]:
     import heyoka
 
-    system = _system(start.problem)
-    tasks: list[BatchRun] = []
+    system = heyoka_system(start.problem.kernel.rates, start.problem.parameters)
+    tasks: list[Task] = []
     for tolerance in tolerances:
         for width in WIDTHS:
             first = np.ascontiguousarray(start.y[:width].T)
@@ -170,22 +149,22 @@ def _heyoka(start: Start, tolerances: Sequence[float], many: bool) -> list[Batch
     return tasks
 
 
-def measure(start: Start, rounds: int, many: bool = False) -> list[Run]:
+def measure(start: Start, rounds: int, many: bool = False) -> list[Measured]:
     """Time all contestants on an ensemble, and return their runs with times and errors."""
     ours, theirs = [10.0 ** (-k / 4) for k in range(4, 57)], [10.0 ** (-k / 2) for k in range(6, 33)]
     # With ``many``, heyoka's ensemble functions run too, which are made for thousands of trajectories.
-    return raced([*_ours(start, ours), *_heyoka(start, theirs, many)], start.error, rounds, process_time)
+    return raced([*_ours(start, ours), *_heyoka(start, theirs, many)], start.error, rounds)
 
 
 # ------------------------------------------------------------------------------------------------ tables
 
 
-def _print_table(runs: list[Run], n: int) -> None:
+def _print_table(runs: list[Measured], n: int) -> None:
     peers = sorted({run.name for run in runs} - {"lanes"})
     for contestant in ("lanes", *peers):
         own = [run for run in runs if run.name == contestant]
         longest = min(own, key=lambda run: run.tolerance)
-        pace = min(longest.seconds) / longest.steps * 1e9
+        pace = longest.least / longest.steps * 1e9
         print(f"  {contestant:24}{pace:6.0f} ns per trajectory and step, least error {min(r.error for r in own):.1e}")
     print(f"{'  error <=':10}{'lanes us':>10}{'heyoka us':>11}{'ratio':>8}   per trajectory; its fastest mode")
     ratios = []
@@ -193,29 +172,19 @@ def _print_table(runs: list[Run], n: int) -> None:
         ours, other = best_of(runs, decade, ["lanes"]), best_of(runs, decade, peers)
         if ours is None or other is None:
             continue
-        times = [min(run.seconds) / n * 1e6 for run in (ours, other)]
+        times = [run.least / n * 1e6 for run in (ours, other)]
         ratios.append(times[1] / times[0])
         print(f"{decade:10.0e}{times[0]:10.1f}{times[1]:11.1f}{ratios[-1]:8.2f}   {other.name}")
     if ratios:
         print(f"  median ratio {np.median(ratios):.2f}, least {min(ratios):.2f}")
 
 
-def _print_widths(start: Start, rounds: int) -> None:
-    """Print the times of the ensemble ``start`` with SIMD vectors of four and of eight trajectories, for comparison."""
-    tasks = [
-        (f"{width} lanes", *task[1:]) for width in WIDTHS for task in _ours(start, [1e-12], [20], width)
-    ]  # fmt: skip
-    runs = raced(tasks, start.error, rounds, process_time)
-    texts = [f"{run.name} {min(run.seconds) / run.steps * 1e9:.0f} ns" for run in runs]
-    print(f"  order 20, per trajectory and step: {', '.join(texts)}")
-
-
 def _print_orders(start: Start, rounds: int) -> None:
-    runs = raced(_ours(start, [10.0 ** (-k / 2) for k in range(2, 29)], ORDERS), start.error, rounds, process_time)
+    runs = raced(_ours(start, [10.0 ** (-k / 2) for k in range(2, 29)], ORDERS), start.error, rounds)
     print(f"{'  error <=':10}" + "".join(f"{order:>14}" for order in ORDERS) + "   us per trajectory (tolerance)")
     for decade in DECADES:
         fastest = [best_of(runs, decade, [f"{order}"]) for order in ORDERS]
-        cells = [f"{min(r.seconds) / len(start.y) * 1e6:7.1f} {r.tolerance:.0e}" if r else "-" for r in fastest]
+        cells = [f"{r.least / len(start.y) * 1e6:7.1f} {r.tolerance:.0e}" if r else "-" for r in fastest]
         print(f"{decade:10.0e}" + "".join(f"{cell:>14}" for cell in cells))
 
 
@@ -242,7 +211,6 @@ def main(arguments: list[str] | None = None) -> None:
             _print_orders(few, options.rounds)
             continue
         _print_table(measure(few, options.rounds), 8)
-        _print_widths(few, options.rounds)
         many = prepare(name, options.many, problem.stop / SHORTER, problem)
         print(f"{name}, {options.many} trajectories, t = {many.stop:g} s")
         _print_table(measure(many, max(1, options.rounds // 4), many=True), options.many)

@@ -19,14 +19,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.bench.by_hand.kernel_heyoka import LANES, heyoka_code
-from symrot.bench.by_hand.kernel_peers import PEERS_IN_C, casadi_function, counted, textbook
+from symrot.bench.by_hand.kernel_drivers import drivers, heyoka_drivers
+from symrot.bench.by_hand.kernel_heyoka import heyoka_code
+from symrot.bench.by_hand.kernel_peers import PEERS_IN_C, casadi_function, casadi_text, counted, textbook
 from symrot.build import cache as build_cache
 from symrot.codegen.library_kernels import kernel_program
-from symrot.codegen.printing.c_source import MATH_HEADER, c_name
+from symrot.codegen.printing.c_source import MATH_HEADER
 from symrot.codegen.printing.math_header import math_header
 from symrot.errors import InputError
-from symrot.formula.program import Argument, Signature
 from symrot.kernels.jacobian import BY, jacobian_name
 from symrot.kernels.library import definition
 from symrot.workshop.emit import Emitted, emit
@@ -42,7 +42,6 @@ PAGE = 4096  # bytes
 PLACES = {"one": 1, "cached": 1, "many": 7}  # numbers of memory blocks between which rounds alternate
 SHORTEST = 1e-3  # s, least duration of one measurement
 BAR = 1.05  # largest accepted ratio of symrot's time to the least time of the other tools
-FLOOR = "moves only"
 OWN_START = "CasADi from symrot's program"
 
 Floats = NDArray[np.float64]
@@ -112,97 +111,6 @@ def _addresses(name: str, shape: str, count: int, place: int) -> Any:
     return (ctypes.c_void_p * len(addresses))(*addresses)
 
 
-def _drivers(signature: Signature, batch: bool) -> str:
-    """Return C functions that call a one-sample function and a batch function many times, so that they can be timed."""
-    inputs = [a for a in signature.arguments if a.role == "in"]
-    outputs = [a for a in signature.arguments if a.role == "out"]
-    every = [*inputs, *outputs]
-    apart = [sum(a.size for a in (inputs if each in inputs else outputs)) for each in every]
-    one = ", ".join(f"{'' if a.is_scalar else '&'}a[{i}][{apart[i]}*k]" for i, a in enumerate(every))
-    # A tool without a batch function gets a loop over its one-sample function.
-    lines = [] if batch else _batch_of_one(c_name(signature.name), inputs, outputs)
-    parameters = [f"{'const ' if a in inputs else ''}double {'' if a.is_scalar else '*'}{a.name}" for a in every]
-    lines += [f"static __attribute__((noinline)) void single({', '.join(parameters)})", "{",
-              f"    {c_name(signature.name)}({', '.join(a.name for a in every)});", "}"]  # fmt: skip
-    arguments = ", ".join(f"a[{i}]" for i in range(len(every)))
-    return "\n".join([
-        "#include <stddef.h>", *lines,
-        _REPEAT_ONE.format(call=f"single({one})"),
-        _REPEAT_BATCH.format(call=f"{f'{c_name(signature.name)}_batch' if batch else 'batch'}(n, {arguments})"),
-    ])  # fmt: skip
-
-
-_REPEAT_ONE = """void symrot_repeat_one(size_t repeats, size_t n, double **a)
-{{
-    for (size_t r = 0; r < repeats; ++r)
-        for (size_t k = 0; k < n; ++k) {{
-            {call};
-            __asm__ volatile("" ::: "memory"); /* one sample at a time */
-        }}
-}}
-"""
-_REPEAT_BATCH = """void symrot_repeat_batch(size_t repeats, size_t n, double **a)
-{{
-    for (size_t r = 0; r < repeats; ++r) {{
-        {call};
-        __asm__ volatile("" ::: "memory");
-    }}
-}}
-"""
-
-
-def _batch_of_one(name: str, inputs: Sequence[Argument], outputs: Sequence[Argument]) -> list[str]:
-    """Return the C text of a batch function whose loop inlines the one-sample function ``name``.
-
-    ``inputs`` and ``outputs`` are the arguments of that function.
-    """
-    every = [*inputs, *outputs]
-    pointers = [f"{'const ' if a in inputs else ''}double *restrict {a.name}" for a in every]
-    lines = [f"static void batch(size_t n, {', '.join(pointers)})", "{", '    _Pragma("GCC ivdep")',
-             "    for (size_t k = 0; k < n; ++k) {"]  # fmt: skip
-    for a in inputs:
-        values = ", ".join(f"{a.name}[{i}*n + k]" for i in range(a.size))
-        held = f"{a.name}_k = {values}" if a.is_scalar else f"{a.name}_k[{a.size}] = {{{values}}}"
-        lines.append(f"        const double {held};")
-    lines += [f"        double {a.name}_k[{a.size}];" for a in outputs]
-    lines.append(f"        {name}({', '.join(f'{a.name}_k' for a in every)});")
-    lines += [f"        {a.name}[{i}*n + k] = {a.name}_k[{i}];" for a in outputs for i in range(a.size)]
-    return [*lines, "    }", "}"]
-
-
-def _heyoka_drivers(signature: Signature) -> str:
-    """Return C functions that call heyoka's compiled functions many times, for one sample and for batches."""
-    sizes = {role: sum(a.size for a in signature.arguments if a.role == role) for role in ("in", "out")}
-    out = sum(a.role == "in" for a in signature.arguments)
-    return "\n".join([
-        "#include <stddef.h>",
-        "typedef void (*of_one)(double *, const double *, const double *, const double *);",
-        "typedef void (*of_batch)(double *, const double *, const double *, const double *, size_t);",
-        "static of_one one;", "static of_batch neighbour, neighbours;",
-        "void symrot_take(of_one a, of_batch b, of_batch c)", "{", "    one = a, neighbour = b, neighbours = c;", "}",
-        "static void batch(size_t n, const double *in, double *out)", "{", "    size_t k = 0;",
-        f"    for (; k + {LANES} <= n; k += {LANES})", "        neighbours(out + k, in + k, 0, 0, n);",
-        "    for (; k < n; ++k)", "        neighbour(out + k, in + k, 0, 0, n);", "}",
-        _REPEAT_ONE.format(call=f"one(a[{out}] + {sizes['out']}*k, a[0] + {sizes['in']}*k, 0, 0)"),
-        _REPEAT_BATCH.format(call=f"batch(n, a[0], a[{out}])"),
-    ])  # fmt: skip
-
-
-def _moving(signature: Signature) -> str:
-    """Return C code that only reads all inputs of a batch, adds them up and writes all outputs: the cost of memory
-    access.
-    """
-    inputs, outputs = ([a for a in signature.arguments if a.role == role] for role in ("in", "out"))
-    heads = [f"const double *restrict {a.name}" for a in inputs] + [f"double *restrict {a.name}" for a in outputs]
-    total = " + ".join(f"{a.name}[{i}*n + k]" for a in inputs for i in range(a.size))
-    lines = ["#include <stddef.h>", f"static void batch(size_t n, {', '.join(heads)})", "{", '    _Pragma("GCC ivdep")',
-             "    for (size_t k = 0; k < n; ++k) {", f"        const double total = {total};",
-             *(f"        {a.name}[{i}*n + k] = total;" for a in outputs for i in range(a.size)),
-             "    }", "}"]  # fmt: skip
-    arguments = ", ".join(f"a[{i}]" for i in range(len(inputs) + len(outputs)))
-    return "\n".join([*lines, _REPEAT_BATCH.format(call=f"batch(n, {arguments})")])
-
-
 def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], float]:
     """Return a function that times ``run(repeats, place)`` and returns seconds per sample.
 
@@ -224,38 +132,30 @@ def _timed(run: Callable[[int, int], object], samples: int) -> Callable[[int], f
     return measure
 
 
-def _runs(name: str, loaded: ctypes.CDLL, shapes: Sequence[str], many: int) -> dict[str, Callable[[int], float]]:
-    """Return, for each shape of input, functions that time the compiled kernel ``name`` and return seconds per sample.
+def _in_c(
+    name: str, text: str, many: int, prepare: Callable[[Any], object] = id
+) -> tuple[dict[str, Callable[[int], float]], Floats]:
+    """Compile the C ``text`` of the kernel ``name`` with its drivers; return timing functions and outputs.
 
-    Their argument is the number of a memory block.
+    The functions, one for each shape of input, return seconds per sample; their argument is the number of a memory
+    block. The outputs are those of the batch in the cache. ``prepare`` sets up the loaded library.
     """
+    loaded = ctypes.CDLL(str(build_cache.build(text, f"bench_{name}", FLAGS)))
+    prepare(loaded)
     runs = {}
-    for shape in shapes:
+    for shape in SHAPES:
         count = many if shape == "many" else CACHED
         function = loaded.symrot_repeat_one if shape == "one" else loaded.symrot_repeat_batch
         function.argtypes = (ctypes.c_size_t, ctypes.c_size_t, ctypes.c_void_p)
         if count:
             addresses = [_addresses(name, shape, count, place) for place in range(PLACES[shape])]
             runs[shape] = _timed(partial(_call, function, count, addresses), count)
-    return runs
+    runs["cached"](0)
+    return runs, _block(name, "cached", CACHED, 0)[1].copy()
 
 
 def _call(function: Any, count: int, addresses: Sequence[Any], repeats: int, place: int) -> None:
     function(repeats, count, addresses[place])
-
-
-def _in_c(
-    name: str, text: str, many: int, shapes: Sequence[str] = SHAPES, prepare: Callable[[Any], object] = id
-) -> tuple[dict[str, Callable[[int], float]], Floats]:
-    """Compile a kernel with its drivers; return timing functions for each shape of input, and outputs for a small
-    batch.
-    """
-    loaded = ctypes.CDLL(str(build_cache.build(text, f"bench_{name}", FLAGS)))
-    # for tools whose functions need a set-up
-    prepare(loaded)
-    runs = _runs(name, loaded, shapes, many)
-    runs["cached"](0)
-    return runs, _block(name, "cached", CACHED, 0)[1].copy()
 
 
 def _emitted(name: str) -> Emitted:
@@ -270,15 +170,32 @@ def _symrot_text(name: str) -> str:
     )
 
 
+def _peers(name: str) -> tuple[dict[str, tuple[str, Counter[str]]], list[str]]:
+    """Return the C text and the operations of each tool's version of a kernel, and the names of the missing tools."""
+    peers: dict[str, tuple[str, Counter[str]]] = {}
+    missing = []
+    for tool, make in PEERS_IN_C.items():
+        try:
+            if (text := make(name)) is not None:
+                peers[tool] = text, counted(text, name)
+        except ImportError:
+            missing.append(tool)
+    try:
+        function, operations = casadi_function(name)
+        peers["CasADi"] = casadi_text(function, kernel_program(name).signature), operations
+    except ImportError:
+        missing.append("CasADi")
+    return peers, missing
+
+
 def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
     """Return the contestants for a kernel, symrot first, and the names of the missing tools.
 
     Raise AssertionError if the outputs of two tools differ.
     """
     contestants: list[Contestant] = []
-    missing: list[str] = []
     signature = kernel_program(name).signature
-    runs, reference = _in_c(name, _symrot_text(name) + _drivers(signature, True), many)
+    runs, reference = _in_c(name, _symrot_text(name) + drivers(signature, True), many)
     contestants.append(Contestant("symrot", counted(_emitted(name).source, name), runs))
 
     def add(tool: str, operations: Counter[str], runs: dict[str, Callable[[int], float]], outputs: Floats) -> None:
@@ -290,67 +207,16 @@ def contest(name: str, many: int = MANY) -> tuple[list[Contestant], list[str]]:
             )
         contestants.append(Contestant(tool, operations, runs))
 
-    around = _drivers(signature, False)
-    for tool, make in PEERS_IN_C.items():
-        try:
-            peer = make(name)
-        except ImportError:
-            missing.append(tool)
-            continue
-        if peer is not None:
-            add(tool, counted(peer, name), *_in_c(name, f"#include <math.h>\n{peer}{around}", many))
-    try:
-        function, operations = casadi_function(name)
-        add("CasADi C", operations, *_in_c(name, _casadi_text(name, function) + around, many))
-        add("CasADi VM", operations, *_casadi_machine(name, function))
-    except ImportError:
-        missing.append("CasADi")
+    around = drivers(signature, False)
+    peers, missing = _peers(name)
+    for tool, (text, operations) in peers.items():
+        add(tool, operations, *_in_c(name, f"#include <math.h>\n{text}{around}", many))
     try:
         code = heyoka_code(name)  # its sines have errors of up to 3.5 ulp
-        add("heyoka", Counter(), *_in_c(name, _heyoka_drivers(signature), many, prepare=lambda c: c.symrot_take(*code)))
+        add("heyoka", Counter(), *_in_c(name, heyoka_drivers(signature), many, prepare=lambda c: c.symrot_take(*code)))
     except ImportError:
         missing.append("heyoka")
-    # Roughly the time of memory access alone; a kernel that handles fewer samples at once can be a few percent faster.
-    contestants.append(Contestant(FLOOR, Counter(), _in_c(name, _moving(signature), many, SHAPES[1:])[0]))
     return contestants, missing
-
-
-def _casadi_machine(name: str, function: Any) -> tuple[dict[str, Callable[[int], float]], Floats]:
-    """Return timing functions of CasADi's own evaluation of ``function``, and its outputs for the small batch."""
-    import casadi
-
-    def run(count: int) -> Callable[[int, int], object]:
-        mapped, inputs = function.map(count), casadi.DM(np.concatenate(_samples(name, count)))
-        return lambda repeats, place: [mapped(inputs) for _ in range(repeats)]
-
-    outputs = np.array(function.map(CACHED)(casadi.DM(np.concatenate(_samples(name, CACHED)))))
-    # Only the batch that fits in the cache is timed.
-    return {"cached": _timed(run(CACHED), CACHED)}, outputs
-
-
-def _casadi_text(name: str, function: Any) -> str:
-    """Return the C code that CasADi generates for a kernel, and a C function with symrot's arguments that calls it."""
-    import casadi
-
-    generator = casadi.CodeGenerator("peer", {"with_header": False})
-    generator.add(function)
-    signature = kernel_program(name).signature
-    arguments, lines, place = [], [], 0
-    for a in signature.arguments:
-        const = "const " if a.role == "in" else ""
-        arguments.append(f"double {a.name}" if a.is_scalar else f"{const}double {a.name}[{a.size}]")
-    inputs = [a for a in signature.arguments if a.role == "in"]
-    values = ", ".join(a.name if a.is_scalar else f"{a.name}[{i}]" for a in inputs for i in range(a.size))
-    size = sum(a.size for a in signature.arguments if a.role == "out")
-    lines += [f"static inline void {c_name(name)}({', '.join(arguments)})", "{",
-              f"    const double x[] = {{{values}}};",
-              f"    double y[{size}];", "    const double *arg[1] = {x};", "    double *res[1] = {y};",
-              "    peer(arg, res, 0, 0, 0);"]  # fmt: skip
-    for a in signature.arguments:
-        if a.role == "out":
-            lines += [f"    {a.name}[{i}] = y[{place + i}];" for i in range(a.size)]
-            place += a.size
-    return str(generator.dump()) + "\n".join([*lines, "}"]) + "\n"
 
 
 def measure(contestants: Sequence[Contestant], rounds: int) -> None:
@@ -386,7 +252,7 @@ def _operations(contestants: Sequence[Contestant]) -> tuple[int, int]:
 
 def _ratios(contestants: Sequence[Contestant]) -> dict[str, float]:
     """Return, for each shape of input, symrot's time divided by the least time of the other tools."""
-    own, others = contestants[0], [c for c in contestants[1:] if c.name != FLOOR]
+    own, *others = contestants
     ratios = {}
     for shape in SHAPES:
         rivals = [c.seconds[shape] for c in others if c.seconds[shape]]
@@ -405,19 +271,11 @@ def _table(name: str, contestants: Sequence[Contestant]) -> list[str]:
     """
     parts = [f"operations {mine} to {best}" for mine, best in (_operations(contestants),)]
     parts += [f"{shape} {ratio:.2f}" for shape, ratio in _ratios(contestants).items()]
-    lines = [
+    return [
         f"{name:51}" + "".join(f"{shape:>10}" for shape in SHAPES),
         *map(_line, contestants),
         f"  symrot divided by the best of the others: {', '.join(parts)}",
     ]
-    own, floor = contestants[0].seconds["many"], contestants[-1].seconds["many"]
-    if own and floor:
-        moved = 8 * sum(a.size for a in kernel_program(name).signature.arguments)
-        lines.append(
-            f"  {moved} bytes a sample: symrot {moved / min(own) / 1e9:.1f} GB/s, moves only "
-            f"{moved / min(floor) / 1e9:.1f} GB/s; symrot to moves only: {np.median(np.divide(own, floor)):.2f}"
-        )
-    return lines
 
 
 def _missed(name: str, contestants: Sequence[Contestant]) -> list[str]:
@@ -432,20 +290,12 @@ def counts(name: str) -> tuple[dict[str, Counter[str]], list[str]]:
 
     Example: ``{"symrot": {"mul": 12, "add": 9}, ..}``.
     """
-    operations, missing = {"symrot": counted(_emitted(name).source, name)}, []
-    for tool, make in PEERS_IN_C.items():
-        try:
-            if (peer := make(name)) is not None:
-                operations[tool] = counted(peer, name)
-        except ImportError:
-            missing.append(tool)
-    try:
-        operations["CasADi"] = casadi_function(name)[1]
-        # CasADi may also differentiate symrot's own program instead of the textbook's formulas.
-        if BY in name:
-            operations[OWN_START] = casadi_function(name, kernel_program)[1]
-    except ImportError:
-        missing.append("CasADi")
+    peers, missing = _peers(name)
+    operations = {"symrot": counted(_emitted(name).source, name)}
+    operations |= {tool: count for tool, (_, count) in peers.items()}
+    # CasADi may also differentiate symrot's own program instead of the textbook's formulas.
+    if BY in name and "CasADi" in peers:
+        operations[OWN_START] = casadi_function(name, kernel_program)[1]
     return operations, missing
 
 

@@ -7,27 +7,21 @@ The first table has microseconds per call, the second per trajectory of 101 samp
 """
 
 import argparse
-import ctypes
 from collections.abc import Callable, Iterator
 from functools import partial
-from math import nan
 from statistics import median
 from time import process_time_ns
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.build.address import address
 from symrot.closed_form import motion as forms
-from symrot.closed_form.spin_up import compiled as spin_up_compiled
 from symrot.ensemble.ensemble import propagate_ensemble
 from symrot.ensemble.variation import PLACES
 from symrot.errors import InputError
-from symrot.planning.plan import structure_key
 from symrot.propagation.propagate import propagator
 from symrot.propagation.propagator import Propagator, read_start
-from symrot.propagation.steppers.stepping import DONE
 from symrot.scene.scene import Scene, load_scene
 
 __all__ = ["main"]
@@ -42,50 +36,34 @@ SPREAD = 0.01
 Floats = NDArray[np.float64]
 
 
-def _made(name: str, torques: list[dict[str, Any]], inertia: Any, omega: list[str], **more: Any) -> Scene:
-    body: dict[str, Any] = {"inertia": inertia} if isinstance(inertia, dict) else {"principal": inertia}
-    if any(torque["kind"] == "gravity" for torque in torques):
-        body["about"] = "fixed_point"
-    initial = {"omega": omega, "attitude": {"quaternion": [1, "1/3", "-1/5", "2/7"]}}
-    span = {"t": [0, 20], "samples": SAMPLES}
-    return Scene.from_dict(
-        {"schema": 1, "title": name, "body": body, "torque": torques, "initial": initial, "span": span, **more}
-    )
-
-
 _BRAKE = {"kind": "damping", "linear": ["1/10", "1/10", "1/5"]}
 _PUSH = {"kind": "constant_body", "torque": [0, 0, "1/9"]}
-MADE: dict[str, Callable[[], Scene]] = {
-    "tilted free body": lambda: _made(
-        "tilted free body",
-        [],
-        {"xx": 3, "yy": 4, "zz": 5, "xy": "-1/10", "xz": "1/5", "yz": "1/7"},
-        ["1/3", "-1/7", "2"],
-    ),
-    "turned heavy top": lambda: _made(
-        "turned heavy top",
-        [{"kind": "gravity", "weight": "13/10", "center_of_mass": ["-1/5", 0, 0], "direction": [1, 2, 2]}],
-        [1, 2, 2],
-        ["2", "1/7", "1/3"],
-    ),
-    "symmetric gyrostat": lambda: _made(
-        "symmetric gyrostat",
-        [{"kind": "rotor", "angular_momentum": [0, 0, "3/7"]}],
-        [2, 2, 1],
-        ["1/3", "-1/7", "2"],
-    ),
-    "driven about one axis": lambda: _made("driven about one axis", [_PUSH], [2, 3, 4], ["0", "0", "1/2"]),
-    "braked about one axis": lambda: _made("braked about one axis", [_PUSH, _BRAKE], [2, 3, 4], ["0", "0", "1/2"]),
-    "braked symmetric body": lambda: _made(
-        "braked symmetric body", [_PUSH, _BRAKE], [2, 2, 1], ["1/3", "-1/7", "2"], output={"quantities": ["omega"]}
-    ),
-    "spun up far off": lambda: _made("spun up far off", [_PUSH], [2, 2, 1], ["1/3", "-1/7", "20"]),
+_ROTOR = {"kind": "rotor", "angular_momentum": [0, 0, "3/7"]}
+_PULL = {"kind": "gravity", "weight": "13/10", "center_of_mass": ["-1/5", 0, 0], "direction": [1, 2, 2]}
+_TENSOR = {"inertia": {"xx": 3, "yy": 4, "zz": 5, "xy": "-1/10", "xz": "1/5", "yz": "1/7"}}
+MADE: dict[str, tuple[dict[str, Any], list[dict[str, Any]], list[str]]] = {
+    "tilted free body": (_TENSOR, [], ["1/3", "-1/7", "2"]),
+    "turned heavy top": ({"principal": [1, 2, 2], "about": "fixed_point"}, [_PULL], ["2", "1/7", "1/3"]),
+    "symmetric gyrostat": ({"principal": [2, 2, 1]}, [_ROTOR], ["1/3", "-1/7", "2"]),
+    "driven about one axis": ({"principal": [2, 3, 4]}, [_PUSH], ["0", "0", "1/2"]),
+    "braked about one axis": ({"principal": [2, 3, 4]}, [_PUSH, _BRAKE], ["0", "0", "1/2"]),
+    "braked symmetric body": ({"principal": [2, 2, 1]}, [_PUSH, _BRAKE], ["1/3", "-1/7", "2"]),
+    "spun up far off": ({"principal": [2, 2, 1]}, [_PUSH], ["1/3", "-1/7", "20"]),
 }
-"""Names and scenes of motions with a closed form for which symrot ships no scene."""
+"""Motions with a closed form for which symrot ships no scene: name -> body, torques, angular velocity."""
 
 
 def _scene(name: str) -> Scene:
-    return MADE[name]() if name in MADE else load_scene(name)
+    if name not in MADE:
+        return load_scene(name)
+    body, torques, omega = MADE[name]
+    initial = {"omega": omega, "attitude": {"quaternion": [1, "1/3", "-1/5", "2/7"]}}
+    # a braked symmetric body has a closed form of its angular velocity alone
+    output = {"quantities": ["omega"]} if name == "braked symmetric body" else {}
+    return Scene.from_dict({
+        "schema": 1, "title": name, "body": body, "torque": torques, "initial": initial,
+        "span": {"t": [0, 20], "samples": SAMPLES}, "output": output,
+    })  # fmt: skip
 
 
 VARIED = (("weight", "weight", None), ("torque_3", "torque", 2), ("angular_momentum_3", "angular_momentum", 2))
@@ -110,129 +88,68 @@ def _start(scene: Scene) -> tuple[Floats, Floats]:
     return omega * (1 + SPREAD) + SPREAD * abs(omega).max(), quaternion + SPREAD
 
 
-def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int) -> tuple[float, float, float]:
-    """Time two functions alternately; return the median times of both, us, and the median of their difference."""
-    times = np.empty((rounds, 3))
+def _medians(one: Callable[[], object], other: Callable[[], object], rounds: int) -> tuple[float, float]:
+    """Time two functions alternately; return the median time of the first, us, and how much longer it takes, us."""
+    times = np.empty((rounds, 2))
     for k in range(rounds):
         began = process_time_ns()
         one()
         between = process_time_ns()
         other()
-        times[k, :2] = between - began, process_time_ns() - between
-    # A slow change of the machine's speed affects both and cancels.
-    times[:, 2] = times[:, 0] - times[:, 1]
-    first, second, more = np.median(times, axis=0).tolist()
-    return first / 1e3, second / 1e3, more / 1e3
+        # A slow change of the machine's speed affects both and cancels in their difference.
+        times[k] = between - began, 2 * between - began - process_time_ns()
+    call, more = np.median(times, axis=0).tolist()
+    return call / 1e3, more / 1e3
 
 
-class _Row(NamedTuple):
-    """One motion's times, us: whole calls of the propagator, and the parts of one call."""
+def _call(propagate: Propagator, start: dict[str, Any], rounds: int) -> tuple[float, float]:
+    """Return two times, us, of a propagator's call with a new initial state: the call, and its part outside of C.
 
-    parts: tuple[float, ...]  # to read the initial state, plan, bind parameters, set up the motion
-    motion: float  # the motion itself, with both changed
-    # with a new angular velocity, a new attitude, and both
-    calls: tuple[float, ...]
-    python: tuple[float, ...]  # the part of each call that is not the motion itself
-    idle: float  # the most expensive call of a stepper while nothing is done in C
-
-
-def _row(propagate: Propagator, rounds: int) -> _Row:
-    scene = propagate.scene
-    (omega, quaternion), times = _start(scene), np.linspace(0.0, float(scene.span.stop), SAMPLES)
-    propagate(times, omega=omega, quaternion=quaternion)
-    initial = read_start(scene, omega, quaternion)
-    motion: Any = propagate.motion_from(initial)
-    parts = motion.exact if motion.choice.method == "exact" else motion.stepping
-    motion.follow(times, True)
-    fresh = [motion.from_start(initial) for _ in range(2 * rounds)]
-    moving, bound = iter(fresh[:rounds]), iter(fresh[rounds:])
-
-    def bind() -> Any:
-        each = next(bound)
-        return () if motion.choice.method == "exact" else (each.plan.initial_state, each.taylor_parameters)
-
-    def prepare(each: Iterator[Any] = moving) -> Any:
-        one = next(each)
-        return one.exact if motion.choice.method == "exact" else one.stepping
-
-    def whole(start: dict[str, Any]) -> tuple[float, float, float]:
-        """Return three times, us, of a propagator's call with a new initial state: the call, its motion in C, and the
-        rest.
-        """
-        initial = read_start(scene, start.get("omega"), start.get("quaternion"))
-        own = propagate.motion_from(initial)
-        own.follow(times, True)
-        call, following, more = _medians(partial(propagate, times, **start), lambda: own.follow(times, True), rounds)
-        constants = _in_c(own, initial, times, rounds)
-        return call, following + constants, more - constants
-
-    assert parts is not None
-    both: dict[str, Any] = {"omega": omega, "quaternion": quaternion}
-    starts = ({"omega": omega}, {"quaternion": quaternion}, both)
-    costs = (
-        _median(lambda: read_start(scene, omega, quaternion), rounds),
-        _median(lambda: structure_key(scene, initial), rounds) + _median(lambda: motion.from_start(initial), rounds),
-        _median(bind, rounds),
-        _median(prepare, rounds),
-    )
-    calls, motions, python = zip(*map(whole, starts), strict=True)
-    idle = nan
-    if motion.choice.method != "exact":
-        stepper = motion.stepping.stepper
-        run, stepper.run = stepper.run, lambda *arguments: DONE
-        try:
-            idle = max([_median(partial(propagate, times, **start), rounds) for start in starts])
-        finally:
-            stepper.run = run
-    return _Row(costs, motions[2], calls, python, idle)
+    ``start`` holds the new ``omega``, the new ``quaternion``, or both.
+    """
+    times = np.linspace(0.0, float(propagate.scene.span.stop), SAMPLES)
+    propagate(times, **start)
+    initial = read_start(propagate.scene, start.get("omega"), start.get("quaternion"))
+    own = propagate.motion_from(initial)
+    own.follow(times, True)
+    call, more = _medians(partial(propagate, times, **start), lambda: own.follow(times, True), rounds)
+    return call, more - _in_c(own, initial, rounds)
 
 
-def _in_c(motion: Any, initial: Any, times: Floats, rounds: int) -> float:
-    """Return the microseconds that C takes for the constants of a closed form from a new initial state."""
-    if motion.choice.method != "exact":
-        # a stepper has no such constants
+def _in_c(motion: Any, initial: Any, rounds: int) -> float:
+    """Return the microseconds that C takes for the constants of a closed form from a new initial state.
+
+    0 for steppers, which have no such constants, and for motions driven about an axis, whose constants count as Python.
+    """
+    if motion.choice.method != "exact" or motion.form.library in ("axial", "spin_up"):
         return 0.0
-    if motion.form.library == "spin_up":
-        return _spin_up_in_c(motion.exact._source, times, rounds)
-    functions = forms._bound.get(motion.form.library)
-    if functions is None:
-        return 0.0
-    calls: list[tuple[Any, ...]] = []
+    functions, calls = forms.functions, list[tuple[Any, ...]]()
 
-    def recorded(*arguments: Any) -> Any:
-        calls.append(arguments)
-        return functions[0](*arguments)
+    def recorded(name: str, arguments: int) -> tuple[Any, Any, Any]:
+        prepare, evaluate, record = functions(name, arguments)
 
-    forms._bound[motion.form.library] = (recorded, *functions[1:])
+        def prepared(*addresses: Any) -> Any:
+            calls.append((prepare, addresses))
+            return prepare(*addresses)
+
+        return prepared, evaluate, record
+
+    forms.functions = recorded  # type: ignore[assignment]
     try:
         alive = motion.from_start(initial).exact
     finally:
-        forms._bound[motion.form.library] = functions
-    return _median(lambda alive=alive: functions[0](*calls[0]), rounds)  # type: ignore[misc]  # keeps the memory alive
-
-
-def _spin_up_in_c(source: Any, times: Floats, rounds: int) -> float:
-    """Return the microseconds that C takes for the constants of the motion of a body driven about its symmetry axis."""
-    functions, total = spin_up_compiled.functions(), 0.0
-    record, table = functions.record(), np.empty(spin_up_compiled.TABLE)
-    arguments = source._numbers, functions.limits(*spin_up_compiled.limits())
-    omega, quaternion = np.empty((SAMPLES, 3)), np.empty((SAMPLES, 4))
-    samples = len(times), address(times), address(omega), address(quaternion)
-    lacking = source._known[2] is not None
-    # The table of Taylor polynomials counts only if samples near resonance need it.
-    for room in (None, table) if lacking else (None,):
-        place = address(room), ctypes.addressof(record)
-        total += _median(lambda place=place: functions.prepare(source._axis, *arguments, *place), rounds)  # type: ignore[misc]
-        if lacking and room is None:  # the table is made only after samples have shown that they need it
-            total += _median(lambda: functions.evaluate(ctypes.addressof(record), None, *samples), rounds)
-    return total
+        forms.functions = functions
+    prepare, addresses = calls[0]
+    return _median(lambda alive=alive: prepare(*addresses), rounds)  # type: ignore[misc]  # keeps the memory alive
 
 
 def changed_starts(scenes: list[str], rounds: int) -> None:
-    """Print a table of the times of propagator calls with a new initial state, a row for each scene and method."""
-    # us: read the initial state, plan, bind the parameters, set up the motion; the motion in C; whole calls; overhead
-    # with one of omega and attitude changed (the larger) and with both; a stepper's call without work in C
-    heads = ("read", "plan", "bind", "set up", "motion", "omega", "attitude", "both", "Python", "of both", "no C")
+    """Print a table of the times of propagator calls with a new initial state, a row for each scene and method.
+
+    In us: whole calls with a new angular velocity, a new attitude and both; then the time that Python takes in the
+    slower of the first two calls, and in the third.
+    """
+    heads = ("omega", "attitude", "both", "Python", "of both")
     print(f"{'us of a changed start':28}{'method':>8}" + "".join(f"{head:>9}" for head in heads))
     for name in scenes:
         for method in METHODS:
@@ -241,8 +158,11 @@ def changed_starts(scenes: list[str], rounds: int) -> None:
             except InputError:
                 continue
             if propagate.method == method:
-                row = _row(propagate, rounds)
-                cells = (*row.parts, row.motion, *row.calls, max(row.python[:2]), row.python[2], row.idle)
+                omega, quaternion = _start(propagate.scene)
+                starts: list[dict[str, Any]] = [{"omega": omega}, {"quaternion": quaternion}]
+                starts.append({"omega": omega, "quaternion": quaternion})
+                calls, python = zip(*(_call(propagate, start, rounds) for start in starts), strict=True)
+                cells = (*calls, max(python[:2]), python[2])
                 print(f"{name:28}{method:>8}" + "".join(f"{cell:9.1f}" for cell in cells))
 
 

@@ -8,15 +8,14 @@ fastest run of at most that error.
 
 import argparse
 import ctypes
-import gc
 import math
 import tomllib
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
-from time import perf_counter
-from typing import Any, NamedTuple
+from typing import Any
 
+import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,6 +23,7 @@ from symrot.bench.by_hand import text_by_hand
 from symrot.bench.comparison.exact_path import DIGITS, ExactPath
 from symrot.bench.comparison.peers import heyoka_integrator
 from symrot.bench.comparison.problem import Problem
+from symrot.bench.comparison.race import EndState, Measured, Task, raced
 from symrot.build import cache
 from symrot.build.sources import c_text
 from symrot.propagation.binding import Binding, two_doubles
@@ -31,7 +31,7 @@ from symrot.propagation.compiled_models import error_blocks, invariant_source, l
 from symrot.propagation.steppers import dop853, taylor
 from symrot.scene.scene import Scene
 
-__all__ = ["MOTIONS", "Run", "SteppedProblem", "best_of", "main", "measure", "reference", "scene"]
+__all__ = ["MOTIONS", "SteppedProblem", "best_of", "main", "measure", "reference", "scene"]
 
 Floats = NDArray[np.float64]
 
@@ -72,16 +72,6 @@ HAND_DECADES = (1e-3, 1e-4, 1e-5)  # errors at which methods of low order are at
 DECADES = tuple(10.0**-k for k in range(3, 14))
 ORDERS = (8, 10, 12, 14, 16, 18, 20, 22, 24, 28)
 REFERENCES = Path(__file__).with_name("taylor.toml")
-
-
-class Run(NamedTuple):
-    """One stepper at one tolerance: steps, error of the last state, seconds of each round."""
-
-    name: str
-    tolerance: float
-    steps: int
-    error: float
-    seconds: list[float]
 
 
 class SteppedProblem(Problem):
@@ -133,8 +123,6 @@ def reference(name: str, scale: float = 1.0) -> Floats:
 
 def compute_reference(name: str, scale: float = 1.0) -> list[Any]:
     """Return the last state of a motion over ``scale`` times its span, by Taylor series in 40 digits."""
-    import mpmath
-
     problem = SteppedProblem(name, scale)
     with mpmath.workdps(DIGITS):
         # from the rounded parameters that all contestants use
@@ -143,8 +131,6 @@ def compute_reference(name: str, scale: float = 1.0) -> list[Any]:
 
 def references_text() -> str:
     """Return the TOML text of the file :data:`REFERENCES`, with all references computed again."""
-    import mpmath
-
     lines = [
         "# Last states of the motions of symrot.bench.taylor, in 40 digits and rounded to 25.",
         "# Printed by `python -m symrot.bench.taylor --reference`.",
@@ -157,53 +143,43 @@ def references_text() -> str:
 
 # ------------------------------------------------------------------------------------------------ contestants
 
-StepsAndState = tuple[int, Iterable[Any]]  # steps, last state
-TimedRun = Callable[[], StepsAndState]
-
 
 def _stepper(
     follow: Callable[..., Any], path: Any, p: Sequence[float], problem: SteppedProblem, tolerance: float
-) -> TimedRun:
-    """Return a function that runs a symrot stepper over a motion and returns its steps and last state."""
+) -> Callable[[], EndState]:
+    """Return a function that runs a symrot stepper over a motion and returns its last state and number of steps."""
     # set up once, as in a propagator
     motion, times = follow(path, p, problem.y0, 0.0, tolerance), np.array([problem.stop])
 
-    def task() -> StepsAndState:
+    def task() -> EndState:
         states, stats = motion.sample_sorted(times, True)
-        return stats.accepted, states[0]
+        return states[0], stats.accepted
 
     return task
 
 
-def _heyoka(problem: SteppedProblem, tolerance: float, settings: dict[str, bool]) -> TimedRun | None:
+def _heyoka(problem: SteppedProblem, tolerance: float, settings: dict[str, bool]) -> Callable[[], EndState] | None:
     """Return a function that runs heyoka on the rates of ``problem``; None if heyoka is not installed."""
     run = heyoka_integrator(problem.kernel.rates, problem.parameters, problem.y0, tolerance, settings)
-    if run is None:
-        return None
-
-    def task() -> StepsAndState:
-        state, steps = run(problem.stop)
-        return steps, state
-
-    return task
+    return run and partial(run, problem.stop)
 
 
-def _by_hand(library_: Any, method: str, problem: SteppedProblem, steps: int) -> TimedRun:
+def _by_hand(library_: Any, method: str, problem: SteppedProblem, steps: int) -> Callable[[], EndState]:
     """Return a function that runs a handwritten C loop with a fixed number of steps; ``method`` is rk4 or dop853."""
     function = getattr(library_, f"symrot_{method}")
     real = ctypes.c_double
     function.argtypes, function.restype = (real, real, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), None
     start, p = np.array(problem.y0), np.array(problem.p or [0.0])
 
-    def task() -> StepsAndState:
+    def task() -> EndState:
         state = start.copy()
         function(0.0, problem.stop, steps, state.ctypes.data, p.ctypes.data)
-        return steps, state
+        return state, steps
 
     return task
 
 
-def _loops(problem: SteppedProblem) -> list[tuple[str, float, TimedRun]]:
+def _loops(problem: SteppedProblem) -> list[Task]:
     """Return (name, number of steps, function) for each handwritten C loop and for several numbers of steps."""
     text = "\n".join(
         (
@@ -222,14 +198,15 @@ def _loops(problem: SteppedProblem) -> list[tuple[str, float, TimedRun]]:
     ]
 
 
-def _contestants(problem: SteppedProblem, settings: bool) -> list[tuple[str, float, TimedRun]]:
+def _contestants(problem: SteppedProblem, settings: bool) -> list[Task]:
     tolerances = [10.0 ** (-k / 2) for k in range(2, 29)]  # two for each decade of the table
     orders = {e: taylor.order_for(e, problem.kernel.rates) for e in tolerances}
     ours = {order: problem.taylor_library(order) for order in set(orders.values())}
     hairer = cache.build(library_source(problem.plan, problem.kernel), "motion")
     p, q = problem.taylor_p, problem.p
-    tasks: list[tuple[str, float, TimedRun]] = []
-    tasks += [("taylor", e, _stepper(taylor.integration, ours[orders[e]], p, problem, e)) for e in tolerances]
+    tasks: list[Task] = [
+        ("taylor", e, _stepper(taylor.integration, ours[orders[e]], p, problem, e)) for e in tolerances
+    ]
     tasks += [("dop853", e, _stepper(dop853.integration, hairer, q, problem, e)) for e in tolerances[:-4]]
     tasks += _loops(problem)
     for name, how in SETTINGS.items() if settings else list(SETTINGS.items())[:1]:
@@ -241,47 +218,26 @@ def _contestants(problem: SteppedProblem, settings: bool) -> list[tuple[str, flo
     return tasks
 
 
-def measure(name: str, rounds: int = 9, settings: bool = False, scale: float = 1.0) -> list[Run]:
+def measure(name: str, rounds: int = 9, settings: bool = False, scale: float = 1.0) -> list[Measured]:
     """Time all contestants on one motion over ``scale`` times its span, and return their runs."""
     problem, exact = SteppedProblem(name, scale), reference(name, scale)
     # With ``settings``, heyoka runs in all its settings; otherwise only in the default.
     return raced(_contestants(problem, settings), partial(problem.largest_error, exact=exact), rounds)
 
 
-def raced(
-    tasks: Sequence[tuple[str, float, Callable[[], tuple[int, Any]]]], error: Callable[[Any], float], rounds: int,
-    clock: Callable[[], float] = perf_counter,
-) -> list[Run]:  # fmt: skip
-    """Return the runs of several contestants (name, tolerance, task); ``clock`` times them alternately."""
-    runs = []
-    for name, tolerance, task in tasks:
-        # a task returns its number of steps and its last states
-        steps, states = task()
-        runs.append(Run(name, tolerance, steps, error(states), []))
-    gc.disable()
-    for _ in range(rounds):
-        for (_, _, task), run in zip(tasks, runs, strict=True):
-            task()  # not counted, because the previous contestant determines the content of the caches
-            began = clock()
-            task()
-            run.seconds.append(clock() - began)
-    gc.enable()
-    return runs
-
-
-def best_of(runs: Iterable[Run], error: float, names: Sequence[str]) -> Run | None:
+def best_of(runs: Iterable[Measured], error: float, names: Sequence[str]) -> Measured | None:
     """Return the fastest run of the contestants ``names`` whose error is at most ``error``.
 
     None if there is no run.
     """
     good = [run for run in runs if run.name in names and run.error <= error]
-    return min(good, key=lambda run: min(run.seconds), default=None)
+    return min(good, key=lambda run: run.least, default=None)
 
 
 # ------------------------------------------------------------------------------------------------ tables
 
 
-def _print_table(name: str, runs: list[Run]) -> dict[str, list[float]]:
+def _print_table(name: str, runs: list[Measured]) -> dict[str, list[float]]:
     """Print the table of one motion; return, for each other stepper, its times divided by symrot's, one per decade."""
     stop = MOTIONS[name]["span"]["t"][1]
     present = list(dict.fromkeys(run.name for run in runs))
@@ -290,7 +246,7 @@ def _print_table(name: str, runs: list[Run]) -> dict[str, list[float]]:
     for contestant in present:
         own = [run for run in runs if run.name == contestant]
         best, longest = min(own, key=lambda run: run.error), max(own, key=lambda run: run.steps)
-        pace = min(longest.seconds) / longest.steps
+        pace = longest.least / longest.steps
         print(f"  {contestant:16}{pace * 1e9:6.0f} ns per step, least error {best.error:.1e} at {best.tolerance:.0e}")
     columns: list[tuple[str, list[str], tuple[str, ...], tuple[float, ...]]] = [
         ("dop853", ["dop853"], ("taylor",), DECADES),
@@ -304,14 +260,14 @@ def _print_table(name: str, runs: list[Run]) -> dict[str, list[float]]:
     ratios: dict[str, list[float]] = {title: [] for title, *_ in columns}
     for decade in DECADES:
         fastest = best_of(runs, decade, ["taylor"])
-        line = f"{decade:10.0e}" + (f"{min(fastest.seconds) * 1e3:12.3f}" if fastest else f"{'-':>12}")
+        line = f"{decade:10.0e}" + (f"{fastest.least * 1e3:12.3f}" if fastest else f"{'-':>12}")
         for title, names, against, decades in columns:
             ours, other = best_of(runs, decade, against), best_of(runs, decade, names)
             if ours is None or other is None or decade not in decades:
                 line += f"{'-':>17}{'-':>8}"
                 continue
-            ratios[title].append(min(other.seconds) / min(ours.seconds))
-            line += f"{min(other.seconds) * 1e3:17.3f}{ratios[title][-1]:8.2f}"
+            ratios[title].append(other.least / ours.least)
+            line += f"{other.least * 1e3:17.3f}{ratios[title][-1]:8.2f}"
         print(line)
     _print_ratios("  ", ratios)
     return ratios
@@ -327,7 +283,7 @@ def _print_orders(name: str, rounds: int) -> None:
     """Print, for a motion, the least time of each order of the series at each power of ten of the error."""
     problem, exact = SteppedProblem(name, 1.0), reference(name)
     paths = {f"{order}": problem.taylor_library(order) for order in ORDERS}
-    tasks: list[tuple[str, float, TimedRun]] = [
+    tasks: list[Task] = [
         (order, 10.0**-k, _stepper(taylor.integration, path, problem.taylor_p, problem, 10.0**-k))
         for k in range(2, 15) for order, path in paths.items()
     ]  # fmt: skip
@@ -336,9 +292,7 @@ def _print_orders(name: str, rounds: int) -> None:
     print(f"{'  error <=':10}" + "".join(f"{order:>10}" for order in paths))
     for decade in DECADES:
         fastest = [best_of(runs, decade, [order]) for order in paths]
-        print(
-            f"{decade:10.0e}" + "".join(f"{min(run.seconds) * 1e3:10.3f}" if run else f"{'-':>10}" for run in fastest)
-        )
+        print(f"{decade:10.0e}" + "".join(f"{run.least * 1e3:10.3f}" if run else f"{'-':>10}" for run in fastest))
 
 
 def main(arguments: list[str] | None = None) -> None:

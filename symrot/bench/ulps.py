@@ -15,12 +15,14 @@ from itertools import product
 from math import frexp, inf, ldexp, pi
 from typing import Any
 
+import mpmath
 import numpy as np
 from numpy.typing import NDArray
 from sympy import Symbol, lambdify
 
 from symrot.build import cache
-from symrot.codegen.printing.c_source import DOUBLE, FLOAT, MATH_HEADER, Real
+from symrot.codegen.printing.c_function import DOUBLE, FLOAT, Real
+from symrot.codegen.printing.c_source import MATH_HEADER
 from symrot.codegen.printing.math_header import FAR, math_header
 from symrot.kernels.removable import REMOVABLE
 from symrot.workshop.emit import emit
@@ -70,8 +72,6 @@ def _quotient(name: str) -> Callable[[Any], Any]:
 
 def _series(name: str, x: Any) -> Any:
     """Return the exact value at ``x`` of the function ``name`` with a removable singularity, by its series near 0."""
-    import mpmath
-
     which = REMOVABLE[name]
     if abs(x) > 1:
         return _quotient(name)(x)
@@ -79,33 +79,11 @@ def _series(name: str, x: Any) -> Any:
 
 
 def _sinc(x: Any) -> Any:
-    import mpmath
-
     return mpmath.sin(x) / x if x else mpmath.mpf(1)
 
 
 def _arc_ratio(s: Any, c: Any) -> Any:
-    import mpmath
-
     return mpmath.atan2(s, c) / s if s else 1 / c
-
-
-def _sin(x: Any) -> Any:
-    import mpmath
-
-    return mpmath.sin(x)
-
-
-def _atan2(y: Any, x: Any) -> Any:
-    import mpmath
-
-    return mpmath.atan2(y, x)
-
-
-def _cos(x: Any) -> Any:
-    import mpmath
-
-    return mpmath.cos(x)
 
 
 _BATCH = (("batch", "symrot_"),)
@@ -118,9 +96,9 @@ FUNCTIONS = (
     Function("tangent_bend", lambda x: _series("tangent_bend", x), "rotation_vector_body_rates_by_v", reach=pi),
     Function("tangent_bend", lambda x: _series("tangent_bend", x), "rotation_vector_body_rates_by_v", beyond=pi),
     Function("arc_ratio", _arc_ratio, "rotation_vector_of_quaternion"),
-    Function("atan2", _atan2, "rotation_vector_of_quaternion", _BATCH),
-    Function("sin", _sin, "rotation_vector_quaternion", _BATCH),
-    Function("cos", _cos, "rotation_vector_quaternion", _BATCH),
+    Function("atan2", mpmath.atan2, "rotation_vector_of_quaternion", _BATCH),
+    Function("sin", mpmath.sin, "rotation_vector_quaternion", _BATCH),
+    Function("cos", mpmath.cos, "rotation_vector_quaternion", _BATCH),
 )
 
 
@@ -205,8 +183,6 @@ def measured(points: int = 20_000, contraction: Sequence[str] = tuple(CONTRACTIO
     contraction : sequence of str
         Among ``"unfused"`` and ``"fused"``: whether the compiler may fuse a product and a sum.
     """
-    import mpmath
-
     for function in FUNCTIONS:
         text = _text(function)
         built = {each: cache.build(text, "ulps", (*FLAGS, *CONTRACTION[each])) for each in contraction}

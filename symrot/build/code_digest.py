@@ -1,10 +1,10 @@
-"""Hashes of Python code that docstrings and comments do not change, for keys of the cache."""
+"""Hashes of texts, and of Python code without its docstrings and comments, for certificates and keys of the cache."""
 
 import re
 from collections.abc import Iterable
 from hashlib import sha256
 
-__all__ = ["code_digest", "code_without_prose"]
+__all__ = ["code_digest", "code_without_prose", "text_digest"]
 
 _STRINGS = (
     r'"""(?:(?!""")[^\\]|\\.)*"""', r"'''(?:(?!''')[^\\]|\\.)*'''", r'"(?:[^"\\\n]|\\.)*"', r"'(?:[^'\\\n]|\\.)*'",
@@ -35,6 +35,11 @@ def code_without_prose(source: str) -> str:
     return "".join([*parts, source[position:]])
 
 
+def text_digest(*texts: str) -> str:
+    """Return the SHA-256 of a text, or of several texts in their order, with the character NUL between them."""
+    return sha256("\0".join(texts).encode()).hexdigest()
+
+
 def code_digest(sources: Iterable[str]) -> str:
     """Return the SHA-256 of Python sources without their docstrings and comments."""
-    return sha256("\0".join(map(code_without_prose, sources)).encode()).hexdigest()
+    return text_digest(*map(code_without_prose, sources))

@@ -19,8 +19,8 @@ from symrot.certificates.readback.javascript import compare_javascript
 from symrot.certificates.readback.jax_text import compare_jax
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.readback.readback import read_batch, read_kernel
-from symrot.certificates.rounding.bounds import check_bounds, check_section
 from symrot.certificates.rounding.bounds_text import library_region, library_section
+from symrot.certificates.rounding.section import check_bounds, check_section
 from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
 from symrot.kernels.library import is_kernel

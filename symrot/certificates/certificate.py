@@ -8,14 +8,13 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
-from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
 from sympy import Expr, Function, Symbol
 
 from symrot.build import cache as proof_cache
-from symrot.build.code_digest import code_digest
+from symrot.build.code_digest import code_digest, text_digest
 from symrot.certificates.coq.library import coq_section
 from symrot.certificates.flags import flags_section
 from symrot.certificates.laws.equality import FUNCTIONS_WITH_LIMIT, Equality, prove_equal
@@ -113,7 +112,7 @@ def certificate_text(kernel: KernelUnderTest) -> str:
         [[law.text, str(law.vanishing), str(law.relations)] for law in kernel.laws],
         _prover_digest(),
     ]
-    key = f"certificate {sha256(json.dumps(key_content).encode()).hexdigest()}"
+    key = f"certificate {text_digest(json.dumps(key_content))}"
     # proofs are stored for the same statements and the same version of the provers
     proofs = proof_cache.fetch(key)
     if proofs is None:
@@ -148,7 +147,7 @@ def unproven_statement(kernel: KernelUnderTest) -> Data:
         "convention": description.convention,
         "domain": description.domain,
         "derivation": description.derivation,
-        "files": {path: sha256(text.encode()).hexdigest() for path, text in kernel.files.items()},
+        "files": {path: text_digest(text) for path, text in kernel.files.items()},
         "inputs": [[place, *described] for place, described in kernel.places.items()],
         "spec": {
             "parameters": {symbol: str(value) for symbol, value in kernel.parameters.items()},
@@ -262,7 +261,7 @@ def _series(proof: Equality) -> list[list[Any]]:
 def seal(data: Data) -> str:
     """Return the seal of a certificate: the SHA-256 of all its content except the seal itself."""
     bare = {key: value for key, value in data.items() if key != "seal"}
-    return sha256(json.dumps(bare, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+    return text_digest(json.dumps(bare, sort_keys=True, separators=(",", ":")))
 
 
 OPTIONAL_SECTIONS: dict[str, Callable[[Data, Any], bool]] = {  # section -> whether it belongs to a certificate

@@ -7,6 +7,7 @@ follow from the hash of the compared texts, so that a proof is the same on every
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from hashlib import sha256
 from struct import pack, unpack
 from typing import Any
@@ -90,18 +91,20 @@ RANDOM["sinc"] = lambda x: RANDOM["sin"](x) / x
 
 
 def exact(precision: str) -> Callable[[Fraction], Residue]:
-    """Return a function that converts a rounded constant of the C text to a residue, its value modulo PRIME."""
+    """Return a function that rounds a constant as the C text does, and returns the residue of its exact number."""
+    return lambda value: _intended(
+        float(value) if precision == "binary64" else float(unpack("f", pack("f", float(value)))[0]), precision
+    )
 
-    def residue(value: Fraction) -> Residue:
-        rounded = float(value) if precision == "binary64" else float(unpack("f", pack("f", float(value)))[0])
-        try:
-            constant = intended_value(Fraction(rounded), precision)
-        except CertificateError:
-            return Residue.of(Fraction(rounded))
-        # the value of the simple fraction that rounds to the constant, such as 1/3, if there is one
-        return Residue.of(Fraction(rounded) if constant.times_pi else constant.fraction)
 
-    return residue
+@lru_cache(maxsize=4096)
+def _intended(rounded: float, precision: str) -> Residue:
+    """Return the residue of the simple fraction that rounds to a number, such as 1/3, or else of the number itself."""
+    try:
+        constant = intended_value(Fraction(rounded), precision)
+    except CertificateError:
+        return Residue.of(Fraction(rounded))
+    return Residue.of(Fraction(rounded) if constant.times_pi else constant.fraction)
 
 
 def probability(degree: int, factor: int = 2) -> str:

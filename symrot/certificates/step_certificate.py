@@ -7,18 +7,19 @@ random points, exactly, as residues: integers modulo a prime. Functions such as 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from hashlib import sha256
 
+from symrot.build.code_digest import text_digest
 from symrot.certificates.certificate import Data, certificate_json
-from symrot.certificates.exact_motion import motion_section, require_limits
+from symrot.certificates.exact_step.motion import motion_section, require_limits
 from symrot.certificates.readback.c_functions import Parameter, functions_of
 from symrot.certificates.readback.intended_constants import intended_value
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.certificates.residues import POINTS, RANDOM, Residue, digest_number, exact, probability
-from symrot.certificates.rounding.bounds import rounding_section
 from symrot.certificates.rounding.output_graph import output_graph
-from symrot.certificates.truncation import DEFECT, truncation_bounds
+from symrot.certificates.rounding.section import rounding_section
+from symrot.certificates.truncation.bounds import truncation_bounds
+from symrot.certificates.truncation.order import DEFECT
 from symrot.codegen.steady_rotations import STATES
 from symrot.codegen.steps import (
     SIZE,
@@ -85,7 +86,7 @@ class StepUnderTest:
 
 
 # The certificate states the rates, so that it can be audited without the scene. For a box of states and step sizes it
-# may also bound the errors of one step: rounding (rounding/) and truncation (truncation.py).
+# may also bound the errors of one step: rounding (rounding/) and truncation (truncation/).
 def step_certificate(step: StepUnderTest) -> str:
     """Return the text of the certificate of a step.
 
@@ -103,7 +104,7 @@ def step_certificate(step: StepUnderTest) -> str:
             "method": step.method.formula,
             "step": step_section(step.method),
             "rates": rates_section(step.rates, step.values),
-            "files": {path: sha256(text.encode()).hexdigest() for path, text in step.files.items()},
+            "files": {path: text_digest(text) for path, text in step.files.items()},
             "formula": formula_section(step.name, step.rates, step.method, step.files[f"{step.name}.c"]),
             "trusted": trusted(step.method.name, has_bounds=False),
         }

@@ -19,12 +19,13 @@ from symrot.checker.claim.named_formula import (
 )
 from symrot.checker.claim.values import decide_value
 from symrot.checker.decide.decision import decide_equation, for_positive_bases, is_large
-from symrot.checker.decide.ranges import condition_texts
-from symrot.checker.equivalents import inverse_factor
+from symrot.checker.decide.ranges.text import condition_texts
 from symrot.checker.equivalents.aircraft_names import with_usual_letters
 from symrot.checker.equivalents.inertia_in_frames import on_inertia_in_frames
+from symrot.checker.equivalents.inverse_factor import multiplied
+from symrot.checker.equivalents.product_signs import with_minus_sign
 from symrot.checker.equivalents.rotation_rates import tested_on_rotations
-from symrot.checker.equivalents.symmetry_axis import in_claim, with_axis_z
+from symrot.checker.equivalents.symmetry_axis import with_axis_z
 from symrot.checker.time_limit import TimeUp, processor_seconds
 from symrot.checker.units.check import check_dimensions
 from symrot.checker.verdict import Diagnosis, Verdict
@@ -32,7 +33,15 @@ from symrot.errors import InputError
 from symrot.exact.decision import Decision
 from symrot.exact.limits.operations import MOST_OPERATIONS, OutOfOperations, one_claim
 
-__all__ = ["check_claim", "check_readings", "is_unfinished", "unfinished", "verdict_of_decision", "within_limits"]
+__all__ = [
+    "check_claim",
+    "check_readings",
+    "ended_note",
+    "is_unfinished",
+    "verdict_of_decision",
+    "within_budget",
+    "within_limits",
+]
 
 Limit = OutOfOperations | TimeUp
 
@@ -96,7 +105,7 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
             late = verdict_of_decision(unfinished(limit), claim.text, start)
             verdict = replace(late, id=claim.id, where=claim.where)
         else:
-            verdict = replace(verdict, notes=(*verdict.notes, _ended(limit)))
+            verdict = replace(verdict, notes=(*verdict.notes, ended_note(limit)))
     if other_verdict is not None:
         return verdict, other_verdict
     return replace(verdict, seconds=perf_counter() - start), None
@@ -104,18 +113,29 @@ def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict 
 
 @contextmanager
 def within_limits() -> Iterator[None]:
-    """Return a context with the budget for one claim; it raises OutOfOperations or TimeUp beyond it."""
+    """Run a ``with`` block within the budget for one claim; beyond it, OutOfOperations or TimeUp is raised."""
     with one_claim(MOST_OPERATIONS), processor_seconds(MOST_SECONDS):
         yield
+
+
+def within_budget(decide: Callable[[], Verdict], text: str) -> Verdict:
+    """Return ``decide()``, the verdict on the claim ``text``, or "undecided" if the budget for a claim ends before."""
+    start = perf_counter()
+    try:
+        with within_limits():
+            return decide()
+    except (OutOfOperations, TimeUp) as limit:
+        return verdict_of_decision(unfinished(limit), text, start)
 
 
 def is_unfinished(verdict: Verdict) -> bool:
     """Return whether the budget for a claim ended before it was decided, or before all repairs were tried."""
     limits: tuple[Limit, ...] = OutOfOperations(), TimeUp()
-    return any(verdict.reason == unfinished(limit).reason or _ended(limit) in verdict.notes for limit in limits)
+    return any(verdict.reason == unfinished(limit).reason or ended_note(limit) in verdict.notes for limit in limits)
 
 
-def _ended(limit: Limit) -> str:
+def ended_note(limit: Limit) -> str:
+    """Return the note that the budget for a claim ended before all other readings and repairs were tried."""
     if isinstance(limit, OutOfOperations):
         return f"the search for other readings and for repairs was stopped after {_operations()}"
     return (
@@ -155,22 +175,13 @@ def _on_name(
 
     Return None for other claims.
     """
-    if claim.context.sign_of_products == "plus":
-        from symrot.checker.equivalents import product_signs
-
-        result = _on_name(product_signs.with_minus_sign(claim), repair, formula_of)
-        return result and (None, replace(product_signs.in_claim(result[1]), text=claim.text))
-    if claim.context.body is not None and (axis := claim.context.body.symmetry_axis):
-        result = _on_name(with_axis_z(claim), repair, formula_of)
-        return result and (None, replace(in_claim(result[1], axis), text=claim.text))
-    if (renamed := with_usual_letters(claim)) is not None:
-        result = _on_name(renamed.claim, repair, formula_of)
-        if result and result[1].verdict in ("recognised", "doubtful"):
-            return None, replace(renamed.in_claim(result[1]), text=claim.text)
-    if (product := inverse_factor.multiplied(claim)) is not None:
-        result = _on_name(product[0], repair, related_formula)
-        if result and result[1].verdict in ("recognised", "doubtful"):
-            return None, replace(inverse_factor.in_claim(result[1], product[1]), text=claim.text)
+    if (other := with_minus_sign(claim) or with_axis_z(claim)) is not None:
+        result = _on_name(other.claim, repair, formula_of)
+        return result and (None, replace(other.in_typed_form(result[1]), text=claim.text))
+    for other, formula in ((with_usual_letters(claim), formula_of), (multiplied(claim), related_formula)):
+        result = None if other is None else _on_name(other.claim, repair, formula)
+        if other and result and result[1].verdict in ("recognised", "doubtful"):
+            return None, replace(other.in_typed_form(result[1]), text=claim.text)
     if (on_frames := on_inertia_in_frames(claim)) is not None:
         return None, on_frames
     named = formula_of(claim) if claim.relation is not None else None
@@ -180,7 +191,7 @@ def _on_name(
     from symrot.checker.context.exchanged_letters import by_exchanged_letters
     from symrot.checker.context.named_bodies import of_named_body
     from symrot.checker.context.sizes import by_other_sizes
-    from symrot.checker.recognition.naming import verdict_on_name
+    from symrot.checker.recognition.naming.verdicts import verdict_on_name
 
     start = perf_counter()
 
@@ -230,7 +241,7 @@ def _was_near_relation(claim: Claim) -> bool:
 
 def _near_relation(claim: Claim, verdict: Verdict) -> Verdict:
     """Return ``verdict``, on a false claim, with repairs that turn the claim into a known relation, if any."""
-    from symrot.checker.recognition.naming import verdict_near_relation
+    from symrot.checker.recognition.naming.near_verdicts import verdict_near_relation
 
     nearest = verdict_near_relation(claim)
     if nearest is None and verdict.dimension.status == "inconsistent":  # then even a short formula has a fault
@@ -247,7 +258,7 @@ def _on_motion(claim: Claim, verdict: Verdict) -> Verdict:
     if claim.hypotheses or claim.define or claim.context.obscure:
         return verdict
     from symrot.checker.context.relations.motion import by_motion
-    from symrot.checker.recognition.naming import AS_IT_STANDS
+    from symrot.checker.recognition.naming.verdicts import AS_IT_STANDS
 
     if any(note.startswith(AS_IT_STANDS) for note in verdict.notes):
         return verdict
@@ -259,7 +270,7 @@ def _on_relation(claim: Claim) -> tuple[None, Verdict] | None:
     """Return (None, verdict) for a known relation, such as an impulse equation; None for other claims."""
     if claim.relation is None or claim.hypotheses:
         return None
-    from symrot.checker.recognition.naming import verdict_on_relation
+    from symrot.checker.recognition.naming.verdicts import verdict_on_relation
 
     start = perf_counter()
     verdict = verdict_on_relation(claim)
@@ -359,6 +370,7 @@ def _domain(claim: Claim) -> Diagnosis:
 
 
 def verdict_of_decision(decision: Decision, text: str, start: float) -> Verdict:
+    """Return a decision as the verdict on the claim ``text``, whose check began at the time ``start``."""
     return Verdict(
         verdict=decision.verdict,
         conditions=condition_texts(decision.conditions),

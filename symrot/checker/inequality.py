@@ -13,16 +13,14 @@ from sympy import Expr, Rational, Symbol, pi
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.scope import is_matrix
-from symrot.checker.claim.tree import Node, walk
-from symrot.checker.claim_verdict import check_claim, unfinished, verdict_of_decision, within_limits
+from symrot.checker.claim.tree import TIME, Node, walk
+from symrot.checker.claim_verdict import check_claim, verdict_of_decision, within_budget
 from symrot.checker.decide.decision import decide_equation
 from symrot.checker.decide.signs import is_proven_nonnegative, is_proven_positive
-from symrot.checker.time_limit import TimeUp
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.errors import InputError
 from symrot.exact.evidence import Counterexample
 from symrot.exact.intervals import enclosure
-from symrot.exact.limits.operations import OutOfOperations
 
 __all__ = ["OPPOSITE", "is_inequality", "verdict_on_inequality"]
 
@@ -66,11 +64,7 @@ def verdict_on_inequality(claim: Claim, sign: str, flipped: str) -> Verdict:
     InputError
         For sides that are not real numbers.
     """
-    try:
-        with within_limits():
-            return _verdict(claim, sign, flipped)
-    except (OutOfOperations, TimeUp) as limit:
-        return verdict_of_decision(unfinished(limit), claim.text, 0.0)
+    return within_budget(lambda: _verdict(claim, sign, flipped), claim.text)
 
 
 def _verdict(claim: Claim, sign: str, flipped: str) -> Verdict:
@@ -135,12 +129,9 @@ def _is_condition(claim: Claim) -> bool:
 
 
 def _letters(tree: Node) -> set[str]:
-    return {
-        str(node.value)
-        for _, node in walk(tree)
-        if (node.kind == "name" and node.value not in ("pi", "t")) or (node.kind == "call" and node.value != "diff"
-        and [part.value for part in node.args] == ["t"])
-    }  # fmt: skip
+    nodes = [node for _, node in walk(tree)]
+    functions = {str(node.value) for node in nodes if node.kind == "call" and node.args == (TIME,)}
+    return functions | {str(node.value) for node in nodes if node.kind == "name"} - {"pi", "t"}
 
 
 def _on_moments(difference: Expr, strict: bool, flipped: str) -> Verdict | None:

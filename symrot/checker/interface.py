@@ -7,25 +7,24 @@ from time import perf_counter
 from typing import Any
 
 from symrot.checker.approximation import verdict_on_approximation
+from symrot.checker.claim.reader import check_length
 from symrot.checker.claim.size import MOST_NESTED, nesting
 from symrot.checker.claim.source.file import Refusal, read_entries
 from symrot.checker.claim.source.text import functions_of_time, is_latex
-from symrot.checker.claim_verdict import check_claim, check_readings, unfinished, verdict_of_decision, within_limits
+from symrot.checker.claim_verdict import check_claim, check_readings, verdict_of_decision, within_budget
 from symrot.checker.context.context import Context, read_context
 from symrot.checker.decide.decision import decide_equation
 from symrot.checker.decide.equation import Equation
 from symrot.checker.equivalents.inertia_in_frames import without_brackets
 from symrot.checker.equivalents.rotations_by_angle import with_axis
 from symrot.checker.frame_rates import verdict_on_rates, without_marks
-from symrot.checker.text import verdict_on_readings, verdict_on_text
-from symrot.checker.time_limit import TimeUp
+from symrot.checker.text.readings import verdict_on_readings, verdict_on_text
 from symrot.checker.typed.copied_signs import with_plain_signs
 from symrot.checker.units.check import dimensions_of_formulas
 from symrot.checker.units.conversion import measured_text, numbers_of_latex
 from symrot.checker.verdict import Verdict
 from symrot.errors import InputError
 from symrot.exact.decision import flatten
-from symrot.exact.limits.operations import OutOfOperations
 from symrot.exact.printing import as_text
 
 __all__ = ["RefusedClaims", "check", "check_claim", "check_file", "check_readings", "verdicts_of_file"]
@@ -134,6 +133,7 @@ def _checked(
         if isinstance(assume, str) or not all(isinstance(hypothesis, str) for hypothesis in assume):
             raise InputError("assume: expected a list of texts like 'a == b', since the claim is a text")
         typed = _without_backticks(left).lstrip()  # places in the text count from its first character
+        check_length(typed)  # before any search in the text, whose time grows with its length
         if not assume and not stated and (of_frames := verdict_on_rates(typed)) is not None:
             return of_frames
         if not assume and not stated and (approximate := verdict_on_approximation(typed)) is not None:
@@ -160,13 +160,9 @@ def _checked(
         for entry in flatten(side)[0]:
             if nesting(entry) > MOST_NESTED:
                 raise InputError(f"expected at most {MOST_NESTED} functions and roots inside each other")
-    start = perf_counter()
-    try:
-        with within_limits():
-            decision = decide_equation(Equation(left, right, tuple(assume)))
-    except (OutOfOperations, TimeUp) as limit:
-        decision = unfinished(limit)
-    verdict = verdict_of_decision(decision, f"{as_text(left)} == {as_text(right)}", start)
+    start, text = perf_counter(), f"{as_text(left)} == {as_text(right)}"
+    equation = Equation(left, right, tuple(assume))
+    verdict = within_budget(lambda: verdict_of_decision(decide_equation(equation), text, start), text)
     return replace(verdict, dimension=dimensions_of_formulas(left, right, units))
 
 
@@ -184,7 +180,7 @@ def _on_latex(
     from symrot.checker.latex.shorthand import without_definitions
     from symrot.checker.latex.writing import LatexNotation
 
-    # the arguments are those of symrot.checker.text.verdict_on_text
+    # the arguments are those of verdict_on_text
     assume = without_definitions(assume, source)
     functions = functions_of_time(assume)
     readings = latex_readings(source, Names(functions=functions))

@@ -50,13 +50,9 @@ def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:
         return verdict
     name = notation.formula(letter)
     example = ", for example" if _may_have_others(claim, letter) else ""
-    reason = f"it is an equation for {name}, and no identity: it holds for {_in(notation, values)}{example}"
+    written = notation.condition(values) if "==" in values else values
+    reason = f"it is an equation for {name}, and no identity: it holds for {written}{example}"
     return _open(verdict, reason)
-
-
-def _in(notation: Notation, values: str) -> str:
-    """Return values such as ``x == sqrt(2) and x == 3`` in the notation of the claim; words are returned unchanged."""
-    return notation.condition(values) if "==" in values else values
 
 
 def _open(verdict: Verdict, reason: str) -> Verdict:

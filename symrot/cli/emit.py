@@ -38,7 +38,7 @@ def _emit(options: Namespace) -> int:
     else:
         kernel = kernels.chosen_text(options.kernel, options.jacobian, options.step, options.order)
         bounds = kernels.stored_bounds(kernel, options.directory) if options.target in (None, "c") else None
-        texts = kernels.kernel_files(kernel, options.target or "c", bounds)
+        texts = kernel.files(options.target or "c", bounds)
         if options.directory is None:
             sys.stdout.write("\n".join(texts.values()))
             return OK

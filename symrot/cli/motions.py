@@ -51,7 +51,7 @@ def _run(options: Namespace) -> int:
         if options.plot.suffix.lower() in PAGE_SUFFIXES:
             trajectory.show(options.plot)
         else:
-            plot.save(propagator, trajectory, options.plot)
+            plot.save(trajectory, options.plot)
         report["written"]["plot"] = {"file": str(options.plot)}
     progress("")
     if options.json:

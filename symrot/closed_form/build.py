@@ -18,7 +18,7 @@ from symrot.build import cache as library
 from symrot.errors import CompilerError, InputError
 from symrot.formula.exact_numbers import show
 
-__all__ = ["FLAGS", "PARTS", "Floats", "begin", "joined", "load", "loaded", "source", "times_of"]
+__all__ = ["FLAGS", "PARTS", "Floats", "available", "begin", "joined", "load", "source", "times_of"]
 
 Floats = NDArray[np.float64]
 
@@ -91,10 +91,9 @@ def begin(name: str) -> list[library.Building]:
     return _begun[name]
 
 
-def loaded(name: str) -> bool:
-    """Return whether the compiled libraries of the closed form ``name`` are loaded in this process."""
-    # if so, no compiler is needed
-    return name in _loaded
+def available(name: str) -> bool:
+    """Return whether C can compute the closed form ``name``: its libraries are loaded, or there is a C compiler."""
+    return name in _loaded or not library.missing()
 
 
 def load(name: str) -> tuple[Any, ...]:

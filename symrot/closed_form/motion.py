@@ -3,6 +3,7 @@
 import ctypes
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from functools import cache
 from math import isnan
 from struct import Struct
 from typing import Any
@@ -10,9 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from symrot.build import cache as library
 from symrot.build.address import address
-from symrot.closed_form.build import Floats, load, times_of
+from symrot.closed_form.build import Floats, available, load, times_of
 from symrot.errors import CompilerError, InputError
 
 __all__ = ["REGIMES", "ExactMotion", "functions", "prepared"]
@@ -22,8 +22,6 @@ REGIMES = ("steady", "circular", "hyperbolic", "separatrix")
 converge faster for large moduli), and functions on the separatrix."""
 
 _DOMAIN = 1
-_Functions = tuple[Any, Any, Any]
-_bound: dict[str, _Functions] = {}
 
 
 class ExactMotion(ABC):
@@ -104,21 +102,20 @@ class _Portable(ExactMotion):
         self._motion.evaluate(times, omega, quaternion)
 
 
-def functions(name: str, arguments: int) -> _Functions:
+@cache
+def functions(name: str, arguments: int) -> tuple[Any, Any, Any]:
     """Return the C functions `prepare` and `at` of the closed form ``name``, and the ctypes type of their constants.
 
     `prepare` computes the constants of a motion from ``arguments`` arrays; `at` computes samples.
     """
-    if name not in _bound:
-        constants, samples = load(name)
-        prepare, length = (getattr(constants, f"symrot_{name}_{part}") for part in ("prepare", "length"))
-        evaluate = getattr(samples, f"symrot_{name}_at")
-        pointer, size = ctypes.c_void_p, ctypes.c_ssize_t
-        prepare.argtypes, prepare.restype = (pointer,) * (arguments + 1), ctypes.c_int
-        evaluate.argtypes, evaluate.restype = (pointer, size, pointer, pointer, pointer), None
-        length.restype = size
-        _bound[name] = (prepare, evaluate, ctypes.c_double * length())
-    return _bound[name]
+    constants, samples = load(name)
+    prepare, length = (getattr(constants, f"symrot_{name}_{part}") for part in ("prepare", "length"))
+    evaluate = getattr(samples, f"symrot_{name}_at")
+    pointer, size = ctypes.c_void_p, ctypes.c_ssize_t
+    prepare.argtypes, prepare.restype = (pointer,) * (arguments + 1), ctypes.c_int
+    evaluate.argtypes, evaluate.restype = (pointer, size, pointer, pointer, pointer), None
+    length.restype = size
+    return prepare, evaluate, ctypes.c_double * length()
 
 
 def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Callable[[], str]) -> ExactMotion:
@@ -134,7 +131,7 @@ def prepared(name: str, arguments: tuple[list[float] | None, ...], refusal: Call
         If the C compiler rejects the source, or does not round every operation separately.
     """
     # without a C compiler, NumPy and mpmath compute the motion
-    if name not in _bound and library.missing():
+    if not available(name):
         from symrot.closed_form.portable import MOTIONS
 
         try:

@@ -7,7 +7,7 @@ from symrot.codegen.derivatives import Formulas, cheapest, ways
 from symrot.codegen.printing.banner import CONTRACT, Description
 from symrot.formula import exact_numbers as number
 from symrot.formula.program import Program, Signature
-from symrot.formula.tree import Node, children, evaluate
+from symrot.formula.tree import Node, children, evaluate, with_children
 from symrot.kernels.definition import Box, Definition
 from symrot.kernels.jacobian import BY
 from symrot.kernels.library import definition
@@ -47,13 +47,9 @@ def _ways(name: str, kernel: Definition) -> Iterable[Formulas]:
 
 def _with(node: Node, values: Mapping[str, Node]) -> Node:
     """Return a formula with symbols replaced: ``2*x`` with ``{"x": a + b}`` as ``values`` gives ``2*(a + b)``."""
-    if not children(node):
-        return values.get(node[1], node) if node[0] == "symbol" else node
-    if node[0] == "call":
-        return ("call", node[1], tuple(_with(child, values) for child in node[2]))
-    if node[0] == "**":
-        return ("**", _with(node[1], values), node[2])
-    return (node[0], *(_with(child, values) for child in node[1:]))
+    if node[0] == "symbol":
+        return values.get(node[1], node)
+    return with_children(node, [_with(child, values) for child in children(node)])
 
 
 def kernel_description(kernel: Definition, target: str, errors: str = "") -> Description:

@@ -10,21 +10,25 @@ from symrot.codegen.printing.banner import Description
 from symrot.codegen.printing.numpy_source import numpy_source
 from symrot.formula.program import Program
 
-__all__ = ["load_numpy_kernel"]
+__all__ = ["UNNAMED", "function_in", "load_numpy_kernel"]
 
-_UNNAMED = Description(
-    "kernel of a scene", "all states", "derivations/euler_equations.md", "symrot emit --target numpy"
-)
+UNNAMED = Description("kernel of a scene", "all states", "derivations/euler_equations.md", "symrot emit --target numpy")
+"""The description of a kernel whose text nobody reads."""
 
 
 def load_numpy_kernel(program: Program) -> Callable[..., Any]:
     """Return the Python function that computes a program's outputs: its emitted NumPy text, imported as a module."""
+    return function_in(numpy_source(program, UNNAMED), program.signature.name)
+
+
+def function_in(text: str, name: str) -> Callable[..., Any]:
+    """Return the function ``name`` of the Python module whose text is ``text``."""
     with TemporaryDirectory(prefix="symrot-") as directory:
-        path = Path(directory) / f"{program.signature.name}.py"
-        path.write_text(numpy_source(program, _UNNAMED), encoding="utf-8")
-        spec = spec_from_file_location(program.signature.name, path)
+        path = Path(directory) / f"{name}.py"
+        path.write_text(text, encoding="utf-8")
+        spec = spec_from_file_location(name, path)
         assert spec is not None and spec.loader is not None
         module = module_from_spec(spec)
         spec.loader.exec_module(module)
-    function: Callable[..., Any] = getattr(module, program.signature.name)
+    function: Callable[..., Any] = getattr(module, name)
     return function

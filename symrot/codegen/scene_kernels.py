@@ -12,7 +12,7 @@ from symrot import symbols
 from symrot.codegen.derivatives import Formulas, cheapest, ways
 from symrot.codegen.lowering.lower import Lowered, lower
 from symrot.codegen.printing.banner import CONTRACT, Description
-from symrot.codegen.printing.c_source import c_function, c_name
+from symrot.codegen.printing.c_function import c_function, c_name
 from symrot.dynamics.equations import PLANAR_ANGLE, Equations, equations_of_motion
 from symrot.dynamics.invariants import find_invariants
 from symrot.dynamics.structure import Structure

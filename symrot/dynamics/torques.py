@@ -35,7 +35,7 @@ from symrot.dynamics.structure import FieldPattern, FormulaTorque, Pattern, Torq
 from symrot.dynamics.torque_kinds import EXPRESSION_NAMES, TORQUE_KINDS
 from symrot.errors import InputError
 from symrot.formula.switches import CHANGING, has_switches
-from symrot.formula.tree import FUNCTIONS, Node, children, evaluate, parse
+from symrot.formula.tree import FUNCTIONS, Node, children, evaluate, parse, with_children
 from symrot.kinematics.quaternion import conjugate, quaternion_product, quaternion_rates, quaternion_to_dcm
 from symrot.symbols import constant
 
@@ -177,12 +177,6 @@ def _rational(value: Fraction) -> Rational:
 
 def _with_brackets(node: Node, known: dict[str, Expr]) -> Node:
     """Return a formula with names for products such as ``2*(1 + tanh(u))``; the map ``known`` gets their values."""
-    if node[0] in ("number", "symbol"):
-        return node
-    if node[0] == "call":
-        return ("call", node[1], tuple(_with_brackets(child, known) for child in node[2]))
-    if node[0] == "**":
-        return ("**", _with_brackets(node[1], known), node[2])
     parts = [_with_brackets(child, known) for child in children(node)]
     factors = [part for part in parts if part[0] == "number"]
     if len(factors) == 1 and (node[0] == "*" or (node[0] == "/" and parts[1] is factors[0])):
@@ -194,7 +188,7 @@ def _with_brackets(node: Node, known: dict[str, Expr]) -> Node:
             name = f"bracket {len(known)}"
             known[name] = Mul(1 / number if node[0] == "/" else number, bracket, evaluate=False)
             return ("symbol", name)
-    return (node[0], *parts)
+    return with_children(node, parts)
 
 
 def torque_law(structure: TorqueStructure, motion: Motion) -> TorqueLaw:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 import symrot
 from symrot.ensemble.motions import Followed, Problem, follow
 from symrot.ensemble.quantities import Source
-from symrot.ensemble.variation import read_times, read_variation
+from symrot.ensemble.reading import read_times, read_variation
 from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
 from symrot.propagation.propagator import Propagator

@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.build import cache as library
 from symrot.closed_form.arithmetic import double_double as dd
 from symrot.closed_form.arithmetic.pairs import LARGEST, SMALLEST, attitude, pair
-from symrot.closed_form.build import loaded
+from symrot.closed_form.build import available
 from symrot.closed_form.registry import ClosedForm, Exact, exact_form
 from symrot.ensemble.variation import PRINCIPAL, PRODUCTS, Variation
 from symrot.errors import InputError
@@ -120,7 +119,7 @@ def choose(variation: Variation, times: Floats, start: float, faster: bool) -> l
     for kind, rows in forms_of(variation):
         if kind.form is None:
             continue
-        without_compiler = not loaded(kind.form.library) and library.missing()
+        without_compiler = not available(kind.form.library)
         if without_compiler and faster:  # without a compiler, SciPy makes the steps
             continue
         # only the trajectory's own angle counts, so that the choice does not depend on other trajectories

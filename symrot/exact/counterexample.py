@@ -4,7 +4,7 @@ With symbols, angles and unit vectors alone, the point is rational: ``cos x = 4/
 are rational or multiples of pi, and 50-digit interval arithmetic proves that the sides differ.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
@@ -18,15 +18,17 @@ from sympy.polys.rings import PolyElement
 
 from symrot.errors import InputError
 from symrot.exact.angles.angles import base_angle
+from symrot.exact.domain.domain import free_angles
 from symrot.exact.domain.needs import fits_assumptions
 from symrot.exact.evidence import Counterexample
 from symrot.exact.floats import NoValue, float_at
-from symrot.exact.intervals import enclosure, is_nonnegative_at, surely_nonnegative_number
+from symrot.exact.intervals import enclosure, is_nonnegative_at
 from symrot.exact.limits.size import pieces
+from symrot.exact.ring.polynomials import occurring, value_at
 from symrot.exact.ring.ratio import Ratio, TooLarge
 from symrot.exact.ring.ring import FormulaRing
 
-__all__ = ["closed_form_witness", "rational_witness"]
+__all__ = ["closed_form_witness", "coordinates_of", "rational_witness"]
 
 ATTEMPTS = 60
 """Number of random points; a nonzero polynomial of degree d is zero at one of them with a probability of about d/40."""
@@ -47,6 +49,9 @@ _INVERSE = (asin, acos, atan, atan2)
 _TRIANGLES = [Rational(n, d) for n, d in ((3, 5), (-4, 5), (3, 4), (-4, 3), (1, 1), (-1, 1), (2, 1), (-2, 1), (1, 2))]
 """Values at which sines and cosines of most inverse functions are rational."""
 
+_CIRCLE = tuple(tuple(map(Fraction, point.split())) for point in ("0 1", "1 0", "0 -1", "-1 0", "3/5 4/5", "4/5 3/5"))
+"""Pairs (sine, cosine): the quarter turns, and the acute angles of the triangle with the sides 3, 4 and 5."""
+
 _TURNS = [Rational(n, d) * pi for n, d in ((1, 1), (-1, 1), (2, 1), (1, 2), (-1, 2), (3, 1), (1, 3), (3, 2), (-2, 3))]
 """Values of angles at which sines and cosines are simple."""
 
@@ -58,7 +63,6 @@ class FreeChoice:
     generators: tuple[int, ...]  # indices of the variables
     simple: tuple[tuple[Fraction, ...], ...]  # a few choices with short numbers
     random: Callable[[Random], tuple[Fraction, ...]]  # draws further choices
-    atom: Expr | None = None  # atom of the angle, if the generators are its cosine and sine
 
 
 def rational_witness(
@@ -66,7 +70,9 @@ def rational_witness(
 ) -> Counterexample | None:
     """Return a counterexample to ``left = right`` in rational numbers, or None if the search ends without one."""
     # roots, inverse functions and exponentials are seldom rational: no search
-    if ring.outside_scope or ring.roots or ring.fine or ring.exponentials or not _angles_are_free(ring):
+    if ring.outside_scope or ring.roots or ring.fine or ring.exponentials:
+        return None
+    if len(free_angles(ring)) < len(ring.bases):
         return None
     coordinates, solved = _coordinates(ring)
     differ, size = _difference(ring, left, right)
@@ -108,8 +114,8 @@ def rational_witness(
     values = point(choices)
     assert values is not None
     lhs, rhs = (_rational(_formula_value(ring, side, values, {})) for side in (left, right))
-    used = set().union(*(preorder_traversal(formula) for formula in (left, right, *ring.hypotheses)))
-    return Counterexample(tuple(_named(ring, coordinates, values, used)), entry, lhs, rhs)
+    numbers = {place: _rational(value) for place, value in values.items()}
+    return Counterexample(tuple(coordinates_of(ring, numbers, (left, right, *ring.hypotheses))), entry, lhs, rhs)
 
 
 def _difference(ring: FormulaRing, left: Expr, right: Expr) -> tuple[Callable[[dict[int, Fraction]], bool], int]:
@@ -144,10 +150,10 @@ def closed_form_witness(
     Its symbols are rational or multiples of pi.
     """
     places = {number: leaf for leaf, number in ring.symbols.items() if ring.leaves[leaf]}
-    if any(number not in places for hypothesis in ring.hypothesis_numerators for number in _occurring(hypothesis)):
+    bound = occurring(ring.hypothesis_numerators)
+    if not bound <= places.keys():
         return None
     coordinates, solved = _coordinates(ring)
-    bound = {number for hypothesis in ring.hypothesis_numerators for number in _occurring(hypothesis)}
     tied = [c for c in coordinates if bound & set(c.generators)]
     radicands = [radical.base for radical in ring.radicals.values()]
     formulas = (left, right, *ring.ratios.sources, *ring.domain, *radicands)  # SymPy may have cancelled a divisor
@@ -226,7 +232,7 @@ def _nonnegative(formula: Expr, values: dict[Expr, Expr]) -> bool:
     """Return whether a formula is proven to be nonnegative at a point."""
     is_proven = is_nonnegative_at(formula, values)
     # SymPy's substitution also proves exact zeros, as of ``1 + cos(x)`` at pi
-    return is_proven or (_is_flat(formula) and surely_nonnegative_number(formula.xreplace(values)))
+    return is_proven or (_is_flat(formula) and is_nonnegative_at(formula.xreplace(values), {}))
 
 
 def _seems_nonnegative(formula: Expr, values: dict[Expr, Expr]) -> bool:
@@ -264,11 +270,6 @@ def _shortest(number: Expr) -> Expr:
     return short if short.is_Rational else number
 
 
-def _occurring(poly: PolyElement) -> set[int]:
-    """Return the indices of the ring's variables that occur in a polynomial."""
-    return {number for mono in poly for number, power in enumerate(mono) if power}
-
-
 # -- rational points ------------------------------------------------------------------------------------------------
 
 
@@ -292,7 +293,7 @@ def _coordinates(ring: FormulaRing) -> tuple[list[FreeChoice], list[tuple[int, P
             fixed.add(linear[0])
     for atom, place in ring.sines.items():
         pair = (place, ring.cosines[atom])
-        coordinates.append(FreeChoice(pair, _simple_circle(), _random_sphere(2), atom))
+        coordinates.append(FreeChoice(pair, _CIRCLE, _random_sphere(2)))
     for leaf, number in ring.symbols.items():
         if number not in fixed:
             simple = tuple((Fraction(v),) for v in (0, 1, -1, 2, 3) if fits_assumptions(leaf, Fraction(v)))
@@ -313,13 +314,6 @@ def _sphere(poly: PolyElement) -> tuple[int, ...] | None:
             return None
         places.append(mono.index(2))
     return tuple(sorted(places)) if constant and len(places) > 1 else None
-
-
-def _simple_circle() -> tuple[tuple[Fraction, ...], ...]:
-    """Return the pairs (sine, cosine) that the search for a counterexample tries first for an angle."""
-    # the quarter turns, and the acute angles of the triangle with the sides 3, 4 and 5
-    points = ("0 1", "1 0", "0 -1", "-1 0", "3/5 4/5", "4/5 3/5")
-    return tuple(tuple(map(Fraction, point.split())) for point in points)
 
 
 def _simple_sphere(size: int) -> tuple[tuple[Fraction, ...], ...]:
@@ -369,7 +363,7 @@ def _solve(hypothesis: PolyElement, generator: int, values: dict[int, Fraction])
     """
     values[generator] = Fraction(0)
     # another variable has no value yet
-    if any(power and place not in values for mono in hypothesis for place, power in enumerate(mono)):
+    if not occurring([hypothesis]) <= values.keys():
         return False
     constant = _value(hypothesis, values)
     values[generator] = Fraction(1)
@@ -382,14 +376,8 @@ def _solve(hypothesis: PolyElement, generator: int, values: dict[int, Fraction])
 
 
 def _value(poly: PolyElement, values: dict[int, Fraction]) -> Fraction:
-    total = Fraction(0)
-    for mono, coefficient in poly.items():
-        term = Fraction(int(coefficient.numerator), int(coefficient.denominator))
-        for place, power in enumerate(mono):
-            if power:
-                term *= values[place] ** power
-        total += term
-    return total
+    value: Fraction = value_at(poly, values, lambda number: Fraction(int(number.numerator), int(number.denominator)))
+    return value
 
 
 def _ratio_value(ring: FormulaRing, ratio: Ratio, values: dict[int, Fraction]) -> Fraction:
@@ -416,45 +404,33 @@ def _formula_value(ring: FormulaRing, node: Expr, values: dict[int, Fraction], k
     return known[node]
 
 
-def _named(
-    ring: FormulaRing, coordinates: list[FreeChoice], values: dict[int, Fraction], used: set[Expr]
+def coordinates_of(
+    ring: FormulaRing, values: Mapping[int, Expr], formulas: Sequence[Expr]
 ) -> Iterator[tuple[Expr, Expr]]:
-    """Yield the point of a counterexample as pairs (symbol, value), for symbols and angles that are in ``used``."""
-    zero, one = Fraction(0), Fraction(1)
-    quarter_turns = {(zero, one): 0, (one, zero): 1, (zero, -one): 2, (-one, zero): 3}
-    for leaf, number in ring.symbols.items():
-        if leaf in used:
-            yield leaf, _rational(values[number])
-    for coordinate in coordinates:
-        if coordinate.atom is None or not coordinate.atom.atoms(Symbol, AppliedUndef) & used:
+    """Yield the point of a counterexample as pairs (symbol, value), for the symbols and angles in ``formulas``.
+
+    ``values`` maps indices of the ring's variables to exact numbers. An angle that is no multiple of pi/2 is shown by
+    its cosine and its sine.
+    """
+    used = set().union(*map(preorder_traversal, formulas))
+    quarter_turns = {(0, 1): 0, (1, 0): 1, (0, -1): 2, (-1, 0): 3}
+    for leaf, place in ring.symbols.items():
+        if leaf in used and place in values:
+            yield leaf, values[place]
+    for atom, place in ring.sines.items():
+        if place not in values or not atom.atoms(Symbol, AppliedUndef) & used:
             continue
-        sine, cosine = (values[number] for number in coordinate.generators)
-        base = base_angle(coordinate.atom, ring.bases[coordinate.atom])
+        sine, cosine = values[place], values[ring.cosines[atom]]
+        base = base_angle(atom, ring.bases[atom])
         if (sine, cosine) in quarter_turns:
-            yield coordinate.atom, quarter_turns[sine, cosine] * pi / 2 * coordinate.atom / base
+            yield atom, quarter_turns[sine, cosine] * pi / 2 * atom / base
         else:
-            # angles other than multiples of pi/2 are shown by their cosine and their sine
-            yield cos(base), _rational(cosine)
-            yield sin(base), _rational(sine)
+            yield cos(base), cosine
+            yield sin(base), sine
 
 
 def _rational(value: Fraction) -> Rational:
     return Rational(value.numerator, value.denominator)
-
-
-def _angles_are_free(ring: FormulaRing) -> bool:
-    """Return whether the angles can take any values, independently of each other and of the symbols."""
-    # each angle must be proportional to a symbol or function of time that occurs in no other angle; time derivatives at
-    # one instant are independent of the value of the function
-    holders = [*ring.bases, *(leaf for leaf in ring.symbols if not leaf.is_Derivative)]
-    for atom in ring.bases:
-        factors = atom.args if atom.is_Mul else (atom,)
-        if not all(f.is_Symbol or isinstance(f, AppliedUndef) for f in factors):
-            return False
-        others = [holder for holder in holders if holder is not atom]
-        if not any(not any(other.has(factor) for other in others) for factor in factors) or atom in ring.symbols:
-            return False
-    return True
 
 
 # -- closed-form numbers --------------------------------------------------------------------------------------------

@@ -202,11 +202,7 @@ def arguments(case: Case) -> Decision | None:
         ]
     except TooLarge:
         return None
-    if None in proofs:
-        return None
-    case.unproven = []
-    case.rely_on((*case.proof_rings, *(ring for rings in proofs if rings for ring in rings)))
-    return case.confirmed()
+    return _by_proofs(case, proofs)
 
 
 def congruence(case: Case) -> Decision | None:
@@ -215,8 +211,14 @@ def congruence(case: Case) -> Decision | None:
     For example, acos(x) is replaced by pi/2 - asin(x).
     """
     ring = case.ring
-    # entries that earlier stages have proven equal are not tried again
     proofs = [proof_by_congruence(case.lefts[n], case.rights[n], ring.hypotheses, ring.domain) for n in case.unproven]
+    return _by_proofs(case, proofs)
+
+
+def _by_proofs(case: Case, proofs: Sequence[tuple[FormulaRing, ...] | None]) -> Decision | None:
+    """Return the decision that ``proofs`` of the unproven entries give, each the rings that it needs; None if one of
+    them is missing.
+    """
     if None in proofs:
         return None
     case.unproven = []

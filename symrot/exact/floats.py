@@ -26,7 +26,8 @@ class NoValue(ArithmeticError):
     """
 
 
-def _cosecant(function: Any) -> Any:
+def _reciprocal(function: Any) -> Any:
+    """Return the function ``1/f`` of a function f, such as the secant of the cosine."""
     return lambda x: 1 / function(x)
 
 
@@ -34,8 +35,8 @@ _FUNCTIONS = {
     sympy.sin: math.sin, sympy.cos: math.cos, sympy.tan: math.tan, sympy.asin: math.asin, sympy.acos: math.acos,
     sympy.atan: math.atan, sympy.atan2: math.atan2, sympy.exp: math.exp, sympy.log: math.log, sympy.sinh: math.sinh,
     sympy.cosh: math.cosh, sympy.tanh: math.tanh, sympy.asinh: math.asinh, sympy.acosh: math.acosh,
-    sympy.atanh: math.atanh, sympy.Abs: abs, sympy.cot: _cosecant(math.tan), sympy.sec: _cosecant(math.cos),
-    sympy.csc: _cosecant(math.sin), sympy.coth: _cosecant(math.tanh), sympy.sign: lambda x: math.copysign(1.0, x),
+    sympy.atanh: math.atanh, sympy.Abs: abs, sympy.cot: _reciprocal(math.tan), sympy.sec: _reciprocal(math.cos),
+    sympy.csc: _reciprocal(math.sin), sympy.coth: _reciprocal(math.tanh), sympy.sign: lambda x: math.copysign(1.0, x),
 }  # fmt: skip
 _NUMBERS = {pi: math.pi, S.Exp1: math.e}
 

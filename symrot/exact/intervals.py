@@ -10,11 +10,12 @@ from typing import Any
 
 import sympy
 from mpmath import iv
+from mpmath.libmp import to_rational
 from sympy import Expr, S, pi
 
 from symrot.exact.limits.operations import spend
 
-__all__ = ["DIGITS", "Undefined", "enclosure", "is_nonnegative_at", "surely_nonnegative_number"]
+__all__ = ["DIGITS", "INTERVAL", "Undefined", "as_interval", "enclosure", "fraction_of_end", "is_nonnegative_at"]
 
 DIGITS = 50
 
@@ -111,11 +112,6 @@ INTERVAL = {
 _NUMBERS = {pi: lambda: +iv.pi, S.Exp1: lambda: +iv.e}
 
 
-def surely_nonnegative_number(number: Expr) -> bool:
-    """Return whether a closed-form number is proven not to be negative."""
-    return is_nonnegative_at(number, {})
-
-
 def is_nonnegative_at(formula: Expr, values: Mapping[Expr, Any]) -> bool:
     """Return whether a formula is proven to be real and not negative at the point ``values`` (symbol -> value)."""
     held = enclosure(formula, values)
@@ -142,12 +138,18 @@ def enclosure(formula: Expr, values: Mapping[Expr, Any] | None = None, digits: i
     """
     iv.dps = max(DIGITS, digits)
     try:
-        return _interval(_value(formula, values or {}, {}))
+        return as_interval(_value(formula, values or {}, {}))
     except (KeyError, ZeroDivisionError, ValueError, TypeError, OverflowError):  # unknown function, pole, not real
         return None
 
 
-def _interval(value: Value) -> Any:
+def fraction_of_end(end: Any) -> Fraction:
+    """Return an end of an mpmath interval, ``interval.a`` or ``interval.b``, as an exact fraction."""
+    return Fraction(*map(int, to_rational(end._mpi_[0])))
+
+
+def as_interval(value: Value) -> Any:
+    """Return a fraction as an interval that contains it; an interval is returned unchanged."""
     return iv.mpf(value.numerator) / value.denominator if isinstance(value, Fraction) else value
 
 
@@ -157,7 +159,7 @@ def _value(node: Expr, values: Mapping[Expr, Any], known: dict[Expr, Value]) -> 
         value = _computed(node, values, known)
         if isinstance(value, Fraction):
             if max(value.numerator.bit_length(), value.denominator.bit_length()) > MOST_BITS_EXACT:
-                value = _interval(value)
+                value = as_interval(value)
         elif not (value.a > -iv.inf and value.b < iv.inf):
             raise ValueError(f"expected {node} to be finite on an interval, but it has a pole there")
         known[node] = value
@@ -175,14 +177,14 @@ def _computed(node: Expr, values: Mapping[Expr, Any], known: dict[Expr, Value]) 
     if node.is_Add or node.is_Mul:
         parts = [_value(part, values, known) for part in node.args]
         exact = all(isinstance(part, Fraction) for part in parts)
-        parts = parts if exact else [_interval(part) for part in parts]
+        parts = parts if exact else [as_interval(part) for part in parts]
         total = parts[0]
         for part in parts[1:]:
             total = total + part if node.is_Add else total * part
         return total
     if node.is_Pow:
         return _power(_value(node.base, values, known), node.exp, values, known)
-    arguments = [_interval(_value(argument, values, known)) for argument in node.args]
+    arguments = [as_interval(_value(argument, values, known)) for argument in node.args]
     return INTERVAL[type(node)](*map(_bounded, arguments))
 
 
@@ -191,13 +193,13 @@ def _power(base: Value, exponent: Expr, values: Mapping[Expr, Any], known: dict[
         return _whole_power(base, int(exponent))
     if isinstance(base, Fraction) and base == 0 and exponent.is_Rational and exponent.p > 0:
         return base
-    held = _interval(base)
+    held = as_interval(base)
     _refuse(held.b < 0)
     if exponent.is_Rational and exponent.q == 2:
         return _whole_power(_root(held), int(exponent.p))
     if not held.a > 0:
         raise ValueError("expected a positive number under a fractional power")
-    return iv.exp(_bounded(_interval(_value(exponent, values, known)) * iv.log(held)))
+    return iv.exp(_bounded(as_interval(_value(exponent, values, known)) * iv.log(held)))
 
 
 def _whole_power(base: Value, power: int) -> Value:
@@ -207,5 +209,5 @@ def _whole_power(base: Value, power: int) -> Value:
         size = max(base.numerator.bit_length(), base.denominator.bit_length())
         if size * abs(power) <= MOST_BITS_EXACT:
             return base**power
-        base = _interval(base)
+        base = as_interval(base)
     return base**power

@@ -9,7 +9,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
 
 from mpmath import iv
 from sympy import Abs, Expr, Integer, Rational, acos, asin, atan, atan2, cos, exp, log, pi, sin, tan
@@ -19,7 +18,7 @@ from symrot.errors import InputError
 from symrot.exact.angles.inverse import INVERSE, range_of
 from symrot.exact.factors import factor_list
 from symrot.exact.floats import seems_zero
-from symrot.exact.intervals import enclosure
+from symrot.exact.intervals import enclosure, fraction_of_end
 from symrot.exact.ring.ring import FormulaRing
 from symrot.exact.sign_cases import vanishes_for_all_signs
 
@@ -310,10 +309,4 @@ def _range(leaf: Expr) -> tuple[Fraction, Fraction, bool, bool]:
     if held is None:
         return range_of(leaf)
     turns = held / iv.pi
-    return _fraction(turns.a), _fraction(turns.b), True, True
-
-
-def _fraction(end: Any) -> Fraction:
-    """Return an endpoint of an mpmath interval as an exact fraction."""
-    sign, mantissa, power, _ = end._mpi_[0]
-    return (-1 if sign else 1) * int(mantissa) * Fraction(2) ** int(power)
+    return fraction_of_end(turns.a), fraction_of_end(turns.b), True, True

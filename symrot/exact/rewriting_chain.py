@@ -12,7 +12,7 @@ from sympy import Expr, Integer, Mul, cos, sin
 from sympy.polys.rings import PolyElement
 
 from symrot.exact.angles.angles import base_angle
-from symrot.exact.decision import flatten
+from symrot.exact.decision import flatten, place_in_matrix
 from symrot.exact.functions import TRIGONOMETRIC
 from symrot.exact.ring.ratio import Ratio
 from symrot.exact.ring.relations import Rule
@@ -62,8 +62,7 @@ def chains(left: Any, right: Any, relations: Sequence[Any] = ()) -> tuple[Chain,
     entry_chains = []
     for place, (a, b) in enumerate(zip(lefts, rights, strict=True)):
         if a != b:
-            entry = None if shape is None else (place // shape[1] + 1, place % shape[1] + 1)
-            entry_chains.append(Chain(entry, _chain(a, b, hypotheses)))
+            entry_chains.append(Chain(place_in_matrix(place, shape), _chain(a, b, hypotheses)))
     return tuple(entry_chains)
 
 

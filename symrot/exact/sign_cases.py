@@ -13,6 +13,7 @@ from sympy import Abs
 from sympy.polys.rings import PolyElement
 
 from symrot.exact.factors import factor_list
+from symrot.exact.ring.polynomials import occurring
 from symrot.exact.ring.ring import FormulaRing
 
 __all__ = ["vanishes_for_all_signs"]
@@ -47,7 +48,7 @@ def vanishes_for_all_signs(ring: FormulaRing, numerator: PolyElement) -> bool:
 
 def _insides(ring: FormulaRing, numerator: PolyElement) -> dict[int, PolyElement]:
     """Return the absolute values ``|f|`` in a numerator: a map from the index of their variable to the polynomial f."""
-    used = {place for mono in numerator for place, power in enumerate(mono) if power}
+    used = occurring([numerator])
     absolute = {place: root for root, place in ring.roots.items() if isinstance(root.expression, Abs)}
     insides = {}
     for place in sorted(used & absolute.keys()):

@@ -2,19 +2,26 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from decimal import Context, Decimal
 from fractions import Fraction
 from typing import Any
 
 from symrot.errors import InputError
-from symrot.formula.exact_numbers import read, rounded, show
+from symrot.formula.exact_numbers import read, show
 from symrot.inertia.bodies import MassProperties
 from symrot.inertia.principal import Principal, principal_axes
 from symrot.inertia.tensor import Tensor, Vector
 
 __all__ = ["Inertial"]
 
-LONGEST_NUMBER = 600
-"""Largest size, in bits, of a number that :meth:`Inertial.table` leaves exact, since scene files limit its text."""
+LONGEST_NUMBER = 24
+"""Most characters of a fraction, such as ``1/3``, that :meth:`Inertial.table` leaves exact."""
+
+DIGITS, MORE_DIGITS = 34, 70
+"""Digits to which it rounds other numbers, and digits for a body with equal moments or a flat body.
+
+Equal moments, and the sum of the moments of a flat body, must remain equal to 2^-200, which is 61 digits.
+"""
 
 
 @dataclass(frozen=True)
@@ -30,14 +37,14 @@ class Inertial:
     center_of_mass : tuple of 3 Fraction
         Centre of mass, m.
     inertia : 3 x 3 Fraction
-        Inertia tensor about the centre of mass, kg m^2, with negated products.
+        Inertia tensor about the centre of mass, kg m^2; products of inertia have the minus sign.
     volume : Fraction or None
         Volume of a mesh, m^3; None for a link.
     error : float
         Bound of the relative error of mass, centre and tensor that is caused by rounding; 0 if they are computed
         exactly from the numbers of the file.
     checks : str
-        A sentence that says how a mesh was searched for crossing triangles; empty for a link.
+        A sentence about the tests that the surface of a mesh passed; empty for a link.
 
     Examples
     --------
@@ -81,7 +88,8 @@ class Inertial:
         Returns
         -------
         dict
-            For ``Scene.build(body=...)``. Numbers of more than 600 bits are rounded to 320 bits.
+            For ``Scene.build(body=...)``. Short fractions are exact; other numbers are rounded to 34 digits, or to 70
+            digits if moments are equal or the body is flat.
 
         Raises
         ------
@@ -94,20 +102,27 @@ class Inertial:
         >>> Inertial("ball", Fraction(1), (0, 0, 0), ((1, 0, 0), (0, 1, 0), (0, 0, 1))).table()["mass"]
         Fraction(1, 1)
         """
-        table = {"name": self.name, "mass": _short(self.mass)}
+
+        def numbers(values: Any) -> list[Any]:
+            return [_short(value, context) for value in values]
+
+        principal = self.principal
+        context = Context(prec=DIGITS if principal.kind == "asymmetric" and not principal.flat else MORE_DIGITS)
+        table: dict[str, Any] = {"name": self.name, "mass": _short(self.mass, context)}
         if fixed_point is None:
-            return table | {"inertia": [[_short(entry) for entry in row] for row in self.inertia]}
+            return table | {"inertia": [numbers(row) for row in self.inertia]}
         try:
             x, y, z = fixed_point
         except (TypeError, ValueError):
             raise InputError(f"fixed_point: expected three numbers [x, y, z] in m, got {show(fixed_point)}") from None
         point = tuple(read(item, f"fixed_point[{index}]") for index, item in enumerate((x, y, z)))
-        offset = [_short(c - p) for c, p in zip(self.center_of_mass, point, strict=True)]
-        tensor = [[_short(entry) for entry in row] for row in self.properties.inertia_about(point)]
+        offset = numbers(c - p for c, p in zip(self.center_of_mass, point, strict=True))
+        tensor = [numbers(row) for row in self.properties.inertia_about(point)]
         return table | {"about": "fixed_point", "center_of_mass": offset, "inertia": tensor}
 
 
-def _short(value: Any) -> Fraction:
+def _short(value: Any, context: Context) -> Fraction | Decimal:
     number = Fraction(value)
-    bits = max(number.numerator.bit_length(), number.denominator.bit_length())
-    return rounded(number) if number and bits > LONGEST_NUMBER else number
+    if len(str(number)) <= LONGEST_NUMBER:
+        return number
+    return context.divide(Decimal(number.numerator), Decimal(number.denominator))

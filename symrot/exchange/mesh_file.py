@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from symrot.errors import InputError
-from symrot.exchange.mesh_format import EARLY_END, TRIANGLES_IN
+from symrot.exchange.mesh_format import EARLY_END, FACTS_OF, Facts
 from symrot.exchange.obj_file import read_plain_obj, refers_backwards
+from symrot.exchange.polygons import bent_polygons
 from symrot.exchange.surface import Surface, merge
 from symrot.files.reading import read_input
 from symrot.formula.exact_numbers import show
@@ -49,8 +50,9 @@ def read_surface(path: Path, where: str) -> Surface:
         raise InputError(
             f"{where}: expected a readable mesh file of at most {limit}, got {reason.strerror or reason}"
         ) from None
+    facts = Facts()
     try:
-        mesh = read_plain_obj(content) if suffix == ".obj" else None
+        mesh: Any = read_plain_obj(content) if suffix == ".obj" else None
         if mesh is None and suffix == ".obj" and refers_backwards(content):
             # trimesh counts them from the end of the file
             raise InputError(
@@ -58,13 +60,14 @@ def read_surface(path: Path, where: str) -> Surface:
                 "f -3 -2 -1; save the mesh again with positive numbers or with triangles alone"
             )
         if mesh is None:
-            trimesh, count = _trimesh(), TRIANGLES_IN[suffix](content)
-            mesh = _load(trimesh, content, suffix[1:])
-            if count not in (None, len(mesh[1])):
+            trimesh, facts = _trimesh(), FACTS_OF[suffix](content)
+            vertices, triangles, bent = _load(trimesh, content, suffix[1:])
+            if facts.triangles not in (None, len(triangles)):
                 raise InputError(
-                    f"expected the {count} triangles of the file, but trimesh reads {len(mesh[1])}; save the mesh "
-                    "again as triangles alone"
+                    f"expected the {facts.triangles} triangles of the file, but trimesh reads {len(triangles)}; save "
+                    "the mesh again as triangles alone"
                 )
+            mesh, facts = (vertices, triangles), facts._replace(bent=facts.bent + bent)
     except InputError as reason:
         raise InputError(f"{where}: {reason}") from None
     except MemoryError:
@@ -74,7 +77,7 @@ def read_surface(path: Path, where: str) -> Surface:
     except Exception as reason:  # a broken file raises errors of many kinds in the readers of trimesh
         fault = " ".join(str(reason).split())[:80] or type(reason).__name__
         raise InputError(f"{where}: expected a mesh in the format {suffix[1:].upper()}, got a fault: {fault}") from None
-    return _checked(mesh, where)
+    return _checked(mesh[0], mesh[1], where)._replace(bent=facts.bent)
 
 
 def _trimesh() -> Any:
@@ -88,15 +91,16 @@ def _trimesh() -> Any:
     return trimesh
 
 
-def _load(trimesh: Any, content: bytes, kind: str) -> tuple[Any, Any]:
-    """Return the vertices and triangles of a file's ``content``; all bodies in it, at their positions, form
-    one mesh.
+def _load(trimesh: Any, content: bytes, kind: str) -> tuple[Any, Any, int]:
+    """Return the vertices and triangles of a file, and how many polygons of a PLY file are not flat.
+
+    All bodies in the file, at their positions, form one mesh.
     """
     options: dict[str, Any] = {"process": False, "maintain_order": True}
     if kind in ("obj", "glb"):
         options["skip_materials"] = True
     scene = trimesh.load_scene(BytesIO(content), file_type=kind, **options)
-    vertices, faces, count = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], 0
+    vertices, faces, count, bent = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], 0, 0
     for node in scene.graph.nodes_geometry:
         transform, name = scene.graph[node]
         geometry = scene.geometry[name]
@@ -111,13 +115,25 @@ def _load(trimesh: Any, content: bytes, kind: str) -> tuple[Any, Any]:
         vertices.append(points)
         faces.append(corners + count)
         count += len(points)
+        if "_ply_raw" in geometry.metadata:
+            bent += _bent_in_ply(geometry.metadata["_ply_raw"])
     if len(vertices) == 2:
-        return vertices[1], faces[1]
-    return np.concatenate(vertices), np.concatenate(faces)
+        return vertices[1], faces[1], bent
+    return np.concatenate(vertices), np.concatenate(faces), bent
 
 
-def _checked(mesh: tuple[Any, Any], where: str) -> Surface:
-    vertices, triangles = mesh
+def _bent_in_ply(elements: Any) -> int:
+    """Return how many polygons of a PLY file are not flat; ``elements`` is trimesh's record of the file."""
+    points, faces = elements["vertex"]["data"], elements["face"]["data"]
+    names = faces if isinstance(faces, dict) else faces.dtype.names or ()
+    name = next((each for each in names if each in ("vertex_indices", "vertex_index")), None)
+    if name is None:
+        return 0
+    polygons = faces[name] if isinstance(faces, dict) else faces[name]["f1"]
+    return bent_polygons(np.column_stack([points[axis] for axis in "xyz"]).astype(np.float64), polygons)
+
+
+def _checked(vertices: Any, triangles: Any, where: str) -> Surface:
     if not len(triangles):
         raise InputError(f"{where}: expected a mesh with triangles, got {len(vertices)} points and no triangle")
     if len(triangles) > MOST_TRIANGLES:

@@ -1,15 +1,19 @@
-"""Parts of mesh files that trimesh would lose in silence: files with such parts are refused before they are read."""
+"""Tests of mesh files before trimesh reads them: parts that trimesh would lose in silence are refused."""
 
 import json
 import re
+from array import array
 from collections import Counter
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from symrot.errors import InputError
+from symrot.exchange.polygons import bent_polygons
 from symrot.formula.exact_numbers import show
 
-__all__ = ["EARLY_END", "TRIANGLES_IN"]
+__all__ = ["EARLY_END", "FACTS_OF", "Facts"]
 
 _HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_mesh_quantization")
 """Starts of the names of extensions of GLB files that change no shape."""
@@ -18,40 +22,55 @@ _OTHER_SHAPES = {"surf": "a free-form surface", "call": "a reference to another 
 EARLY_END = "expected a mesh in the format {}, got a file of another format or one that ends early"
 
 
-def _stl(content: bytes) -> int:
+class Facts(NamedTuple):
+    """What a mesh file says about its mesh before trimesh reads it."""
+
+    triangles: int | None = None  # after the division of polygons; None: trimesh itself refuses a file that ends early
+    bent: int = 0  # polygons that are not flat
+
+
+def _stl(content: bytes) -> Facts:
     """Return the number of triangles that an STL file has."""
     count = int.from_bytes(content[80:84], "little")
     if len(content) == 84 + 50 * count:
-        return count
+        return Facts(count)
     text = content.lower()
     last = text[-1000:].splitlines() or [b""]
     if not next((line.strip() for line in reversed(last) if line.strip()), b"").startswith(b"endsolid"):
         raise InputError(EARLY_END.format("STL"))
-    return text.count(b"endfacet")
+    return Facts(text.count(b"endfacet"))
 
 
-def _obj(content: bytes) -> int:
-    """Return the number of triangles into which the polygons of an OBJ file are divided."""
-    count, form = 0, 0
+def _obj(content: bytes) -> Facts:
+    """Return the number of triangles into which the polygons of an OBJ file are divided, and how many are not flat."""
+    count, form, coordinates, polygons = 0, 0, array("d"), list[list[str]]()
     for number, line in enumerate(content.decode("latin-1").replace("\\\n", " ").splitlines(), 1):
         key, *words = line.partition("#")[0].split() or [""]
         if key in _OTHER_SHAPES:
             raise InputError(f"expected a mesh of polygons, got {_OTHER_SHAPES[key]} in line {number}, {show(key)}")
+        if key in ("V", "F"):  # trimesh leaves out such lines
+            raise InputError(f"expected a small letter at the beginning of line {number}, got {show(key)}")
         if key == "v":
             # trimesh divides the numbers of all lines evenly
             if len(words) < 3 or len(words) != (form or len(words)):
                 raise InputError(f"expected lines of vertices with equally many numbers, 3 or more, got line {number}")
             form = len(words)
-        count += max(0, len(words) - 2) * (key == "f")
-    return count
+            coordinates.extend(map(float, words[:3]))
+        if key == "f":
+            count += max(0, len(words) - 2)
+            polygons += [words] * (len(words) > 3)
+    corners = [[int(word.partition("/")[0]) - 1 for word in words] for words in polygons]
+    return Facts(count, bent_polygons(np.array(coordinates).reshape(-1, 3), corners) if corners else 0)
 
 
-def _ply(content: bytes) -> None:
-    """Raise InputError for a PLY file as text with corners that are no whole numbers, or with surplus lines."""
-    # trimesh rounds the former and leaves out the latter
+def _ply(content: bytes) -> Facts:
+    """Raise InputError for a PLY file as text with corners that are no whole numbers, or with surplus lines.
+
+    Trimesh would round such corners, and leave out such lines.
+    """
     header, _, numbers = content.partition(b"end_header")
     if b"format ascii" not in header:
-        return
+        return Facts()
     lines = sum(map(int, re.findall(rb"^element \w+ (\d+)", header, re.MULTILINE)))
     if len(numbers.strip().splitlines()) > lines:
         raise InputError(f"expected a PLY file with {lines} lines after its header, got more")
@@ -60,9 +79,10 @@ def _ply(content: bytes) -> None:
         rows = numbers.rstrip().splitlines()[-int(faces[1]) :]
         if not re.fullmatch(rb"[\d\s]*", b"\n".join(rows)):
             raise InputError("expected whole numbers as corners of polygons in a PLY file")
+    return Facts()
 
 
-def _glb(content: bytes) -> None:
+def _glb(content: bytes) -> Facts:
     """Raise InputError for a GLB file whose shape depends on what trimesh does not read."""
     document = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")])
     nodes, meshes, scenes = (document.get(key, []) for key in ("nodes", "meshes", "scenes"))
@@ -80,6 +100,7 @@ def _glb(content: bytes) -> None:
     faults += ["sparse or normalized numbers"] * any("sparse" in a or a.get("normalized") for a in accessors)
     if faults:
         raise InputError(f"expected a GLB file of plain triangles, got {faults[0]}; save the shape as triangles alone")
+    return Facts()
 
 
 def _faults_of_node(node: Mapping[str, Any]) -> list[str]:
@@ -88,8 +109,8 @@ def _faults_of_node(node: Mapping[str, Any]) -> list[str]:
     return faults + ["a skin"] * ("skin" in node) + ["a rotation of zero"] * (not any(node.get("rotation", (1,))))
 
 
-TRIANGLES_IN: Mapping[str, Callable[[bytes], int | None]] = {".stl": _stl, ".obj": _obj, ".ply": _ply, ".glb": _glb}
-"""Suffix -> function that returns how many triangles the content of a file has, or None if trimesh counts them itself.
+FACTS_OF: Mapping[str, Callable[[bytes], Facts]] = {".stl": _stl, ".obj": _obj, ".ply": _ply, ".glb": _glb}
+"""Suffix -> function that returns the facts about the content of a file.
 
-It raises InputError for parts that trimesh would lose.
+It raises InputError for parts of the file that trimesh would lose.
 """

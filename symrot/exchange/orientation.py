@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import Angle, rounded, show, unit
-from symrot.inertia.tensor import IDENTITY, Tensor, cross, dot, matrix, multiply, transpose
+from symrot.inertia.tensor import IDENTITY, Tensor, cross, dot, matrix, multiply, rotation_of, transpose
 
 __all__ = ["ORIENTATIONS", "Angles", "of_quaternion", "of_roll_pitch_yaw", "quaternion_of", "roll_pitch_yaw_of"]
 
@@ -18,13 +18,16 @@ Numbers = Sequence[Fraction]
 
 
 class Angles(NamedTuple):
-    """The settings of a robot file for angles: degrees or rad, and the Euler sequence (lower case: moving axes)."""
+    """The settings of a robot file for angles: degrees or rad, and the sequence of Euler angles.
+
+    In the sequence, a lower-case letter is a moving axis and an upper-case letter a fixed axis, as in MJCF.
+    """
 
     degrees: bool = False
     sequence: str = "xyz"
 
     def angle(self, value: Fraction) -> Angle:
-        """Return the exact angle of the number ``value`` of a file, in degrees or rad: 90 degrees is exactly pi/2."""
+        """Return the exact angle that a number of the file, in degrees or rad, means; 90 degrees is exactly pi/2."""
         return Angle(Fraction(0), value / 180) if self.degrees else Angle(value, Fraction(0))
 
 
@@ -44,14 +47,13 @@ def of_roll_pitch_yaw(values: Numbers, angles: Angles) -> Tensor:
 
 
 def of_quaternion(values: Numbers, angles: Angles) -> Tensor:
-    """Return the rotation matrix of a quaternion of any norm, scalar first; ``angles`` is not used."""
-    # all readers of an orientation have the same signature
-    w, x, y, z = _direction(values, "a quaternion that is not zero")
-    return matrix([
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ])  # fmt: skip
+    """Return the exact rotation matrix of a quaternion, scalar first, of any norm except zero.
+
+    ``angles`` is not used; it is there because all functions of the table :data:`ORIENTATIONS` are called alike.
+    """
+    if not any(values):
+        raise InputError(f"expected a quaternion that is not zero, got {show(list(values))}")
+    return rotation_of(values)
 
 
 def _of_axis_angle(values: Numbers, angles: Angles) -> Tensor:
@@ -73,9 +75,8 @@ def _of_euler(values: Numbers, angles: Angles) -> Tensor:
 def _of_two_axes(values: Numbers, angles: Angles) -> Tensor:
     """Return the rotation matrix of a frame given by two vectors: its x axis, and a vector in its xy plane.
 
-    Example: ``(1, 0, 0, 1, 1, 0)`` gives the identity matrix.
+    ``values`` are the six components of both vectors; ``(1, 0, 0, 1, 1, 0)`` gives the identity matrix.
     """
-    # values are the six components of the two vectors
     x = _direction(values[:3], "an x axis that is not zero")
     slope = dot(values[3:], x)
     y = _direction(
@@ -107,7 +108,7 @@ ORIENTATIONS: dict[str, tuple[int, Callable[[Numbers, Angles], Tensor]]] = {
     "xyaxes": (6, _of_two_axes),
     "zaxis": (3, _of_z_axis),
 }
-"""Attribute of MJCF -> how many numbers it has, and the rotation that they mean."""
+"""Attribute of MJCF -> how many numbers it has, and the function from them to a rotation matrix."""
 
 
 def roll_pitch_yaw_of(rotation: Tensor) -> tuple[float, float, float]:

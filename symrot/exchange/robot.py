@@ -28,7 +28,7 @@ class Link(NamedTuple):
     Attributes
     ----------
     name : str
-        Name of the link.
+        Name of the link; names of its models in front of it, as in ``"arm::base"``, if another link has the same name.
     inertial : Inertial or None
         Mass, centre and tensor, in the axes of the link; None if there is a problem.
     problem : str
@@ -68,6 +68,27 @@ class Format(NamedTuple):
         others = set(root.findall(self.other)) if self.other else set()
         return [element for element in root.findall(self.path) if element not in others]
 
+    def links(self, root: Element) -> list[tuple[str, Element]]:
+        """Return the elements of all links, each with its name.
+
+        Links of several models in an SDF file may have the same name. The names of the models then stand in front of
+        it, as in ``arm::base``.
+        """
+        elements = self.elements(root)
+        names = [element.get("name", "") for element in elements]
+        models = {child: parent for parent in root.iter() for child in parent}
+
+        def whole(element: Element) -> str:
+            name = element.get("name", "")
+            while (element := models.get(element, root)) is not root:
+                name = f"{element.get('name', '')}::{name}" if element.tag == "model" else name
+            return name
+
+        return [
+            (whole(element) if names.count(name) > 1 else name, element)
+            for name, element in zip(names, elements, strict=True)
+        ]
+
 
 def links(path: str | Path) -> tuple[Link, ...]:
     """Return all links of a robot file, each with its inertial or with the reason why it has no valid inertial.
@@ -94,7 +115,7 @@ def links(path: str | Path) -> tuple[Link, ...]:
     ...     print(each.name, each.problem or each.inertial)
     """
     form, root = read_robot(path)[:2]
-    return tuple(_link(form, root, element) for element in _links(form, root, str(path)))
+    return tuple(_link(form, root, name, element) for name, element in _links(form, root, str(path)))
 
 
 def link(path: str | Path, name: str = "") -> Inertial:
@@ -105,7 +126,7 @@ def link(path: str | Path, name: str = "") -> Inertial:
     path : str or Path
         A file in the format URDF, MJCF or SDF.
     name : str
-        Name of the link (in MJCF: of the body); it may be omitted if the file has only one.
+        Name of the link (in MJCF: of the body), as :func:`links` returns it; it may be omitted if there is only one.
 
     Returns
     -------
@@ -126,17 +147,17 @@ def link(path: str | Path, name: str = "") -> Inertial:
     >>> body = arm.table()  # doctest: +SKIP
     """
     form, root = read_robot(path)[:2]
-    elements = _links(form, root, str(path))
-    names = [element.get("name", "") for element in elements]
-    if not name and len(elements) > 1:
+    every = _links(form, root, str(path))
+    names = [each for each, _ in every]
+    if not name and len(every) > 1:
         raise InputError(f"{path}: expected the name of one of its links, {_listed(names)}, got none")
-    same = [element for element in elements if not name or element.get("name") == name]
+    same = [(each, element) for each, element in every if name in ("", each)]
     if not same:
         message = f"{path}: expected one of its links, {_listed(names)}, got {show(name)}"
         raise InputError(with_hint(message, name, names))
     if len(same) > 1:
         raise InputError(f"{path}: expected one link of the name {show(name)}, got {len(same)}")
-    result = _link(form, root, same[0])
+    result = _link(form, root, *same[0])
     if result.inertial is None:
         raise InputError(f"{path}: link {show(result.name)}: {result.problem}")
     return result.inertial
@@ -155,16 +176,16 @@ def read_robot(path: str | Path) -> tuple[Format, Element, bytes]:
     return FORMATS[root.tag], root, content
 
 
-def _links(form: Format, root: Element, where: str) -> list[Element]:
-    elements = form.elements(root)
-    if not elements:
+def _links(form: Format, root: Element, where: str) -> list[tuple[str, Element]]:
+    """Return the name and the element of each link; raise InputError if there are none."""
+    every = form.links(root)
+    if not every:
         reason = "; files that it includes are not read" if root.find(".//include") is not None else ""
         raise InputError(f"{where}: expected a robot with links (<{form.tag}>), got none{reason}")
-    return elements
+    return every
 
 
-def _link(form: Format, root: Element, element: Element) -> Link:
-    name = element.get("name", "")
+def _link(form: Format, root: Element, name: str, element: Element) -> Link:
     try:
         inertial = form.read(element, root)
         _require_body(inertial)

@@ -29,7 +29,7 @@ def write_link(source: str | Path, name: str, inertial: Inertial, target: str | 
     source : str or Path
         A file in the format URDF, MJCF or SDF.
     name : str
-        Name of the link (in MJCF: of the body).
+        Name of the link (in MJCF: of the body), as :func:`symrot.links` returns it.
     inertial : Inertial
         From :func:`symrot.mesh`, :func:`symrot.link` or a formula, in the axes of the link.
     target : str or Path, optional
@@ -51,12 +51,12 @@ def write_link(source: str | Path, name: str, inertial: Inertial, target: str | 
     >>> symrot.write_link("robot.urdf", "upper_arm", symrot.mesh("arm.stl", mass=2), "new.urdf")  # doctest: +SKIP
     """
     form, root, content = read_robot(source)
-    same = [element for element in form.elements(root) if element.get("name") == name]
+    same = [element for each, element in form.links(root) if each == name]
     if len(same) != 1:
         raise InputError(f"{source}: expected one link of the name {show(name)}, got {len(same) or 'none'}")
     if not _is_utf8(content):
         raise InputError(f"{source}: expected a file in UTF-8, got another encoding; save it as UTF-8")
-    span, present = span_of(content, form.tag, name, "inertial")
+    span, present = span_of(content, form.tag, [*root.iter(form.tag)].index(same[0]), "inertial")
     text = inertial_text(inertial, form.name)
     if not present and content[: span.start].endswith(b"/>"):  # <link name=".."/>
         span, text = Span(span.start - 2, span.stop), f">\n    {text}\n  </{form.tag}>"
@@ -72,7 +72,7 @@ def write_link(source: str | Path, name: str, inertial: Inertial, target: str | 
 def _require_same(form: Format, result: bytes, name: str, inertial: Inertial, where: str) -> None:
     """Raise InputError unless the new file ``result``, not yet written, gives the mass properties of ``inertial``."""
     root = ElementTree.fromstring(result)
-    element = next(element for element in form.elements(root) if element.get("name") == name)
+    element = dict(form.links(root))[name]
     try:
         again = form.read(element, root)
     except InputError as reason:
@@ -133,12 +133,12 @@ def inertial_text(inertial: Inertial, form: str) -> str:
 
 
 def _digits(*values: object) -> str:
-    """Return numbers as text; reading the text gives the same doubles."""
+    """Return numbers as text, from which the same doubles are read."""
     return " ".join(repr(float(value)).removesuffix(".0") for value in values)  # type: ignore[arg-type]
 
 
 def _moments(principal: Principal) -> list[str]:
-    """Return the principal moments as text, rounded so that a flat body still satisfies the triangle inequalities."""
+    """Return the principal moments as text, rounded so that the moments of a flat body still satisfy A + B >= C."""
     moments = [float(moment) for moment in principal.moments]
     largest = max(range(3), key=moments.__getitem__)
     while sum(Fraction(repr(m)) for m in moments) < 2 * Fraction(repr(moments[largest])):

@@ -25,14 +25,26 @@ class Surface(NamedTuple):
         Coordinates in the unit of the file; no two vertices are equal.
     triangles : array, shape (m, 3)
         Indices of vertices.
+    bent : int
+        Number of polygons in the file that are not flat; their division into triangles decides the shape.
     """
 
     vertices: Floats
     triangles: Indices
+    bent: int = 0
+
+    @property
+    def note(self) -> str:
+        """A sentence about the polygons of the file that are not flat; empty if there are none."""
+        if not self.bent:
+            return ""
+        polygons = "1 polygon of the file is not flat" if self.bent == 1 else (
+            f"{self.bent} polygons of the file are not flat")  # fmt: skip
+        return f"{polygons}, so the shape depends on how it is divided into triangles; save the mesh as triangles"
 
     def flipped(self) -> "Surface":
         """Return the surface with the opposite orientation: the corners of each triangle in reverse order."""
-        return Surface(self.vertices, np.ascontiguousarray(self.triangles[:, ::-1]))
+        return self._replace(triangles=np.ascontiguousarray(self.triangles[:, ::-1]))
 
 
 def merge(vertices: Floats, triangles: Indices) -> Surface:
@@ -76,10 +88,11 @@ def _undirected(start: Indices, end: Indices, count: int) -> Indices:
 
 
 def require_closed(surface: Surface, where: str) -> None:
-    """Raise InputError unless the triangles traverse each edge equally often in both directions, and none is
-    repeated.
+    """Raise InputError unless the surface is closed and no triangle is repeated.
+
+    A surface is closed if its triangles follow each edge equally often in both directions. It then bounds a region, so
+    that its volume does not depend on an origin.
     """
-    # the condition that the surface bounds a region, so that its volume does not depend on an origin
     start, end = _edges(surface)
     keys = np.sort(_undirected(start, end, len(surface.vertices)) * 2 + (start > end))
     if len(keys) % 2 == 0 and np.array_equal(keys[::2] ^ 1, keys[1::2]) and np.all(keys[2::2] != keys[:-2:2]):
@@ -100,9 +113,7 @@ def require_closed(surface: Surface, where: str) -> None:
 
 
 def _defect(surface: Surface) -> str:
-    """Return the clause of an error message that counts open edges, or edges whose triangles have opposite
-    orientations.
-    """
+    """Return the clause of an error message that counts the edges at which a surface is open or changes orientation."""
     start, end = _edges(surface)
     keys, number = np.unique(_undirected(start, end, len(surface.vertices)), return_inverse=True)
     balance = np.bincount(number, weights=np.sign(end - start)).astype(np.int64)

@@ -40,6 +40,11 @@ def read_xml(path: Path, where: str) -> tuple[bytes, ElementTree.Element]:
         raise InputError(
             f"{where}: expected a readable robot file of at most {limit}, got {reason.strerror or reason}"
         ) from None
+    if content.lstrip()[:1] not in (b"<", b"\xef", b"\xfe", b"\xff"):  # a bracket, or a mark of the encoding before it
+        raise InputError(
+            f"{where}: expected an XML file, a robot in URDF, MJCF or SDF, got a file of another format; meshes are "
+            "read in the formats STL, OBJ, PLY and GLB"
+        )
     parser = expat.ParserCreate()
     depth = 0
 
@@ -66,32 +71,42 @@ def read_xml(path: Path, where: str) -> tuple[bytes, ElementTree.Element]:
         raise InputError(f"{where}: expected an XML file, got a fault: {' '.join(str(reason).split())[:80]}") from None
 
 
-def span_of(content: bytes, owner: str, name: str, element: str) -> tuple[Span, bool]:
-    """Return the range of bytes of ``element`` inside ``<owner name="name">``, and whether ``element`` exists.
+def span_of(content: bytes, owner: str, number: int, element: str) -> tuple[Span, bool]:
+    """Return the range of bytes of a child element, and whether this child exists.
 
-    If it does not exist, the range is empty, at the byte where the element can be inserted.
+    Parameters
+    ----------
+    content : bytes
+        The XML file.
+    owner, number : str and int
+        The tag of the parent, and its index, from 0, among the elements with this tag in the order of the file.
+    element : str
+        The tag of the child. If the parent has no such child, the range is empty, at the byte where it can be inserted.
     """
     parser = expat.ParserCreate()
-    stack: list[tuple[str, str]] = []
+    stack: list[bool] = []  # for each open element whether it is the parent
     places: dict[str, int] = {}
     waits: list[str] = []  # names of places that are where the next event is
+    count = -1
 
     def mark(*_: Any) -> None:
         while waits:
             places.setdefault(waits.pop(), parser.CurrentByteIndex)
 
-    def start(tag: str, attributes: dict[str, str]) -> None:
+    def start(tag: str, _: dict[str, str]) -> None:
+        nonlocal count
         mark()
-        if tag == element and stack and stack[-1] == (owner, name) and "start" not in places:
+        if tag == element and stack and stack[-1] and "start" not in places:
             places["start"] = parser.CurrentByteIndex
-        stack.append((tag, attributes.get("name", "")))
-        if stack[-1] == (owner, name):
+        count += tag == owner
+        stack.append(tag == owner and count == number)
+        if stack[-1]:
             waits.append("inside")
 
     def end(tag: str) -> None:
         mark()
         stack.pop()
-        if tag == element and stack and stack[-1] == (owner, name) and "stop" not in places:
+        if tag == element and stack and stack[-1] and "stop" not in places:
             waits.append("stop")
 
     parser.StartElementHandler, parser.EndElementHandler = start, end

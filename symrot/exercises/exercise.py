@@ -25,18 +25,17 @@ DRAWS = 24
 """The number of draws among which the one with the shortest numbers is used."""
 
 MOST_DRAWS = 10_000
-"""The number of draws after which numbers that suit a problem are no longer expected."""
+"""The number of draws without suitable numbers after which symrot gives up."""
 
 ZERO = 30
-"""The awkwardness of an answer that is zero, which teaches little."""
+"""The length that an answer of zero counts as, so that such answers, which teach little, are rare."""
 
-DIGITS = 17
-SPACE = r"\,"
+DIGITS = 17  # significant digits that distinguish any two doubles
 
 
 @dataclass(frozen=True)
 class Datum:
-    """A given quantity of an exercise: its symbol and its value.
+    """A given quantity of an exercise with its value, for instance the mass m = 2 kg.
 
     Attributes
     ----------
@@ -78,9 +77,9 @@ class Question:
     prompt : str
         Markdown.
     name : str
-        The letter of the answer, LaTeX.
+        The symbol of the quantity that is asked for, LaTeX.
     answer : str
-        The formula, or the exact number in ``unit``, as text.
+        The right formula, or the exact right number in ``unit``, as text.
     latex : str
         The answer as LaTeX.
     decimal : str
@@ -88,11 +87,11 @@ class Question:
     unit : str
         The unit of the answer; empty for a pure number.
     symbols : dict of str to str
-        Symbols that the formula may use, with their units.
+        The symbols of all given quantities, which a formula may use -> their units (``"1"`` for a pure number).
     positive : tuple of str
-        Symbols that are positive.
+        Those of these symbols that are positive.
     slips : dict of str to str
-        Wrong numbers that follow from usual mistakes: kind of mistake -> number in ``unit``.
+        Mistake and symbol, such as ``"diameter R"`` -> the wrong number, in ``unit``, to which this mistake leads.
 
     Examples
     --------
@@ -153,7 +152,7 @@ class Exercise:
     questions : tuple of Question
         The questions, in order.
     hints : tuple of 3 str
-        Which law; the law as an equation; the equation with numbers.
+        The law; the first equation of the solution; the formula of the first answer with the numbers inserted.
     solution : tuple of Equation
         The lines of the solution, in order.
     figure : str
@@ -183,7 +182,7 @@ class Exercise:
 
     @staticmethod
     def from_json(data: Mapping[str, Any]) -> "Exercise":
-        """Return the exercise that data from :meth:`to_json` describe."""
+        """Return the exercise that was converted to ``data`` by :meth:`to_json`."""
         plain = dict(data)
         plain["data"] = tuple(Datum(**each) for each in data["data"])
         plain["questions"] = tuple(Question(**{**q, "positive": tuple(q["positive"])}) for q in data["questions"])
@@ -193,7 +192,7 @@ class Exercise:
 
 
 def sheet_data(exercises: Sequence[Exercise]) -> dict[str, Any]:
-    """Return a sheet of exercises as plain data for JSON, with the number of the format (``schema``)."""
+    """Return exercises as plain data for JSON, together with the version of the format (``schema``)."""
     return {"schema": SCHEMA, "exercises": [each.to_json() for each in exercises]}
 
 
@@ -247,8 +246,7 @@ def _si(quantity: Quantity, number: str) -> Expr:
 
 
 def _draw(problem: Problem, source: Random) -> list[tuple[Quantity, str]]:
-    """Choose random numbers for the quantities; return pairs (quantity, number)."""
-    # of many choices, the one with the shortest answers
+    """Choose random numbers for the quantities so that the answers are short; return pairs (quantity, number)."""
     best: tuple[int, list[tuple[Quantity, str]]] | None = None
     for n in range(MOST_DRAWS):
         if n >= DRAWS and best is not None:
@@ -258,7 +256,7 @@ def _draw(problem: Problem, source: Random) -> list[tuple[Quantity, str]]:
         if not problem.fits(values):
             # such as lengths that contradict each other
             continue
-        answers = [asked.formula.xreplace(values) / factor_of(asked.unit) for asked in problem.asked]
+        answers = [_exact(asked, values) for asked in problem.asked]
         if any(answer.is_finite is False or answer.is_real is False for answer in answers):
             continue
         repeated = len(drawn) - len({(number, quantity.unit) for quantity, number in drawn})
@@ -273,8 +271,7 @@ def _draw(problem: Problem, source: Random) -> list[tuple[Quantity, str]]:
 
 
 def _length(answer: Expr) -> int:
-    """Return a measure of the length of an answer in digits, with a penalty for zero, 1/3 or sqrt(2)."""
-    # an exercise prefers numbers whose answers are short
+    """Return a measure of the length of an answer: about its number of digits, and more for zero, 1/3 or sqrt(2)."""
     if answer.is_zero:
         return ZERO
     if not answer.is_Rational:
@@ -289,7 +286,7 @@ def _length(answer: Expr) -> int:
 
 def _questions(problem: Problem, values: Mapping[Symbol, Expr]) -> Iterator[Question]:
     keys = iter("abcdefghijklmnopqrstuvwxyz")
-    units = {sstr(q.symbol): _base_unit(q.unit) for q in problem.quantities}
+    units = {sstr(q.symbol): q.unit or "1" for q in problem.quantities}
     positive = tuple(sstr(q.symbol) for q in problem.quantities if q.symbol.is_positive)
     for asked in problem.asked:
         if asked.as_formula:
@@ -309,11 +306,8 @@ def _questions(problem: Problem, values: Mapping[Symbol, Expr]) -> Iterator[Ques
 
 def _in_unit(unit: str) -> str:
     named = {"": "", "deg": ", in degrees"}
-    return named.get(unit, f", in ${unit_latex(unit).removeprefix(SPACE)}$")
-
-
-def _base_unit(unit: str) -> str:
-    return unit or "1"
+    space = r"\,"
+    return named.get(unit, f", in ${unit_latex(unit).removeprefix(space)}$")
 
 
 def _used(problem: Problem, asked: Asked) -> list[Symbol]:
@@ -327,14 +321,14 @@ def _exact(asked: Asked, values: Mapping[Symbol, Expr]) -> Expr:
 
 
 def _slips(problem: Problem, asked: Asked, values: Mapping[Symbol, Expr], exact: Expr) -> Iterator[tuple[str, str]]:
-    """Yield the wrong answers that follow from usual slips, as pairs (kind of slip with the symbol, wrong answer)."""
+    """Yield the wrong answers to which usual slips lead, as pairs such as ``("diameter R", "0.5")``."""
     for quantity in problem.quantities:
         symbol = quantity.symbol
         if not asked.formula.has(symbol):
             continue
         # a diameter used as a radius or the reverse, degrees used as radians, a unit that is not converted
         for code, value in _misused(quantity, values[symbol]):
-            number = asked.formula.xreplace({**values, symbol: value}) / factor_of(asked.unit)
+            number = _exact(asked, {**values, symbol: value})
             if number.is_finite and number.is_real and number != exact:
                 yield f"{code} {sstr(symbol)}", decimal(number, DIGITS)
 

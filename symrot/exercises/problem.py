@@ -98,13 +98,21 @@ class Asked:
 
 
 def chain(
-    name: str, law: str, left: Any, written: Any, result: Any, then: str = "This is simplified."
+    name: str, law: str, left: Any, written: Any, result: Any, then: str = "The expression is simplified."
 ) -> tuple[Line, ...]:
-    """Return the lines of a solution: ``law`` gives the value ``written``; ``then`` says how it becomes ``result``.
+    """Return the lines of a solution that gives a quantity first as ``written`` and then as ``result``.
 
-    There is only the first line if both are the same expression.
+    Parameters
+    ----------
+    name : str
+        The quantity as LaTeX, the displayed left side of both lines.
+    law, then : str
+        The reasons of the first and of the second line.
+    left : Expr
+        The quantity as symrot derived it; both lines are proven against this expression.
+    written, result : Expr
+        The right sides. If they are the same expression, there is only the first line.
     """
-    # each line: reason, quantity, value, displayed name
     first = Line(law, left, written, name)
     return (first,) if written == result else (first, Line(then, left, result, name))
 
@@ -128,9 +136,10 @@ class Problem:
     asked : tuple of Asked
         The quantities that the questions ask for.
     fits : callable
-        A function that takes numbers (symbol -> value in SI units) and returns whether they are possible together.
+        A function that takes a mapping from symbol to value in SI units, and returns whether these values are possible
+        together, such as an inner radius below an outer radius.
     sketch : tuple of str
-        What the template's sketch depends on, such as the sequence of the Euler angles.
+        The arguments of the function that draws the template's sketch, such as the sequence of the Euler angles.
     """
 
     title: str
@@ -144,3 +153,4 @@ class Problem:
 
 
 Template = Callable[[Random], Problem]
+"""A function that makes a problem; it chooses variants, such as the sequence of the Euler angles, at random."""

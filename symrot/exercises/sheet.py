@@ -53,15 +53,24 @@ class ExerciseSheet:
         return sheet_data(self.exercises)
 
     def print(self, form: str, solutions: bool = True, *, statements: bool = True, title: str = "") -> str:
-        """Return the text of the sheet; ``form`` is ``markdown``, ``latex``, ``html``, ``moodle`` or ``json``.
+        """Return the text of the sheet in a format.
 
-        Markdown, LaTeX and HTML can have a ``title`` of their own, and leave out the solutions (to hand out) or the
-        statements (a sheet of solutions).
+        Parameters
+        ----------
+        form : str
+            ``"markdown"``, ``"latex"``, ``"html"``, ``"moodle"`` or ``"json"``.
+        solutions : bool
+            Whether the sheet has hints and solutions.
+        statements : bool
+            Whether the sheet has the exercises themselves; without them it is a sheet of solutions.
+        title : str
+            The title of the sheet; default: "Exercises", or "Exercises: solutions".
 
         Raises
         ------
         InputError
-            For an unknown format, for Moodle and JSON with a title or without a part, and if both parts are left out.
+            For an unknown format, if both ``solutions`` and ``statements`` are false, and if a sheet for Moodle or as
+            JSON, which always has both, is to have a title or only one of them.
         """
         from symrot.exercises.formats import FORMATS, HANDOUTS, TITLE
 
@@ -109,13 +118,13 @@ def exercise(topic: str | Sequence[str] = "", *, seed: int = 0, count: int = 1) 
     Parameters
     ----------
     topic : str or sequence of str
-        A topic or the name of a template, see ``symrot exercise --list``. Several of them share the exercises, which
-        are in the order of the topics; an empty text stands for all topics.
+        A topic or the name of a template, see ``symrot exercise --list``, or several of them; an empty text means all
+        topics. The sheet is in the order of the topics.
     seed : int
         Seed of the random choices. Another seed usually gives other numbers and begins with another template; the same
         seed gives the same exercises on every machine.
     count : int
-        The number of exercises. Each of several topics has as many of them as any other, or one less.
+        The number of exercises. They are divided evenly among the topics; the first topics get one more if needed.
 
     Returns
     -------
@@ -125,7 +134,7 @@ def exercise(topic: str | Sequence[str] = "", *, seed: int = 0, count: int = 1) 
     Raises
     ------
     InputError
-        For an unknown topic, and for a count that is not from 1 to 1000.
+        For an unknown topic, a count that is not from 1 to 1000, or a negative seed.
     ProofError
         If a line of a solution does not hold.
 
@@ -168,9 +177,9 @@ def _exercise(name: str, seed: int) -> Exercise:
 
 
 def read_sheet(data: Any, where: str) -> ExerciseSheet:
-    """Return the sheet that JSON data describe; ``where`` is the file for error messages.
+    """Return the sheet from the data of its JSON text; ``where`` is the name of the file for error messages.
 
-    Raise InputError if the data are no sheet, or have another schema (number of the format).
+    Raise InputError if the data are no sheet, or have another version of the format (``schema``).
     """
     try:
         if data["schema"] != SCHEMA:
@@ -178,5 +187,5 @@ def read_sheet(data: Any, where: str) -> ExerciseSheet:
         return ExerciseSheet(tuple(Exercise.from_json(each) for each in data["exercises"]))
     except (KeyError, TypeError, AttributeError) as fault:
         raise InputError(
-            f"{where}: expected the JSON that `symrot exercise --format json` writes, but {fault} is missing or wrong"
+            f"{where}: expected the JSON that `symrot exercise --format json` writes, got other data ({fault})"
         ) from None

@@ -55,7 +55,9 @@ def unit_of(text: str) -> UnitProduct | None:
 
 
 def factor_of(unit: str) -> Expr:
-    """Return the exact factor of a unit to SI units; 1 for a pure number.
+    """Return the exact factor by which a number in ``unit`` is multiplied to get SI units; 1 for a pure number.
+
+    Raise InputError if the text is not a unit.
 
     Examples
     --------
@@ -83,18 +85,18 @@ def unit_latex(unit: str) -> str:
 
 
 def decimal(value: Any, digits: int = 4) -> str:
-    """Return a number as text, rounded to ``digits`` significant digits, without an exponent unless the text gets long.
+    """Return a number as text, rounded to ``digits`` significant digits.
 
-    A whole number below 10^6 is not rounded.
+    A whole number below 10^6 is not rounded, and other numbers from 10^digits to 10^7 only to a whole number. Numbers
+    below 0.0001 and from 10^7 have an exponent, such as ``1.2e7``.
 
     Examples
     --------
     >>> decimal(Rational(1, 3)), decimal(Integer(120000)), decimal(Rational(1, 2))
     ('0.3333', '120000', '0.5')
     """
-    exact = Rational(value) if value.is_Rational else None
-    if exact is not None and exact.q == 1 and abs(exact.p) < 10**6:
-        return str(exact.p)
+    if value.is_Integer and abs(value) < 10**6:
+        return str(value)
     number = float(value.evalf(digits + 10))
     text = f"{number:.{digits}g}"
     if "e" not in text:

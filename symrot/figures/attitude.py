@@ -4,16 +4,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from symrot.figures.curves import arc_between, circle, frame, rotated, rotation, unit
+from symrot.figures.curves import CIRCLE, arc_between, circle, frame, rotated, rotation, unit
 from symrot.figures.picture import Picture
 from symrot.figures.view import Floats, Plane, View
 from symrot.kinematics.conversions import axis_angle_to_quaternion, euler_to_dcm
 
 __all__ = [
     "angular_velocity", "brick", "double_cover", "gimbal_lock", "gimbal_rings", "gimbals", "intermediate_frames",
-    "order_of_rotations",
-    "plane_rotation", "projected_quaternions", "proper_euler", "ring_normals", "rodrigues_rotation", "rotation_vectors",
-    "tait_bryan", "three_rotations", "two_points",
+    "order_of_rotations", "plane_rotation", "projected_quaternions", "proper_euler", "ring_normals",
+    "rodrigues_rotation", "rotation_vectors", "tait_bryan", "three_rotations", "two_points",
 ]  # fmt: skip
 
 LETTERS = "xyz"
@@ -135,7 +134,7 @@ def proper_euler() -> Picture:
 
 def tait_bryan() -> Picture:
     """Draw the three rotations of the sequence ZYX: yaw, pitch and roll."""
-    return three_rotations("ZYX", (40.0, 30.0, 40.0), ("ψ", "θ", "ϕ"), 8.0)
+    return three_rotations("ZYX", (40.0, 30.0, 40.0), ("ϕ", "θ", "ψ"), 8.0)
 
 
 def gimbals(sequence: str, angles: Sequence[float]) -> list[Floats]:
@@ -149,7 +148,7 @@ def gimbal_lock() -> Picture:
     picture = Picture()
     for column, (words, angles) in enumerate((("three axes", (25.0, 35.0, 20.0)), ("locked", (25.0, 90.0, 20.0)))):
         view = View(azimuth=32, elevation=24, scale=88, origin=(330.0 * column, 0.0))
-        gimbal_rings(picture, view, "ZYX", angles, ("ψ", "θ", "ϕ"))
+        gimbal_rings(picture, view, "ZYX", angles, ("ϕ", "θ", "ψ"))
         picture.label(view, (0, 0, 0), words, (0, 165))
     return picture
 
@@ -208,8 +207,7 @@ def projected_quaternions() -> Picture:
     """Draw the projection of a unit quaternion to the classical and to the modified Rodrigues parameters."""
     picture, plane, angle = Picture(), Plane(110), 104.0
     q = np.asarray(axis_angle_to_quaternion((0, 0, 1), angle, degrees=True))[[3, 0]]  # q0 upward
-    turn = np.linspace(0.0, 2 * np.pi, 121)
-    picture.curve(plane, np.stack([np.cos(turn), np.sin(turn)], axis=1), "soft")
+    picture.curve(plane, CIRCLE, "soft")
     picture.curve(plane, [(-1.3, 1), (1.9, 1)], "blue")
     picture.curve(plane, [(-1.3, 0), (1.9, 0)], "red")
     classical, modified = np.array([q[0] / q[1], 1.0]), np.array([q[0] / (1 + q[1]), 0.0])
@@ -251,10 +249,8 @@ def angular_velocity() -> Picture:
 def rotation_vectors() -> Picture:
     """Draw the ball of rotation vectors of length up to pi, with two vectors of one rotation."""
     picture, plane = Picture(), Plane(38)
-    turn = np.linspace(0.0, 2 * np.pi, 121)
-    circle_points = np.pi * np.stack([np.cos(turn), np.sin(turn)], axis=1)
-    picture.area(plane, circle_points)
-    picture.curve(plane, circle_points, "blue")
+    picture.area(plane, np.pi * CIRCLE)
+    picture.curve(plane, np.pi * CIRCLE, "blue")
     direction = np.array([np.cos(0.5), np.sin(0.5)])
     # alpha n is inside the ball; (alpha - 2 pi) n points the opposite way beyond it
     short, long = 2.1 * direction, (2.1 - 2 * np.pi) * direction
@@ -276,8 +272,7 @@ def two_points() -> Picture:
     first, second, speed = np.array([0.0, 0.0]), np.array([1.35, 0.55]), 0.55
     carried = np.array([0.7, -0.25])
     across = speed * np.array([-(second - first)[1], (second - first)[0]])
-    turn = np.linspace(0.0, 2 * np.pi, 121)
-    body = np.stack([0.68 + 1.15 * np.cos(turn), 0.24 + 0.74 * np.sin(turn) + 0.3 * np.cos(turn)], axis=1)
+    body = (0.68, 0.24) + CIRCLE @ np.array([[1.15, 0.3], [0.0, 0.74]])
     picture.area(plane, body)
     picture.curve(plane, body, "blue")
     picture.arrow(plane, first, second, "", "ink")

@@ -7,11 +7,15 @@ from symrot.figures.view import Floats, View
 from symrot.kinematics.conversions import axis_angle_to_quaternion, quaternion_to_dcm
 
 __all__ = [
-    "TURN", "arc_between", "basis", "circle", "clear_of", "cone", "frame", "outline", "rotated", "rotation", "turning",
-    "unit",
+    "CIRCLE", "TURN", "arc_between", "basis", "circle", "clear_of", "cone", "frame", "outline", "rotated",
+    "rotation", "turning", "unit",
 ]  # fmt: skip
 
 TURN = np.linspace(0.0, 2 * np.pi, 121)
+"""Angles of one revolution, rad."""
+
+CIRCLE = np.stack([np.cos(TURN), np.sin(TURN)], axis=1)
+"""Points of the unit circle in a plane, shape (121, 2)."""
 
 
 def unit(vector: ArrayLike) -> Floats:

@@ -3,7 +3,7 @@
 import numpy as np
 from mpmath import mp
 
-from symrot.figures.curves import TURN, arc_between, circle, outline, rotated, rotation, unit
+from symrot.figures.curves import CIRCLE, TURN, arc_between, circle, outline, rotated, rotation, unit
 from symrot.figures.picture import Picture
 from symrot.figures.plots import Axes
 from symrot.figures.view import Floats, Plane, View
@@ -71,7 +71,7 @@ def principal_axes() -> Picture:
     """Draw a body in axes in which its inertia tensor is not diagonal, and with its principal axes."""
     picture, plane = Picture(), Plane(110)
     turned = rotation((0, 0, 1), 32.0)[:2, :2]
-    body = (np.stack([np.cos(TURN), np.sin(TURN)], axis=1) * (1.05, 0.5)) @ turned.T
+    body = (CIRCLE * (1.05, 0.5)) @ turned.T
     picture.area(plane, body)
     picture.curve(plane, body, "blue", closed=True)
     for matrix, style, names in ((np.eye(2), "soft", ("x", "y")), (turned, "red thick", ("x′", "y′"))):
@@ -110,7 +110,7 @@ def struck_rod() -> Picture:
     picture.dot(plane, (rest, 0), "blue", 4)
     picture.label(plane, (rest, 0), "at rest", (0, 16))
     picture.curve(plane, [(0, -0.42), (offset, -0.42)], "soft")
-    picture.label(plane, (offset / 2, -0.42), "d", (0, 10))
+    picture.label(plane, (offset / 2, -0.42), "h", (0, 10))
     return picture
 
 
@@ -138,8 +138,8 @@ def rolling_disk() -> Picture:
     centre = np.array([angle, 1.0])
     picture.curve(plane, [(-0.4, 0), (7.4, 0)], "ink")
     picture.curve(plane, path, "blue thick")
-    picture.area(plane, centre + np.stack([np.cos(TURN), np.sin(TURN)], axis=1))
-    picture.curve(plane, centre + np.stack([np.cos(TURN), np.sin(TURN)], axis=1), "ink", closed=True)
+    picture.area(plane, centre + CIRCLE)
+    picture.curve(plane, centre + CIRCLE, "ink", closed=True)
     contact = np.array([angle, 0.0])
     for point in (centre, *(centre + np.eye(2)[::-1]), path[115]):
         velocity = np.array([(point - contact)[1], -(point - contact)[0]])
@@ -175,7 +175,7 @@ def planetary_gear() -> Picture:
     """Draw a planetary gear: sun, three planets on a carrier, and a ring."""
     picture, plane = Picture(), Plane(70)
     zero = np.zeros(2)
-    ring = (TEETH["ring"] / 24 + 0.22) * np.stack([np.cos(TURN), np.sin(TURN)], axis=1)
+    ring = (TEETH["ring"] / 24 + 0.22) * CIRCLE
     picture.curve(plane, ring, "soft", closed=True)
     _gear(picture, plane, zero, TEETH["sun"], np.pi / 2 / TEETH["sun"], "blue")
     _gear(picture, plane, zero, TEETH["ring"], np.pi / 2 / TEETH["ring"], "soft", inner=True)
@@ -207,7 +207,7 @@ def slider_crank() -> Picture:
     pin = crank * np.array([np.cos(phi), np.sin(phi)])
     psi = np.arcsin(crank * np.sin(phi) / rod)
     slider, right = np.array([pin[0] + rod * np.cos(psi), 0.0]), np.array([1.0, 0.0])
-    picture.curve(plane, crank * np.stack([np.cos(TURN), np.sin(TURN)], axis=1), "soft dashed")
+    picture.curve(plane, crank * CIRCLE, "soft dashed")
     picture.curve(plane, [(-0.2, 0), (3.0, 0)], "soft")
     picture.curve(plane, [(0, 0), pin], "blue thick")
     picture.curve(plane, [pin, slider], "red thick")
@@ -302,6 +302,6 @@ def driven_rates() -> Picture:
             "span": {"t": [0, 1], "samples": 2},
         }
         plot.curve(times, propagator(Scene.from_dict(scene, "figure"))(times).omega[:, 2], f"{colour} thick")
-    plot.level(1.0, "τ/k")
+    plot.level(1.0, "τ/b")
     plot.frame("t", "ω")
     return picture

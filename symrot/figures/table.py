@@ -58,8 +58,8 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
         ),
         Figure(
             "euler_zyx", "The three rotations of ZYX: yaw, pitch, roll",
-            r"A Tait-Bryan sequence, ZYX: yaw $\psi$ about $z$, pitch $\theta$ about the new axis $y'$, roll $\phi$ "
-            "about the new axis $x''$.",
+            r"A Tait-Bryan sequence, ZYX: yaw $\phi$ about $z$, pitch $\theta$ about the new axis $y'$, roll $\psi$ "
+            r"about the new axis $x''$. Books on aircraft call the angle of yaw $\psi$ and the angle of roll $\phi$.",
             attitude.tait_bryan,
         ),
     ),
@@ -67,7 +67,7 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
         Figure(
             "gimbal_lock", "Gimbal rings in a general attitude and locked",
             "Three rings for the sequence ZYX. On the left their axes have three different directions. On the right "
-            r"$\theta$ is a right angle: the axes of $\psi$ and $\phi$ coincide, and the body cannot rotate about the "
+            r"$\theta$ is a right angle: the axes of $\phi$ and $\psi$ coincide, and the body cannot rotate about the "
             "direction that is perpendicular to the two remaining axes.",
             attitude.gimbal_lock,
         ),
@@ -134,7 +134,7 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
     "impulse_and_momentum": (
         Figure(
             "impulse", "A rod after a blow",
-            "A free rod is struck by $J$ at the distance $d$ from its centre of mass $c$. The velocities of its points "
+            "A free rod is struck by $J$ at the distance $h$ from its centre of mass $c$. The velocities of its points "
             "(red) grow along the rod. One point, the centre of percussion, stays at rest.",
             mechanics.struck_rod,
         ),
@@ -190,7 +190,7 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
     "free_asymmetric_body": (
         Figure(
             "free_body_rates", "Angular velocity of a free asymmetric body",
-            r"The three components of $\omega$ of a free body with three different moments are the elliptic functions "
+            r"The three components of $\omega$ of a free body with the moments $A < B < C$ are the elliptic functions "
             r"sn, cn and dn of time. The energy is less than on the separatrix, so the sign of $\omega_3$ does not "
             "change.",
             free_bodies.rates,
@@ -280,7 +280,7 @@ FIGURES: dict[str, tuple[Figure, ...]] = {
     "driven_rotation": (
         Figure(
             "driven_rotation", "Angular velocity under a torque and damping",
-            r"From every initial value the angular velocity approaches $\tau / k$, where the damping $k\,\omega$ "
+            r"From every initial value the angular velocity approaches $\tau / b$, where the damping $b\,\omega$ "
             r"balances the constant torque $\tau$.",
             mechanics.driven_rates,
         ),

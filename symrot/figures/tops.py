@@ -8,7 +8,7 @@ import numpy as np
 from sympy import Matrix, Rational, cos, diag, lambdify, solve
 
 from symrot import symbols
-from symrot.figures.curves import TURN, arc_between, circle, cone, outline, rotated, unit
+from symrot.figures.curves import CIRCLE, arc_between, circle, cone, outline, rotated, unit
 from symrot.figures.picture import Picture
 from symrot.figures.plots import Axes
 from symrot.figures.view import Floats, Plane, View
@@ -249,9 +249,9 @@ def tidal_field() -> Picture:
     """Draw a long satellite on its orbit, with the tidal forces on its ends and the torque that they cause."""
     picture, plane = Picture(), Plane(100)
     planet = Plane(100, (-215.0, 40.0))
-    picture.area(planet, 0.42 * np.stack([np.cos(TURN), np.sin(TURN)], axis=1), "fill-green")
-    picture.curve(planet, 0.42 * np.stack([np.cos(TURN), np.sin(TURN)], axis=1), "green", closed=True)
-    orbit = 1.15 * np.stack([np.cos(TURN), np.sin(TURN)], axis=1)
+    picture.area(planet, 0.42 * CIRCLE, "fill-green")
+    picture.curve(planet, 0.42 * CIRCLE, "green", closed=True)
+    orbit = 1.15 * CIRCLE
     picture.curve(planet, orbit, "soft dashed")
     place = 1.15 * np.array([0.0, 1.0])
     _satellite(picture, planet, place, 0.22)

@@ -1,7 +1,7 @@
 """Views: orthographic projections of points in space, or in a plane, to positions in a picture."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -53,10 +53,6 @@ class View:
         """Return the positions in the picture, shape (n, 2), of points in space, shape (n, 3)."""
         right, up, _ = self.axes @ np.atleast_2d(np.asarray(points, dtype=float)).T
         return np.stack([self.origin[0] + self.scale * right, self.origin[1] - self.scale * up], axis=1)
-
-    def at(self, x: float, y: float) -> "View":
-        """Return the same view with its origin at the picture position (x, y)."""
-        return replace(self, origin=(x, y))
 
 
 @dataclass(frozen=True)

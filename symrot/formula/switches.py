@@ -10,7 +10,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from symrot.formula.squares import as_polynomial, square_under_root
-from symrot.formula.tree import SWITCHING, Node, children, evaluate, names, parse, text
+from symrot.formula.tree import SWITCHING, Node, children, evaluate, names, parse, text, with_children
 
 __all__ = [
     "CHANGING", "MODES", "STATES", "Conditions", "Smooth", "Switch", "between_sides", "blended", "chosen",
@@ -131,8 +131,7 @@ def chosen(node: Node, modes: Mapping[str, int], held: Collection[str] = ()) -> 
         if names(share) & set(held):
             return _blend(share, chosen(yes, modes, held), chosen(no, modes, held))
         return chosen(yes if evaluate(share, modes) == 1 else no, modes, held)
-    parts = tuple(chosen(child, modes, held) for child in children(node))
-    return ("call", node[1], parts) if node[0] == "call" else (node[0], *parts, *(node[2:] if node[0] == "**" else ()))
+    return with_children(node, [chosen(child, modes, held) for child in children(node)])
 
 
 def blended(node: Node) -> Node:
@@ -143,10 +142,9 @@ def blended(node: Node) -> Node:
 
 def placed(node: Node, values: Mapping[str, Node]) -> Node:
     """Return the formula in which each symbol whose name is in ``values`` is replaced by the formula given there."""
-    if node[0] in ("number", "symbol"):
-        return values.get(node[1], node) if node[0] == "symbol" else node
-    parts = tuple(placed(child, values) for child in children(node))
-    return ("call", node[1], parts) if node[0] == "call" else (node[0], *parts, *(node[2:] if node[0] == "**" else ()))
+    if node[0] == "symbol":
+        return values.get(node[1], node)
+    return with_children(node, [placed(child, values) for child in children(node)])
 
 
 def on_line(node: Node) -> tuple[Any, int]:
@@ -301,9 +299,9 @@ class _Writer:
             size = self._abs(split[0])
             return size if split[1] == ONE else ("*", size, ("call", "sqrt", (split[1],)))
         if kind != "call":
-            return (kind, *parts, *(node[2:] if kind == "**" else ()))
+            return with_children(node, parts)
         if node[1] not in BENDING or (node[1] in ("abs", "atan2") and not names(node) & CHANGING):
-            return ("call", node[1], parts)
+            return with_children(node, parts)
         if node[1] == "abs" and not names(parts[0]) & CHANGING:
             return ("call", "abs", parts)  # an argument of modes alone is constant between switches
         self.label = text(node)

@@ -8,7 +8,7 @@ A formula tree is a nested tuple, called a node::
 
 import re
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import reduce
 from typing import Any
@@ -17,7 +17,7 @@ from symrot.errors import InputError
 
 __all__ = [
     "FUNCTIONS", "LOGIC", "SWITCHING", "Node", "children", "evaluate", "names", "operations", "parse", "rename", "text",
-    "vanishes",
+    "vanishes", "with_children",
 ]  # fmt: skip
 
 Node = tuple[Any, ...]
@@ -229,19 +229,23 @@ def children(node: Node) -> tuple[Node, ...]:
     return (node[1],) if kind in ("**", "neg") else (node[1], node[2])
 
 
+def with_children(node: Node, parts: Sequence[Node]) -> Node:
+    """Return a formula tree with other operands at its root: ``parts`` in place of :func:`children`."""
+    kind = node[0]
+    if kind in ("number", "symbol"):
+        return node
+    if kind == "call":
+        return (kind, node[1], tuple(parts))
+    return (kind, *parts, node[2]) if kind == "**" else (kind, *parts)
+
+
 def rename(node: Node, symbols: Mapping[str, str] | None = None, functions: Mapping[str, str] | None = None) -> Node:
     """Return the formula with symbols and functions renamed as the two mappings say; other names are unchanged."""
-    kind = node[0]
-    if kind == "number":
-        return node
-    if kind == "symbol":
+    if node[0] == "symbol":
         return ("symbol", (symbols or {}).get(node[1], node[1]))
-    if kind == "call":
-        name = (functions or {}).get(node[1], node[1])
-        return ("call", name, tuple(rename(argument, symbols, functions) for argument in node[2]))
-    if kind == "**":
-        return ("**", rename(node[1], symbols, functions), node[2])
-    return (kind, *(rename(child, symbols, functions) for child in node[1:]))
+    if node[0] == "call":
+        node = ("call", (functions or {}).get(node[1], node[1]), node[2])
+    return with_children(node, [rename(child, symbols, functions) for child in children(node)])
 
 
 def names(node: Node) -> set[str]:

@@ -40,22 +40,24 @@ class MassProperties(NamedTuple):
 
 
 def place(body: HasInertia, at: Any = _ORIGIN, rotation: Any = IDENTITY) -> MassProperties:
-    """Return the mass properties of a body that is first rotated about the origin, then displaced by ``at`` (m)."""
-    # rotation maps components in the body's axes to components in the new axes
-    turned = tensor.apply(rotation, body.center_of_mass)
-    center = tuple(a + c for a, c in zip(tensor.vector(at), turned, strict=True))
+    """Return the mass properties of a body that is first rotated about the origin, then displaced by ``at`` (m).
+
+    ``rotation`` is the matrix that maps components in the body's axes to components in the new axes.
+    """
+    rotated = tensor.apply(rotation, body.center_of_mass)
+    center = tuple(a + c for a, c in zip(tensor.vector(at), rotated, strict=True))
     return MassProperties(body.mass, tensor.vector(center), tensor.rotate(body.inertia, rotation))
 
 
 def compose(added: Iterable[HasInertia], subtracted: Iterable[HasInertia] = ()) -> MassProperties:
-    """Return the mass properties of a rigid assembly: added bodies minus subtracted bodies (holes), in the
-    same axes.
+    """Return the mass properties of a rigid assembly: added bodies minus subtracted bodies (holes), in the same axes.
+
+    The total mass must not be zero.
     """
     signed = [(1, body) for body in added] + [(-1, body) for body in subtracted]
     mass = sum(sign * body.mass for sign, body in signed)
     centers = [tensor.vector(body.center_of_mass) for _, body in signed]
     first = [sum(sign * body.mass * c[k] for (sign, body), c in zip(signed, centers, strict=True)) for k in range(3)]
-    # the total mass must not be zero
     center = tensor.vector([moment / mass for moment in first])
     inertia: Tensor = tensor.scale(0, IDENTITY)
     for (sign, body), c in zip(signed, centers, strict=True):

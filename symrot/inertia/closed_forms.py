@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from symrot.errors import InputError
+from symrot.errors import InputError, prefix
 from symrot.formula.exact_numbers import PI
 from symrot.formula.tree import Node, evaluate, parse
 from symrot.inertia import tensor
@@ -67,8 +67,7 @@ def uniform(
     values = scalars(shape, dimensions) | {"pi": PI}
     measure = abs(Fraction(evaluate(forms["measure"], values)))  # the order of the corners determines its sign
     if not measure:
-        prefix = f"{where}: " if where else ""
-        raise InputError(f"{prefix}expected a {shape.name} that fills space, got corners in one plane")
+        raise InputError(f"{prefix(where)}expected a {shape.name} that fills space, got corners in one plane")
     total = mass if density is None else density * measure
     assert total is not None
     properties = {key: Fraction(evaluate(form, {**values, "m": total})) for key, form in forms.items()}

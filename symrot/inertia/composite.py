@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from symrot.errors import InputError
+from symrot.errors import InputError, prefix
 from symrot.formula.exact_numbers import read, show
 from symrot.formula.tree import Node, parse
 from symrot.inertia import tensor
@@ -36,14 +36,10 @@ class Part(NamedTuple):
     subtract: bool = False
 
 
-def _prefix(where: str) -> str:
-    return f"{where}: " if where else ""
-
-
 def _points(part: Part, dimensions: Mapping[str, Any], where: str) -> MassProperties:
     if part.mass is not None or part.density is not None:
         raise InputError(
-            f"{_prefix(where)}expected no mass or density of point_masses, got one; give their masses in 'masses' only"
+            f"{prefix(where)}expected no mass or density of point_masses, got one; give their masses in 'masses' only"
         )
     nothing = tensor.scale(Fraction(0), IDENTITY)
     pairs = zip(dimensions["masses"], dimensions["points"], strict=True)
@@ -56,7 +52,7 @@ def _of_density(shape: Shape, dimensions: Mapping[str, Any], density: Node, part
     integrals = exact_moments(shape, dimensions, density, part.density, where)
     if integrals.zeroth <= 0:
         raise InputError(
-            f"{_prefix(where)}expected a density with a positive mass, got {show(part.density)} with a mass of "
+            f"{prefix(where)}expected a density with a positive mass, got {show(part.density)} with a mass of "
             f"{float(integrals.zeroth):.15g} kg"
         )
     center = tensor.vector([moment / integrals.zeroth for moment in integrals.first])
@@ -89,7 +85,7 @@ def _in_own_axes(part: Part, where: str) -> MassProperties:
     if (part.mass is None) == (part.density is None):
         arrived = "both" if part.mass is not None else "neither"
         expected = f"either a mass (kg) or a density ({shape.density_unit})"
-        raise InputError(f"{_prefix(where)}expected {expected} of the {shape.name}, got {arrived}")
+        raise InputError(f"{prefix(where)}expected {expected} of the {shape.name}, got {arrived}")
     if part.mass is not None:
         return uniform(shape, dimensions, mass=_positive(part.mass, "mass", where), where=where)
     density = _density_node(part.density, where)
@@ -107,7 +103,7 @@ def _placed(part: Part, where: str) -> MassProperties:
     except (TypeError, ValueError) as reason:
         if isinstance(reason, InputError):
             raise
-        raise InputError(f"{_prefix(where)}expected at = [x, y, z] and a 3x3 rotation ({reason})") from None
+        raise InputError(f"{prefix(where)}expected at = [x, y, z] and a 3x3 rotation ({reason})") from None
     error = tensor.subtract(tensor.multiply(rotation, tensor.transpose(rotation)), IDENTITY)
     if max(abs(entry) for row in error for entry in row) > _ROTATION_TOLERANCE or tensor.determinant(rotation) < 0:
         raise InputError(f"{dot}rotation: expected a right-handed rotation matrix, got {show(part.rotation)}")
@@ -138,14 +134,14 @@ def mass_properties(parts: Sequence[Part], where: str = "") -> MassProperties:
         of inertia, for example because a hole is larger than the part from which it is cut.
     """
     if not parts:
-        raise InputError(f"{_prefix(where)}expected at least one part, got none")
+        raise InputError(f"{prefix(where)}expected at least one part, got none")
     places = [where] if len(parts) == 1 else [f"{where or 'part'}[{n}]" for n in range(len(parts))]
     placed = [_placed(part, spot) for part, spot in zip(parts, places, strict=True)]
     added = [body for body, part in zip(placed, parts, strict=True) if not part.subtract]
     subtracted = [body for body, part in zip(placed, parts, strict=True) if part.subtract]
     total = sum(body.mass for body in added) - sum(body.mass for body in subtracted)
     if total <= 0:
-        raise InputError(f"{_prefix(where)}expected parts with a positive total mass, got {float(total):.15g} kg")
+        raise InputError(f"{prefix(where)}expected parts with a positive total mass, got {float(total):.15g} kg")
     whole = compose(added, subtracted)
     body = principal_axes(whole.inertia, where)
     for value in (whole.mass, *body.moments):
@@ -170,7 +166,7 @@ def doubtful_holes(parts: Sequence[Part], where: str = "") -> tuple[str, ...]:
     from symrot.inertia import holes  # here, so that a body without holes does not load it
 
     names = [f"{where or 'part'}[{n}]" for n in range(len(parts))]
-    filled: list[holes.Filled | None] = []
+    dense: list[holes.DensePart | None] = []
     added: list[holes.PointMass] = []
     subtracted: list[tuple[str, holes.PointMass]] = []
     for part, name in zip(parts, names, strict=True):
@@ -182,7 +178,7 @@ def doubtful_holes(parts: Sequence[Part], where: str = "") -> tuple[str, ...]:
                 x, y, z = map(float, point)
                 place = mass, pose.to_body((x, y, z))
                 subtracted.append((name, place)) if part.subtract else added.append(place)
-            filled.append(None)
+            dense.append(None)
             continue
         if part.mass is not None:
             measure = uniform(shape, dimensions, density=Fraction(1)).mass
@@ -190,6 +186,6 @@ def doubtful_holes(parts: Sequence[Part], where: str = "") -> tuple[str, ...]:
         else:
             node = _density_node(part.density, name)
             density = node[1] if node[0] == "number" else node
-        filled.append(holes.filled(shape.name, dimensions, pose, density, part.subtract))
+        dense.append(holes.dense_part(shape.name, dimensions, pose, density, part.subtract))
     holes.require_points(added, subtracted)
-    return holes.doubtful_holes(filled, names)
+    return holes.doubtful_holes(dense, names)

@@ -2,18 +2,17 @@
 
 from collections.abc import Iterable
 
+from symrot.inertia.hulls import Vec
 from symrot.inertia.tensor import dot
 
 __all__ = ["cut"]
 
-Vec = tuple[float, float, float]
-
 
 def cut(points: list[Vec], normal: Vec, height: float, rounding: float) -> tuple[list[Vec], list[Vec]]:
-    """Return the points whose convex hulls are the parts of the hull of ``points`` below and above a plane.
+    """Cut the convex hull of ``points`` by a plane; return two lists of points whose hulls are the two parts.
 
-    The plane has the unit normal ``normal`` and the distance ``height`` from the origin. Points that are nearer to it
-    than ``rounding`` belong to both parts.
+    The plane has the unit normal ``normal`` and the distance ``height`` from the origin; the first part is below it.
+    Points that are nearer to it than ``rounding`` belong to both parts.
     """
     heights = [dot(point, normal) - height for point in points]
     below = [point for point, h in zip(points, heights, strict=True) if h <= rounding]

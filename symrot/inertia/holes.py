@@ -13,14 +13,15 @@ from typing import Any, NamedTuple
 
 from symrot.errors import InputError
 from symrot.formula.tree import Node, evaluate
-from symrot.inertia import containment
-from symrot.inertia.containment import Pose, Solid3, are_apart, excess, outside
+from symrot.inertia import hulls
+from symrot.inertia.containment import are_apart, excess, is_convex, outside
 from symrot.inertia.cutting import cut
+from symrot.inertia.hulls import Vec
 from symrot.inertia.integration import shape_points
 from symrot.inertia.shapes import SHAPES, scalars
 from symrot.inertia.tensor import dot
 
-__all__ = ["Filled", "PointMass", "doubtful_holes", "filled", "pose", "require_points"]
+__all__ = ["DensePart", "PointMass", "dense_part", "doubtful_holes", "pose", "require_points"]
 
 ROUNDING = 1e-9
 """Length by which a hole may reach out of a part, relative to its size, because dimensions are rounded numbers."""
@@ -33,14 +34,13 @@ INWARDS = 1e-6  # share of the way from the end of a hole to its middle, at test
 MOST_PIECES = 200
 MOST_CUTS = 50
 MOST_POINTS = 200_000  # tests of a point against a part
-Vec = tuple[float, float, float]
 PointMass = tuple[Any, Sequence[Any]]  # mass, kg; position in the axes of the body, m
 
 
-class Filled(NamedTuple):
-    """A part for the test of holes: its shape and place, its density, and whether it is subtracted."""
+class DensePart(NamedTuple):
+    """A part of a body, for the test of its holes: its shape, position and density, and whether it is subtracted."""
 
-    solid: Solid3
+    solid: hulls.Solid3
     exact_dimensions: Mapping[str, Any]
     # kg/m^3, kg/m^2 or kg/m: a number, or a polynomial in x, y, z
     density: Fraction | Node
@@ -48,6 +48,7 @@ class Filled(NamedTuple):
 
     @property
     def kind(self) -> str:
+        """The kind of the shape: ``"solid"``, ``"surface"`` or ``"curve"``."""
         return SHAPES[self.solid.shape].kind
 
     def density_at(self, point: Vec) -> float:
@@ -59,28 +60,30 @@ class Filled(NamedTuple):
         return float(evaluate(self.density, {"pi": math.pi, **names, "x": x, "y": y, "z": z}, None, float))
 
 
-def pose(at: Sequence[Any], rotation: Sequence[Sequence[Any]]) -> Pose:
-    """Return the place of a part, in doubles, from its position and its rotation matrix."""
+def pose(at: Sequence[Any], rotation: Sequence[Sequence[Any]]) -> hulls.Pose:
+    """Return position and rotation matrix of a part in doubles."""
     x, y, z = map(float, at)
     first, second, third = ((float(a), float(b), float(c)) for a, b, c in rotation)
-    return Pose((x, y, z), (first, second, third))
+    return hulls.Pose((x, y, z), (first, second, third))
 
 
-def filled(shape: str, dimensions: Mapping[str, Any], place: Pose, density: Fraction | Node, subtract: bool) -> Filled:
-    """Return a part for the test of holes, from its dimensions as Fractions and points."""
+def dense_part(
+    shape: str, dimensions: Mapping[str, Any], place: hulls.Pose, density: Fraction | Node, subtract: bool
+) -> DensePart:
+    """Return a part for the test of holes; ``dimensions`` are its exact dimensions, in which points are tuples."""
     rounded = {
         name: tuple(tuple(map(float, point)) for point in value) if isinstance(value, tuple) else float(value)
         for name, value in dimensions.items()
     }
-    return Filled(Solid3(shape, rounded, place), dimensions, density, subtract)
+    return DensePart(hulls.Solid3(shape, rounded, place), dimensions, density, subtract)
 
 
-def doubtful_holes(parts: Sequence[Filled | None], names: Sequence[str]) -> tuple[str, ...]:
+def doubtful_holes(parts: Sequence[DensePart | None], names: Sequence[str]) -> tuple[str, ...]:
     """Return a sentence for each hole of a body that can be proven neither to lie within its parts nor to reach out.
 
     Parameters
     ----------
-    parts : sequence of Filled or None
+    parts : sequence of DensePart or None
         The parts; None for point masses.
     names : sequence of str
         Place of each part in the scene, for messages.
@@ -92,7 +95,7 @@ def doubtful_holes(parts: Sequence[Filled | None], names: Sequence[str]) -> tupl
         hole, or has a larger density than the parts around it.
     """
     known = [part for part in parts if part is not None]
-    sizes = {id(part): (containment.center(part.solid), containment.size(part.solid)) for part in known}
+    sizes = {id(part): (hulls.center(part.solid), hulls.size(part.solid)) for part in known}
     doubts = []
     for hole, name in zip(parts, names, strict=True):
         if hole is None or not hole.subtract:
@@ -116,13 +119,13 @@ def doubtful_holes(parts: Sequence[Filled | None], names: Sequence[str]) -> tupl
     return tuple(doubts)
 
 
-def _is_within(hole: Filled, near: Sequence[Filled], radius: float) -> bool:
+def _is_within(hole: DensePart, near: Sequence[DensePart], radius: float) -> bool:
     """Return whether bounds prove that the density of the body is nowhere negative in a hole."""
     rounding = ROUNDING * radius
     added = [part for part in near if not part.subtract]
     others = [part for part in near if part.subtract and not are_apart(hole.solid, part.solid, rounding)]
 
-    def is_carried(piece: Solid3) -> bool:
+    def is_carried(piece: hulls.Solid3) -> bool:
         return _carry([part for part in added if outside(piece, part.solid) <= rounding], [hole, *others])
 
     if is_carried(hole.solid):
@@ -131,19 +134,19 @@ def _is_within(hole: Filled, near: Sequence[Filled], radius: float) -> bool:
     return bool(pieces) and all(map(is_carried, pieces))
 
 
-def _is_covered(hole: Filled, near: Sequence[Filled], radius: float) -> bool:
+def _is_covered(hole: DensePart, near: Sequence[DensePart], radius: float) -> bool:
     """Return whether the faces of parts cut a hole into pieces that bounds prove to lie within parts."""
     # such as a round hole across the joint of two boxes
     rounding = ROUNDING * radius
-    hosts = [part for part in near if not part.subtract and containment.is_convex(part.solid)]
+    hosts = [part for part in near if not part.subtract and is_convex(part.solid)]
     others = [part for part in near if part.subtract and not are_apart(hole.solid, part.solid, rounding)]
     planes = [
-        (normal, containment.height(part.solid, normal))
+        (normal, hulls.height(part.solid, normal))
         for part in hosts
-        for x, y, z in containment.directions(part.solid)
-        for normal in ((x, y, z), (-x, -y, -z))
+        for direction in hulls.directions(part.solid)
+        for normal in (direction, hulls.opposite(direction))
     ]
-    waiting, cuts = [containment.corners(hole.solid)], 0
+    waiting, cuts = [hulls.corners(hole.solid)], 0
     while waiting:
         piece = waiting.pop()
         around = [part for part in hosts if all(excess(part.solid, point) <= rounding for point in piece)]
@@ -164,8 +167,8 @@ def _crosses(plane: tuple[Vec, float], points: Sequence[Vec], rounding: float) -
     return bool(heights) and min(heights) < -rounding and max(heights) > rounding
 
 
-def _carry(parts: Sequence[Filled], holes: Sequence[Filled]) -> bool:
-    """Return whether the densities of parts at one place are together at least those of holes there."""
+def _carry(parts: Sequence[DensePart], holes: Sequence[DensePart]) -> bool:
+    """Return whether the sum of the densities of ``parts``, which overlap, is at least that of ``holes`` there."""
     filled = sum(part.density for part in parts if isinstance(part.density, Fraction))
     emptied = Fraction(0)
     for hole in holes:
@@ -182,20 +185,20 @@ _CUT = {
     "hollow_cylinder": (("length", 2),),
     "triangular_prism": (("length", 2),),
 }
-"""Shapes that planes cut into shapes of the same kind: the dimension, and the axis along which it is measured."""
+"""Shape that planes cut into shapes of its own kind -> the dimensions that are cut, each with its axis 0, 1 or 2."""
 
 
-def _pieces(hole: Solid3, hosts: Sequence[Solid3]) -> list[Solid3]:
+def _pieces(hole: hulls.Solid3, hosts: Sequence[hulls.Solid3]) -> list[hulls.Solid3]:
     """Return the pieces into which the ends of the parts ``hosts`` cut a hole; empty for other shapes than prisms."""
     # a bore through two parts that touch is cut where one ends and the other begins
     cuts = []
     for name, axis in _CUT.get(hole.shape, ()):
         half = hole.dimensions[name] / 2
-        up = hole.pose.turn(tuple(float(k == axis) for k in range(3)))  # type: ignore[arg-type]
-        down = -up[0], -up[1], -up[2]
+        up = hole.pose.rotate(tuple(float(k == axis) for k in range(3)))  # type: ignore[arg-type]
+        down = hulls.opposite(up)
         origin = dot(hole.pose.at, up)
-        ends = {containment.height(host, up) - origin for host in hosts}
-        ends |= {-containment.height(host, down) - origin for host in hosts}
+        ends = {hulls.height(host, up) - origin for host in hosts}
+        ends |= {-hulls.height(host, down) - origin for host in hosts}
         inside = sorted(end for end in ends if abs(end) < half * (1 - ROUNDING))
         cuts.append([(name, axis, low, high) for low, high in pairwise([-half, *inside, half])])
     if not cuts or math.prod(map(len, cuts)) > MOST_PIECES:
@@ -207,11 +210,11 @@ def _pieces(hole: Solid3, hosts: Sequence[Solid3]) -> list[Solid3]:
         for name, axis, low, high in ranges:
             shift[axis], dimensions[name] = (low + high) / 2, high - low
         at = hole.pose.to_body((shift[0], shift[1], shift[2]))
-        pieces.append(Solid3(hole.shape, dimensions, Pose(at, hole.pose.rotation)))
+        pieces.append(hulls.Solid3(hole.shape, dimensions, hulls.Pose(at, hole.pose.rotation)))
     return pieces
 
 
-def _refuse_negative(hole: Filled, near: Sequence[Filled], radius: float, name: str) -> None:
+def _refuse_negative(hole: DensePart, near: Sequence[DensePart], radius: float, name: str) -> None:
     """Raise InputError if the density of the body is negative at a test point of a hole."""
     rounding = ROUNDING * radius
     strict = -rounding if hole.kind == "solid" else rounding
@@ -239,16 +242,16 @@ def _refuse_negative(hole: Filled, near: Sequence[Filled], radius: float, name: 
             raise InputError(f"{name}: expected a hole within the other parts, got {fault}")
 
 
-def _test_points(hole: Filled, near: Sequence[Filled], radius: float) -> Iterator[Vec]:
+def _test_points(hole: DensePart, near: Sequence[DensePart], radius: float) -> Iterator[Vec]:
     """Yield points of a hole in the axes of the body: near its ends along axes and normals of faces, then a lattice."""
-    middle = containment.center(hole.solid)
-    normals = [n for part in (hole, *near) for n in containment.directions(part.solid)]
+    middle = hulls.center(hole.solid)
+    normals = [n for part in (hole, *near) for n in hulls.directions(part.solid)]
     for part in near:
-        away = tuple(a - b for a, b in zip(middle, containment.center(part.solid), strict=True))
+        away = tuple(a - b for a, b in zip(middle, hulls.center(part.solid), strict=True))
         if length := math.hypot(*away):
             normals.append((away[0] / length, away[1] / length, away[2] / length))
-    for x, y, z in dict.fromkeys(normals):
-        for end in (containment.farthest(hole.solid, n) for n in ((x, y, z), (-x, -y, -z))):
+    for normal in dict.fromkeys(normals):
+        for end in (hulls.farthest(hole.solid, n) for n in (normal, hulls.opposite(normal))):
             first, second, third = (a + INWARDS * (b - a) for a, b in zip(end, middle, strict=True))
             yield first, second, third
     shape = SHAPES[hole.solid.shape]
@@ -257,9 +260,9 @@ def _test_points(hole: Filled, near: Sequence[Filled], radius: float) -> Iterato
 
 
 def require_points(added: Sequence[PointMass], subtracted: Sequence[tuple[str, PointMass]]) -> None:
-    """Raise InputError unless each point mass that is subtracted is at a point mass of at least its size.
+    """Raise InputError unless each point mass that is subtracted is at the point of an added mass of at least its size.
 
-    ``subtracted`` has the place in the scene with each point mass.
+    ``subtracted`` are pairs of the place in the scene, for messages, and the point mass.
     """
     size = max((math.hypot(*map(float, point)) for _, (_, point) in subtracted), default=0.0)
     for name, (mass, point) in subtracted:

@@ -11,7 +11,7 @@ from functools import cache
 from itertools import combinations, product
 from typing import Any, NamedTuple
 
-from symrot.errors import InputError
+from symrot.errors import InputError, prefix
 from symrot.formula.exact_numbers import PI, show
 from symrot.formula.polynomial import (
     Polynomial,
@@ -86,10 +86,10 @@ def _jacobian(position: tuple[Polynomial, ...], coordinates: tuple[Coordinate, .
 def domain(shape: Shape, known: Mapping[str, Fraction] | None = None) -> Domain:
     """Return a shape's map from coordinates to positions, with its Jacobian and limits, as polynomials.
 
-    Dimensions in ``known``, such as ``{"radius": 2}``, are numbers in them; other dimensions stay symbols.
+    The dimensions in ``known``, such as ``{"radius": 2}``, are inserted as numbers; the others stay symbols. Names are
+    those of :func:`symrot.inertia.shapes.scalar_names`.
     """
     numbers = known or {}
-    # Dimensions in known (names as in shapes.scalar_names) are numbers, the others symbols.
     values = {n: constant(numbers[n]) if n in numbers else generator(n) for n in scalar_names(shape)}
     values["pi"] = generator("pi")
     limits = tuple((c, _lifted(c.lower, values), _lifted(c.upper, values)) for c in shape.coordinates)
@@ -130,9 +130,7 @@ def _quarters(limit: Polynomial) -> int:
 
 
 def integrate(integrand: Polynomial, limits: tuple[tuple[Coordinate, Polynomial, Polynomial], ...]) -> Polynomial:
-    """Return the integral of ``integrand`` over all coordinates between their limits, as a polynomial in dimensions and
-    ``pi``.
-    """
+    """Return the integral of a polynomial over all coordinates, as a polynomial in the dimensions and ``pi``."""
     for coordinate, lower, upper in limits:
         total = constant(0)
         if coordinate.angle:
@@ -147,8 +145,10 @@ def integrate(integrand: Polynomial, limits: tuple[tuple[Coordinate, Polynomial,
 
 
 def _degree(node: Node) -> int:
-    """Return an upper bound of a formula's degree in x, y, z; raise ValueError if it calls a function."""
-    # not expanded, so that a high degree is refused early
+    """Return an upper bound of a formula's degree in x, y, z; raise ValueError if it calls a function.
+
+    The formula is not expanded, so that a high degree is refused early.
+    """
     kind = node[0]
     if kind == "number":
         return 0
@@ -181,8 +181,7 @@ def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: 
     InputError
         If the density is no polynomial in x, y, z, has a degree above LARGEST_DEGREE, or uses an unknown name.
     """
-    prefix = f"{where}: " if where else ""
-    expected = f"{prefix}expected a density that is a polynomial in x, y, z, got {show(source)}"
+    expected = f"{prefix(where)}expected a density that is a polynomial in x, y, z, got {show(source)}"
     try:
         if _degree(density) > LARGEST_DEGREE:
             raise InputError(f"{expected} (its degree exceeds {LARGEST_DEGREE})")
@@ -199,8 +198,10 @@ def density_polynomial(density: Node, values: Mapping[str, Polynomial], source: 
 
 
 def moments(region: Domain, density: Polynomial | None = None) -> Moments:
-    """Return the integrals of 1, x_i and x_i x_j over a shape, as polynomials in the dimensions and ``pi``."""
-    # the density is a polynomial in the coordinates of the map
+    """Return the integrals of 1, x_i and x_i x_j over a shape, as polynomials in the dimensions and ``pi``.
+
+    ``density``, a polynomial in the coordinates of the map, is 1 if it is None.
+    """
     weight = region.jacobian if density is None else region.jacobian * density
     first = tuple(integrate(p * weight, region.limits) for p in region.position)
     second = [[constant(0)] * 3 for _ in range(3)]
@@ -210,27 +211,31 @@ def moments(region: Domain, density: Polynomial | None = None) -> Moments:
 
 
 def moments_per_measure(region: Domain, density: Polynomial | None = None) -> tuple[Polynomial, Moments]:
-    """Return the measure of a shape (its volume, area or length), and its moments divided by the measure."""
+    """Return a factor and the moments of a shape divided by this factor.
+
+    The factor is the measure of the shape (its volume, area or length) if the Jacobian is divisible by it, otherwise 1.
+    Dividing before the integration saves time for a tetrahedron with twelve symbols.
+    """
     measure = integrate(region.jacobian, region.limits)
-    # Dividing before the integration saves time for a tetrahedron with twelve symbols.
     share = exact_quotient(region.jacobian, measure)
     if share is None:
-        # not divisible: 1 and the moments themselves
         return constant(1), moments(region, density)
     return measure, moments(region._replace(jacobian=share), density)
 
 
-def require_not_negative(
-    density: Node, points: Iterable[Mapping[str, float]], source: object, prefix: str = ""
-) -> None:
-    """Raise InputError if a density is negative at one of some points of a body, given by x, y, z and other names."""
+def require_not_negative(density: Node, points: Iterable[Mapping[str, float]], source: object, where: str = "") -> None:
+    """Raise InputError if a density is negative at one of some points of a body.
+
+    A point is a mapping of x, y, z (m) and of other names in the density to numbers; ``source`` is the density as the
+    user wrote it, for the message.
+    """
     values = [(float(evaluate(density, {"pi": math.pi, **point}, None, float)), point) for point in points]
     least, place = min(values, key=lambda each: each[0])
     # a density that is zero at a point may be negative there by rounding errors
     if least < -1e-9 * max(abs(value) for value, _ in values):
         x, y, z = (place[axis] for axis in "xyz")
         raise InputError(
-            f"{prefix}density: expected a density that is negative nowhere in the body, got {show(source)} with "
+            f"{prefix(where)}density: expected a density that is negative nowhere in the body, got {show(source)} with "
             f"{least:.6g} at x = {x:.6g}, y = {y:.6g}, z = {z:.6g} m"
         )
 
@@ -238,9 +243,9 @@ def require_not_negative(
 def shape_points(
     shape: Shape, numbers: Mapping[str, Fraction], shares: Sequence[float] = (0.0, 0.25, 0.5, 0.75, 1.0)
 ) -> Iterator[dict[str, float]]:
-    """Yield points of a shape with the given dimensions: x, y and z in m, with the dimensions.
+    """Yield points of a shape as mappings of x, y, z (m) and of the names of its dimensions to numbers.
 
-    ``shares``: of the range of each coordinate.
+    The coordinates of the points are at the fractions ``shares`` of their ranges, in all combinations.
     """
     known = {"pi": math.pi} | {name: float(value) for name, value in numbers.items()}
     functions = {"cos": math.cos, "sin": math.sin}
@@ -258,21 +263,23 @@ def shape_points(
 def exact_moments(
     shape: Shape, dimensions: Mapping[str, Any], density: Node, source: object, where: str = ""
 ) -> Moments:
-    """Return the moments of a shape with a polynomial density as numbers, in kg, kg m, kg m^2."""
+    """Return the moments of a shape with a polynomial density as numbers, in kg, kg m, kg m^2; pi is exact to 2^-320.
+
+    ``source`` is the density as the user wrote it, for messages. Raise InputError if the corners of a tetrahedron lie
+    in one plane, or if the density is no polynomial or is negative somewhere.
+    """
     numbers = scalars(shape, dimensions)
     region = domain(shape, numbers)
     measure = integrate(region.jacobian, region.limits).value(_PI)
     if not measure:
-        prefix = f"{where}: " if where else ""
-        raise InputError(f"{prefix}expected a {shape.name} that fills space, got corners in one plane")
+        raise InputError(f"{prefix(where)}expected a {shape.name} that fills space, got corners in one plane")
     if measure < 0:  # corners in the other order
         region = region._replace(jacobian=-region.jacobian)
     values = dict(zip("xyz", region.position, strict=True))
     values |= {name: constant(value) for name, value in numbers.items()}
-    # pi is correct to 2^-320; source is the density as the user wrote it, for errors
     integrals = moments(region, density_polynomial(density, values | {"pi": constant(PI)}, source, where))
     if integrals.zeroth.value(_PI) > 0:  # otherwise the caller refuses the mass
-        require_not_negative(density, shape_points(shape, numbers), source, f"{where}: " if where else "")
+        require_not_negative(density, shape_points(shape, numbers), source, where)
     return Moments(
         integrals.zeroth.value(_PI),
         tuple(entry.value(_PI) for entry in integrals.first),

@@ -9,7 +9,7 @@ from fractions import Fraction
 from itertools import permutations
 from typing import Any, NamedTuple
 
-from symrot.errors import InputError
+from symrot.errors import InputError, prefix
 from symrot.formula.exact_numbers import NEGLIGIBLE, equal, read, show
 from symrot.inertia.tensor import IDENTITY, Tensor, cross, determinant, dot, matrix, subtract, transpose
 
@@ -51,21 +51,17 @@ def _read_tensor(inertia: Any, where: str) -> Tensor:
         rows = matrix(inertia)
     except (TypeError, ValueError):
         raise InputError(
-            f"{_prefix(where)}expected an inertia tensor, 3 rows of 3 numbers in kg m^2, got {show(inertia)}"
+            f"{prefix(where)}expected an inertia tensor, 3 rows of 3 numbers in kg m^2, got {show(inertia)}"
         ) from None
     tensor = matrix([[e if isinstance(e, Fraction) else read(e, where) for e in row] for row in rows])
     largest = max(abs(entry) for row in tensor for entry in row)
     for i, j in _PAIRS:
         if abs(tensor[i][j] - tensor[j][i]) > largest * NEGLIGIBLE:
             raise InputError(
-                f"{_prefix(where)}expected a symmetric inertia tensor, got {float(tensor[i][j])!r} and "
+                f"{prefix(where)}expected a symmetric inertia tensor, got {float(tensor[i][j])!r} and "
                 f"{float(tensor[j][i])!r} on either side of the diagonal"
             )
     return tensor
-
-
-def _prefix(where: str) -> str:
-    return f"{where}: " if where else ""
 
 
 def _jacobi(tensor: Tensor) -> tuple[list[Decimal], _Work]:
@@ -192,12 +188,12 @@ def require_admissible(body: Principal, where: str = "") -> None:
     small, middle, large = sorted(body.moments)
     if small < 0:
         raise InputError(
-            f"{_prefix(where)}expected principal moments of inertia that are not negative, got {_listed(body.moments)}"
+            f"{prefix(where)}expected principal moments of inertia that are not negative, got {_listed(body.moments)}"
         )
     # It may equal this sum (a flat body), and one moment may be zero (a needle).
     if small + middle < large and not equal(small + middle, large):
         raise InputError(
-            f"{_prefix(where)}expected principal moments of inertia none of which exceeds the sum of the other two "
+            f"{prefix(where)}expected principal moments of inertia none of which exceeds the sum of the other two "
             f"(true of every body), got {_listed(body.moments)}, where "
             f"{float(large):.15g} exceeds {float(small):.15g} + {float(middle):.15g} "
             f"by {float(large - small - middle):.3g}"

@@ -9,7 +9,7 @@ from fractions import Fraction
 from operator import le, lt
 from typing import Any, NamedTuple
 
-from symrot.errors import InputError
+from symrot.errors import InputError, prefix
 from symrot.formula.exact_numbers import read, show
 
 __all__ = [
@@ -88,9 +88,7 @@ _HALF_TURN = Coordinate("theta", "0", "pi")
 
 
 def _corner(axis: str) -> str:
-    """Return the formula for one coordinate (x, y or z) of a point in a tetrahedron with the corners c1, c2,
-    c3 and c4.
-    """
+    """Return the formula for one coordinate (x, y or z) of a point in a tetrahedron with the corners c1 to c4."""
     # c1 + f_1 (P - c1), with P = c2 + f_2 (Q - c2) on the opposite face and Q = c3 + f_3 (c4 - c3) on an edge of it;
     # f_1, f_2, f_3 are fractions from 0 to 1.
     return f"{axis}1 + f_1*({axis}2 - {axis}1 + f_2*({axis}3 - {axis}2 + f_3*({axis}4 - {axis}3)))"
@@ -203,23 +201,19 @@ SHAPES: dict[str, Shape] = {shape.name: shape for shape in _TABLE}
 """All shapes by name, in the order in which documents list them."""
 
 
-def _prefix(where: str) -> str:
-    return f"{where}: " if where else ""
-
-
 def find_shape(name: object, where: str = "") -> Shape:
     """Return the shape called ``name``, such as ``"cone"``.
 
     Any other value raises InputError; the message lists all names.
     """
     if not isinstance(name, str) or name not in SHAPES:
-        raise InputError(f"{_prefix(where)}expected a shape, one of {', '.join(SHAPES)}; got {show(name)}")
+        raise InputError(f"{prefix(where)}expected a shape, one of {', '.join(SHAPES)}; got {show(name)}")
     return SHAPES[name]
 
 
 def _point(value: object, where: str) -> tuple[Fraction, Fraction, Fraction]:
     if isinstance(value, str) or not isinstance(value, list | tuple) or len(value) != 3:
-        raise InputError(f"{_prefix(where)}expected a point [x, y, z] in m, got {show(value)}")
+        raise InputError(f"{prefix(where)}expected a point [x, y, z] in m, got {show(value)}")
     x, y, z = (read(item, f"{where}[{index}]") for index, item in enumerate(value))
     return x, y, z
 
@@ -229,7 +223,7 @@ def _length(value: object, dimension: Dimension, where: str) -> Fraction:
     if (number < 0 and dimension.least != "any") or (number == 0 and dimension.least == "positive"):
         expected = "a positive number" if dimension.least == "positive" else "a number >= 0"
         unit = "kg" if dimension.form == "masses" else "m"
-        raise InputError(f"{_prefix(where)}expected {expected} ({dimension.meaning}, {unit}), got {show(value)}")
+        raise InputError(f"{prefix(where)}expected {expected} ({dimension.meaning}, {unit}), got {show(value)}")
     return number
 
 
@@ -238,9 +232,9 @@ def _read_dimension(value: object, dimension: Dimension, where: str) -> Any:
         return _length(value, dimension, where)
     if isinstance(value, str) or not isinstance(value, list | tuple) or len(value) != (dimension.size or len(value)):
         many = f"a list of {dimension.size}" if dimension.size else "a list"
-        raise InputError(f"{_prefix(where)}expected {many}, {dimension.meaning}; got {show(value)}")
+        raise InputError(f"{prefix(where)}expected {many}, {dimension.meaning}; got {show(value)}")
     if not value:
-        raise InputError(f"{_prefix(where)}expected at least one entry, {dimension.meaning}; got an empty list")
+        raise InputError(f"{prefix(where)}expected at least one entry, {dimension.meaning}; got an empty list")
     items = enumerate(value)
     if dimension.form == "points":
         return tuple(_point(item, f"{where}[{index}]") for index, item in items)
@@ -253,7 +247,7 @@ def check_names(shape: Shape, dimensions: Mapping[str, object], where: str = "")
     unknown, missing = sorted(set(dimensions) - set(expected)), [name for name in expected if name not in dimensions]
     if unknown or missing:
         fault = f"'{unknown[0]}' is not one of them" if unknown else f"'{missing[0]}' is missing"
-        raise InputError(f"{_prefix(where)}expected the dimensions {', '.join(expected)} of the {shape.name}; {fault}")
+        raise InputError(f"{prefix(where)}expected the dimensions {', '.join(expected)} of the {shape.name}; {fault}")
 
 
 def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str = "") -> dict[str, Any]:
@@ -284,20 +278,18 @@ def check_dimensions(shape: Shape, dimensions: Mapping[str, object], where: str 
     for left, relation, right in shape.conditions:
         if not _RELATIONS[relation](checked[left], checked[right]):
             raise InputError(
-                f"{_prefix(where)}expected {left} {relation} {right} of the {shape.name}; "
+                f"{prefix(where)}expected {left} {relation} {right} of the {shape.name}; "
                 f"got {left} = {show(dimensions[left])}, {right} = {show(dimensions[right])}"
             )
     lists = [d.name for d in shape.dimensions if d.form != "length" and d.size is None]
     if len({len(checked[name]) for name in lists}) > 1:
         counts = ", ".join(f"{len(checked[name])} {name}" for name in lists)
-        raise InputError(f"{_prefix(where)}expected as many {' as '.join(lists)}; got {counts}")
+        raise InputError(f"{prefix(where)}expected as many {' as '.join(lists)}; got {counts}")
     return checked
 
 
 def scalar_names(shape: Shape) -> tuple[str, ...]:
-    """Return the names of a shape's dimensions, with points split into coordinates: ``radius`` or ``x1, y1, z1, x2,
-    ..``.
-    """
+    """Return the names of a shape's dimensions, with points split into coordinates such as ``x1, y1, z1, x2``."""
     names: list[str] = []
     for d in shape.dimensions:
         corners = [f"{axis}{n}" for n in range(1, (d.size or 0) + 1) for axis in "xyz"]

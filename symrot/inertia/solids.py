@@ -42,7 +42,7 @@ from symrot.formula.exact_numbers import read, show
 from symrot.formula.polynomial import Polynomial, constant, exact_quotient, generator
 from symrot.formula.tree import evaluate, parse
 from symrot.inertia import tensor
-from symrot.inertia.bodies import compose
+from symrot.inertia.bodies import MassProperties, compose
 from symrot.inertia.integration import LARGEST_DEGREE, Domain, domain, moments_per_measure
 from symrot.inertia.shapes import SHAPES, Dimension, Shape, check_names, find_shape, scalar_names
 
@@ -57,14 +57,11 @@ _MAP_SYMBOLS = {str(symbol): symbol for symbol in (*symbols.map_lengths, *symbol
 
 @dataclass(frozen=True)
 class Integral:
-    """One integral over a shape, for a derivation page: what it computes, integrand times Jacobian, limits,
-    and value.
-    """
+    """One integral over a shape, for a derivation page."""
 
-    quantity: str
-    integrand: Expr
-    # (coordinate, lower, upper)
-    limits: tuple[tuple[Symbol, Expr, Expr], ...]
+    quantity: str  # what it computes, such as "first moment x"
+    integrand: Expr  # with the Jacobian as a factor
+    limits: tuple[tuple[Symbol, Expr, Expr], ...]  # (coordinate, lower, upper)
     value: Expr
 
 
@@ -72,12 +69,13 @@ class Integral:
 class Solid:
     """The mass properties of a body of one shape, symbolic, in the axes of the shape.
 
-    Parameters
+    Attributes
     ----------
     name : str
         Name of the shape.
     dimensions : mapping of str to Expr
-        Lengths in m, by the letters of the shape's dimensions, such as ``R`` and ``h`` of a cone.
+        Lengths in m by name, such as ``"radius"`` and ``"height"`` of a cone; the corners of a tetrahedron are ``"x1"``
+        to ``"z4"``. Point masses have the tuples ``"masses"`` (kg) and ``"points"`` instead.
     measure : Expr
         Volume (m^3), area (m^2), length (m), or number of points.
     density : Expr
@@ -127,7 +125,7 @@ class Solid:
     @cached_property
     def jacobian(self) -> Expr:
         """The Jacobian of the map :attr:`position`: volume, area or length per unit of the coordinates."""
-        return _tidy(self._over(_mapped(self.name).jacobian))
+        return factor(self._over(_mapped(self.name).jacobian))
 
     @cached_property
     def limits(self) -> tuple[tuple[Symbol, Expr, Expr], ...]:
@@ -137,9 +135,9 @@ class Solid:
 
     @cached_property
     def steps(self) -> tuple[Integral, ...]:
-        """The integrals that give the result: measure, mass, first moments and second moments about the origin.
+        """The integrals that give the result: measure, mass, first and second moments about the origin.
 
-        It is empty for point masses.
+        The tuple is empty for point masses.
         """
         if not self.limits:
             return ()
@@ -153,7 +151,7 @@ class Solid:
             value = half_trace - inertia[i][i] if i == j else -inertia[i][j]
             integrand = self.position[i] * self.position[j] * weight
             integrals.append((f"second moment {'xyz'[i]}{'xyz'[j]}", integrand, value))
-        return tuple(Integral(name, integrand, self.limits, _tidy(value)) for name, integrand, value in integrals)
+        return tuple(Integral(name, integrand, self.limits, factor(value)) for name, integrand, value in integrals)
 
     def inertia_about(self, point: Any) -> ImmutableMatrix:
         """Return the inertia tensor, kg m^2, about a point (m, axes of the shape), by the parallel axis theorem."""
@@ -164,14 +162,10 @@ class Solid:
         """Return the same body with its density scaled so that its total mass is ``mass``, kg."""
         total = _scalar(mass)
         inertia = _tidied(tensor.scale(total / self.mass, self.inertia))
-        return replace(self, mass=total, density=_tidy(self.density * total / self.mass), inertia=inertia)
+        return replace(self, mass=total, density=factor(self.density * total / self.mass), inertia=inertia)
 
     def _over(self, polynomial: Polynomial) -> Expr:
         return _expression(polynomial, {**_MAP_SYMBOLS, **self.dimensions})
-
-
-def _tidy(expression: Expr) -> Expr:
-    return factor(expression)
 
 
 def _tidy_measure(expression: Expr) -> Expr:
@@ -180,7 +174,7 @@ def _tidy_measure(expression: Expr) -> Expr:
 
 
 def _tidied(rows: tensor.Tensor) -> ImmutableMatrix:
-    return ImmutableMatrix(3, 3, [_tidy(sympify(entry)) for row in rows for entry in row])
+    return ImmutableMatrix(3, 3, [factor(sympify(entry)) for row in rows for entry in row])
 
 
 def _expression(polynomial: Polynomial, values: Mapping[str, Expr]) -> Expr:
@@ -213,10 +207,10 @@ def _default_dimensions(name: str) -> dict[str, Symbol]:
 def _properties(
     region: Domain, values: Mapping[str, Expr], density: Polynomial | None = None
 ) -> tuple[Expr, ImmutableMatrix, ImmutableMatrix]:
-    """Return mass, centre of mass, and inertia per mass about this centre, of a shape with the dimensions
-    ``values``.
+    """Return mass, centre of mass, and inertia per mass about this centre, of a shape with the dimensions ``values``.
+
+    ``density`` is a polynomial in the coordinates of the map; without it, the mass is the measure of the shape.
     """
-    # density is a polynomial in the coordinates; without it the mass is the volume
     measure, specific_moments = moments_per_measure(region, density)
     if not specific_moments.zeroth:
         raise InputError("expected a density with a positive mass, got a density with a mass of 0 kg")
@@ -347,8 +341,8 @@ def solid(name: str, *, mass: Any = None, density: Any = None, **dimensions: Any
     Raises
     ------
     InputError
-        If a shape or dimension is unknown, a length is not positive, a density is no polynomial, or both a mass and a
-        density are passed.
+        If a shape or dimension is unknown, a length, mass or density is not positive, a density is no polynomial of
+        degree up to 12, or both a mass and a density are passed.
 
     Notes
     -----
@@ -375,19 +369,19 @@ def solid(name: str, *, mass: Any = None, density: Any = None, **dimensions: Any
         return solid(name, mass=mass, density=density, vertices=[dimensions["vertices"][n] for n in (0, 1, 3, 2)])
     if density is None:
         total = symbols.m if mass is None else _dimension(mass, _MASS, shape)
-        uniform = _tidy(total / measure)
+        uniform = factor(total / measure)
     else:
         profile = _density(density, values)
         uniform = profile.as_expr()
         if profile.total_degree() > 0:
             return _weighted(shape, values, profile, measure)
-        total = _tidy(uniform * measure)
+        total = factor(uniform * measure)
         if total.is_nonpositive:
             raise InputError(f"expected a positive density of the {name}, got {show(density)}")
     if chosen:
         center, specific = center.xreplace(chosen), specific.xreplace(chosen)
     inertia = _tidied(tensor.scale(total, specific))
-    return Solid(shape.name, values, measure, uniform, total, center.applyfunc(_tidy), inertia)
+    return Solid(shape.name, values, measure, uniform, total, center.applyfunc(factor), inertia)
 
 
 _MASS = Dimension("mass", "kg", "m")
@@ -409,14 +403,7 @@ def _weighted(shape: Shape, values: Mapping[str, Expr], profile: Poly, measure: 
     if mass.is_nonpositive:
         raise InputError(f"expected a density with a positive mass, got {profile.as_expr()} with {mass} kg")
     inertia = _tidied(tensor.scale(mass, specific))
-    return Solid(shape.name, values, measure, profile.as_expr(), _tidy(mass), center.applyfunc(_tidy), inertia)
-
-
-@dataclass(frozen=True)
-class _PointMass:
-    mass: Expr
-    center_of_mass: tuple[Expr, ...]
-    inertia: tensor.Tensor
+    return Solid(shape.name, values, measure, profile.as_expr(), factor(mass), center.applyfunc(factor), inertia)
 
 
 def _point_masses(shape: Shape, mass: Any, density: Any, dimensions: Mapping[str, Any]) -> Solid:
@@ -430,9 +417,9 @@ def _point_masses(shape: Shape, mass: Any, density: Any, dimensions: Mapping[str
     if len(points) != len(masses) or not points:
         raise InputError(f"expected as many masses as points, at least one; got {len(masses)} and {len(points)}")
     nothing = tensor.scale(Integer(0), tensor.IDENTITY)
-    body = compose([_PointMass(m, p, nothing) for m, p in zip(masses, points, strict=True)])
+    body = compose([MassProperties(m, tensor.vector(p), nothing) for m, p in zip(masses, points, strict=True)])
     values = {"masses": tuple(masses), "points": tuple(points)}
-    center = ImmutableMatrix(body.center_of_mass).applyfunc(_tidy)
+    center = ImmutableMatrix(body.center_of_mass).applyfunc(factor)
     return Solid(shape.name, values, Integer(len(points)), Integer(1), body.mass, center, _tidied(body.inertia))
 
 
@@ -451,9 +438,9 @@ def closed_forms_text() -> str:
         measure, center, specific = _uniform(shape.name)
         names = {symbol: Symbol(name) for name, symbol in _default_dimensions(shape.name).items()}
         inertia = _tidied(tensor.scale(symbols.m, specific))
-        entries = {f"center_{axis}": _tidy(center[i].xreplace(names)) for i, axis in enumerate("xyz")}
+        entries = {f"center_{axis}": factor(center[i].xreplace(names)) for i, axis in enumerate("xyz")}
         pairs = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-        entries |= {"xyz"[i] + "xyz"[j]: _tidy(inertia[i, j].xreplace(names)) for i, j in pairs}
+        entries |= {"xyz"[i] + "xyz"[j]: factor(inertia[i, j].xreplace(names)) for i, j in pairs}
         lines += ["", f"# {shape.axes}", f"[{shape.name}]"]
         lines += [f'measure = "{sstr(_tidy_measure(measure.xreplace(names)))}"']
         lines += [f'{key} = "{sstr(value)}"' for key, value in entries.items()]

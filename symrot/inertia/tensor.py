@@ -9,8 +9,8 @@ from typing import Any
 
 __all__ = [
     "IDENTITY", "Tensor", "Vector", "about_center_of_mass", "about_point", "add", "apply", "cross", "determinant",
-    "dot", "inertia_of_point", "inertia_of_second_moments", "matrix", "multiply", "rotate", "scale", "subtract",
-    "trace", "transpose", "vector",
+    "dot", "inertia_of_point", "inertia_of_second_moments", "matrix", "multiply", "rotate", "rotation_of", "scale",
+    "subtract", "trace", "transpose", "vector",
 ]  # fmt: skip
 
 Vector = tuple[Any, Any, Any]
@@ -37,7 +37,7 @@ def matrix(source: Any) -> Tensor:
 def vector(source: Any) -> Vector:
     """Return three components, given as a list, a row or a column, as a tuple.
 
-    ``ValueError`` is raised if they are not three.
+    Raise ``ValueError`` if there are not three.
     """
     if type(source) is tuple and len(source) == 3 and not isinstance(source[0], list):
         return source
@@ -116,6 +116,17 @@ def rotate(tensor: Any, dcm: Any) -> Tensor:
     return multiply(multiply(dcm, tensor), transpose(dcm))
 
 
+def rotation_of(quaternion: Any) -> Tensor:
+    """Return the matrix ``dcm_sb`` of a quaternion, scalar first, of any norm except zero; exact for Fractions."""
+    w, x, y, z = quaternion
+    s = 2 / (w * w + x * x + y * y + z * z)
+    return (
+        (1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y)),
+        (s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x)),
+        (s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y)),
+    )
+
+
 def inertia_of_second_moments(moments: Any) -> Tensor:
     """Return the inertia tensor ``trace(M) 1 - M`` from the second moments ``M_ij = integral of x_i x_j dm``."""
     total = trace(moments)
@@ -151,6 +162,6 @@ def about_point(inertia: Any, mass: Any, offset: Any) -> Tensor:
 def about_center_of_mass(inertia: Any, mass: Any, offset: Any) -> Tensor:
     """Return the inertia tensor about the centre of mass from the tensor about a point.
 
-    ``offset``, m, is the vector between the point and the centre of mass.
+    ``offset``, m, is the vector from the point to the centre of mass, or its negative.
     """
     return subtract(inertia, inertia_of_point(mass, offset))

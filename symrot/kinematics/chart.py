@@ -39,8 +39,8 @@ from sympy import (
     together,
 )
 
+from symrot.conventions import check_frame
 from symrot.errors import InputError
-from symrot.kinematics.rotations import check_frame
 
 __all__ = ["Chart", "Limit", "RateMatrix", "SingularSet", "condition_of", "zeros_of"]
 

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from symrot.kinematics.conversions import Array, array_of, places
+from symrot.kinematics.arrays import Array, array_of
+from symrot.kinematics.conversions import places
 
 __all__ = ["continuous_quaternion", "unwrap_euler"]
 

@@ -5,14 +5,12 @@ attitude, also at gimbal lock. A zero, infinite or NaN quaternion gives NaN in i
 shapes and types raise ``InputError``.
 """
 
-from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from symrot.conventions import parse_sequence
-from symrot.errors import InputError
+from symrot.kinematics.arrays import Array, Components, Mask, array_of, by_components, in_range, largest, length
 
 __all__ = [
     "LOCK",
@@ -40,86 +38,8 @@ __all__ = [
     "to_scipy_order",
 ]
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Components = Sequence[Array] | Array  # one array per component, all of the same length
-
 LOCK = 2.0**-51  # rad from lock: below it a quaternion in double precision cannot tell the two angles apart
 PI_LOW = 1.2246467991473532e-16  # pi - np.pi
-BLOCK = 8192  # samples processed at once
-SAFE = 1e-250, 1e250  # squared lengths between these bounds neither lose digits to underflow nor overflow
-
-
-def array_of(values: Any, *shape: int, what: str) -> Array:
-    """Return ``values`` as a float64 array; raise ``InputError`` unless its last dimensions are ``shape``.
-
-    ``what`` names the values in the message, such as "a quaternion".
-    """
-    try:
-        array = np.asarray(values)
-        real = array.dtype.kind in "fiu"
-    except ValueError:  # rows of different lengths
-        real = False
-    if not real:
-        raise InputError(
-            f"expected {what}, an array of real numbers with last dimensions {shape}, got {type(values).__name__}"
-        )
-    if array.ndim < len(shape) or array.shape[array.ndim - len(shape) :] != shape:
-        raise InputError(f"expected {what} with last dimensions {shape}, got an array of shape {array.shape}")
-    return array.astype(np.float64, copy=False)
-
-
-@np.errstate(all="ignore")
-def _by_components(function: Callable[..., Components], rows: Array, width: int) -> Array:
-    """Apply ``function`` to the n components of ``rows``, shape (..., n); return its results, shape (..., width)."""
-    flat = rows.reshape(-1, rows.shape[-1])
-    result: Array = np.empty((len(flat), width))
-    for start in range(0, len(flat), BLOCK):
-        # With blocks of contiguous components, the temporaries stay in the processor's cache.
-        block = slice(start, start + BLOCK)
-        for place, component in enumerate(function(*np.ascontiguousarray(flat[block].T))):
-            result[block, place] = component
-    return result.reshape(*rows.shape[:-1], width)
-
-
-def _sum_of_squares(components: Components) -> Array:
-    total: Array = components[0] * components[0]
-    for component in components[1:]:
-        total += component * component
-    return total
-
-
-def _largest(components: Components) -> Array:
-    largest: Array = np.max(np.abs(components), axis=0)
-    return largest
-
-
-def _in_range(*components: Array) -> tuple[Components, Array]:
-    """Return the components of samples and their squared lengths, as needed to normalise them.
-
-    A sample whose squares would overflow or underflow is first divided by its largest component.
-    """
-    squares = _sum_of_squares(components)
-    extreme = ~((squares > SAFE[0]) & (squares < SAFE[1]))
-    if not extreme.any():
-        return components, squares
-    fixed = np.array(components)
-    largest = _largest(fixed[:, extreme])
-    # Squares would overflow or underflow; samples that are zero, infinite or NaN become NaN.
-    fixed[:, extreme] = np.where(np.isfinite(largest), fixed[:, extreme] / largest, np.nan)
-    return fixed, _sum_of_squares(fixed)
-
-
-def _length(*components: Array) -> Array:
-    """Return the lengths of vectors, of which ``components`` are the arrays x, y, .., without overflow or underflow."""
-    squares = _sum_of_squares(components)
-    length: Array = np.sqrt(squares)
-    extreme = ~((squares > SAFE[0]) & (squares < SAFE[1]))
-    if extreme.any():
-        rows = np.array(components)[:, extreme]
-        largest = _largest(rows)
-        length[extreme] = largest * np.sqrt(_sum_of_squares(rows / np.where(largest > 0, largest, 1.0)))
-    return length
 
 
 def _canonical(*q: Array) -> Components:
@@ -134,19 +54,19 @@ def _canonical(*q: Array) -> Components:
 
 
 def _normalize(*q: Array) -> Components:
-    rows, squares = _in_range(*q)
+    rows, squares = in_range(*q)
     norm = np.sqrt(squares)
     return [row / norm for row in rows]
 
 
 def normalize(q: Any) -> Array:
     """Return quaternions divided by their norms, shape (..., 4); NaN for norm 0 or components that are not finite."""
-    return _by_components(_normalize, array_of(q, 4, what="a quaternion"), 4)
+    return by_components(_normalize, array_of(q, 4, what="a quaternion"), 4)
 
 
 def canonical(q: Any) -> Array:
     """Return q or -q, shape (..., 4), whichever has q0 > 0, or, if q0 = 0, a positive first nonzero component."""
-    return _by_components(_canonical, array_of(q, 4, what="a quaternion"), 4)
+    return by_components(_canonical, array_of(q, 4, what="a quaternion"), 4)
 
 
 def multiply(p: Any, q: Any) -> Array:
@@ -164,7 +84,7 @@ def multiply(p: Any, q: Any) -> Array:
             p0 * q3 + p3 * q0 + (p1 * q2 - p2 * q1),
         )
 
-    return _by_components(product, np.concatenate([p, q], axis=-1), 4)
+    return by_components(product, np.concatenate([p, q], axis=-1), 4)
 
 
 def to_scipy_order(q: Any) -> Array:
@@ -181,7 +101,7 @@ def from_scipy_order(q: Any) -> Array:
 
 
 def _dcm(*q: Array) -> Components:
-    (q0, q1, q2, q3), squares = _in_range(*q)
+    (q0, q1, q2, q3), squares = in_range(*q)
     scale = 2 / squares
     x, y, z = scale * q1, scale * q2, scale * q3
     xx, yy, zz = x * q1, y * q2, z * q3
@@ -193,13 +113,13 @@ def _dcm(*q: Array) -> Components:
 def quaternion_to_dcm(q: Any) -> Array:
     """Return the direction cosine matrices ``dcm_sb``, shape (..., 3, 3), of quaternions ``q`` of any norm but zero."""
     q = array_of(q, 4, what="a quaternion")
-    return _by_components(_dcm, q, 9).reshape(*q.shape[:-1], 3, 3)
+    return by_components(_dcm, q, 9).reshape(*q.shape[:-1], 3, 3)
 
 
 def quaternion_to_axis(q: Any, axis: int) -> Array:
     """Return column ``axis`` (0, 1 or 2) of ``dcm_sb``, shape (..., 3): the direction of a body axis in space."""
     q = array_of(q, 4, what="a quaternion")
-    return _by_components(lambda *components: _dcm(*components)[axis::3], q, 3)
+    return by_components(lambda *components: _dcm(*components)[axis::3], q, 3)
 
 
 def _quaternion_of_dcm(*r: Array) -> Components:
@@ -224,14 +144,14 @@ def dcm_to_quaternion(dcm: Any) -> Array:
     dcm = array_of(dcm, 3, 3, what="a dcm")
     # The formula divides by the largest of the squares 4 q_i^2, so that the divisor is never small. A matrix that is
     # only nearly a rotation is not corrected first.
-    return _by_components(_quaternion_of_dcm, dcm.reshape(*dcm.shape[:-2], 9), 4)
+    return by_components(_quaternion_of_dcm, dcm.reshape(*dcm.shape[:-2], 9), 4)
 
 
 # Rotation vector, axis and angle
 
 
 def _exponential(*v: Array) -> Components:
-    angle = _length(*v)
+    angle = length(*v)
     half = angle / 2
     ratio = np.sin(half)
     ratio /= angle
@@ -241,12 +161,12 @@ def _exponential(*v: Array) -> Components:
 
 def rotation_vector_to_quaternion(vector: Any) -> Array:
     """Return unit quaternions, shape (..., 4), of rotation vectors in rad: the exponential map."""
-    return _by_components(_exponential, array_of(vector, 3, what="a rotation vector"), 4)
+    return by_components(_exponential, array_of(vector, 3, what="a rotation vector"), 4)
 
 
 def _logarithm(*q: Array) -> Components:
-    (q0, *vector), _ = _in_range(*_canonical(*q))
-    sine = _length(*vector)
+    (q0, *vector), _ = in_range(*_canonical(*q))
+    sine = length(*vector)
     ratio = 2 * np.arctan2(sine, q0) / sine
     np.copyto(ratio, q0, where=sine == 0)  # any finite number will do: the vector is zero; NaN is preserved
     return [ratio * component for component in vector]
@@ -258,11 +178,11 @@ def quaternion_to_rotation_vector(q: Any) -> Array:
     For a rotation by pi, the first nonzero component is positive.
     """
     # A rotation by pi (q0 = 0) has two; the one whose first nonzero component is positive is returned.
-    return _by_components(_logarithm, array_of(q, 4, what="a quaternion"), 3)
+    return by_components(_logarithm, array_of(q, 4, what="a quaternion"), 3)
 
 
 def _quaternion_of_axis_angle(n1: Array, n2: Array, n3: Array, angle: Array) -> Components:
-    axis, squares = _in_range(n1, n2, n3)
+    axis, squares = in_range(n1, n2, n3)
     half = angle / 2
     ratio = np.sin(half) / np.sqrt(squares)
     vector = np.where(angle == 0, 0.0, [ratio * component for component in axis])
@@ -276,14 +196,14 @@ def axis_angle_to_quaternion(axis: Any, angle: Any, degrees: bool = False) -> Ar
     shape = np.broadcast_shapes(axis.shape[:-1], angle.shape)
     rows = np.concatenate([np.broadcast_to(axis, (*shape, 3)), np.broadcast_to(angle[..., None], (*shape, 1))], axis=-1)
     # A zero axis gives NaN, unless its angle is zero.
-    return _by_components(_quaternion_of_axis_angle, rows, 4)
+    return by_components(_quaternion_of_axis_angle, rows, 4)
 
 
 def _axis_angle(*q: Array) -> Components:
-    (q0, *vector), squares = _in_range(*_canonical(*q))
-    angle = 2 * np.arctan2(_length(*vector), q0)
+    (q0, *vector), squares = in_range(*_canonical(*q))
+    angle = 2 * np.arctan2(length(*vector), q0)
     axis = np.array(_normalize(*vector))
-    axis[:, (_largest(vector) == 0) & ~np.isnan(squares)] = [[1.0], [0.0], [0.0]]
+    axis[:, (largest(vector) == 0) & ~np.isnan(squares)] = [[1.0], [0.0], [0.0]]
     return *axis, angle
 
 
@@ -293,7 +213,7 @@ def quaternion_to_axis_angle(q: Any, degrees: bool = False) -> tuple[Array, Arra
     At zero angle, the axis is (1, 0, 0).
     """
     # A rotation by pi gets the axis whose first nonzero component is positive.
-    axis_angle = _by_components(_axis_angle, array_of(q, 4, what="a quaternion"), 4)
+    axis_angle = by_components(_axis_angle, array_of(q, 4, what="a quaternion"), 4)
     return axis_angle[..., :3], np.degrees(axis_angle[..., 3]) if degrees else axis_angle[..., 3]
 
 
@@ -301,17 +221,17 @@ def quaternion_to_axis_angle(q: Any, degrees: bool = False) -> tuple[Array, Arra
 
 
 def _quaternion_of_rodrigues(*g: Array) -> Components:
-    size = np.maximum(_length(*g), 1.0)  # dividing by the size first avoids overflow: g may be as large as 1e308
+    size = np.maximum(length(*g), 1.0)  # dividing by the size first avoids overflow: g may be as large as 1e308
     return _normalize(1 / size, *(component / size for component in g))
 
 
 def rodrigues_to_quaternion(g: Any) -> Array:
     """Return unit quaternions, shape (..., 4), of classical Rodrigues parameters, axis times tan(angle/2)."""
-    return _by_components(_quaternion_of_rodrigues, array_of(g, 3, what="a set of Rodrigues parameters"), 4)
+    return by_components(_quaternion_of_rodrigues, array_of(g, 3, what="a set of Rodrigues parameters"), 4)
 
 
 def _rodrigues(*q: Array) -> Components:
-    (q0, *vector), squares = _in_range(*q)
+    (q0, *vector), squares = in_range(*q)
     g = np.array([component / q0 for component in vector])
     infinite = ~np.isfinite(g).all(axis=0)
     g[:, infinite] = np.nan
@@ -322,12 +242,12 @@ def quaternion_to_rodrigues(q: Any) -> tuple[Array, Mask]:
     """Return classical Rodrigues parameters, shape (..., 3), and a mask: True for rotations by pi, whose parameters are
     NaN.
     """
-    rodrigues = _by_components(_rodrigues, array_of(q, 4, what="a quaternion"), 4)
+    rodrigues = by_components(_rodrigues, array_of(q, 4, what="a quaternion"), 4)
     return rodrigues[..., :3], rodrigues[..., 3] == 1
 
 
 def _quaternion_of_mrp(*s: Array) -> Components:
-    size = _length(*s)
+    size = length(*s)
     large = np.maximum(size, 1.0)
     small = np.minimum(size, 1 / large)  # length of the shorter of the two sets: |s|, or 1/|s| if |s| > 1
     norm = 1 + small * small
@@ -338,18 +258,18 @@ def _quaternion_of_mrp(*s: Array) -> Components:
 
 def mrp_to_quaternion(s: Any) -> Array:
     """Return unit quaternions, shape (..., 4), of modified Rodrigues parameters, axis times tan(angle/4)."""
-    return _by_components(_quaternion_of_mrp, array_of(s, 3, what="a set of modified Rodrigues parameters"), 4)
+    return by_components(_quaternion_of_mrp, array_of(s, 3, what="a set of modified Rodrigues parameters"), 4)
 
 
 def _mrp_short(*q: Array) -> Components:
-    (q0, *vector), squares = _in_range(*_canonical(*q))
+    (q0, *vector), squares = in_range(*_canonical(*q))
     ratio = 1 / (np.sqrt(squares) + q0)
     return [ratio * component for component in vector]
 
 
 def _mrp_of_sign(*q: Array) -> Components:
-    (q0, *vector), squares = _in_range(*q)
-    norm, sine = np.sqrt(squares), _length(*vector)
+    (q0, *vector), squares = in_range(*q)
+    norm, sine = np.sqrt(squares), length(*vector)
     # 1 / (1 + q0); for negative q0, where this sum cancels, (1 - q0) / sine^2
     return [np.where(q0 >= 0, component / (norm + q0), component / sine * ((norm - q0) / sine)) for component in vector]
 
@@ -365,17 +285,17 @@ def quaternion_to_mrp(q: Any, shadow: bool = True) -> Array:
         Each attitude has two sets, one from q and one from -q. If True, return the shorter set, of length at most 1. If
         False, return the set from q itself, which grows without bound toward q = (-1, 0, 0, 0), where it is NaN.
     """
-    return _by_components(_mrp_short if shadow else _mrp_of_sign, array_of(q, 4, what="a quaternion"), 3)
+    return by_components(_mrp_short if shadow else _mrp_of_sign, array_of(q, 4, what="a quaternion"), 3)
 
 
 def _shadow(*s: Array) -> Components:
-    size = _length(*s)
+    size = length(*s)
     return [-(component / size) / size for component in s]
 
 
 def mrp_shadow(s: Any) -> Array:
     """Return the shadow ``-s / |s|^2``, the other modified Rodrigues parameters of the same attitude; NaN for s = 0."""
-    return _by_components(_shadow, array_of(s, 3, what="a set of modified Rodrigues parameters"), 3)
+    return by_components(_shadow, array_of(s, 3, what="a set of modified Rodrigues parameters"), 3)
 
 
 @np.errstate(all="ignore")
@@ -383,7 +303,7 @@ def mrp_switch(s: Any) -> tuple[Array, Mask]:
     """Return the shorter of s and its shadow ``-s / |s|^2`` for each row, and a mask of the switched rows."""
     s = array_of(s, 3, what="a set of modified Rodrigues parameters")
     # A propagation that switches whenever |s| > 1 never exceeds 1.
-    switched = np.asarray(_length(*np.moveaxis(np.atleast_2d(s), -1, 0)) > 1).reshape(s.shape[:-1])
+    switched = np.asarray(length(*np.moveaxis(np.atleast_2d(s), -1, 0)) > 1).reshape(s.shape[:-1])
     return np.where(switched[..., None], mrp_shadow(s), s), switched
 
 
@@ -426,7 +346,7 @@ def euler_to_quaternion(angles: Any, sequence: str, degrees: bool = False) -> Ar
         return components[0], by_axis[0], by_axis[1], by_axis[2]
 
     angles = array_of(angles, 3, what=f"a set of {sequence} angles")
-    return _by_components(product, np.radians(angles) if degrees else angles, 4)
+    return by_components(product, np.radians(angles) if degrees else angles, 4)
 
 
 def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: float = LOCK) -> tuple[Array, Mask]:
@@ -463,7 +383,7 @@ def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: floa
     proper, intrinsic = first == last, order[2] == 2
 
     def angles_of(*q: Array) -> Components:
-        rows, _ = _in_range(*q)
+        rows, _ = in_range(*q)
         q0, along, across, third = rows[0], rows[1 + first], rows[1 + middle], sign * rows[1 + cross]
         # components along 1, e_first, e_middle, e_first x e_middle; Tait-Bryan times a rotation by pi/2 is proper
         a, b, c, d = (q0, along, across, third) if proper else (q0 - across, along - third, q0 + across, along + third)
@@ -485,7 +405,7 @@ def quaternion_to_euler(q: Any, sequence: str, degrees: bool = False, lock: floa
         turned = (left, tilt, right if proper or sign < 0 else -right)
         return *(turned if intrinsic else turned[::-1]), locked.astype(np.float64)
 
-    angles_and_lock = _by_components(angles_of, array_of(q, 4, what="a quaternion"), 4)
+    angles_and_lock = by_components(angles_of, array_of(q, 4, what="a quaternion"), 4)
     angles = angles_and_lock[..., :3]
     return np.degrees(angles) if degrees else angles, angles_and_lock[..., 3] == 1
 

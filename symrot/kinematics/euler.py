@@ -27,10 +27,10 @@ from sympy import (
 )
 
 from symrot import exact, symbols
-from symrot.conventions import SEQUENCES, parse_sequence
+from symrot.conventions import SEQUENCES, check_frame, parse_sequence
 from symrot.kinematics.chart import Chart, RateFacts, RateMatrix, zeros_of
 from symrot.kinematics.quaternion import elementary_quaternion, quaternion_product
-from symrot.kinematics.rotations import check_frame, cross_sign, elementary_rotation, expressions, unit_vector
+from symrot.kinematics.rotations import cross_sign, elementary_rotation, expressions, unit_vector
 
 __all__ = [
     "EulerRateMatrix",

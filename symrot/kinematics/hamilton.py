@@ -1,4 +1,4 @@
-"""The Hamilton product of quaternions over any kind of number, without SymPy and without NumPy.
+"""The Hamilton product and the conjugate of quaternions over any kind of number, without SymPy and without NumPy.
 
 For symbols use :func:`symrot.quaternion_product`, for arrays of many quaternions
 :func:`symrot.kinematics.conversions.multiply`.
@@ -7,7 +7,7 @@ For symbols use :func:`symrot.quaternion_product`, for arrays of many quaternion
 from collections.abc import Sequence
 from typing import Any
 
-__all__ = ["hamilton"]
+__all__ = ["conjugate", "hamilton"]
 
 
 def hamilton(left: Sequence[Any], right: Sequence[Any]) -> tuple[Any, Any, Any, Any]:
@@ -27,3 +27,15 @@ def hamilton(left: Sequence[Any], right: Sequence[Any]) -> tuple[Any, Any, Any, 
         a0 * b2 - a1 * b3 + a2 * b0 + a3 * b1,
         a0 * b3 + a1 * b2 - a2 * b1 + a3 * b0,
     )
+
+
+def conjugate(quaternion: Sequence[Any]) -> tuple[Any, Any, Any, Any]:
+    """Return the conjugate of a quaternion; for a unit quaternion, that is the inverse rotation.
+
+    Examples
+    --------
+    >>> conjugate((1, 2, 3, 4))
+    (1, -2, -3, -4)
+    """
+    q0, q1, q2, q3 = quaternion
+    return q0, -q1, -q2, -q3

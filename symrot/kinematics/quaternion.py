@@ -12,9 +12,10 @@ from typing import Any
 from sympy import Expr, ImmutableMatrix, Integer, Matrix, Rational, cos, expand, factor, sin, sympify
 
 from symrot import symbols
+from symrot.conventions import check_frame
 from symrot.errors import InputError
 from symrot.kinematics.chart import Chart, RateFacts, RateMatrix, condition_of
-from symrot.kinematics.rotations import check_frame, cross_sign, expressions, unit_vector
+from symrot.kinematics.rotations import cross_sign, expressions, unit_vector
 
 __all__ = [
     "chart",

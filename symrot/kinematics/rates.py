@@ -9,16 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from symrot.errors import InputError
-from symrot.kinematics.conversions import Array, Mask, array_of, multiply, places
+from symrot.conventions import check_frame
+from symrot.kinematics.arrays import Array, Mask, array_of
+from symrot.kinematics.conversions import multiply, places
 
 __all__ = ["angular_velocity", "euler_angular_velocity", "euler_rates", "quaternion_rate"]
-
-
-def _is_body(frame: str) -> bool:
-    if frame not in ("body", "space"):
-        raise InputError(f"frame: expected 'body' or 'space', the frame of the components of omega; got {frame!r}")
-    return frame == "body"
 
 
 def quaternion_rate(q: Any, omega: Any, frame: str = "body") -> Array:
@@ -27,7 +22,7 @@ def quaternion_rate(q: Any, omega: Any, frame: str = "body") -> Array:
     """
     q, omega = array_of(q, 4, what="a quaternion"), array_of(omega, 3, what="an angular velocity")
     pure = np.concatenate([np.zeros_like(omega[..., :1]), omega], axis=-1)
-    return (multiply(q, pure) if _is_body(frame) else multiply(pure, q)) / 2
+    return (multiply(q, pure) if check_frame(frame) == "body" else multiply(pure, q)) / 2
 
 
 def angular_velocity(q: Any, dq: Any, frame: str = "body") -> Array:
@@ -36,7 +31,7 @@ def angular_velocity(q: Any, dq: Any, frame: str = "body") -> Array:
     """
     q, dq = array_of(q, 4, what="a quaternion"), array_of(dq, 4, what="the rate of a quaternion")
     inverse = q * np.array([1.0, -1.0, -1.0, -1.0])
-    return 2 * (multiply(inverse, dq) if _is_body(frame) else multiply(dq, inverse))[..., 1:]
+    return 2 * (multiply(inverse, dq) if check_frame(frame) == "body" else multiply(dq, inverse))[..., 1:]
 
 
 def _turn(vector: Array, axis: int, angle: Array) -> Array:
@@ -77,7 +72,8 @@ def euler_rates(angles: Any, omega: Any, sequence: str, frame: str = "body") -> 
     angles = array_of(angles, 3, what=f"a set of {sequence} angles")
     omega = array_of(omega, 3, what="an angular velocity")
     left, tilt, right = (angles[..., place] for place in order)
-    seen = _turn(omega, last, right) if _is_body(frame) else _turn(_turn(omega, first, -left), middle, -tilt)
+    is_body = check_frame(frame) == "body"
+    seen = _turn(omega, last, right) if is_body else _turn(_turn(omega, first, -left), middle, -tilt)
     cosine, sine = np.cos(tilt), np.sin(tilt)
     if first == last:  # w = m x e = -(e_first x e_middle)
         across, along, w = -sine, cosine, -sign * seen[..., cross]
@@ -101,7 +97,7 @@ def euler_angular_velocity(angles: Any, rates: Any, sequence: str, frame: str = 
     left, tilt, right = (angles[..., place] for place in order)
     axes = np.eye(3)[[first, middle, last]]
     columns: list[Array] = [rates[..., place, None] * axis for place, axis in zip(order, axes, strict=True)]
-    if _is_body(frame):
+    if check_frame(frame) == "body":
         omega: Array = _turn(_turn(columns[0], middle, -tilt) + columns[1], last, -right) + columns[2]
     else:
         omega = _turn(_turn(columns[2], middle, tilt) + columns[1], first, left) + columns[0]

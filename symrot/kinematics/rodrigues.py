@@ -13,10 +13,11 @@ from typing import Any
 from sympy import Expr, ImmutableMatrix, Integer, Interval, Matrix, Symbol, cancel, expand, factor, oo, sqrt
 
 from symrot import symbols
+from symrot.conventions import check_frame
 from symrot.errors import InputError
 from symrot.kinematics.chart import Chart, RateFacts, RateMatrix, condition_of
 from symrot.kinematics.quaternion import conjugate, left_matrix, norm_squared, quaternion_to_dcm, right_matrix
-from symrot.kinematics.rotations import check_frame, expressions
+from symrot.kinematics.rotations import expressions
 
 __all__ = ["CLASSICAL", "MODIFIED", "Projection", "chart", "projection", "shadow"]
 

@@ -31,8 +31,9 @@ from sympy import (
 )
 
 from symrot import symbols
+from symrot.conventions import check_frame
 from symrot.kinematics.chart import Chart, RateFacts, RateMatrix
-from symrot.kinematics.rotations import check_frame, expressions, function_of_skew, skew
+from symrot.kinematics.rotations import expressions, function_of_skew, skew
 
 __all__ = [
     "axis_angle_chart",

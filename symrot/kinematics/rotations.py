@@ -11,13 +11,11 @@ from typing import Any
 
 from sympy import Expr, I, ImmutableMatrix, LeviCivita, Matrix, cos, eye, sin, sympify
 
-from symrot.conventions import AXES
+from symrot.conventions import AXES, check_frame
 from symrot.errors import InputError
 
 __all__ = [
-    "FRAMES",
     "angular_velocity",
-    "check_frame",
     "cross_sign",
     "elementary_rotation",
     "expressions",
@@ -26,18 +24,6 @@ __all__ = [
     "unit_vector",
     "vee",
 ]
-
-FRAMES = ("body", "space")
-
-
-def check_frame(frame: str) -> str:
-    """Return ``frame``, which says whether omega has body or space components.
-
-    Anything but ``"body"`` and ``"space"`` raises ``InputError``.
-    """
-    if frame not in FRAMES:
-        raise InputError(f"frame: expected 'body' or 'space', the frame of the components of omega; got {frame!r}")
-    return frame
 
 
 def expressions(values: Any, size: int, what: str) -> tuple[Expr, ...]:

@@ -44,7 +44,7 @@ LESSONS = {
             "variable part.",
             "dpsi == H/C",
             facts=("dpsi == H/C + (2*T - H**2/C)/(H + L_3)", "H > 0", "C > 0", "L_3 > 0", "T > 0"),
-            lesson="The variable part is zero only if the body rotates about its third axis.",
+            lesson="The variable part is zero if the body rotates about its third axis.",
         ),
         scene="axisymmetric_satellite",
         numbers=(

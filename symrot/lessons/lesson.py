@@ -20,8 +20,6 @@ class Mistake:
         The formula in the language of claims.
     facts : tuple of str
         Hypotheses of the claim.
-    body : str
-        The body in words, as ``symrot check --body`` takes it.
     lesson : str
         The correct statement: a sentence that follows the verdict on the page.
     repair : int or None
@@ -36,7 +34,6 @@ class Mistake:
     words: str
     claim: str
     facts: tuple[str, ...] = ()
-    body: str = ""
     lesson: str = ""
     repair: int | None = 0
 
@@ -55,7 +52,7 @@ class Number:
         The first words of the step's claim. The formula is the right side of the step's equation: the expression
         displayed on the page, or the right side that the step proves if the page displays a text.
     unit : str
-        Unit of the number; empty for a pure number.
+        Unit of the number; "1" for a pure number.
     entry : int or None
         Index of the entry if the right side is a matrix, counted row by row from 0.
     where : mapping of Symbol to Expr

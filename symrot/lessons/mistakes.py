@@ -26,15 +26,15 @@ def refutation(mistake: Mistake) -> Verdict:
     >>> refutation(Mistake("The square is lost.", "sin(x)**2 + cos(x) == 1")).verdict
     'false'
     """
-    verdict = _verdict(mistake.claim, mistake.facts, mistake.body)
+    verdict = _verdict(mistake.claim, mistake.facts)
     if verdict.verdict not in ("false", "conditional") or verdict.counterexample is None:
         raise InputError(f"expected a mistake that the checker refutes, got {mistake.claim!r}, {verdict.verdict}")
     return verdict
 
 
 @cache
-def _verdict(claim: str, facts: tuple[str, ...], body: str) -> Verdict:
-    return check(claim, assume=facts, body=body)
+def _verdict(claim: str, facts: tuple[str, ...]) -> Verdict:
+    return check(claim, assume=facts)
 
 
 def mistake_passages(mistake: Mistake) -> Iterator[Passage]:
@@ -53,7 +53,6 @@ def mistake_passages(mistake: Mistake) -> Iterator[Passage]:
         sentences.append(f"A formula near it, which the checker proves: `{verdict.repairs[mistake.repair].text}`.")
     yield Passage(" ".join([*sentences, mistake.lesson]).strip())
     options = "".join(f" --given {quote(text)}" for text in mistake.facts)
-    options += f" --body {quote(mistake.body)}" if mistake.body else ""
     yield Passage(f"Try it: `symrot check {quote(mistake.claim)}{options}`.")
 
 

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from functools import cache
 
-from sympy import Expr, MatrixBase
+from sympy import Expr, Float, MatrixBase, factor
 
 from symrot.catalogue import derivation
 from symrot.errors import InputError
@@ -20,8 +20,10 @@ from symrot.symbols import UNIT
 
 __all__ = ["numbers_of", "value_of"]
 
-DIGITS = 4
+DIGITS = 4  # of results
+AGREEMENT = 1e-3  # relative; the results follow from the printed constants to this accuracy
 PRECISION = 50  # digits; the scene's own numbers, such as quaternions, have 60
+DOUBLE = 16  # digits of a double
 NOTHING = 1e-30  # a number below it is zero but for rounding
 LONGEST = 300  # letters of LaTeX of a formula that is printed again beside its number
 
@@ -58,7 +60,12 @@ def value_of(page: Page, number: Number, scene: str) -> tuple[Expr, Expr]:
                 f"{page.name}, {number.words!r}: the formula is a matrix; expected the index of one entry as `entry`"
             )
         side = side[number.entry]
-    expression = number.scale * side.subs(number.where, simultaneous=True) ** number.power
+    if number.where:
+        side = side.subs(number.where, simultaneous=True)
+        # the substituted formulas may cancel
+        factored = factor(side)
+        side = factored if 2 * len(formula(factored)) < len(formula(side)) else side
+    expression = number.scale * side**number.power
     value = expression.xreplace(_floats(scene)).evalf(PRECISION)
     if value.free_symbols or not value.is_real:
         names = ", ".join(sorted(symbol.name for symbol in value.free_symbols))
@@ -92,8 +99,11 @@ def _of_scene(page: Page, lesson: Lesson) -> Iterator[Passage]:
     values = _floats(lesson.scene)
     results = [(number, *value_of(page, number, lesson.scene)) for number in lesson.numbers]
     used = {symbol for _, expression, _ in results for symbol in expression.free_symbols}
-    symbols = [symbol for symbol in UNIT if symbol in used and symbol in values]
-    listed = ", ".join(f"${formula(symbol)} = {_quantity(values[symbol], UNIT[symbol])}$" for symbol in symbols)
+    constants = {symbol: values[symbol] for symbol in UNIT if symbol in used and symbol in values}
+    digits = _digits(constants, [(expression, value) for _, expression, value in results])
+    listed = ", ".join(
+        f"${formula(symbol)} = {_quantity(value, UNIT[symbol], digits)}$" for symbol, value in constants.items()
+    )
     title = scene.title.replace(":", ",")
     yield Passage(f"The scene `{lesson.scene}` ({title}) has {listed}.")
     for number, expression, value in results:
@@ -108,11 +118,29 @@ def _bare(latex: str) -> str:
     return re.sub(r"[{} ]|\\,", "", latex)
 
 
-def _quantity(value: Expr, unit: str) -> str:
-    r"""Return a number with its unit as LaTeX, such as ``2.5\,\mathrm{J}``, rounded to :data:`DIGITS` digits."""
+def _digits(constants: dict[Expr, Expr], results: list[tuple[Expr, Expr]]) -> int:
+    """Return how many digits the printed constants of a scene need, so that the results can be computed from them.
+
+    ``results`` are formulas with their values. If a formula is a difference of nearly equal numbers, the constants
+    need more digits than the result.
+    """
+    for digits in range(DIGITS, DOUBLE):
+        rounded = {symbol: Float(_rounded(value, digits), PRECISION) for symbol, value in constants.items()}
+        errors = (abs(expression.xreplace(rounded).evalf(PRECISION) - value) for expression, value in results)
+        if all(error <= AGREEMENT * abs(value) + NOTHING for error, (_, value) in zip(errors, results, strict=True)):
+            return digits
+    return DOUBLE
+
+
+def _rounded(value: Expr, digits: int) -> str:
+    """Return a number as text with ``digits`` digits; a number below :data:`NOTHING` as "0"."""
     number = float(value)
-    # a smaller number is a rounding error
-    text = "0" if abs(number) < NOTHING else f"{number:.{DIGITS}g}"
+    return "0" if abs(number) < NOTHING else f"{number:.{digits}g}"
+
+
+def _quantity(value: Expr, unit: str, digits: int = DIGITS) -> str:
+    r"""Return a number with its unit as LaTeX, such as ``2.5\,\mathrm{J}``, rounded to ``digits`` digits."""
+    text = _rounded(value, digits)
     if "e" in text:
         digits, exponent = text.split("e")
         text = rf"{digits} \cdot 10^{{{int(exponent)}}}"

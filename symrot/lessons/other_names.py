@@ -36,8 +36,8 @@ OTHER_NAMES: dict[str, str] = {
         "conservation of angular momentum, angular momentum conservation, conservation of energy, momentum sphere, "
         "torque-free motion",
     "symmetric_top":
-        "free precession, wobble of the Earth, Chandler wobble, Feynman's plate, body cone and space cone, torque- "
-        "free symmetric top",
+        "free precession, wobble of the Earth, Chandler wobble, Feynman's plate, body cone and space cone, "
+        "torque-free symmetric top",
     "intermediate_axis":
         "tennis racket theorem, Dzhanibekov effect, intermediate axis theorem, T-handle flip, stability of "
         "rotation about principal axes",

@@ -37,7 +37,6 @@ def taught(page: Page, figures: Sequence[Figure] = ()) -> Page:
     """
     lesson = LESSONS[page.name]
     opening: list[Passage | Figure] = [Passage(f"**{lesson.question}**"), *figures, Passage(_before(lesson))]
-    # the sections that only symrot's numeric code needs go to the appendix
     course, library = _divided(page, lesson.library)
     if library:
         opening.append(Passage(_to_the_appendix(page, course, library)))
@@ -71,7 +70,7 @@ def appendix(page: Page) -> Page | None:
         f"This page continues {_link(page.name)}, with the notation and the results of that page. Only symrot's "
         "numeric code needs its steps; a course can leave them out."
     )
-    # the steps keep their numbers: the appendix of 34 steps with 26 for the code begins with step 9
+    # the steps keep their numbers: if 8 steps stay on the page, the appendix begins with step 9
     first = page.first + len(replace(_plain(page), items=course).steps)
     title = f"{page.title}: for the numeric code"
     return replace(_plain(page), name=f"{page.name}{APPENDIX}", title=title, about=about, items=library, first=first)
@@ -114,7 +113,8 @@ def _to_the_appendix(page: Page, course: Items, library: Items) -> str:
     target = f"[{'another page' if count == 1 else 'a page of their own'}]({page.name}{APPENDIX}.md)"
     if count == 1:
         return f"Step {first}, which only symrot's numeric code needs, is on {target}."
-    return f"Steps {first} to {last}, which only symrot's numeric code needs, are on {target}."
+    steps = f"Steps {first} {'and' if count == 2 else 'to'} {last}"
+    return f"{steps}, which only symrot's numeric code needs, are on {target}."
 
 
 def _link(name: str) -> str:

@@ -66,8 +66,7 @@ class PrintedPage(Page):
         return html_document(self)
 
     def __repr__(self) -> str:
-        count = f"{len(self.steps)} step{'s' * (len(self.steps) != 1)}"
-        return f"<{type(self).__name__} {self.name}: {self.title}, {count}>"
+        return f"<{type(self).__name__} {self.name}: {self.title}, {self.extent}>"
 
     def _repr_markdown_(self) -> str:
         return symrot.in_notebook(self)
@@ -215,12 +214,12 @@ class Derivation(PrintedPage):
                     f"{self.name}, {claim!r}: expected LaTeX that can be parsed in the detailed proof of the step, got "
                     f"{text}"
                 )
-        return self._add(
-            Step(
-                claim, left, right, because, "=", hypotheses, conditions, named, display, source, tuple(via), printed,
-                tuple(board),
-            )
+        step = Step(
+            claim, left, right, because, "=", hypotheses, conditions, named, display, source, tuple(via), printed,
+            tuple(board),
         )  # fmt: skip
+        self.items.append(step)
+        return step
 
     def tabulate(self, text: str, head: Sequence[str], rows: Sequence[tuple[Sequence[str], Sequence[Step]]]) -> None:
         """Print steps that have been added already as the rows of one table, below everything else on the page so far.
@@ -250,7 +249,9 @@ class Derivation(PrintedPage):
         reduced = factor(normal_form(expression))
         if reduced.is_positive is not True:
             raise ProofError(f"{self.name}, {claim!r}: the signs of its symbols do not prove {reduced} positive")
-        return self._add(Step(claim, _frozen(expression), S.Zero, because, ">", named=named, display=reduced))
+        step = Step(claim, _frozen(expression), S.Zero, because, ">", named=named, display=reduced)
+        self.items.append(step)
+        return step
 
     def _proven(self, claim: str, left: Any, right: Any, relations: Sequence[Any]) -> Decision:
         """Return the verdict on the equation ``left = right`` under the hypotheses ``relations``.
@@ -341,10 +342,6 @@ class Derivation(PrintedPage):
             return False
         value = condition.lhs.expand()
         return any(value in (known, -known) for known in self.assumed)
-
-    def _add(self, step: Step) -> Step:
-        self.items.append(step)
-        return step
 
 
 def _tidied(conditions: Sequence[Any]) -> list[Any]:

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 import symrot
 from symrot.errors import InputError, PropagationError
 from symrot.formula import exact_numbers as number
+from symrot.inertia.tensor import rotation_of
 from symrot.planning.plan import Plan, make_plan, structure_key
 from symrot.planning.scene_kernel import SceneKernel
 from symrot.propagation.method import choose_method
@@ -25,7 +26,7 @@ from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.integration_stopped import Samples
 from symrot.propagation.steppers.stepping import is_sorted
 from symrot.propagation.trajectory import Trajectory
-from symrot.scene.attitude import Attitude, dcm_of, read_attitude, refuse_two
+from symrot.scene.attitude import Attitude, read_attitude, refuse_two
 from symrot.scene.content import plain
 from symrot.scene.scene import Scene
 from symrot.scene.tables import Initial, with_other_attitude
@@ -358,7 +359,7 @@ def read_start(scene: Scene, omega: ArrayLike | None, quaternion: ArrayLike | No
             raise InputError(f"quaternion: expected a quaternion that is not zero, got {number.show(q)}")
         q0, q1, q2, q3 = _unit(q)
         w, x, y, z = map(Fraction, q)
-        initial = with_other_attitude(initial, Attitude((q0, q1, q2, q3), dcm_of((w, x, y, z))))
+        initial = with_other_attitude(initial, Attitude((q0, q1, q2, q3), rotation_of((w, x, y, z))))
     if omega is not None:
         x, y, z = (_exact(value, "omega") for value in _vector(omega, 3, "omega", "rad/s"))
         initial = initial._replace(omega_b=(x, y, z))

@@ -30,7 +30,6 @@ BAND_NOTE = "filled: least to greatest"
 
 def columns_of(axes: Any) -> tuple[float, float]:
     """Return the width and the height of matplotlib axes, in columns of 1/150 inch."""
-    # curves are thinned out to what differs between neighbouring columns
     box, dpi = axes.get_window_extent(), axes.figure.dpi
     return COLUMNS_PER_INCH * box.width / dpi, COLUMNS_PER_INCH * box.height / dpi
 

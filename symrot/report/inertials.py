@@ -1,13 +1,11 @@
 """Reports on the mass properties of bodies that were read from meshes and robot files, as text and as data."""
 
 from collections.abc import Sequence
-from decimal import Context, Decimal
 from typing import Any
 
 from symrot.exchange.inertial import Inertial
 from symrot.exchange.orientation import quaternion_of
 from symrot.exchange.robot import Link
-from symrot.inertia.principal import principal_axes
 from symrot.report.layout import fields
 from symrot.scene.content import toml_text
 
@@ -54,18 +52,7 @@ def lines(inertial: Inertial) -> list[str]:
 
 def table_text(inertial: Inertial, fixed_point: str | None = None) -> str:
     """Return the table ``[body]`` of a scene file as TOML, about the centre of mass or a fixed point ``"X,Y,Z"``, m."""
-    table = dict(inertial.table(fixed_point if fixed_point is None else fixed_point.split(",")))
-    principal = principal_axes(table["inertia"])
-    # equal moments, and the sum of the moments of a flat body, must remain equal to 2^-200, which is 60 digits
-    context = Context(prec=34 if principal.kind == "asymmetric" and not principal.flat else 80)
-
-    def decimal(value: Any) -> Any:
-        if isinstance(value, list):
-            return [decimal(each) for each in value]
-        return context.divide(Decimal(value.numerator), Decimal(value.denominator))
-
-    numbers = {key: decimal(table[key]) for key in ("mass", "center_of_mass", "inertia") if key in table}
-    return toml_text({"body": table | numbers})
+    return toml_text({"body": dict(inertial.table(None if fixed_point is None else fixed_point.split(",")))})
 
 
 def _numbers(values: Sequence[float]) -> str:

@@ -8,7 +8,19 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import TextIO
 
-__all__ = ["WIDTH", "apart", "columns", "duration", "emphasis", "exact", "fields", "number_text", "one_line", "room"]
+__all__ = [
+    "WIDTH",
+    "apart",
+    "columns",
+    "duration",
+    "emphasis",
+    "exact",
+    "fields",
+    "hanging",
+    "number_text",
+    "one_line",
+    "room",
+]
 
 WIDTH = 110
 NARROWEST = 40  # smallest width, in characters, to which text is wrapped
@@ -77,6 +89,12 @@ def _wrapped(text: str, width: int) -> list[str]:
     from textwrap import wrap
 
     return wrap(text, width, break_long_words=False, break_on_hyphens=False) or [""]
+
+
+def hanging(text: str, indent: int = 4) -> list[str]:
+    """Return text as lines that fit; lines after the first are indented by ``indent`` blanks."""
+    first, *rest = _wrapped(text, room())
+    return [first, *(" " * indent + line for line in _wrapped(" ".join(rest), room() - indent) if line)]
 
 
 def fields(rows: Iterable[tuple[str, str]], width: int | None = None) -> list[str]:

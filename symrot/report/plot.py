@@ -171,11 +171,12 @@ def _vertical(axes: Any, t: Floats, trajectory: Any) -> None:
     axes.set_ylabel("deg")
 
 
-def _drift(axes: Any, t: Floats, trajectory: Any, tolerance: float) -> None:
+def _drift(axes: Any, t: Floats, trajectory: Any) -> None:
     """Draw, for each conserved quantity, its largest relative change so far over time, on a logarithmic scale.
 
-    For comparison, a line shows ``tolerance``, the tolerance of the integration.
+    For comparison, a line shows the tolerance of the integration.
     """
+    tolerance = trajectory.tolerance
     axes.set_title("Drift of conserved quantities, the largest so far")
     axes.set_ylabel("relative to its size")
     axes.set_yscale("log")
@@ -244,7 +245,7 @@ OVER_TIME: dict[str, Callable[[Any, Floats, Any], None]] = {
     "rates": _rates,
     "attitude": _attitude,
     "vertical": _vertical,
-    "drift": lambda axes, t, trajectory: _drift(axes, t, trajectory, trajectory.tolerance),
+    "drift": _drift,
 }
 ON_SPHERES: dict[str, Callable[[Any, Any], None]] = {"space": _space_sphere, "body": _body_sphere}
 PANELS = (*OVER_TIME, *ON_SPHERES)
@@ -315,11 +316,8 @@ def plot(trajectory: "Trajectory", ax: Any = None, panel: str = "rates") -> Any:
     return ax
 
 
-def figure(trajectory: Any, tolerance: float) -> Any:
-    """Return a matplotlib Figure with the panels that suit a motion, drawn from the samples of ``trajectory``.
-
-    ``tolerance``, the tolerance of the integration, is a line in the panel of the conserved quantities.
-    """
+def figure(trajectory: Any) -> Any:
+    """Return a matplotlib Figure with the panels that suit a motion, drawn from the samples of ``trajectory``."""
     from matplotlib.figure import Figure
 
     names = [name for name in OVER_TIME if name not in _left_out(trajectory)]
@@ -337,7 +335,7 @@ def figure(trajectory: Any, tolerance: float) -> Any:
         panel.set_xlabel(f"t ({unit})", labelpad=1)
     for row, name in enumerate(paths):
         ON_SPHERES[name](page.add_subplot(right[row]), trajectory)
-    _words(page, trajectory, tolerance)
+    _words(page, trajectory)
     return page
 
 
@@ -351,28 +349,20 @@ def _left_out(trajectory: Any) -> set[str]:
     return set() if has_vertical(trajectory.scene) else {"vertical"}
 
 
-def _words(page: Any, trajectory: Any, tolerance: float) -> None:
+def _words(page: Any, trajectory: Any) -> None:
     scene, stats = trajectory.scene, trajectory.stats
     inch = 1.0 / page.get_figheight()
     page.text(0.02, 1.0 - 0.224 * inch, literal(scene.title)[:100], fontsize=15, fontweight="bold", va="top")
     page.text(0.02, 1.0 - 0.576 * inch, literal(scene.source)[:170], fontsize=8.5, color=GREY, va="top")
     steps = f"{stats.accepted} step{'' if stats.accepted == 1 else 's'}"
     caption = (
-        f"{literal(scene.name)}   |   {trajectory.method}, tolerance {tolerance:g}, {steps}   |   "
+        f"{literal(scene.name)}   |   {trajectory.method}, tolerance {trajectory.tolerance:g}, {steps}   |   "
         f"paths run from the dot (dark) to the square (light)   |   symrot {__version__}"
     )
     page.text(0.98, 0.144 * inch, caption, fontsize=8, color=GREY, ha="right")
 
 
-def save(propagator: Any, trajectory: Any, path: Path) -> None:
-    """Draw a motion into a file, from its dense solution.
-
-    Parameters
-    ----------
-    propagator, trajectory : Propagator, Trajectory
-        The propagator, and the trajectory that it returned for the times of the scene.
-    path : Path
-        The file to write; its suffix, one of :data:`SUFFIXES`, decides the format.
-    """
+def save(trajectory: Any, path: Path) -> None:
+    """Draw a motion into a file, from its dense solution; the suffix, one of :data:`SUFFIXES`, decides the format."""
     motion = dense(trajectory)
-    draw(lambda: figure(motion, propagator.tolerance), path, few_colours=False)
+    draw(lambda: figure(motion), path, few_colours=False)

@@ -121,11 +121,12 @@ class LostRecord(TypedDict):
 class DerivativeRecord(TypedDict):
     """The derivatives of the last sample by one variable, an initial value or a constant."""
 
-    # of the angular velocity, rad/s per unit; None at a switch of a torque, where the derivative jumps
+    # derivative of the angular velocity, rad/s per unit; None at a switch of a torque, where the derivative jumps
     omega: list[float] | None
-    # of the attitude: times a small change of the variable, the rotation vector, rad, in body axes
+    # derivative of the attitude: its product with a small change of the variable is the rotation vector, rad, in body
+    # axes, by which the attitude changes
     rotation: list[float] | None
-    # of the variable
+    # unit of the variable
     unit: str
 
 

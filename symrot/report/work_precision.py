@@ -21,12 +21,6 @@ ROUNDING = 1e-16  # relative rounding error of the compared results
 LARGEST_FILE = 50_000_000
 
 
-def _number(value: float) -> str:
-    if not math.isfinite(value):
-        return "-"
-    return f"{value:.2f}" if value < 10 else f"{value:.1f}" if value < 100 else f"{value:.0f}"
-
-
 def _decades(study: Mapping[str, Any]) -> list[str]:
     """Return the table of a study as lines of text, with one column for each power of ten of the error."""
     table = study["decades"]
@@ -44,15 +38,9 @@ def _short(value: float) -> str:
     """Return a number as text of at most five characters: 1.234 -> "1.23"; "-" for an infinite number or NaN."""
     if not math.isfinite(value):
         return "-"
-    return (
-        f"{value:.2f}"
-        if value < 10
-        else f"{value:.1f}"
-        if value < 100
-        else f"{value:.0f}"
-        if value < 1e5
-        else f"{value:.0e}"
-    )
+    if value >= 1e5:
+        return f"{value:.0e}"
+    return f"{value:.2f}" if value < 10 else f"{value:.1f}" if value < 100 else f"{value:.0f}"
 
 
 def _floors(runs: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -70,7 +58,7 @@ def _against(study: Mapping[str, Any]) -> list[str]:
     rows = [["times the time of", "symrot's steppers", "at the least", "symrot", "at the least"]]
     for row in study["against"]:
         cells = [
-            _number(row[key][what]) if key in row else "-" for key in ("stepped", "all") for what in ("median", "least")
+            _short(row[key][what]) if key in row else "-" for key in ("stepped", "all") for what in ("median", "least")
         ]
         rows.append([row["peer"], *cells])
     return columns(rows, right=(1, 2, 3, 4)) if len(rows) > 1 else []
@@ -203,9 +191,9 @@ def lines_of_comparison(comparison: Mapping[str, Any]) -> list[str]:
     )
     rows = [["method", *errors, "mean", "least error", "before"]]
     for name, item in comparison["ratios"].items():
-        cells = [_number(item["decades"][error]) if error in item["decades"] else "-" for error in errors]
+        cells = [_short(item["decades"][error]) if error in item["decades"] else "-" for error in errors]
         before, now = item["least errors"]
-        rows.append([name, *cells, _number(item["mean"]), f"{now:.1e}", f"{before:.1e}"])
+        rows.append([name, *cells, _short(item["mean"]), f"{now:.1e}", f"{before:.1e}"])
     scene = comparison["scene"]
     title = f"{one_line(scene['title'])} [{one_line(scene['name'])}]: time of the second study over"
     same = comparison["machines"][0]["processor"] == comparison["machines"][1]["processor"]

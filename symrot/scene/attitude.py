@@ -11,12 +11,11 @@ from typing import Any, NamedTuple
 from symrot.conventions import parse_sequence
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import Angle, equal, read_angle, show, sqrt
+from symrot.inertia.tensor import apply, determinant, multiply, rotation_of, transpose
 from symrot.kinematics.hamilton import hamilton
-from symrot.scene.reader import Entry, Reader, fail, flag, number, read_table, table, vector
+from symrot.scene.reader import Entry, Reader, fail, flag, items, number, read_table, table, vector
 
-__all__ = [
-    "ORTHOGONAL", "Attitude", "dcm_of", "read_attitude", "read_sequence", "refuse_two", "to_body", "to_space",
-]  # fmt: skip
+__all__ = ["ORTHOGONAL", "Attitude", "read_attitude", "read_sequence", "refuse_two", "to_body"]
 
 ORTHOGONAL = Fraction(1, 10**9)
 """Largest allowed deviation of R R^T from the unit matrix, for a matrix R in a scene; an exact rotation replaces R."""
@@ -29,28 +28,18 @@ Matrix = tuple[Vector, Vector, Vector]
 
 
 class Attitude(NamedTuple):
-    """An attitude in a scene, as a unit quaternion (scalar first, body to space) and as the matrix ``dcm_sb``."""
+    """An attitude in a scene, as a unit quaternion (scalar first, body to space) and as the matrix ``dcm_sb``.
+
+    The matrix is exact if the sines and cosines of the angles in the scene are rational.
+    """
 
     quaternion: Quaternion
-    # exact if the sines and cosines of the angles in the scene are rational
     dcm: Matrix
-
-
-def _matrix_product(left: Matrix, right: Matrix) -> Matrix:
-    columns = tuple(zip(*right, strict=True))
-    rows = tuple(tuple(sum(map(Fraction.__mul__, row, column)) for column in columns) for row in left)
-    return rows  # type: ignore[return-value]
-
-
-def to_space(dcm: Matrix, vector_b: Vector) -> Vector:
-    """Return the space components of ``vector_b``, given in body components; ``dcm`` is the attitude ``dcm_sb``."""
-    x, y, z = (sum(map(Fraction.__mul__, row, vector_b), Fraction(0)) for row in dcm)
-    return x, y, z
 
 
 def to_body(dcm: Matrix, vector_s: Vector) -> Vector:
     """Return the body components of ``vector_s``, given in space components; ``dcm`` is the attitude ``dcm_sb``."""
-    return to_space(tuple(zip(*dcm, strict=True)), vector_s)  # type: ignore[arg-type]
+    return apply(transpose(dcm), vector_s)
 
 
 def _unit(q: Quaternion) -> Quaternion:
@@ -60,17 +49,6 @@ def _unit(q: Quaternion) -> Quaternion:
     length = sqrt(length_squared)
     w, x, y, z = (item / length for item in q)
     return w, x, y, z
-
-
-def dcm_of(q: Quaternion) -> Matrix:
-    """Return the matrix ``dcm_sb`` of a quaternion of any norm except zero; the result is exact."""
-    w, x, y, z = q
-    s = 2 / sum(map(Fraction.__mul__, q, q), Fraction(0))
-    return (
-        (1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y)),
-        (s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x)),
-        (s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y)),
-    )
 
 
 def _about(axis: Vector, angle: Angle) -> Attitude:
@@ -95,24 +73,24 @@ def _axis(index: int) -> Vector:
 
 def _of_sequence(name: str, angles: tuple[Angle, ...]) -> Attitude:
     axes, intrinsic = parse_sequence(name)
-    turns = [_about(_axis(index), angle) for index, angle in zip(axes, angles, strict=True)]
-    first, second, third = turns if intrinsic else reversed(turns)
+    rotations = [_about(_axis(index), angle) for index, angle in zip(axes, angles, strict=True)]
+    first, second, third = rotations if intrinsic else reversed(rotations)
     return Attitude(
         _unit(hamilton(hamilton(first.quaternion, second.quaternion), third.quaternion)),
-        _matrix_product(_matrix_product(first.dcm, second.dcm), third.dcm),
+        multiply(multiply(first.dcm, second.dcm), third.dcm),
     )
 
 
 def _of_dcm(rows: Matrix, value: object, where: str) -> Attitude:
     """Return the attitude of a matrix ``dcm_sb`` in a scene; raise InputError if it is no rotation."""
-    product = _matrix_product(rows, tuple(zip(*rows, strict=True)))  # type: ignore[arg-type]
+    product = multiply(rows, transpose(rows))
     worst = max(abs(product[i][j] - (i == j)) for i in range(3) for j in range(3))
     if worst > ORTHOGONAL:
         fail(where, "a rotation: orthonormal rows, to 1e-9", value, f"its rows deviate from that by {float(worst):.2g}")
-    (a, b, c), (d, e, f), (g, h, i) = rows
-    if a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0:
+    if determinant(rows) < 0:
         fail(where, "a rotation, of determinant +1", value, "this is a reflection, of determinant -1")
     # Shepperd's method, without loss of digits; the result has the exact matrix of this quaternion.
+    (a, b, c), (d, e, f), (g, h, i) = rows
     candidates = {
         1 + a + e + i: (1 + a + e + i, h - f, c - g, d - b),
         1 + a - e - i: (h - f, 1 + a - e - i, b + d, c + g),
@@ -120,7 +98,7 @@ def _of_dcm(rows: Matrix, value: object, where: str) -> Attitude:
         1 - a - e + i: (d - b, c + g, f + h, 1 - a - e + i),
     }
     q = candidates[max(candidates)]
-    return Attitude(_unit(q), dcm_of(q))
+    return Attitude(_unit(q), rotation_of(q))
 
 
 def _angle(degrees: bool) -> Reader:
@@ -133,14 +111,8 @@ def _angle(degrees: bool) -> Reader:
     return reader
 
 
-def _four(value: Any, where: str) -> Quaternion:
-    if not isinstance(value, list | tuple) or len(value) != 4:
-        fail(where, "four numbers (q0, q1, q2, q3), scalar first", value)
-    component = number()
-    w, x, y, z = (component(item, f"{where}[{index}]") for index, item in enumerate(value))
-    if not (w or x or y or z):
-        fail(where, "a quaternion that is not zero", value)
-    return w, x, y, z
+_four = items(4, number(), "four numbers (q0, q1, q2, q3), scalar first")
+_rows = items(3, vector("1"), "three rows of three numbers")
 
 
 def _read_quaternion(value: Any, where: str) -> Attitude:
@@ -149,15 +121,9 @@ def _read_quaternion(value: Any, where: str) -> Attitude:
     Raise InputError for any other value; the message names the place ``where``.
     """
     q = _four(value, where)
-    return Attitude(_unit(q), dcm_of(q))
-
-
-def _rows(value: Any, where: str) -> Matrix:
-    if not isinstance(value, list | tuple) or len(value) != 3:
-        fail(where, "three rows of three numbers", value)
-    row = vector("1")
-    first, second, third = (row(item, f"{where}[{index}]") for index, item in enumerate(value))
-    return first, second, third
+    if not any(q):
+        fail(where, "a quaternion that is not zero", value)
+    return Attitude(_unit(q), rotation_of(q))
 
 
 def refuse_two(attitude: Any, quaternion: Any) -> None:
@@ -176,17 +142,6 @@ def read_sequence(value: Any, where: str) -> str:
     return str(value)
 
 
-def _three_angles(degrees: bool) -> Reader:
-    one = _angle(degrees)
-
-    def reader(value: Any, where: str) -> tuple[Angle, ...]:
-        if not isinstance(value, list | tuple) or len(value) != 3:
-            fail(where, f"three angles in {'degrees' if degrees else 'rad'}, in the order of the sequence", value)
-        return tuple(one(item, f"{where}[{index}]") for index, item in enumerate(value))
-
-    return reader
-
-
 def _read_quaternion_form(value: Mapping[str, Any], where: str) -> Attitude:
     values = read_table(value, where, {"quaternion": Entry(_read_quaternion, required=True)}, "an attitude")
     attitude: Attitude = values["quaternion"]
@@ -198,9 +153,11 @@ def _degrees(value: Mapping[str, Any], where: str) -> bool:
 
 
 def _read_sequence_form(value: Mapping[str, Any], where: str) -> Attitude:
+    degrees = _degrees(value, where)
+    expectation = f"three angles in {'degrees' if degrees else 'rad'}, in the order of the sequence"
     values = read_table(value, where, {
         "sequence": Entry(read_sequence, required=True),
-        "angles": Entry(_three_angles(_degrees(value, where)), required=True),
+        "angles": Entry(items(3, _angle(degrees), expectation), required=True),
         "degrees": Entry(flag),
     }, "an attitude by a sequence")  # fmt: skip
     return _of_sequence(values["sequence"], values["angles"])
@@ -231,9 +188,9 @@ _FORMS: dict[str, Callable[[Mapping[str, Any], str], Attitude]] = {
 
 
 def _by_shape(value: Any) -> Any:
-    """Convert an attitude from a list to a table: ``[1, 0, 0, 0]`` gives ``{"quaternion": [1, 0, 0, 0]}``.
+    """Return an attitude as a table: the list ``[1, 0, 0, 0]`` gives ``{"quaternion": [1, 0, 0, 0]}``.
 
-    Other values are returned unchanged.
+    Values that are not such lists are returned unchanged.
     """
     match value:
         case [str(sequence), list() as angles]:
@@ -246,9 +203,11 @@ def _by_shape(value: Any) -> Any:
 
 
 def read_attitude(value: Any, where: str) -> Attitude:
-    """Return the attitude that ``value`` in a scene describes: quaternion, Euler angles, axis and angle, or matrix."""
-    # a table, such as {axis = [0, 0, 1], angle = 0.5}, or a list: [q0, q1, q2, q3], the rows of dcm_sb, or ["ZXZ", [..,
-    # .., ..]] with angles in rad
+    """Return the attitude that a value in a scene describes: quaternion, Euler angles, axis and angle, or matrix.
+
+    The value is a table, such as ``{axis = [0, 0, 1], angle = 0.5}``, or a list: ``[q0, q1, q2, q3]``, the rows of
+    ``dcm_sb``, or ``["ZXZ", [.., .., ..]]`` with angles in rad. Raise InputError for anything else.
+    """
     entries = table(_by_shape(value), where, f"an attitude: {FORMS}")
     form = next((reader for key, reader in _FORMS.items() if key in entries), None)
     if form is None:

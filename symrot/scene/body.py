@@ -18,7 +18,20 @@ from symrot.inertia.tensor import about_point
 from symrot.scene.attitude import Matrix, Vector, read_attitude
 from symrot.scene.folders import Folders
 from symrot.scene.mesh_body import Facet, read_mesh_table
-from symrot.scene.reader import Entry, Reader, choice, fail, flag, number, read_table, table, text, vector
+from symrot.scene.reader import (
+    Entry,
+    Reader,
+    choice,
+    fail,
+    flag,
+    items,
+    number,
+    read_table,
+    table,
+    text,
+    unchanged,
+    vector,
+)
 
 __all__ = ["Body", "read_body"]
 
@@ -66,7 +79,7 @@ class Body(NamedTuple):
     facets : tuple of triangles
         The surface of a body given by a small mesh, for pictures: the corners, m, of each triangle.
     warnings : tuple of str
-        Sentences about holes that could not be proven to lie within the body.
+        Sentences about holes that could not be proven to lie within the body, and about polygons that are not flat.
 
     Examples
     --------
@@ -153,12 +166,7 @@ _moment = number("a moment of inertia in kg m^2", "nonnegative")
 _product = number("a product of inertia in kg m^2 (I_xy = -integral of x y dm)")
 
 
-def _three_moments(value: Any, where: str) -> tuple[Fraction, ...]:
-    if not isinstance(value, list | tuple) or len(value) != 3:
-        fail(where, "three principal moments [A, B, C] in kg m^2", value)
-    return tuple(_moment(item, f"{where}[{index}]") for index, item in enumerate(value))
-
-
+_three_moments = items(3, _moment, "three principal moments [A, B, C] in kg m^2")
 _entry = number("an entry of an inertia tensor in kg m^2")
 
 
@@ -194,15 +202,15 @@ def _tensor(value: Any, where: str) -> Matrix:
 
 
 def _body_of_moments(inertia: Matrix, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return the body with the tensor ``inertia`` about its point of rotation; ``values`` hold mass, name and
-    ``about``.
+    """Return the body with the tensor ``inertia`` about its point of rotation.
+
+    ``values`` are the entries mass, center_of_mass, name and about of its table; ``source`` ends its description.
     """
     about, center = values["about"], values["center_of_mass"]
     if about == "center_of_mass":
         if center is not None and any(center):
             fail(f"{where}.center_of_mass", 'about = "fixed_point", from which center_of_mass is measured', center)
         center = _ZERO
-    # such as "rotor with given principal moments"
     description = f"{values['name'] or 'body'} with {source}"
     return Body(values["mass"], inertia, center, about, description, principal_axes(inertia, where))
 
@@ -238,10 +246,6 @@ def _shape_name(value: Any, where: str) -> Shape:
     if not isinstance(value, str) or value not in SHAPES:
         fail(where, f"one of the shapes {', '.join(SHAPES)}", value, nearest(value, SHAPES))
     return SHAPES[value]
-
-
-def _any_value(value: Any, where: str) -> Any:
-    return value
 
 
 def _amount(shape: Shape) -> dict[str, Entry]:
@@ -286,7 +290,7 @@ def _read_shape_table(value: Mapping[str, Any], where: str, others: Mapping[str,
     dimensions = [dimension.name for dimension in shape.dimensions]
     values = read_table(value, where, {
         "shape": Entry(_shape_name, required=True),
-        **{name: Entry(_any_value, required=True) for name in dimensions},
+        **{name: Entry(unchanged, required=True) for name in dimensions},
         **_amount(shape),
         # keys that do not describe the shape, such as name
         **others,
@@ -326,19 +330,19 @@ def _bounded(value: Any, where: str) -> None:
 
 
 def _placed(parts: Sequence[Part], values: Mapping[str, Any], where: str, source: str, of_parts: str) -> Body:
-    """Return the body composed of ``parts``; ``values`` say about which point it rotates, its centre of mass by
-    default.
+    """Return the body composed of ``parts``.
 
-    ``source`` describes the body; ``where`` and ``of_parts`` are names for messages.
+    ``values`` are the entries about, fixed_point and name of its table; ``source`` describes a body without a name;
+    ``where`` and ``of_parts`` are the places of the body and of its parts, for messages.
     """
     body = _about_point(mass_properties(parts, of_parts), values, where, source)
     return body._replace(parts=tuple(parts), warnings=doubtful_holes(parts, of_parts))
 
 
 def _about_point(properties: MassProperties, values: Mapping[str, Any], where: str, source: str) -> Body:
-    """Return a body with the given mass properties, and its inertia about the point of rotation in ``values``.
+    """Return the body with the given mass properties; its point of rotation and its name are in ``values``.
 
-    That is the centre of mass, or the entry ``fixed_point``.
+    The point of rotation is the centre of mass or the entry ``fixed_point``; ``source`` describes an unnamed body.
     """
     about, point = values["about"], values["fixed_point"]
     if about == "center_of_mass" and point is not None:
@@ -365,7 +369,8 @@ def _about_point(properties: MassProperties, values: Mapping[str, Any], where: s
 
 def _read_mesh(value: Mapping[str, Any], where: str, folders: Folders) -> Body:
     body, values = read_mesh_table(value, where, _PLACED, Entry(_density("kg/m^3")), folders)
-    return _about_point(body.properties, values, where, "mesh")._replace(facets=body.facets)
+    about = _about_point(body.properties, values, where, "mesh")
+    return about._replace(facets=body.facets, warnings=body.warnings)
 
 
 def _read_shape(value: Mapping[str, Any], where: str, folders: Folders) -> Body:

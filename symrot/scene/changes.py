@@ -12,13 +12,13 @@ from itertools import islice
 from typing import Any, NamedTuple
 
 from symrot.dynamics.torque_kinds import TABLE_KIND, TORQUE_KINDS
-from symrot.errors import InputError, nearest
+from symrot.errors import InputError, with_hint
 from symrot.formula.exact_numbers import show
 from symrot.scene.body import Body
 from symrot.scene.content import Content, plain
 from symrot.scene.torque import Torque
 
-__all__ = ["Path", "changed", "in_order", "number_path", "path_of", "present_value", "set_last"]
+__all__ = ["Path", "SceneContent", "changed", "in_order", "number_path", "path_of", "present_value", "set_last"]
 
 Path = tuple[str | int, ...]
 
@@ -64,8 +64,11 @@ class Place(NamedTuple):
     component: int | None = None
 
 
-class _Scene(NamedTuple):
-    """The content of a scene, and the exact values that were read from it: the input of :func:`changed`."""
+class SceneContent(NamedTuple):
+    """The content of a scene, and what was read from it: initial angular velocity, body and torques.
+
+    The latter give the numbers that the content gives in another form, such as components of omega from omega_space.
+    """
 
     content: Content
     omega_b: Sequence[Fraction]
@@ -73,40 +76,28 @@ class _Scene(NamedTuple):
     torques: Sequence[Torque]
 
 
-def changed(
-    content: Content,
-    changes: Mapping[str, Any],
-    omega_b: Sequence[Fraction],
-    body: Body,
-    torques: Sequence[Torque],
-) -> Content:
+def changed(scene: SceneContent, changes: Mapping[str, Any]) -> Content:
     """Return the content of a scene in which the values named by the keys of ``changes`` are replaced.
 
     Parameters
     ----------
-    content : dict
-        The content of the scene, which is not modified.
+    scene : SceneContent
+        The scene, whose content is not modified.
     changes : mapping
         Key -> value, as a scene file or a Python caller writes it.
-    omega_b, body, torques
-        Initial angular velocity, body and torques that were read from the content, for the components of vectors that
-        a change leaves as they are.
 
     Raises
     ------
     InputError
         If a key names nothing in the scene, or several things.
     """
-    result = deepcopy(content)
+    result = scene._replace(content=deepcopy(scene.content))
     for key, value in changes.items():
-        scene = _Scene(result, omega_b, body, torques)
-        _set(scene, key, plain(value, f"{key}: "))
-    return result
+        _set(result, key, plain(value, f"{key}: "))
+    return result.content
 
 
-def present_value(
-    content: Content, key: str, omega_b: Sequence[Fraction], body: Body, torques: Sequence[Torque]
-) -> Any:
+def present_value(scene: SceneContent, key: str) -> Any:
     """Return the present value that a key names, in the form in which the content gives it.
 
     Raises
@@ -114,19 +105,17 @@ def present_value(
     InputError
         If a key names nothing in the scene, or a value that the content does not give.
     """
-    scene = _Scene(content, omega_b, body, torques)
-    # Vectors and tensors that the content gives in another form, such as omega_space, are computed from it.
     if key in TENSOR:
         i, j = (INDEX[axis] for axis in key[-2:])
         return _tensor(scene)[i][j]
     if key == "principal":
-        return list(body.principal.moments)
+        return list(scene.body.principal.moments)
     if key == "omega":
-        return list(omega_b)
+        return list(scene.omega_b)
     place = _place(scene, key)
     if place.component is not None:
         return _vector(scene, place.path)[place.component]
-    value: Any = content
+    value: Any = scene.content
     for step in place.path:
         inside = isinstance(value, dict) and step in value
         if not inside and not (isinstance(value, list) and isinstance(step, int) and step < len(value)):
@@ -140,27 +129,26 @@ def present_value(
     return value
 
 
-def number_path(content: Content, key: str, omega_b: Sequence[Fraction], body: Body, torques: Sequence[Torque]) -> Path:
+def number_path(scene: SceneContent, key: str) -> Path:
     """Return the path of the number that a key names: ``"linear"`` gives ``("torque", 0, "linear")``.
 
-    () if it names no single number.
+    The path is empty if the key names no single number, for instance a vector or a component of one.
     """
     try:
-        place = _place(_Scene(content, omega_b, body, torques), key)
+        place = _place(scene, key)
     except InputError:
         return ()
-    value: Any = content
+    value: Any = scene.content
     try:
         for step in place.path:
             value = value[step]
     except (KeyError, IndexError, TypeError):
         return ()
-    # a vector, or one component of it
     return () if isinstance(value, bool | dict | list | tuple) or place.component is not None else place.path
 
 
 def set_last(key: str) -> bool:
-    """Return whether a change by ``key`` starts from numbers that other changes may set, so that it comes after them.
+    """Return whether a change by ``key`` must come after others, because it starts from numbers that these may set.
 
     ``I_xx`` and ``center_of_mass`` replace the shapes of the body by moments of inertia; ``omega_2`` keeps the other
     two components of omega in the body, which depend on the attitude if the scene gives omega in space.
@@ -168,9 +156,7 @@ def set_last(key: str) -> bool:
     return key in (*TENSOR, *RATES, "principal") or str(key).rpartition(".")[2].startswith("center_of_mass")
 
 
-def in_order(
-    content: Content, changes: Mapping[str, Any], omega_b: Sequence[Fraction], body: Body, torques: Sequence[Torque]
-) -> Content:
+def in_order(scene: SceneContent, changes: Mapping[str, Any]) -> Content:
     """Return ``changes`` in the order in which none replaces the value of another: ``omega`` before ``omega_2``.
 
     Raises
@@ -178,7 +164,6 @@ def in_order(
     InputError
         If two keys set the same value, or values that exclude each other, such as mass and density.
     """
-    scene = _Scene(content, omega_b, body, torques)
     paths: dict[str, Path] = {}
     for key in changes:
         path = _whole_path(scene, key)
@@ -188,13 +173,13 @@ def in_order(
             if path and before and _exclude(path, before):
                 raise InputError(f"{key}: expected either {other} or {key}, since each replaces the other, got both")
         paths[key] = path
-    # a key that names nothing yet may name something in a table that another change sets
-    # afterwards the name center_of_mass alone would name two values
+    # A key that names nothing yet may name something in a table that another change sets. The name center_of_mass alone
+    # comes first, because it would name two values afterwards.
     rank = {key: (len(path) or MOST_STEPS, not str(key).startswith("center_of_mass")) for key, path in paths.items()}
     return {key: changes[key] for key in sorted(changes, key=lambda key: rank[key])}
 
 
-def _whole_path(scene: _Scene, key: str) -> Path:
+def _whole_path(scene: SceneContent, key: str) -> Path:
     """Return the path of the value that ``key`` names, down to the component of a vector; () if it names none yet."""
     if key == "principal":
         return ("body", "inertia")
@@ -215,7 +200,7 @@ def _exclude(one: Path, other: Path) -> bool:
     return EXCLUSIVE.get((one[0], one[depth])) == other[depth]
 
 
-def _set(scene: _Scene, key: str, value: Any) -> None:
+def _set(scene: SceneContent, key: str, value: Any) -> None:
     if key in TENSOR or key == "principal":
         _set_inertia(scene, key, value)
         return
@@ -237,7 +222,7 @@ def _set(scene: _Scene, key: str, value: Any) -> None:
         raise InputError(f"{key}: expected an index from 0 to {len(parent) - 1}, got {last}")
 
 
-def _place(scene: _Scene, key: str) -> Place:
+def _place(scene: SceneContent, key: str) -> Place:
     """Return the place in the scene's content of the value that ``key`` names, such as ``omega_2`` or ``body.mass``.
 
     A key that names nothing, or more than one value, raises InputError.
@@ -262,10 +247,7 @@ def _place(scene: _Scene, key: str) -> Place:
             f"{key}: expected the name of one value of the scene, got a name that two values share; write {listed}"
         )
     known = [*TABLES[3:], *SHORT, *RATES, "principal", *TENSOR, *_names(scene)]
-    hint = nearest(key, known)
-    raise InputError(
-        f"{key}: expected a path such as body.mass, or one of {', '.join(known)}" + (f" ({hint})" if hint else "")
-    )
+    raise InputError(with_hint(f"{key}: expected a path such as body.mass, or one of {', '.join(known)}", key, known))
 
 
 def path_of(key: str) -> Path:
@@ -284,7 +266,7 @@ def path_of(key: str) -> Path:
     return tuple(steps) if position == len(key) and steps and not isinstance(steps[0], int) else ()
 
 
-def _torque_places(scene: _Scene, key: str) -> Iterator[Place]:
+def _torque_places(scene: SceneContent, key: str) -> Iterator[Place]:
     """Yield the place of each torque constant that ``key`` names, in the order of the torques.
 
     ``torque2_weight`` names a constant of the second torque only; ``weight`` names one in each torque that has a
@@ -299,7 +281,7 @@ def _torque_places(scene: _Scene, key: str) -> Iterator[Place]:
                 yield place
 
 
-def _count(scene: _Scene) -> int:
+def _count(scene: SceneContent) -> int:
     return len(scene.content.get("torque", ()))
 
 
@@ -319,7 +301,7 @@ def _torque_place(torque: Content, index: int, name: str) -> Place | None:
     return None
 
 
-def _body_places(scene: _Scene, key: str) -> Iterator[Place]:
+def _body_places(scene: SceneContent, key: str) -> Iterator[Place]:
     body = scene.content["body"]
     if key == "mass" and "part" not in body:
         yield Place(("body", "mass"))
@@ -329,7 +311,7 @@ def _body_places(scene: _Scene, key: str) -> Iterator[Place]:
         yield Place(("body", key))
 
 
-def _names(scene: _Scene) -> list[str]:
+def _names(scene: SceneContent) -> list[str]:
     """Return the short names of the torques' constants and of the body's dimensions, for an error message."""
     names: list[str] = []
     for torque in scene.content.get("torque", ()):
@@ -367,7 +349,7 @@ def _table(content: Content, path: Path, key: str) -> Any:
     return place
 
 
-def _vector(scene: _Scene, path: Path) -> Sequence[Any]:
+def _vector(scene: SceneContent, path: Path) -> Sequence[Any]:
     """Return the three components of the vector at a path of the content, for a change of a single component."""
     place: Any = scene.content
     if path[-1] == "center_of_mass" and "center_of_mass" in scene.content["body"]:
@@ -384,9 +366,10 @@ def _vector(scene: _Scene, path: Path) -> Sequence[Any]:
     return vector
 
 
-def _constant_of_torque(scene: _Scene, path: Path) -> Fraction | tuple[Fraction, ...] | None:
-    """Return the exact value of a torque's constant that the file leaves out because it follows from others,
-    or None.
+def _constant_of_torque(scene: SceneContent, path: Path) -> Fraction | tuple[Fraction, ...] | None:
+    """Return the exact value of a torque's constant that the file leaves out, such as the weight if it gives gravity.
+
+    None if the path names no such constant.
     """
     kinds = [torque.get("kind") for torque in scene.content.get("torque", ())]
     if path[0] != "torque" or len(path) != 3 or not isinstance(path[1], int) or path[1] >= len(kinds):
@@ -395,13 +378,13 @@ def _constant_of_torque(scene: _Scene, path: Path) -> Fraction | tuple[Fraction,
         return None
     # scene.torques has no torques of kind table, so its indices are smaller after a table
     own = scene.torques[path[1] - kinds[: path[1]].count(TABLE_KIND.kind)]
-    # such as the weight of a torque that gives gravity's acceleration
     return own.values.get(str(path[2]))
 
 
-def _set_inertia(scene: _Scene, key: str, value: Any) -> None:
-    """Set the principal moments (``"principal"``) or an entry such as ``"I_xy"`` of the inertia tensor in
-    the content.
+def _set_inertia(scene: SceneContent, key: str, value: Any) -> None:
+    """Set the principal moments (key ``"principal"``) or an entry of the inertia tensor, such as ``"I_xy"``.
+
+    Mass and centre of mass stay; a body that was given by shapes is then given by its moments.
     """
     if key == "principal":
         if not scene.body.principal.given_axes:
@@ -415,11 +398,10 @@ def _set_inertia(scene: _Scene, key: str, value: Any) -> None:
         i, j = (INDEX[axis] for axis in key[-2:])
         tensor[i][j] = tensor[j][i] = value
         inertia = _entries(tensor)
-    # Mass and centre of mass stay; a body given by shapes is then given by its moments.
     scene.content["body"] = _moments(scene, inertia)
 
 
-def _moments(scene: _Scene, inertia: Content) -> Content:
+def _moments(scene: SceneContent, inertia: Content) -> Content:
     """Return the table ``[body]`` of a scene with moments of inertia instead of shapes.
 
     The moments are ``inertia``, such as ``{"principal": [1, 2, 3]}``. Name, mass and centre of mass stay the same.
@@ -437,7 +419,7 @@ def _entries(tensor: list[list[Any]]) -> Content:
     return {"inertia": {name[-2:]: tensor[INDEX[name[-2]]][INDEX[name[-1]]] for name in TENSOR}}
 
 
-def _tensor(scene: _Scene) -> list[list[Any]]:
+def _tensor(scene: SceneContent) -> list[list[Any]]:
     """Return the rows of the scene's inertia tensor as its file gives them, or as computed if its file gives shapes."""
     match scene.content["body"]:
         case {"principal": [a, b, c]}:

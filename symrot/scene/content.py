@@ -6,7 +6,7 @@ of these packages is imported.
 
 import re
 from collections.abc import Mapping
-from decimal import Decimal
+from decimal import Context, Decimal, Inexact
 from fractions import Fraction
 from math import isfinite
 from typing import Any
@@ -20,6 +20,7 @@ Content = dict[str, Any]
 """A table of a scene: text, numbers, true or false, lists and tables by key."""
 
 DEEPEST = 40
+DIGITS = 34  # most digits of a fraction that is printed as a decimal
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
@@ -101,7 +102,7 @@ def _quoted(text: str) -> str:
 def _value(value: Any) -> str:
     """Return a value as TOML on one line, such as ``[1, 2.5]``.
 
-    A fraction becomes text, such as ``"1/3"``, which scenes accept as a number.
+    A fraction without an exact decimal becomes text, such as ``"1/3"``, which scenes accept as a number.
     """
     match value:
         case bool():
@@ -109,7 +110,7 @@ def _value(value: Any) -> str:
         case str():
             return _quoted(value)
         case Fraction():
-            return str(value.numerator) if value.denominator == 1 else _quoted(str(value))
+            return str(value.numerator) if value.denominator == 1 else _fraction(value)
         case int():
             return str(value)
         case float() if isfinite(value):
@@ -121,6 +122,12 @@ def _value(value: Any) -> str:
         case dict():
             return "{ " + ", ".join(f"{_key(key)} = {_value(item)}" for key, item in value.items()) + " }"
     raise InputError(f"expected a value that TOML can hold, got {show(value)}")
+
+
+def _fraction(value: Fraction) -> str:
+    context = Context(prec=DIGITS)
+    quotient = context.divide(Decimal(value.numerator), Decimal(value.denominator))
+    return _quoted(str(value)) if context.flags[Inexact] else _decimal(quotient)
 
 
 def _decimal(value: Decimal) -> str:

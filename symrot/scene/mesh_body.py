@@ -18,13 +18,14 @@ MOST_FACETS = 5000
 
 
 class MeshProperties(NamedTuple):
-    """The mass properties of a mesh, and the corners, m, of its triangles, for pictures.
+    """The mass properties of a mesh, the corners, m, of its triangles, for pictures, and warnings.
 
-    The list of triangles is empty for a mesh of more than MOST_FACETS triangles.
+    ``facets`` is empty for a mesh of more than MOST_FACETS triangles; ``warnings`` concern polygons that are not flat.
     """
 
     properties: MassProperties
     facets: tuple[Facet, ...]
+    warnings: tuple[str, ...]
 
 
 def read_mesh_table(
@@ -72,4 +73,5 @@ def read_mesh_table(
     if len(body.surface.triangles) <= MOST_FACETS:
         corners = body.surface.vertices[body.surface.triangles] * float(body.scale)
         facets = tuple(tuple(map(tuple, triangle)) for triangle in corners.tolist())  # type: ignore[misc]
-    return MeshProperties(body.inertial.properties, facets), values
+    warnings = (f"{where}.mesh: {body.surface.note}",) if body.surface.note else ()
+    return MeshProperties(body.inertial.properties, facets, warnings), values

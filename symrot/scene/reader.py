@@ -19,11 +19,13 @@ __all__ = [
     "choice",
     "fail",
     "flag",
+    "items",
     "key_path",
     "nearest",
     "number",
     "read_table",
     "text",
+    "unchanged",
     "vector",
 ]  # fmt: skip
 
@@ -70,7 +72,8 @@ def table(value: object, where: str, expectation: str = "a table") -> Mapping[st
 def read_table(value: object, where: str, entries: Mapping[str, Entry], what: str = "a table") -> dict[str, Any]:
     """Return a map from key to value of a table; the rules in ``entries`` say how each value is read.
 
-    A missing key gets its default.
+    A missing key gets its default. Raise InputError for a value that is no table, an unknown key, a missing key that is
+    required, and a value that its reader refuses; ``what`` names the table in the messages.
     """
     entries_by_key = table(value, where, f"{what} with the keys {', '.join(entries)}")
     for key in entries_by_key:
@@ -78,7 +81,6 @@ def read_table(value: object, where: str, entries: Mapping[str, Entry], what: st
             reason = ", ".join(filter(None, ("unknown key", nearest(key, entries))))
             fail(key_path(where, key), f"one of the keys {', '.join(entries)} of {what}", entries_by_key[key], reason)
     for key, entry in entries.items():
-        # ``what`` names the table in messages
         if entry.required and key not in entries_by_key:
             fail(key_path(where, key), f"a value, the key is missing ({what} needs it)")
     return {
@@ -110,6 +112,20 @@ def number(expectation: str = "a number", sign: str = "any") -> Reader:
     return reader
 
 
+def items(count: int, read: Reader, expectation: str) -> Reader:
+    """Return a reader that accepts lists of ``count`` items and returns the results of ``read`` for them as a tuple.
+
+    ``expectation``, such as "three numbers", goes into the error message for other values.
+    """
+
+    def reader(value: Any, where: str) -> tuple[Any, ...]:
+        if not isinstance(value, list | tuple) or len(value) != count:
+            fail(where, expectation, value)
+        return tuple(read(item, f"{where}[{index}]") for index, item in enumerate(value))
+
+    return reader
+
+
 def vector(unit: str, sign: str = "any") -> Reader:
     """Return a reader that accepts lists of three numbers in ``unit`` and returns them as three Fractions.
 
@@ -117,16 +133,20 @@ def vector(unit: str, sign: str = "any") -> Reader:
     """
     expectation = f"three numbers [x, y, z] in {unit}" if unit != "1" else "three numbers [x, y, z]"
     component = number(f"a number in {unit}" if unit != "1" else "a number", "any" if sign == "nonzero" else sign)
+    components = items(3, component, expectation)
 
     def reader(value: Any, where: str) -> tuple[Fraction, Fraction, Fraction]:
-        if not isinstance(value, list | tuple) or len(value) != 3:
-            fail(where, expectation, value)
-        x, y, z = (component(item, f"{where}[{index}]") for index, item in enumerate(value))
+        x, y, z = components(value, where)
         if sign == "nonzero" and not (x or y or z):
             fail(where, f"{expectation}, not all zero", value)
         return x, y, z
 
     return reader
+
+
+def unchanged(value: Any, where: str) -> Any:
+    """Return any value unchanged: the reader of values that are checked later."""
+    return value
 
 
 def text(value: Any, where: str) -> str:

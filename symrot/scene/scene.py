@@ -15,7 +15,7 @@ from symrot.dynamics.torque_kinds import TABLE_KIND
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import read, show
 from symrot.scene.body import Body, read_body
-from symrot.scene.changes import changed, in_order, present_value, set_last
+from symrot.scene.changes import SceneContent, changed, in_order, present_value, set_last
 from symrot.scene.content import Content, plain, toml_text
 from symrot.scene.file import SHIPPED, find_scene, read_toml, shipped_names
 from symrot.scene.folders import Folders
@@ -83,15 +83,13 @@ class Scene:
 
     @property
     def torque_kinds(self) -> tuple[str, ...]:
-        """The kinds of all torques, such as ``("gravity", "damping")``; the kind of a sampled torque (``table``) comes
-        last.
-        """
+        """The kinds of all torques, such as ``("gravity", "damping")``; that of a torque given by samples is last."""
         table = () if self.table is None else (self.table.kind,)
         return (*(torque.kind for torque in self.torques), *table)
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences about what may be meant otherwise: holes that may reach out of the body, parameters without use."""
+        """Sentences about what may be a mistake: holes that may reach out, bent polygons, parameters without use."""
         return (*self.body.warnings, *(warning for torque in self.torques for warning in torque.warnings))
 
     @classmethod
@@ -219,7 +217,7 @@ class Scene:
             raise InputError(f"expected a dict of new values by name, got {show(changes)}")
         every = {**(changes or {}), **values}
         if len(every) > 1:
-            every = in_order(self._content(), every, self.initial.omega_b, self.body, self.torques)
+            every = in_order(self._present(), every)
         last = {key: value for key, value in every.items() if set_last(key)}
         first = {key: value for key, value in every.items() if key not in last}
         shaped = self._changed(first) if first or not last else self
@@ -239,16 +237,19 @@ class Scene:
         >>> symrot.load_scene("t_handle").value("omega_2")
         Fraction(0, 1)
         """
-        value = present_value(self._content(), key, self.initial.omega_b, self.body, self.torques)
+        value = present_value(self._present(), key)
         try:
             return read(value)
         except InputError:
             return deepcopy(value)
 
     def _changed(self, changes: Mapping[str, Any]) -> "Scene":
-        content = changed(self._content(), changes, self.initial.omega_b, self.body, self.torques)
+        content = changed(self._present(), changes)
         assert self.origin is not None
         return _read_scene(content, self.origin.label, self.name, self.path, self.origin.table_folders)
+
+    def _present(self) -> SceneContent:
+        return SceneContent(self._content(), self.initial.omega_b, self.body, self.torques)
 
     def _content(self) -> Content:
         """Return the present content of the scene file, from which the scene could be read again.
@@ -281,10 +282,10 @@ class _Origin(NamedTuple):
 
 
 def _parts(scene: Scene) -> tuple[Any, ...]:
-    """Return the parts of a scene that :meth:`Scene.to_dict` reads from the scene's file only: body, torques
-    and table.
+    """Return body, torques and table of a scene, which :meth:`Scene.to_dict` takes from the content of its file.
+
+    They cannot be converted to content again: if one of them is replaced, the content is out of date.
     """
-    # They cannot be turned back into the texts of a file: if one is replaced, the content is out of date.
     return scene.body, scene.torques, scene.table
 
 

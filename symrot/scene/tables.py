@@ -10,7 +10,7 @@ from symrot.errors import InputError
 from symrot.formula.exact_numbers import read
 from symrot.scene.attitude import Attitude, Quaternion, Vector, read_attitude, read_sequence, to_body
 from symrot.scene.body import read_body
-from symrot.scene.reader import Entry, choice, fail, flag, number, read_table, text, vector
+from symrot.scene.reader import Entry, choice, fail, flag, items, number, read_table, text, unchanged, vector
 
 __all__ = [
     "QUANTITIES",
@@ -154,13 +154,11 @@ def _samples(value: Any, where: str) -> int:
     return int(count)
 
 
-_time = number("a time in s")
+_two_times = items(2, number("a time in s"), "the first and the last time, [start, stop] in s")
 
 
 def _times(value: Any, where: str) -> tuple[Fraction, Fraction]:
-    if not isinstance(value, list | tuple) or len(value) != 2:
-        fail(where, "the first and the last time, [start, stop] in s", value)
-    start, stop = (_time(item, f"{where}[{index}]") for index, item in enumerate(value))
+    start, stop = _two_times(value, where)
     if float(start) == float(stop):
         fail(where, "a span of positive length, [start, stop] in s", value)
     if start > stop:
@@ -234,17 +232,13 @@ def _read_accuracy(value: Any, where: str) -> Fraction:
     return tolerance
 
 
-def _unchanged(value: Any, where: str) -> Any:
-    return value
-
-
 TOP: dict[str, Entry] = {
     "schema": Entry(_schema, required=True),
     "title": Entry(text, default=""),
     "source": Entry(text, default=""),
     "body": Entry(read_body, required=True),
     "initial": Entry(_read_initial, required=True),
-    "torque": Entry(_unchanged, default=()),
+    "torque": Entry(unchanged, default=()),
     "span": Entry(_read_span, required=True),
     "output": Entry(_read_output, default=Output(("omega", "quaternion"), None, False)),
     "accuracy": Entry(_read_accuracy, default=Fraction(1, 10**12)),

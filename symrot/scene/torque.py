@@ -16,7 +16,7 @@ from symrot.formula.float_functions import FLOAT_FUNCTIONS
 from symrot.formula.switches import condition_error
 from symrot.scene.attitude import Vector, read_attitude
 from symrot.scene.body import Body
-from symrot.scene.reader import Entry, Reader, choice, fail, key_path, number, read_table, table, vector
+from symrot.scene.reader import Entry, Reader, choice, fail, items, key_path, number, read_table, table, vector
 
 __all__ = ["Torque", "Value", "read_torque"]
 
@@ -112,7 +112,7 @@ def _rest(value: Any, where: str) -> tuple[Fraction, ...]:
 
 def _depth(node: expression.Node) -> int:
     """Return the depth of a formula tree: the largest number of nodes from the root to a leaf."""
-    # without recursion, since the tree of a long sum is very deep
+    # not by recursion, since the tree of a long sum is very deep
     depth, level = 0, [node]
     while level:
         depth, level = depth + 1, [child for parent in level for child in expression.children(parent)]
@@ -149,12 +149,7 @@ def _divides_by_zero(node: expression.Node) -> bool:
         return False
 
 
-def _formulas(value: Any, where: str) -> tuple[str, ...]:
-    if not isinstance(value, list | tuple) or len(value) != 3:
-        fail(where, "three formulas, one for each component", value)
-    return tuple(_formula(item, f"{where}[{index}]") for index, item in enumerate(value))
-
-
+_formulas = items(3, _formula, "three formulas, one for each component")
 _parameter = number("a number")
 
 
@@ -235,9 +230,11 @@ def _fit_damping(values: dict[str, Any], body: Body, where: str) -> dict[str, An
 
 
 def _fit_expression(values: dict[str, Any], body: Body, where: str) -> dict[str, Any]:
-    """Return the values of an ``expression`` torque; raise InputError if its formulas contain unknown names."""
+    """Return the values of an ``expression`` torque, with warnings about parameters that no formula contains.
+
+    Raise InputError if a formula contains a name that is neither a parameter nor a quantity such as omega_1.
+    """
     parameters = dict(values["parameters"])
-    # its parameters, and the quantities of the motion, such as omega_1
     known = {*EXPRESSION_NAMES, *parameters, "pi"}
     unused = set(parameters)
     for index, formula in enumerate(values["torque"]):

@@ -6,13 +6,13 @@ computed has NaN as outputs, a status and a reason.
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from symrot.ensemble.ensemble import propagate_ensemble
-from symrot.ensemble.variation import own_rates, read_variation, to_body
+from symrot.ensemble.reading import own_rates, read_variation, to_body
 from symrot.errors import InputError, PropagationError
 from symrot.results.tables import BY
 from symrot.scene.scene import Scene
@@ -49,7 +49,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Chunk:
-    """The results of the trajectories number ``start`` to ``stop - 1``: varied values, outputs, status, messages."""
+    """The results of the trajectories ``start`` to ``stop - 1``: varied values, outputs, status, messages."""
 
     start: int
     stop: int
@@ -122,46 +122,51 @@ def _read_scenes(job: Job, draws: Draws, paths: dict[Path, int], inputs: _Inputs
     reader = _reader(job, tuple(paths), tuple(constants))
     rows = []
     for row, values in enumerate(draws.values[:, list(paths.values())].tolist()):
-        outcome = reader(tuple(values))
-        if isinstance(outcome, str):
-            # the reason why the scene is not valid
-            messages[row] = outcome
+        varied = reader(tuple(values))
+        if isinstance(varied, str):
+            messages[row] = varied
             continue
         rows.append(row)
-        for name, value in zip(constants, outcome[0], strict=True):
-            # the constants of the scene
+        for name, value in zip(constants, varied.constants, strict=True):
             inputs.parameters[name][row] = value
         if moved:
-            inputs.omega[row] = outcome[1]
-        if moved and draws.attitudes is not None and outcome[3] is not None:
-            inputs.omega[row] = to_body(draws.attitudes[row : row + 1], np.array(outcome[3]))[0]
+            inputs.omega[row] = varied.omega_b
+        if moved and draws.attitudes is not None and varied.omega_s is not None:
+            inputs.omega[row] = to_body(draws.attitudes[row : row + 1], np.array(varied.omega_s))[0]
         if moved and draws.attitudes is None and inputs.attitudes is not None:
-            inputs.attitudes[row] = outcome[2]
+            inputs.attitudes[row] = varied.quaternion
     return np.array(rows, dtype=np.intp)
 
 
-Reading = tuple[list[float], list[float], list[float], list[float] | None]  # constants, omega, quaternion, omega_s
+class _Varied(NamedTuple):
+    """The numbers that follow from a scene with varied values: constants of the equations, and the initial state."""
+
+    constants: list[float]
+    omega_b: list[float]
+    quaternion: list[float]
+    omega_s: list[float] | None  # None unless the scene gives omega in space components
 
 
 @lru_cache(maxsize=2)
 def _reader(job: Job, paths: tuple[Path, ...], constants: tuple[str, ...]) -> Any:
-    """Return a function that puts values at ``paths`` of the scene file, and reads the scene again."""
+    """Return a function from the values at ``paths`` of the scene file to the numbers that follow from them.
+
+    It returns the reason as a text if the scene with these values is not valid.
+    """
     names = {axis.target.path: axis.target.name for axis in job.design.axes}
 
     @lru_cache(maxsize=MOST_READINGS)
-    def read(values: tuple[float, ...]) -> Reading | str:
+    def read(values: tuple[float, ...]) -> _Varied | str:
         changes = {names[path]: value for path, value in zip(paths, values, strict=True)}
         try:
             scene = job.scene.with_(changes)
             variation = read_variation(scene, None, None, None)
             numbers = [float(variation.constant(name)) for name in constants]
         except InputError as error:
-            # the reason why the file with these values is not valid
             return str(error)
         start = scene.initial
         omega_s = None if start.omega_s is None else [float(x) for x in start.omega_s]
-        # the values of the named constants, the initial omega and quaternion, and omega in space if the scene gives it
-        return numbers, [float(x) for x in start.omega_b], [float(x) for x in start.quaternion], omega_s
+        return _Varied(numbers, [float(x) for x in start.omega_b], [float(x) for x in start.quaternion], omega_s)
 
     return read
 
@@ -217,10 +222,8 @@ def _propagate(
             # an infinity is not a value: all outputs of this trajectory are missing
             for column in outputs.values():
                 column[row] = np.nan
-            status[row], messages[row] = (
-                IMPOSSIBLE,
-                f"{name}: expected a value within the range of doubles, got infinity",
-            )
+            status[row] = IMPOSSIBLE
+            messages[row] = f"{name}: expected a value within the range of doubles, got infinity"
 
 
 def prepared(job: Job) -> Job:

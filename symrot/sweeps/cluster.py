@@ -37,9 +37,8 @@ def _address(scheduler: object) -> str:
 def _client(scheduler: object) -> Any:
     make, address = optional("distributed", "--scheduler", "cluster").Client, _address(scheduler)
     try:
-        if not address.startswith(
-            "inproc:"
-        ):  # a client of a wrong address would wait for a minute when the process ends
+        # checked here, because a client of a wrong address would wait for a minute when the process ends
+        if not address.startswith("inproc:"):
             optional("distributed.comm", "--scheduler", "cluster").get_address_host_port(address)
         client = make(address, timeout=SECONDS, set_as_default=False)
     except (OSError, ValueError, TypeError) as reason:
@@ -58,9 +57,9 @@ def _client(scheduler: object) -> Any:
 
 
 def compute_and_store(text: bytes, start: int, stop: int, offer: Offer | None) -> Chunk | Written:
-    """Return the chunk of the trajectories ``start`` to ``stop - 1``, or that it is stored.
+    """Return the chunk of the trajectories ``start`` to ``stop - 1``, or only its range if it is stored here.
 
-    ``text`` is the job from :func:`packed`; ``offer`` says whether this process may write into the client's file.
+    ``text`` is the job from :func:`packed`; with an ``offer`` this process may write into the client's file.
     """
     chunk = compute_packed(text, start, stop)
     return chunk if offer is None else stored(chunk, offer)
@@ -69,8 +68,16 @@ def compute_and_store(text: bytes, start: int, stop: int, offer: Offer | None) -
 def run_on_cluster(job: Job, ranges: Sequence[Range], scheduler: object, store: Store) -> Iterator[Chunk | Written]:
     """Yield the chunks of a job, as each is complete, computed by the workers of a Dask cluster.
 
-    A chunk that a worker has written into ``store`` comes as its range. ``ranges``: (start, stop) per chunk;
-    ``scheduler``: its address, or a client or cluster of Dask.
+    Parameters
+    ----------
+    job : Job
+        The sweep.
+    ranges : sequence of (start, stop)
+        The trajectories of each chunk.
+    scheduler : str, Client or cluster of Dask
+        The address of the scheduler, or an object that has it.
+    store : Store
+        The store of the sweep. Of a chunk that a worker on this machine writes into it, only the range is yielded.
 
     Raises
     ------

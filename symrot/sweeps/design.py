@@ -12,7 +12,7 @@ from math import prod
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.errors import InputError, nearest
+from symrot.errors import InputError, with_hint
 from symrot.formula.exact_numbers import show
 from symrot.scene.scene import Scene
 from symrot.sweeps.laws import Distribution, Grid, Law, read_law
@@ -69,8 +69,10 @@ class Design:
         return tuple(axis.target.name for axis in self.axes)
 
     def draws(self, start: int, stop: int) -> Draws:
-        """Return the varied values of the trajectories ``start`` to ``stop - 1``."""
-        # they depend only on design and index, so that any process can compute any trajectories
+        """Return the varied values of the trajectories ``start`` to ``stop - 1``.
+
+        They depend only on the design and on the index of the trajectory, so that any process can compute any of them.
+        """
         index = np.arange(start, stop)
         draw, point = np.divmod(index, self.grid_points)
         drawn = [axis for axis in self.axes if isinstance(axis.law, Distribution)]
@@ -110,8 +112,8 @@ def read_design(
     sampling : str
         A name in :data:`symrot.sweeps.points.SAMPLINGS`.
     count : number, optional
-        Number of trajectories, a multiple of the number of grid points; needed if values are drawn, otherwise equal to
-        it.
+        Number of trajectories, a multiple of the number of grid points. It is needed if values are drawn; otherwise it
+        is the number of grid points.
     seed : int
         Seed of the random numbers, zero or more.
 
@@ -132,7 +134,7 @@ def read_design(
     random = attitudes == "uniform" or any(isinstance(axis.law, Distribution) for axis in axes)
     if not random and sampling != "random":
         raise InputError(f"sampling: leave it out unless values are drawn from distributions, got {show(sampling)}")
-    number, first = _count(count, points, random), _whole(seed, "seed", 0, 2**64)
+    number, first = _count(count, points, random), _whole(seed, "seed", 0, 2**64 - 1)
     if not random and first:
         raise InputError(f"seed: leave it out unless values are drawn from distributions, got {show(seed)}")
     return Design(axes, attitudes, sampling, number, first)
@@ -140,10 +142,7 @@ def read_design(
 
 def _choice(value: object, known: Sequence[str], where: str) -> None:
     if value not in known:
-        hint = nearest(value, known)
-        raise InputError(
-            f"{where}: expected one of {', '.join(known)}, got {show(value)}" + (f" ({hint})" if hint else "")
-        )
+        raise InputError(with_hint(f"{where}: expected one of {', '.join(known)}, got {show(value)}", value, known))
 
 
 def _require_apart(axes: Sequence[Axis]) -> None:
@@ -181,7 +180,7 @@ def _count(count: object, points: int, random: bool) -> int:
 
 
 def _whole(value: object, where: str, low: int, high: int) -> int:
-    """Return a whole number from ``low`` to below ``high`` as an int; it may be written as 1e6.
+    """Return a whole number from ``low`` to ``high`` as an int; it may be a text such as ``"1e6"``.
 
     Raise InputError for anything else.
     """
@@ -193,6 +192,6 @@ def _whole(value: object, where: str, low: int, high: int) -> int:
         exact = (isinstance(value, str) and value.strip().isdigit()) or number == float(value)
     except (ValueError, OverflowError):
         raise InputError(expectation) from None
-    if not exact or not low <= number < high:
+    if not exact or not low <= number <= high:
         raise InputError(expectation)
     return number

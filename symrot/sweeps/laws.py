@@ -12,7 +12,7 @@ from typing import NamedTuple, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.errors import InputError, nearest
+from symrot.errors import InputError, with_hint
 from symrot.formula.exact_numbers import read, show
 
 __all__ = ["DISTRIBUTIONS", "GRIDS", "Distribution", "Grid", "Law", "read_law"]
@@ -106,20 +106,20 @@ def read_law(law: object, where: str) -> Law:
     if not isinstance(law, str):
         return Grid(_numbers(_items(law, where), where))
     match = _CALL.fullmatch(law)
-    known = (*DISTRIBUTIONS, *GRIDS)
     if match is None:
         _refuse(where, law)
     name, arguments = match.groups()
-    if name not in known:
-        _refuse(where, law, nearest(name, known))
+    if name not in (*DISTRIBUTIONS, *GRIDS):
+        _refuse(where, law, name)
     numbers = _numbers(_split(arguments), where)
     return _distribution(name, numbers, law, where) if name in DISTRIBUTIONS else _grid(name, numbers, law, where)
 
 
-def _refuse(where: str, law: object, reason: str = "") -> NoReturn:
-    names = [f"{name}({', '.join(family.parameters)})" for name, family in DISTRIBUTIONS.items()]
-    listed = ", ".join([*names, *GRIDS.values()])
-    raise InputError(f"{where}: expected one of {listed}, got {show(law)}" + (f" ({reason})" if reason else ""))
+def _refuse(where: str, law: object, unknown: str = "") -> NoReturn:
+    """Raise InputError with a list of all laws; the message may suggest a law with a similar name as ``unknown``."""
+    laws = [f"{name}({', '.join(family.parameters)})" for name, family in DISTRIBUTIONS.items()]
+    message = f"{where}: expected one of {', '.join([*laws, *GRIDS.values()])}, got {show(law)}"
+    raise InputError(with_hint(message, unknown, (*DISTRIBUTIONS, *GRIDS)))
 
 
 def _items(law: object, where: str) -> Sequence[object]:

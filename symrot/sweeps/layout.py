@@ -1,18 +1,20 @@
 """The layout of the results of a sweep: its arrays with their dimensions and units, and what identifies the sweep."""
 
 import hashlib
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from symrot.errors import InputError
 from symrot.sweeps.chunk import Chunk, Job
 
 __all__ = [
     "COMPONENT", "LABELS", "MESSAGE", "NOT_COMPUTED", "STATUS", "TIME", "TRAJECTORY", "Header", "Store", "Table",
-    "Variable", "arrays_of", "data_frame", "difference", "frame_labels", "header_of", "messages_of",
+    "Variable", "arrays_of", "continued", "data_frame", "frame_labels", "header_of", "messages_of",
 ]  # fmt: skip
 
 TRAJECTORY, TIME = "trajectory", "time"
@@ -91,7 +93,7 @@ class Store(Protocol):
 
     @property
     def only_statistics(self) -> str:
-        """A description of the statistics if the store has only these, not the values of the outputs; else empty."""
+        """A description of the statistics if the store has only these; empty if it has the values of the outputs."""
 
     def pending(self) -> list[tuple[int, int]]:
         """Return the pairs (start, stop) of trajectories, one per chunk, whose results are not stored yet."""
@@ -160,17 +162,39 @@ def _digest(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-def difference(own: Mapping[str, str], other: object) -> str:
-    """Return the names of the settings in which two sweeps differ, such as ``seed, count``; empty if they agree."""
-    # what a file has in place of the settings
-    if not isinstance(other, Mapping):
-        return "it has no description"
-    return ", ".join(name for name in own if own[name] != other.get(name))
+def continued(header: Header, path: Path, description: Callable[[], Mapping[str, Any]]) -> Header:
+    """Return the header with which the sweep whose results are at ``path`` goes on: with the chunks of these results.
+
+    Parameters
+    ----------
+    header : Header
+        The header of the sweep that is to go on.
+    path : Path
+        The existing file or folder.
+    description : callable
+        Reads the ``identity`` of the sweep and the ``rows`` of a chunk from the file or folder.
+
+    Raises
+    ------
+    InputError
+        If the path contains something else than results of the same sweep.
+    """
+    expectation = f"{path}: expected a new name or the results of this sweep"
+    try:
+        present = description()
+        settings, rows = dict(present["identity"]), int(present["rows"])
+    except (OSError, LookupError, ValueError, TypeError):
+        raise InputError(f"{expectation}, got a file or folder with other content; choose another name") from None
+    if different := ", ".join(name for name, value in header.identity.items() if value != settings.get(name)):
+        raise InputError(f"{expectation}, got the results of a sweep with a different {different}; choose another name")
+    return replace(header, rows=rows)
 
 
 def arrays_of(chunk: Chunk, names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
-    """Return the varied values and the outputs of a chunk as arrays by name, such as ``"input_weight"``."""
-    # names: of the varied values, in the order of the draws
+    """Return the varied values and the outputs of a chunk as arrays by name, such as ``"input_weight"``.
+
+    ``names`` are the names of the varied values, in the order of the draws.
+    """
     arrays: dict[str, NDArray[Any]] = {f"input_{name}": chunk.draws.values[:, k] for k, name in enumerate(names)}
     if chunk.draws.attitudes is not None:
         arrays[ATTITUDE] = chunk.draws.attitudes

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symrot.conventions import parse_sequence
-from symrot.errors import InputError, nearest
+from symrot.errors import InputError, nearest, with_hint
 from symrot.formula.exact_numbers import read, show
 from symrot.propagation.sensitivities.variables import ATTITUDE, Variable, read_variables
 from symrot.results.labels import COMPONENTS, FRAMES
@@ -168,16 +168,17 @@ def _reduced(reduction: str, time: float) -> str:
 
 
 def _derivatives(name: str, scene: Scene, reduction: str, time: float, suffix: str) -> list[SweepOutput]:
-    """Return the outputs for a derivative such as ``omega_2_by_weight``, or for three: ``omega_by_weight``."""
-    # name is the text before the @; reduction, time and suffix come from the word after it, such as max
+    """Return the outputs for the name of a derivative: one for ``omega_2_by_weight``, three for ``omega_by_weight``.
+
+    ``reduction``, ``time`` and ``suffix`` come from the word after @ in the output's text, see :func:`_reduction`.
+    """
     part, _, variable = name.partition(BY)
     parts = {component: (quantity, k) for quantity, (names, *_) in OUTPUTS.items() for k, component in enumerate(names)}
     chosen = [part] if part in parts else [key for key, (quantity, _) in parts.items() if quantity == part]
     if not chosen:
         known = [*OUTPUTS, *parts]
-        hint = nearest(part, known)
-        raise InputError(f"output: expected one of {', '.join(known)} before {BY}, got {show(name)}"
-                         + (f" ({hint})" if hint else ""))  # fmt: skip
+        message = f"output: expected one of {', '.join(known)} before {BY}, got {show(name)}"
+        raise InputError(with_hint(message, part, known))
     outputs = []
     for item in variables_of(variable, scene):
         for key in chosen:
@@ -219,8 +220,7 @@ def _reduction(word: str, times: Floats) -> tuple[str, float, str]:
         # the first or the last time, s
         return "at", float(times[0] if word == "start" else times[-1]), f"@{word}"
     known = (*AT_TIMES, *REDUCTIONS)
-    hint = nearest(word, known)
-    expectation = f"one of {', '.join(known)} or a time in s after @" + (f" ({hint})" if hint else "")
+    expectation = with_hint(f"one of {', '.join(known)} or a time in s after @", word, known)
     time = float(read(word, "output", expectation))
     low, high = float(times.min()), float(times.max())
     if not low <= time <= high:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.errors import InputError, nearest
+from symrot.errors import InputError, with_hint
 from symrot.formula.exact_numbers import read, show
 from symrot.sweeps.layout import TIME, Store, Table, Variable
 
@@ -63,8 +63,8 @@ def _read(text: object) -> Statistic:
     known = "mean, envelope, percentiles(5, 50, 95), histogram(BINS)"
     match = _CALL.fullmatch(text) if isinstance(text, str) else None
     if match is None or match[1] not in STATISTICS:
-        hint = nearest(match[1] if match else text, STATISTICS)
-        raise InputError(f"statistics: expected one of {known}, got {show(text)}" + (f" ({hint})" if hint else ""))
+        message = f"statistics: expected one of {known}, got {show(text)}"
+        raise InputError(with_hint(message, match[1] if match else text, STATISTICS))
     name, inside = match[1], (match[2] or "").strip()
     numbers = tuple(float(read(part, "statistics", "a number")) for part in inside.split(",")) if inside else ()
     if name == "percentiles":
@@ -82,8 +82,10 @@ def _read(text: object) -> Statistic:
 def statistics_of(
     store: Store, statistics: Sequence[Statistic], variables: Sequence[Variable], progress: Callable[[str], None]
 ) -> list[Table]:
-    """Return statistics of ``variables`` (outputs) as arrays, over all trajectories that have a value."""
-    # the store has all chunks; progress gets a text for each output
+    """Return statistics of ``variables`` (outputs) as arrays, over all trajectories that have a value.
+
+    ``store`` must have all chunks; ``progress`` is called with a text for each output.
+    """
     tables = []
     for variable in variables:
         progress(f"computing statistics of {variable.name} ..")
@@ -109,8 +111,8 @@ def _of_variable(store: Store, statistics: Sequence[Statistic], variable: Variab
         attributes = variable.attributes | {"long_name": f"{variable.name}, {meaning}"}
         if not unit:
             attributes.pop("units", None)
-        return Table(f"{variable.name}_{name}", (*lead, *dimensions), values.reshape(-1, *shape)[0]
-                     if not lead else values.reshape(len(values), *shape), attributes)  # fmt: skip
+        values = values.reshape(len(values), *shape) if lead else values.reshape(-1, *shape)[0]
+        return Table(f"{variable.name}_{name}", (*lead, *dimensions), values, attributes)
 
     tables = [table("number", survey.number, "number of trajectories with a value", unit=False)]
     for each in statistics:
@@ -132,9 +134,11 @@ def _of_variable(store: Store, statistics: Sequence[Statistic], variable: Variab
 
 @dataclass(frozen=True)
 class _Survey:
-    """The number of values, the extremes and the mean of each column of an output, over all trajectories."""
+    """The number of values, the extremes and the mean of each column of an output, over all trajectories.
 
-    # one column per sample time, or a single one for an output with one value per trajectory
+    An output has a column for each sample time, or a single one if it has one value for each trajectory.
+    """
+
     number: NDArray[np.int64]
     low: Floats
     high: Floats

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symrot.ensemble.variation import read_times
-from symrot.errors import InputError, nearest
+from symrot.ensemble.reading import read_times
+from symrot.errors import InputError, with_hint
 from symrot.formula.exact_numbers import show
 from symrot.planning.plan import Plan, make_plan
 from symrot.propagation.method import choose_method
@@ -107,9 +107,8 @@ class Sweep:
         if values is None and name in names and self._store.has(name):
             values = self._store.read(name, 0, header.count)
         if values is None:
-            hint = nearest(name, names)
-            raise InputError(f"array: expected one of {', '.join(names)} or a statistic, got {show(name)}"
-                             + (f" ({hint})" if hint else ""))  # fmt: skip
+            message = f"array: expected one of {', '.join(names)} or a statistic, got {show(name)}"
+            raise InputError(with_hint(message, name, names))
         return values
 
     def to_xarray(self) -> Any:
@@ -176,8 +175,8 @@ def sweep(
     sampling : str
         ``"random"``, ``"latin"`` (Latin hypercube) or ``"sobol"`` for the values that are drawn.
     count : number, optional
-        Number of trajectories, a multiple of the number of grid points; needed if values are drawn, otherwise equal to
-        it.
+        Number of trajectories, a multiple of the number of grid points. It is needed if values are drawn; otherwise it
+        is the number of grid points.
     seed : int
         Seed of the draws. The draws of a trajectory depend only on the seed and on its index.
     outputs : str or sequence of str
@@ -211,8 +210,8 @@ def sweep(
     Returns
     -------
     Sweep
-        The results. Trajectories whose values no body can have, and trajectories that stop early, have a status and a
-        message; their outputs are NaN as far as they were not computed.
+        The results. Trajectories whose values no body or motion can have, and trajectories that stop early, have a
+        status other than 0 and a message; outputs that could not be computed are NaN.
 
     Raises
     ------
@@ -339,14 +338,11 @@ def _job(
     seed: object, texts: Sequence[str], t: ArrayLike | None, method: str, tolerance: float | None,
     folders: Sequence[str | Path],
 ) -> Job:  # fmt: skip
-    """Return the job (scene, design, outputs, times, accuracy) that the arguments of :func:`sweep` describe.
-
-    ``texts`` are the outputs, ``folders`` the table folders.
-    """
+    """Return the job that the arguments of :func:`sweep` describe; ``texts`` are the outputs."""
     own = scene_for(load_scene(scene, table_folders=folders), texts)
     if own.table is not None:
         raise InputError(
-            f"{own.name}: expected torques that are formulas, got a torque of kind table, which no sweep has"
+            f"{own.name}: expected torques that are formulas, got a torque of kind table, which a sweep cannot have"
         )
     content = _content(own)
     _require(isinstance(vary, Mapping), "vary", "a dict of laws by name", vary)
@@ -367,11 +363,13 @@ def _job(
 
 
 def _require_derivatives(scene: Scene, content: Content | None, design: Design, keys: Sequence[str]) -> None:
-    """Raise InputError if the motions of a sweep have no derivatives by the variables ``keys``."""
+    """Raise InputError if the motions of a sweep have no derivatives by the variables ``keys``.
+
+    They have none by a variable that sets a quantity which the sweep varies in another way: mass and radius of a body
+    both set its moments of inertia.
+    """
     from symrot.ensemble.sensitivities import read_columns
 
-    # none by a variable that sets a quantity which the sweep varies in another way: mass and radius of a body both set
-    # its moments of inertia
     varying = ["quaternion"] if design.attitudes == "uniform" else []
     for axis in design.axes:
         path = axis.target.path

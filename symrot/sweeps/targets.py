@@ -9,10 +9,11 @@ from dataclasses import dataclass
 from typing import Any, NoReturn
 
 from symrot.dynamics.torque_kinds import TABLE_KIND, TORQUE_KINDS
-from symrot.ensemble.variation import FIXED, PLACES, constant_places
-from symrot.errors import InputError, nearest
+from symrot.ensemble.reading import FIXED, constant_places
+from symrot.ensemble.variation import PLACES
+from symrot.errors import InputError, with_hint
 from symrot.formula.exact_numbers import read, show
-from symrot.scene.changes import Path, number_path, path_of
+from symrot.scene.changes import Path, SceneContent, number_path, path_of
 from symrot.scene.scene import Scene
 
 __all__ = ["OMEGA", "Content", "Path", "Target", "constants_of", "read_target"]
@@ -61,19 +62,18 @@ def read_target(name: str, scene: Scene, content: Content | None) -> Target:
         return Target(name, _unit_of_constant(scene, name))
     path = _path(name)
     if not path and content is not None:
-        short = number_path(dict(content), name, scene.initial.omega_b, scene.body, scene.torques)
+        short = number_path(SceneContent(dict(content), scene.initial.omega_b, scene.body, scene.torques), name)
         path = short if short and short[0] in VARIED_TABLES else ()
     if path and content is None:
         raise InputError(f"{name}: expected the scene as a file or a dict, to vary a number in it, got a Scene object")
     known = [*OMEGA, *(key for key, place in places.items() if place.field not in FIXED)]
     if not path or content is None:
         paths = [] if content is None else [text for text in _numbers_in(content) if not _is_fixed(text)]
-        hint = nearest(name, [*known, *paths])
         listed = ", ".join(known)
         if paths:
             listed += f", or a number in the scene file such as {', '.join(paths[:3])}"
-        reason = f" ({hint})" if hint else ""
-        raise InputError(f"expected something that can vary, {listed}, got {show(name)}{reason}")
+        message = f"expected a value that can vary, {listed}, got {show(name)}"
+        raise InputError(with_hint(message, name, [*known, *paths]))
     _require_number(name, path, content)
     return Target(name, "", path)
 
@@ -81,7 +81,7 @@ def read_target(name: str, scene: Scene, content: Content | None) -> Target:
 def _path(name: str) -> Path:
     """Return the path for a name such as ``body.part[0].radius``: ``("body", "part", 0, "radius")``.
 
-    It is () if no number that can vary has this path.
+    It is () unless the name is a path in one of the tables :data:`VARIED_TABLES`.
     """
     path = path_of(name)
     return path if len(path) > 1 and path[0] in VARIED_TABLES else ()
@@ -123,11 +123,8 @@ def _require_number(name: str, path: Path, content: Content) -> None:
 
 def _refuse(name: str, content: Content) -> NoReturn:
     paths = _numbers_in(content)
-    hint = nearest(name, paths)
-    raise InputError(
-        f"expected a number in the scene file, such as {', '.join(paths[:6])}, got {show(name)}"
-        + (f" ({hint})" if hint else "")
-    )
+    message = f"expected a number in the scene file, such as {', '.join(paths[:6])}, got {show(name)}"
+    raise InputError(with_hint(message, name, paths))
 
 
 def _numbers_in(content: Content) -> list[str]:
@@ -144,8 +141,10 @@ def _numbers_in(content: Content) -> list[str]:
 
 
 def constants_of(path: Path, scene: Scene, content: Content) -> list[str]:
-    """Return the names of the constants of the equations that the number at ``path`` may change, such as ``I_xx``."""
-    # the result depends only on the table with the number, so that it is the same for all values
+    """Return the names of the constants of the equations that the number at ``path`` may change, such as ``I_xx``.
+
+    They depend only on the table with this number, so that they are the same for all its values.
+    """
     places = constant_places(scene)
     if path[0] == "initial":
         return []

@@ -92,18 +92,13 @@ def _of_facets(body: Body) -> Patch:
 
 
 def _of_part(part: Part, body: Body) -> Iterator[Patch]:
-    def place(point: Sequence[float]) -> Point:
-        x, y, z = (
-            sum(float(entry) * component for entry, component in zip(row, point, strict=True))
-            + float(at)
-            - float(start)
-            for row, at, start in zip(part.rotation, part.at, body.origin, strict=True)
-        )
-        return x, y, z
-
+    offsets = [float(at - start) for at, start in zip(part.at, body.origin, strict=True)]
     shape = SHAPES[part.shape]
     if shape.kind == "points":
-        yield Patch([place([float(c) for c in point]) for point in part.dimensions["points"]], 1, 0, part.subtract)
+        yield Patch(
+            [_moved(part.rotation, [float(c) for c in point], offsets) for point in part.dimensions["points"]],
+            1, 0, part.subtract,
+        )  # fmt: skip
         return
     values = {name: float(value) for name, value in scalars(shape, part.dimensions).items()}
     position = [parse(text) for text in shape.position]
@@ -117,11 +112,13 @@ def _of_part(part: Part, body: Body) -> Iterator[Patch]:
         for row in rows:
             for column in columns:
                 here = ends | {free[-1].name: column} | ({free[0].name: row} if row is not None else {})
-                points.append(place([evaluate(node, values | here, FUNCTIONS, float) for node in position]))
+                local = [evaluate(node, values | here, FUNCTIONS, float) for node in position]
+                points.append(_moved(part.rotation, local, offsets))
         yield Patch(points, len(rows), len(columns), part.subtract)
 
 
 def _moved(rotation: Sequence[Sequence[Fraction]], point: Sequence[float], offsets: Sequence[float]) -> Point:
+    """Return ``rotation @ point + offsets``."""
     rows = [[float(entry) for entry in row] for row in rotation]
     x, y, z = (
         sum(entry * component for entry, component in zip(row, point, strict=True)) + offset

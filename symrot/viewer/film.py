@@ -118,8 +118,9 @@ def _frames(trajectory: Trajectory, times: Floats) -> Iterator[Floats]:
     omegas = trajectory.sol(times).T[:, :3]
     dcms = quaternion_to_dcm(_attitudes(trajectory, times))
     scales = [1.5 / max(float(np.max(np.linalg.norm(v, axis=1))), 1e-300) for v in (omegas, omegas @ inertia + rotor)]
-    polygons = [face / size for patch in surface for face in _polygons(patch)]
-    shades = [_shade(patch, place) for patch in surface for place in range(len(_polygons(patch)))]
+    faces = [(patch, _polygons(patch)) for patch in surface]
+    polygons = [face / size for _, of_patch in faces for face in of_patch]
+    shades = [_shade(patch, place) for patch, of_patch in faces for place in range(len(of_patch))]
     curves = [np.array(part) / size for patch in surface if patch.rows == 1 for part in _curves(patch)]
     middle = _middle(np.concatenate([np.zeros((1, 3)), *polygons, *curves]), dcms, path)
     figure = Figure(figsize=(SIZE, SIZE), dpi=100)

@@ -16,7 +16,8 @@ from symrot.certificates.rounding.branch_and_bound import SearchResult
 from symrot.certificates.rounding.library import library_problem, operations_of, prepare
 from symrot.certificates.rounding.store import TABLE, method, printed_table, table
 from symrot.codegen.library_kernels import kernel_program
-from symrot.codegen.printing.c_source import DOUBLE, FLOAT, c_functions
+from symrot.codegen.printing.c_function import DOUBLE, FLOAT
+from symrot.codegen.printing.c_source import c_functions
 from symrot.files.writing import write
 from symrot.kernels.library import definition, kernel_names
 

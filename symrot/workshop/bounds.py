@@ -10,15 +10,16 @@ from typing import Any
 
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.readback.readback import read_kernel
-from symrot.certificates.rounding.bounds import bound_outputs, rounding_section
+from symrot.certificates.rounding.bounds import bound_outputs
 from symrot.certificates.rounding.bounds_text import region_phrases
 from symrot.certificates.rounding.intervals import DIGITS
 from symrot.certificates.rounding.library import RoundingProblem, largest_box, library_problem
 from symrot.certificates.rounding.region import UNIT_NORM, Region
 from symrot.certificates.rounding.scenes import ANY, scene_problem
+from symrot.certificates.rounding.section import rounding_section
 from symrot.errors import InputError, nearest
 from symrot.kernels.library import definition, is_kernel, kernel_names
-from symrot.report.layout import apart, columns
+from symrot.report.layout import apart, columns, hanging
 from symrot.scene.file import shipped_names
 from symrot.workshop.input_ranges import input_box
 from symrot.workshop.kernel_text import KernelText, LibraryText, SceneText, kernel_text
@@ -177,7 +178,7 @@ def _value(end: Any) -> float:
 def _region_lines(section: Mapping[str, Any]) -> list[str]:
     groups = (tuple(section["names"].get(place, place) for place in group) for group in section["unit_groups"])
     region = Region(tuple(groups), float.fromhex(section["clearance"]))
-    return [f"      {each}" for each in region_phrases(region)]
+    return [line for each in region_phrases(region) for line in hanging(f"      {each}", 8)]
 
 
 def lines(section: Mapping[str, Any]) -> list[str]:
@@ -195,9 +196,9 @@ def lines(section: Mapping[str, Any]) -> list[str]:
     choices = sorted({choice for each in part["outputs"] for choice in each["choices"]})
     return [
         f"{section['kernel']}: no error is larger than", *columns(rows),
-        f"for {_box_text(section['box'], names)}", *_region_lines(section),
-        f"assuming {'; '.join(section['assumptions'])}",
-        *(f"choice as computed: {choice}" for choice in choices),
+        *hanging(f"for {_box_text(section['box'], names)}"), *_region_lines(section),
+        *hanging(f"assuming {'; '.join(section['assumptions'])}"),
+        *(line for choice in choices for line in hanging(f"choice as computed: {choice}")),
     ]  # fmt: skip
 
 
@@ -249,6 +250,6 @@ def target_lines(resized: Mapping[str, Any]) -> list[str]:
     # ``size``: one factor makes all of the user's ranges wider or narrower, as far as the target allows
     return [
         f"{resized['kernel']}: no error is larger than {resized['target']:g}",
-        f"for {_box_text(resized['box'], resized['names'])}", *_region_lines(resized),
+        *hanging(f"for {_box_text(resized['box'], resized['names'])}"), *_region_lines(resized),
         f"the box given, {resized['size']:.6g} times as wide about its middle",
     ]  # fmt: skip

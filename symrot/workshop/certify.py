@@ -4,13 +4,12 @@ import json
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, partial
-from hashlib import sha256
 from importlib.metadata import version
 from itertools import repeat
 from pathlib import Path
 
 from symrot.build import cache as build_cache
-from symrot.build.code_digest import code_without_prose
+from symrot.build.code_digest import code_without_prose, text_digest
 from symrot.build.sources import PACKAGE
 from symrot.certificates.audit import LARGEST, audit, operations_of
 from symrot.certificates.certificate import Data, proven_statement, with_sections
@@ -24,7 +23,7 @@ from symrot.scene.scene import SceneSource, load_scene
 from symrot.workshop import object_code
 from symrot.workshop.certificate_diff import difference, kernel_of
 from symrot.workshop.emit import kernel_names
-from symrot.workshop.kernel_files import SCENES, certificate_files, kernel_files, stored_bounds, write_files
+from symrot.workshop.kernel_files import SCENES, certificate_files, stored_bounds, write_files
 from symrot.workshop.kernel_text import kernel_text, scene_kernel_name
 from symrot.workshop.steps.audit import audit_step, step_data
 from symrot.workshop.workers import workers
@@ -84,17 +83,13 @@ def _programs() -> str:
     # part of keys of the cache: after any change of the programs that prove statements, stored ones are no longer used
     paths = sorted(path for path in PACKAGE.rglob("*") if path.suffix in (".py", ".toml", ".v", ".c"))
     texts = {path: path.read_text(encoding="utf-8") for path in paths}
-    key = f"code in {_sha256([version('sympy'), *texts.values()])}"
+    key = f"code in {text_digest(version('sympy'), *texts.values())}"
     digest = build_cache.fetch(key)  # it takes half a second to compute
     if digest is None:
         code = (code_without_prose(text) if path.suffix == ".py" else text for path, text in texts.items())
-        digest = _sha256([version("sympy"), *code])
+        digest = text_digest(version("sympy"), *code)
         build_cache.store(key, digest)
     return digest
-
-
-def _sha256(texts: Iterable[str]) -> str:
-    return sha256("\0".join(texts).encode()).hexdigest()
 
 
 def audit_file(
@@ -181,7 +176,7 @@ def audit_files(
 def _recomputed_bounds(data: Data, text: str, progress: Callable[[str], object]) -> list[str]:
     if data.get("rounding") is None:
         raise CertificateError(f"{data['kernel']}: expected bounds to compute again, but the certificate has no bounds")
-    from symrot.certificates.rounding.bounds import check_section
+    from symrot.certificates.rounding.section import check_section
 
     progress("bounding ..")
     kernels = list(operations_of(data, text).values())
@@ -263,7 +258,7 @@ def certify(
         rounding = section(printed, ranges)
     scene_bounds = None if is_kernel(name) else rounding or stored_bounds(printed, directory)
     progress("proving ..")
-    texts = kernel_files(printed, "c", scene_bounds)
+    texts = printed.c_files(scene_bounds)
     (file, text), = certificate_files(printed, directory or Path(), scene_bounds).items()  # fmt: skip
     slots: Data = {key: value for key, value in json.loads(text).items() if key in ("rounding", "objects")}
     slots |= {"rounding": rounding} if rounding else {}

@@ -12,7 +12,7 @@ from symrot.certificates import recheck
 from symrot.certificates.audit import LARGEST
 from symrot.certificates.certificate import certificate_json, with_sections
 from symrot.certificates.readback.readback import read_kernel
-from symrot.certificates.rounding.bounds import check_bounds, check_section
+from symrot.certificates.rounding.section import check_bounds, check_section
 from symrot.certificates.selftest import selftest_files
 from symrot.certificates.step_certificate import is_step, with_bounds
 from symrot.codegen.printing.build_files import build_files
@@ -20,6 +20,7 @@ from symrot.errors import CertificateError, InputError
 from symrot.files.reading import read_input
 from symrot.files.writing import write
 from symrot.kernels.library import definition, kernel_names
+from symrot.report.layout import columns
 from symrot.scene.file import names_with_kernels
 from symrot.workshop.kernel_text import KernelText, SceneText, kernel_text
 from symrot.workshop.step_text import step_text
@@ -29,7 +30,6 @@ __all__ = [
     "build_files",
     "certificate_files",
     "chosen_text",
-    "kernel_files",
     "kernel_lines",
     "stale",
     "stored_bounds",
@@ -44,8 +44,7 @@ SCENES = "scenes"  # subfolder for the kernels of shipped scenes; library kernel
 
 def kernel_lines() -> list[str]:
     """Return the lines that `symrot emit --list` prints: the name and the title of each kernel of the library."""
-    width = max(map(len, kernel_names()))
-    return [f"{name:<{width}}  {definition(name).title}" for name in kernel_names()]
+    return columns([(name, definition(name).title) for name in kernel_names()])
 
 
 def chosen_text(kernel: str, jacobian: str | None, step: str | None, order: int | None) -> KernelText:
@@ -66,12 +65,6 @@ def chosen_text(kernel: str, jacobian: str | None, step: str | None, order: int 
     if order is not None:
         raise InputError(f"--order: expected '--step taylor' as well, got only the order {order}")
     return kernel_text(kernel, variables)
-
-
-def kernel_files(kernel: KernelText, target: str, bounds: Mapping[str, Any] | None = None) -> dict[str, str]:
-    """Return the files of a kernel in one language, such as ``"c"``, as a map from file name to text."""
-    # in C the header comes first; ``bounds`` are for the comment at the head of a scene's C file
-    return kernel.files(target, bounds)
 
 
 def certificate_files(
@@ -131,7 +124,7 @@ def _files_of(name: str, subfolder: str, targets: Sequence[str], directory: Path
     for target in targets:
         # bounds in an earlier certificate of the kernel are used again
         bounds = stored_bounds(kernel, directory / target / subfolder) if target == "c" else None
-        texts = kernel_files(kernel, target, bounds)
+        texts = kernel.files(target, bounds)
         if target == "c":
             texts |= certificate_files(kernel, directory / target / subfolder, bounds)
         files |= {f"{target}/{subfolder}{file}": text for file, text in texts.items()}

@@ -19,7 +19,8 @@ from symrot.codegen.derivatives import Formulas
 from symrot.codegen.library_kernels import kernel_description, kernel_program
 from symrot.codegen.lowering.lower import Lowered
 from symrot.codegen.printing.banner import Description
-from symrot.codegen.printing.c_source import DOUBLE, FLOAT, MATH_HEADER, c_functions, c_header, with_head
+from symrot.codegen.printing.c_function import DOUBLE, FLOAT
+from symrot.codegen.printing.c_source import MATH_HEADER, c_functions, c_header, with_head
 from symrot.codegen.printing.jax_source import jax_source
 from symrot.codegen.printing.js_source import js_source
 from symrot.codegen.printing.math_header import math_header

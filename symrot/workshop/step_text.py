@@ -5,10 +5,10 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
-from symrot.certificates.certificate import KernelUnderTest
 from symrot.certificates.step_certificate import StepUnderTest, step_certificate
 from symrot.codegen.printing.banner import Description
-from symrot.codegen.printing.c_source import DOUBLE, FLOAT, Real, c_functions, c_header, c_name, with_head
+from symrot.codegen.printing.c_function import DOUBLE, FLOAT, Real, c_name
+from symrot.codegen.printing.c_source import c_functions, c_header, with_head
 from symrot.codegen.printing.jax_source import jax_source
 from symrot.codegen.printing.js_source import js_source
 from symrot.codegen.printing.numpy_source import numpy_source
@@ -25,7 +25,7 @@ from symrot.codegen.steps import (
     step_program,
     stepped,
 )
-from symrot.errors import CertificateError, InputError
+from symrot.errors import InputError
 from symrot.formula.exact_numbers import equal
 from symrot.formula.program import Program
 from symrot.formula.tree import FUNCTIONS
@@ -222,13 +222,6 @@ class StepText(StepFiles):
     def jax(self) -> str:
         """The JAX source."""
         return jax_source(self._program, self._description("jax"))
-
-    def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
-        """Raise CertificateError: a step has a certificate of its own kind, see :attr:`certified`."""
-        raise CertificateError(
-            f"{self.name}: expected a kernel of the library or of a scene, got a time step; "
-            "`symrot certify SCENE --step METHOD` certifies steps"
-        )
 
     @cached_property
     def certified(self) -> StepUnderTest:

@@ -4,9 +4,12 @@ from fractions import Fraction
 from math import inf, sqrt
 from random import Random
 
+import mpmath
 import pytest
 
-from symrot.certificates.bounded_number import DOUBLE, PAIR, Bounded, UndecidedError, point
+from symrot.certificates.exact_step.bounded_number import DOUBLE, PAIR, Bounded, UndecidedError, point
+from symrot.certificates.exact_step.bounds import _exact_defect
+from symrot.certificates.exact_step.functions import exponential, pair
 
 SCALES = (1.0, 1e-9, 1e150, 1e-150, 1e-300)
 
@@ -79,3 +82,29 @@ def test_numbers_too_small_for_sums_of_two_doubles_lose_their_relative_bound():
 
 def test_the_root_of_zero_is_exact():
     assert point(0.0).root(PAIR).is_exact
+
+
+@pytest.mark.parametrize("x", [-1e300, -1e6, -746.0, -745.2, -744.0, -709.5, -700.0, -1.0, 0.0, 700.0, 709.9, 1e300])
+def test_an_exponential_is_positive_also_where_a_double_underflows_to_zero(x):
+    """exp(-746) is 0 as a double, and 1e-324 in truth."""
+    result = exponential(point(x))
+    with mpmath.workdps(30):
+        exact = mpmath.exp(x) if x > -1e299 else mpmath.mpf(10) ** -1000
+    assert mpmath.mpf(result.low) <= exact <= mpmath.mpf(result.high)
+    assert result.high > 0 and result.error > 0
+
+
+def test_bounds_of_errors_do_not_underflow_to_zero():
+    """The products of bounds below the smallest double are positive, so that no rounded number counts as exact."""
+    tiny = 5e-324
+    assert Bounded(tiny, tiny, inf, DOUBLE).error > 0 and not Bounded(tiny, tiny, inf, DOUBLE).is_exact
+    assert Bounded(1e10, 1e10, tiny, inf).relative > 0
+    assert Bounded(0.0, 0.0, inf, DOUBLE).is_exact and Bounded(1.0, 1.0, 0.0, inf).is_exact
+
+
+def test_products_that_underflow_are_undecided_where_they_count_as_exact():
+    """The C text sums |L|^2 - 2 T I_mid exactly; a part 1e-300 of it is not nothing."""
+    moments = [pair(point(x)) for x in (1e-160, 1.0, 1.0)], 0
+    omega = [pair(Bounded(1e-90, 1e-80, 0.0, 0.0)) for _ in range(3)], 0
+    with pytest.raises(UndecidedError):
+        _exact_defect(moments, omega)

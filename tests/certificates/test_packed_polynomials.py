@@ -6,7 +6,7 @@ from random import Random
 import pytest
 from sympy import QQ, ring
 
-from symrot.certificates.packed_polynomials import PackedPolynomial, variables
+from symrot.certificates.truncation.packed_polynomials import PackedPolynomial, variables
 
 NAMES = ["x", "omega_1", "t"]
 

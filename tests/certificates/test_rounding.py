@@ -19,13 +19,12 @@ from symrot.certificates.rounding.bounds import (
     bound_outputs,
     bound_task,
     bound_tasks,
-    check_section,
-    rounding_section,
 )
 from symrot.certificates.rounding.bounds_text import bounds_sentence, library_section, rounded_up
 from symrot.certificates.rounding.library import largest_box, library_problem, operations_of, prepare, resized
 from symrot.certificates.rounding.output_graph import output_graph
 from symrot.certificates.rounding.region import Region
+from symrot.certificates.rounding.section import check_section, rounding_section
 from symrot.certificates.rounding.store import TABLE, method, printed_table, table
 from symrot.cli.main import main
 from symrot.errors import CertificateError, InputError

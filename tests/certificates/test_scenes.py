@@ -9,8 +9,8 @@ import pytest
 
 from symrot.certificates import recheck
 from symrot.certificates.readback.readback import read_kernel
-from symrot.certificates.rounding.bounds import check_section
 from symrot.certificates.rounding.constants import parameter_range
+from symrot.certificates.rounding.section import check_section
 from symrot.cli.main import main
 from symrot.errors import InputError
 from symrot.formula.tree import parse

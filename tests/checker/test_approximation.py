@@ -1,4 +1,4 @@
-"""Approximations for small values of a letter: the right side is the Taylor polynomial, or the claim is no identity."""
+"""Approximations for small values of a letter: true if both sides begin with the same terms of a Taylor series."""
 
 import pytest
 
@@ -33,3 +33,17 @@ def test_another_approximation_is_not_accused(claim):
 
 def test_a_rounded_value_stays_a_rounded_value():
     assert [symrot.check(claim).verdict for claim in ("√2 ≈ 1.41", "cos(1) ≈ 0.54")] == ["true", "true"]
+
+
+@pytest.mark.parametrize(("claim", "power"), [
+    ("tan θ ≈ sin θ", 2), (r"\tan\theta \approx \sin\theta", 2), ("exp(x) ≈ 1/(1 - x)", 1), ("cos(x) ≈ exp(-x²/2)", 3),
+])  # fmt: skip
+def test_two_formulas_with_the_same_first_terms_are_a_true_approximation(claim, power):
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "true" and f"agree up to the power {power} of" in verdict.notes[0]
+
+
+@pytest.mark.parametrize("claim", ["tan θ ≈ 2 sin θ", "cos θ ≈ exp(θ)", "cos x ≈ 1/(1 + x²)"])
+def test_formulas_that_agree_in_a_constant_at_most_are_not_called_an_approximation(claim):
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "undecided" and "differ in the power" in verdict.reason

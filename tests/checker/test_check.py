@@ -223,3 +223,11 @@ def test_no_code_of_the_checker_uses_a_verdict_as_a_truth_value(monkeypatch):
 def test_a_long_sum_inside_functions_needs_no_expansion_if_a_letter_proves_the_claim():
     total = "a + b + c + d + f + g + h + k + l + m"
     assert symrot.check(f"sin({total})**2 + cos({total})**2 == 1", repair=False).verdict == "true"
+
+
+def test_several_equations_are_true_only_where_each_of_them_is_defined():
+    verdict = symrot.check("a/b = a*c/(b*c); d/f = d*g/(f*g)")
+    assert verdict.verdict == "true" and verdict.conditions == ("b != 0", "c != 0", "f != 0", "g != 0")
+    verdict = symrot.check("sqrt(x^2) = x; sqrt(y^2)/z = y/z")
+    assert verdict.verdict == "conditional"
+    assert verdict.conditions == ("x >= 0 and y >= 0", "z != 0") and verdict.requires == ("x >= 0 and y >= 0",)

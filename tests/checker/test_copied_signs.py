@@ -28,7 +28,7 @@ def test_a_wrong_digit_is_repaired(text, right):
     assert right in verdict.repairs[0].text
 
 
-@pytest.mark.parametrize("text", ["tan x ≈ sin x", "pi ≈ 22/7"])
+@pytest.mark.parametrize("text", ["x ≈ sin y", "pi ≈ 22/7"])
 def test_an_approximation_without_digits_is_refused(text):
     with pytest.raises(InputError, match="write = with the digits that you know"):
         symrot.check(text)

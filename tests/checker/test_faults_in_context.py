@@ -8,7 +8,7 @@ from sympy import Symbol
 import symrot
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import text
-from symrot.checker.repair.edits import bracketed
+from symrot.checker.repair.edits.sums_and_products import bracketed
 from tests.campaigns.checker.repair_claims import claims_of_step
 
 CONES = ["theta = angle between axis and H", "gamma = angle between axis and omega", "I_s = moment about the axis",

@@ -5,16 +5,17 @@ import pytest
 import symrot
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import text
-from symrot.checker.recognition.pairing import absent_name, renamings
-from symrot.checker.recognition.parts import (
-    LACKING,
+from symrot.checker.recognition.single_faults.absent_names import absent_name
+from symrot.checker.recognition.single_faults.parts import (
     Letters,
     PointOfLetters,
+    Valued,
     is_superfluous,
     multiples,
     parts,
-    variants,
 )
+from symrot.checker.recognition.single_faults.renamings import renamings
+from symrot.checker.recognition.single_faults.variants import LACKING, variants
 from tests.campaigns.checker.printed import names_fault, offers
 
 FAULTS = (
@@ -133,6 +134,13 @@ def test_one_wrong_entry_of_a_matrix_is_repaired(wrong, entry):
     assert (verdict.verdict, verdict.diagnosis.code) == ("doubtful", entry)
 
 
+def test_a_wrong_row_of_a_diagonal_matrix_times_a_column_is_repaired():
+    """The zeros beside the diagonal of ``diag`` are no parts of the formula, so they cannot be at fault."""
+    verdict = symrot.check("L = diag(I_1, I_2, I_3)*(w_1, w_2, 2*w_3)")
+    assert verdict.repairs[0].text == "L = diag(I_1, I_2, I_3/2)*[w_1, w_2, 2*w_3]"
+    assert symrot.check("L = diag(I_1, I_2, I_3)*(w_1, w_2, w_2)").verdict == "definition"
+
+
 def test_the_matrix_of_a_quaternion_may_have_any_letters():
     matrix = ("[[1 - 2(y² + z²), 2(x y - z w), 2(x z + y w)], [2(x y + z w), 1 - 2(x² + z²), 2(y z - x w)], "
               "[2(x z - y w), 2(y z + x w), 1 - 2(x² + y²)]]")  # fmt: skip
@@ -149,7 +157,7 @@ def test_a_part_should_have_the_value_that_makes_the_whole_right():
     letters = _letters(m=(2.0, 3.0), a=(1.5, 0.7), b=(0.4, 1.1))
     tree = read_expression("m*(a**2 - b)/12")
     needed = tuple(m * (a**2 + b**2) / 12 for m, a, b in ((2.0, 1.5, 0.4), (3.0, 0.7, 1.1)))
-    values = {text(part.node): part.needed for part in parts(tree, letters.points, needed)}
+    values = {text(part.node): part.needed for part in parts(Valued(tree, letters.points), needed)}
     assert values["b"] == pytest.approx((-(0.4**2), -(1.1**2)))
     assert values["a**2"] == pytest.approx((1.5**2 + 0.4**2 + 0.4, 0.7**2 + 1.1**2 + 1.1))
 
@@ -157,12 +165,12 @@ def test_a_part_should_have_the_value_that_makes_the_whole_right():
 def test_a_multiple_and_an_absent_part_are_seen():
     letters = _letters(a=(1.5, 0.7), b=(0.4, 1.1))
     tree = read_expression("a - b")
-    negative = next(part for part in parts(tree, letters.points, (1.9, 1.8)) if text(part.node) == "b")
+    negative = next(part for part in parts(Valued(tree, letters.points), (1.9, 1.8)) if text(part.node) == "b")
     assert not is_superfluous(negative)
     assert [(text(change.made), change.code) for change in multiples(negative)] == [("-b", "sign_of_term")]
-    doubled = next(part for part in parts(tree, letters.points, (0.7, -1.5)) if text(part.node) == "b")
+    doubled = next(part for part in parts(Valued(tree, letters.points), (0.7, -1.5)) if text(part.node) == "b")
     assert [text(change.made) for change in multiples(doubled)] == ["2*b"]
-    (lone,) = [part for part in parts(tree, letters.points, (1.5, 0.7)) if is_superfluous(part)]
+    (lone,) = [part for part in parts(Valued(tree, letters.points), (1.5, 0.7)) if is_superfluous(part)]
     assert text(lone.node) == "-b"
 
 

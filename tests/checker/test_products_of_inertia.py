@@ -31,3 +31,13 @@ def test_the_convention_is_told(sign, words):
 
 def test_primed_axes_make_one_name():
     assert symrot.check("I_x'y' = I_xy + m a b").verdict == "recognised"
+
+
+@pytest.mark.parametrize("context", [
+    'where = ["I_xy = product of inertia without the minus sign"]', 'body = "solid cylinder with the symmetry axis x"',
+])  # fmt: skip
+def test_a_worked_number_is_decided_beside_a_context_that_changes_equations(tmp_path, context):
+    file = tmp_path / "claims.toml"
+    claim = '[[claim]]\nid = "a"\nsymbols = []\nvalue = "2*pi"\nprinted_value = "6.28"'
+    file.write_text(f"schema = 1\n{claim}\n{context}\n")
+    assert [verdict.verdict for verdict in symrot.check_file(file)] == ["true"]

@@ -4,7 +4,7 @@ import pytest
 from sympy import Abs, cos, pi, sin, sqrt, symbols
 
 import symrot
-from symrot.checker.decide.ranges import follow, range_text
+from symrot.checker.decide.ranges.text import follow, range_text
 
 x, y, a, k, m, theta = symbols("x y a k m theta", real=True)
 

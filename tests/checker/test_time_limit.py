@@ -8,6 +8,7 @@ import pytest
 
 import symrot
 from symrot.checker import claim_verdict
+from symrot.checker.text import equation
 from symrot.checker.time_limit import TimeUp, processor_seconds
 from symrot.exact.limits.operations import one_claim, operations_left
 
@@ -131,3 +132,20 @@ def test_a_verdict_whose_repairs_need_too_many_operations_is_kept(monkeypatch):
 def test_high_powers_and_long_numbers_need_no_long_factoring(text, word):
     with one_claim(300_000):
         assert symrot.check(text, repair=False).verdict == word
+
+
+@pytest.mark.parametrize(
+    "text", ["sin(θ + δ) ≈ sin θ + δ cos θ", "(dA/dt)_s = (dA/dt)_b + ω × A", "x^2 + y^2 + 1 > x y"]
+)
+def test_every_kind_of_claim_ends_within_its_budget(monkeypatch, text):
+    monkeypatch.setattr(claim_verdict, "MOST_OPERATIONS", 1)
+    verdict = symrot.check(text)
+    assert verdict.verdict == "undecided" and verdict.reason.startswith("it needs more than 1 operations")
+
+
+def test_a_false_claim_about_complex_numbers_keeps_its_verdict_if_its_repairs_take_too_long(monkeypatch):
+    text = "(a + b*i)*(a - b*i) == a**2 - b**2"
+    assert symrot.check(text).repairs
+    monkeypatch.setattr(equation, "within_limits", lambda: one_claim(1))
+    verdict = symrot.check(text)
+    assert verdict.verdict == "false" and not verdict.repairs and any("stopped after" in note for note in verdict.notes)

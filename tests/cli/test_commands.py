@@ -346,3 +346,12 @@ def test_hostile_keys_and_formulas_are_one_sentence(tmp_path, capsys):
         scene.write_text(f'{good}torque = ["{formula}", "0", "0"]\n')
         assert cli.main(["run", str(scene)]) == 2
         assert "divides by zero" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("arguments", [("emit", "--list"), ("bound", "quaternion_product")])
+def test_lists_and_bounds_fit_a_terminal_of_80_columns(arguments, monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", "80")
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    assert cli.main(list(arguments)) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) > 5 and max(map(len, lines)) <= 80

@@ -161,7 +161,7 @@ def test_an_ensemble_of_tensors_has_the_bits_of_its_motions(name):
     names = ("I_xx", "I_yy", "I_zz", "I_xy", "I_xz", "I_yz")
     given = dict(zip(names, np.ascontiguousarray(columns.T), strict=True))
     found = symrot.propagate_ensemble(SCENES["tilted"], omega=omega, parameters=given, t=times, method="exact")
-    variation = symrot.ensemble.variation.read_variation(SCENES["tilted"], omega, None, given)
+    variation = symrot.ensemble.reading.read_variation(SCENES["tilted"], omega, None, given)
     for i in range(N):
         own = propagator(variation.scene_of(i), "exact")(times)
         assert found.omega[i].tobytes() == own.y[:3].T.tobytes(), i

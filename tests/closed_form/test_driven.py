@@ -27,7 +27,7 @@ BAR = 1e-15
 def no_compiler(monkeypatch):
     """Imitate a machine without a C compiler and without compiled loops, so that NumPy computes everything."""
     monkeypatch.setenv("CC", "no such compiler")
-    monkeypatch.setattr(axial_compiled, "_bound", {})
+    monkeypatch.setattr("symrot.closed_form.build._loaded", {})
 
 
 @pytest.fixture(params=["C", "NumPy"])

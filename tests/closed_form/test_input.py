@@ -49,8 +49,8 @@ def spoilt(given):
 def test_a_sample_beyond_the_doubles_is_refused_wherever_it_is(form, without_compiler, monkeypatch):
     """Times may be in any order; a NaN between two samples was once returned."""
     if without_compiler:
-        monkeypatch.setattr("symrot.closed_form.motion._bound", {})
-        monkeypatch.setattr("symrot.closed_form.motion.library.missing", lambda: "none")
+        monkeypatch.setattr("symrot.closed_form.build._loaded", {})
+        monkeypatch.setattr("symrot.build.cache.missing", lambda: "none")
     motion = form.motion(**MOTIONS[form] | {"omega0": [1e3, 2e3, 1e4]})
     with (
         np.errstate(all="ignore"),
@@ -65,8 +65,8 @@ def test_a_sample_beyond_the_doubles_is_refused_wherever_it_is(form, without_com
 def test_a_motion_of_too_many_revolutions_is_refused(form, without_compiler, monkeypatch):
     """Rates of 31 digits do not give a phase of 1e25 revolutions; a wrong attitude was once returned."""
     if without_compiler:
-        monkeypatch.setattr("symrot.closed_form.motion._bound", {})
-        monkeypatch.setattr("symrot.closed_form.motion.library.missing", lambda: "none")
+        monkeypatch.setattr("symrot.closed_form.build._loaded", {})
+        monkeypatch.setattr("symrot.build.cache.missing", lambda: "none")
     motion = form.motion(**MOTIONS[form])
     assert np.isfinite(motion.evaluate([1e15])[1]).all()
     for time in (1e25, -1e40, 1e90):

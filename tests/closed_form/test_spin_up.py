@@ -9,7 +9,6 @@ from sympy import Rational, Symbol, solve
 
 from symrot.catalogue import derivation
 from symrot.closed_form import build as library
-from symrot.closed_form.spin_up import compiled as spin_up_compiled
 from symrot.closed_form.spin_up import motion as spin_up
 from symrot.closed_form.spin_up import series as spin_up_series
 from symrot.errors import InputError
@@ -114,7 +113,6 @@ def by_integers(motion, times):
 
 def without_compiler(given, monkeypatch):
     monkeypatch.setenv("CC", "no such compiler")
-    monkeypatch.setattr(spin_up_compiled, "_bound", [])
     monkeypatch.setattr(library, "_loaded", {})
     return spin_up.motion(*given)
 

@@ -10,7 +10,8 @@ import sympy
 from sympy import Rational, Symbol
 
 from symrot.codegen.taylor.coefficients import coefficients
-from symrot.codegen.taylor.recurrences import recurrences, split_sign
+from symrot.codegen.taylor.linear_forms import split_sign
+from symrot.codegen.taylor.recurrences import recurrences
 from symrot.errors import InputError
 from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import FUNCTIONS, evaluate, parse

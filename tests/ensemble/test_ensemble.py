@@ -22,7 +22,7 @@ from symrot.codegen.taylor.ensemble_source import lane_definitions, multiplicati
 from symrot.codegen.taylor.recurrences import recurrences
 from symrot.dynamics.structure import PrincipalInertia
 from symrot.ensemble import lanes
-from symrot.ensemble.variation import read_variation
+from symrot.ensemble.reading import read_variation
 from symrot.errors import InputError
 from symrot.formula.tree import FUNCTIONS
 from symrot.propagation.compiled_models import error_blocks, scene_kernel

@@ -13,9 +13,9 @@ from symrot.closed_form import batches, many, motion
 from symrot.closed_form.arithmetic.pairs import attitude
 from symrot.closed_form.heavy_top import motion as heavy_top
 from symrot.closed_form.spin_up import compiled as spin_up_compiled
-from symrot.ensemble import exact, variation
+from symrot.ensemble import exact, reading, variation
 from symrot.ensemble.exact import forms_of
-from symrot.ensemble.variation import read_variation
+from symrot.ensemble.reading import read_variation
 from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
 from symrot.inertia import principal
@@ -347,7 +347,7 @@ def test_bodies_whose_tensors_vary_are_checked(monkeypatch):
     """Doubles decide clear cases without principal axes; an impossible body is refused, whichever trajectory it is."""
     tensors = np.linspace(0.1, 0.2, 50)
     calls = []
-    monkeypatch.setattr(variation, "require_admissible", lambda *given: calls.append(given))
+    monkeypatch.setattr(reading, "require_admissible", lambda *given: calls.append(given))
     read_variation(SCENES["tilted"], None, None, {"I_xy": tensors})
     assert calls == []
     monkeypatch.undo()

@@ -43,6 +43,36 @@ def volume_or_refusal(tmp_path, suffix, content):
         return None
 
 
+@pytest.mark.parametrize("old, new", [("\nf 4 3 2 1", "\nF 4 3 2 1"), ("\nv ", "\nV ")])
+def test_lines_with_capital_letters_are_not_lost(tmp_path, old, new):
+    """Trimesh leaves out lines that begin with F; such a face was missing, or its twin in a second body."""
+    text = obj(*prism([(0, 0), (1, 0), (1, 1), (0, 1)]))
+    assert old in text
+    assert "expected a small letter at the beginning of line" in refusal(tmp_path, "obj", text.replace(old, new, 1))
+
+
+@pytest.mark.parametrize("write", [
+    lambda v, f: ("obj", obj(v, f)), lambda v, f: ("ply", ply(v, f)), lambda v, f: ("ply", ply(v, f, BINARY[0])),
+])  # fmt: skip
+def test_polygons_that_are_not_flat_are_counted(tmp_path, write):
+    """The volume of a box with one corner moved depends on how its squares are divided into triangles."""
+    corners, faces = prism([(0, 0), (1, 0), (1, 1), (0, 1)])
+    for top, note in (
+        (1.0, ""),
+        (1 + 1e-7, ""),
+        (1.2, "; 3 polygons of the file are not flat, so the shape depends on"),
+    ):
+        suffix, content = write([*corners[:-1], (1 - top, top, top)], faces)
+        (tmp_path / f"part.{suffix}").write_bytes(content if isinstance(content, bytes) else content.encode())
+        checks = symrot.mesh(tmp_path / f"part.{suffix}", density=1).checks
+        assert note in checks and ("not flat" in checks) == bool(note)
+    body = {"mesh": str(tmp_path / f"part.{suffix}"), "density": 1}
+    (warning,) = symrot.Scene.from_dict(
+        {"schema": 1, "body": body, "initial": {"omega": [0, 0, 1]}, "span": {"t": [0, 1]}}, table_folders=tmp_path
+    ).warnings
+    assert "3 polygons of the file are not flat" in warning
+
+
 REGULAR = [[(math.cos(2 * math.pi * k / n), math.sin(2 * math.pi * k / n)) for k in range(n)] for n in (3, 5, 6, 8)]
 ELBOW = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]
 

@@ -266,10 +266,46 @@ def test_links_of_plugins_are_no_links(tmp_path):
     symrot.write_link(path, "arm", ball)
     assert symrot.link(path, "arm").inertia == ball.inertia
     empty = robot(tmp_path, '<robot><gazebo><link name="arm"/></gazebo><link name="arm"/></robot>')
-    before = empty.read_text()
-    with pytest.raises(InputError, match="link 'arm': expected an element <inertial>, got none"):
-        symrot.write_link(empty, "arm", ball)
-    assert empty.read_text() == before
+    symrot.write_link(empty, "arm", ball)
+    assert symrot.link(empty, "arm").inertia == ball.inertia and '<gazebo><link name="arm"/>' in empty.read_text()
+
+
+def test_links_of_equal_names_in_several_models_have_the_names_of_the_models(tmp_path):
+    """Nested models of SDF have names of their own for their links; such links could not be told apart."""
+    inner = SDF.format(attributes="", rotation="0 0 0").partition("<sdf")[2].partition(">")[2].rpartition("</sdf>")[0]
+    left, right = (inner.replace("<model", f"<model name='{side}'", 1) if "<model>" in inner else
+                   inner.replace(inner[inner.index("<model") : inner.index(">", inner.index("<model"))], f"<model name='{side}'", 1)
+                   for side in ("left", "right"))  # fmt: skip
+    base = "<link name='base'/>"
+    path = robot(tmp_path, f"<sdf version='1.9'><model name='robot'>{base}{left}{right}</model></sdf>")
+    names = ["base", "robot::left::arm", "robot::right::arm"]
+    assert sorted(each.name for each in symrot.links(path)) == names
+    assert symrot.link(path, names[2]).mass == Fraction(5, 2)
+    with pytest.raises(
+        InputError, match="expected one of its links, base, robot::left::arm, robot::right::arm, got 'arm'"
+    ):
+        symrot.link(path, "arm")
+    ball = Inertial("x", Fraction(1), (0, 0, 0), ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
+    symrot.write_link(path, names[2], ball)
+    assert symrot.link(path, names[2]).mass == 1 and symrot.link(path, names[1]).mass == Fraction(5, 2)
+
+
+def test_a_mesh_in_a_format_that_is_not_read_is_no_broken_robot(tmp_path, capsys):
+    path = tmp_path / "part.off"
+    path.write_text("OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n", encoding="utf-8")
+    assert main(["inertia", str(path)]) == 2
+    assert "meshes are read in the formats STL, OBJ, PLY and GLB" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("moments", [("0.02", "0.02", "0.03"), ("0.01", "0.02", "0.03"), ("0.02", "0.025", "0.03")])
+def test_the_scene_of_a_rotated_link_has_short_numbers_and_the_same_symmetry(tmp_path, moments):
+    """The numbers of the tensor were fractions with 95 digits above and below the line."""
+    wheel = symrot.link(robot(tmp_path, ROTATED.format(**dict(zip(("xx", "yy", "zz"), moments, strict=True)))), "wheel")
+    scene = symrot.Scene.build(body=wheel.table(), initial={"omega": [0, 1, 0]}, span={"t": [0, 1]})
+    text = scene.to_toml()
+    assert "/" not in text and max(map(len, text.replace(",", " ").split())) <= 80
+    body = scene.body.principal
+    assert (body.kind, body.flat) == (wheel.principal.kind, wheel.principal.flat)
 
 
 def test_places_of_links_in_the_state_of_a_world_are_no_links(tmp_path):

@@ -11,9 +11,10 @@ from scipy.spatial import ConvexHull
 import symrot
 from symrot.errors import InputError
 from symrot.inertia.composite import Part, doubtful_holes
-from symrot.inertia.containment import are_apart, center, corners, excess, outside, size
+from symrot.inertia.containment import are_apart, excess, outside
 from symrot.inertia.cutting import cut
-from symrot.inertia.holes import filled, pose
+from symrot.inertia.holes import dense_part, pose
+from symrot.inertia.hulls import center, corners, size
 from symrot.inertia.integration import shape_points
 from symrot.inertia.shapes import SHAPES, check_dimensions, scalars
 
@@ -141,7 +142,7 @@ def test_a_hole_that_cannot_be_decided_is_a_warning_of_the_run():
 
 
 def solid(shape, at, rotation, dimensions):
-    return filled(shape, check_dimensions(SHAPES[shape], dimensions, ""), pose(at, rotation), 1, False)
+    return dense_part(shape, check_dimensions(SHAPES[shape], dimensions, ""), pose(at, rotation), 1, False)
 
 
 def drawn(rng, shape, longest):

@@ -9,7 +9,8 @@ import pytest
 from symrot.certificates.readback.readback import read_batch, read_kernel
 from symrot.codegen.library_kernels import kernel_program
 from symrot.codegen.printing.banner import Description
-from symrot.codegen.printing.c_source import WAYS, c_source
+from symrot.codegen.printing.c_batch import WAYS
+from symrot.codegen.printing.c_source import c_source
 from symrot.formula.program import Argument, Program, Signature
 from symrot.workshop.emit import emit
 

@@ -177,9 +177,11 @@ def test_definition_by_the_angle():
 
 
 def test_shadow_set():
-    """The shadow has the same attitude, the two lengths multiply to 1, and its own shadow is the original set."""
+    """The shadow has the opposite quaternion, so the same attitude, the two lengths multiply to 1, and its own shadow is
+    the original set.
+    """
     shadow, s = rodrigues.shadow(), Matrix(sym.mrp)
-    assert normal_form(rodrigues.MODIFIED.dcm(shadow) - rodrigues.MODIFIED.dcm()) == zeros(3)
+    assert normal_form(rodrigues.MODIFIED.quaternion(shadow) + rodrigues.MODIFIED.quaternion()) == zeros(4, 1)
     assert normal_form(shadow.dot(shadow) * s.dot(s) - 1) == 0
     assert normal_form(rodrigues.shadow(shadow) - s) == zeros(3, 1)
     assert normal_form(rodrigues.MODIFIED.dcm(-s) - rodrigues.MODIFIED.dcm()) != zeros(3)

@@ -17,6 +17,7 @@ from scipy.spatial.transform import Rotation
 from symrot.conventions import EXTRINSIC_SEQUENCES, INTRINSIC_SEQUENCES, SEQUENCES
 from symrot.errors import InputError
 from symrot.kinematics import conversions as cv
+from symrot.kinematics.arrays import BLOCK
 from symrot.kinematics.continuity import continuous_quaternion, unwrap_euler
 from symrot.kinematics.rotation_vector import rotation_vector_of_quaternion
 from tests.reference.quaternions import (
@@ -342,7 +343,7 @@ def test_any_leading_shape(name, attitudes):
 
 
 def test_blocks_do_not_show(attitudes):
-    many = np.tile(attitudes, (2 * cv.BLOCK // len(attitudes) + 3, 1))
+    many = np.tile(attitudes, (2 * BLOCK // len(attitudes) + 3, 1))
     angles, _ = cv.quaternion_to_euler(many, "ZXZ")
     once, _ = cv.quaternion_to_euler(attitudes, "ZXZ")
     np.testing.assert_array_equal(angles, np.tile(once, (len(many) // len(attitudes), 1)))

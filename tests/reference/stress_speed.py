@@ -28,15 +28,15 @@ def s40(long):
     ratios = []
     for decade in (1e-6, 1e-9, 1e-12):
         ours, theirs = (race.best_of(runs, decade, [each]) for each in ("taylor", "heyoka"))
-        ratios.append(min(theirs.seconds) / min(ours.seconds))
+        ratios.append(theirs.least / ours.least)
     found.append(Figure("taylor", "one trajectory, times heyoka's speed, 1e-6 to 1e-12", 2, min(ratios), at_least=True))
-    problem = ensemble.Problem(name, 1.0)
+    problem = race.SteppedProblem(name, 1.0)
     runs = ensemble.measure(ensemble.prepare(name, 8, problem.stop, problem), 9)
     peers = sorted({run.name for run in runs} - {"lanes"})
     ratios = []
     for decade in (1e-6, 1e-9, 1e-12):
-        ours, theirs = ensemble.best_of(runs, decade, ["lanes"]), ensemble.best_of(runs, decade, peers)
-        ratios.append(min(theirs.seconds) / min(ours.seconds))
+        ours, theirs = race.best_of(runs, decade, ["lanes"]), race.best_of(runs, decade, peers)
+        ratios.append(theirs.least / ours.least)
     found.append(Figure("lanes", "batch of 8, times heyoka's speed", 1.7, min(ratios), at_least=True))
     found += _dense(name)
     plain, slp = (Stepped(asymmetric_top(), flags=flags) for flags in (library.FLAGS, (*library.FLAGS, "-O3")))
@@ -53,9 +53,7 @@ def _dense(name):
     At equal tolerances the error of symrot is a hundred times smaller, so this comparison has no bar.
     """
     samples, found = 20_000, []
-    many, two = (
-        {(one.name, one.tolerance): one for one, _ in dense.measure(name, count, 15)} for count in (samples, 2)
-    )
+    many, two = ({(one.name, one.tolerance): one for one in dense.measure(name, count, 15)} for count in (samples, 2))
     peers = [(way, tolerance) for way, tolerance in many if way == "heyoka grid"]
     pairs = []
     for peer in peers:

@@ -92,7 +92,7 @@ def test_the_angle_of_a_top_gives_its_potential_energy():
 def test_only_scenes_with_a_vertical_have_its_panel(scene, expected):
     motion = symrot.propagate(scene)
     assert has_vertical(motion.scene) is expected
-    titles = [axes.get_title() for axes in plot.figure(motion.resample(50), 1e-12).axes]
+    titles = [axes.get_title() for axes in plot.figure(motion.resample(50)).axes]
     assert any("vertical" in title for title in titles) is expected
 
 
@@ -182,7 +182,7 @@ def test_a_legend_never_covers_the_title(width, place, panel):
 @pytest.mark.parametrize("scene", ["earth_wobble", "gravity_gradient_satellite", "heavy_top_loops"])
 def test_no_legend_of_a_page_covers_a_title(scene):
     with rc_context(STYLE):
-        page = plot.figure(plot.dense(symrot.propagate(scene)), 1e-12)
+        page = plot.figure(plot.dense(symrot.propagate(scene)))
         page.draw_without_rendering()
         legends = [axes.get_legend().get_window_extent() for axes in page.axes if axes.get_legend()]
         titles = [axes._left_title.get_window_extent() for axes in page.axes]

@@ -53,7 +53,7 @@ def test_pages_are_the_same_twice_and_name_no_date(tmp_path, capsys, suffix):
 ])  # fmt: skip
 def test_panels_and_their_units(scene, titles):
     motion = symrot.propagator(scene)()
-    page = plot.figure(motion, 1e-12)
+    page = plot.figure(motion)
     found = [panel.get_title(loc="left") or panel.get_title() for panel in page.axes]
     assert all(any(one.startswith(title) for one in found) for title in titles)
     over_time = [panel for panel in page.axes if panel.get_xlabel() == "t (s)"]
@@ -104,7 +104,7 @@ def test_units_suit_small_numbers(size, expected):
 
 def test_each_panel_is_drawn_into_axes_as_on_the_page():
     motion = symrot.propagate("heavy_top_loops")
-    titles = {panel.get_title(loc="left") or panel.get_title() for panel in plot.figure(motion, 1e-12).axes}
+    titles = {panel.get_title(loc="left") or panel.get_title() for panel in plot.figure(motion).axes}
     for name in plot.PANELS:
         axes = Figure().add_subplot()
         assert motion.plot(ax=axes, panel=name) is axes

@@ -18,7 +18,8 @@ from symrot.conventions import SEQUENCES
 from symrot.dynamics.torque_kinds import TORQUE_KINDS
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import equal
-from symrot.scene.attitude import read_attitude, to_body, to_space
+from symrot.inertia.tensor import apply
+from symrot.scene.attitude import read_attitude, to_body
 from symrot.scene.scene import Scene, load_scene, shipped_scenes
 from symrot.scene.tables import QUANTITIES
 
@@ -100,7 +101,7 @@ def test_omega_space_is_the_same_vector_in_the_body():
     initial = {"omega_space": [1, 2, 3], "attitude": {"quaternion": [1, 2, -1, 3]}}
     found = scene(initial=initial).initial
     dcm = read_attitude(initial["attitude"], "").dcm
-    assert to_space(dcm, found.omega_b) == (1, 2, 3) and to_body(dcm, (1, 2, 3)) == found.omega_b
+    assert apply(dcm, found.omega_b) == (1, 2, 3) and to_body(dcm, (1, 2, 3)) == found.omega_b
 
 
 # --- numbers ----------------------------------------------------------------------------------------------------------

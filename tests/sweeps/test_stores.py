@@ -330,11 +330,19 @@ def test_a_worker_writes_only_for_its_own_client_while_that_runs(tmp_path):
         pytest.skip("only on Linux")
     store = sweep(path=tmp_path / "a.zarr", chunk=5)._store
     part = Chunk(0, 5, Draws(np.zeros((5, 2)), np.zeros((5, 4))), {}, np.full(5, -1, np.int8), {})
-    with offered(store) as offer, offered(store) as second:
-        assert offer is not None and second is None  # another client runs
+    with offered(store) as offer:
         assert stored(part, offer) == Written(0, 5)
         assert store.read("status", 0, 6).tolist() == [-1] * 5 + [0]
     with offered(store) as later:
-        for wrong in (offer, later._replace(mark="other machine"), later._replace(lock=str(tmp_path / "none"))):
+        for wrong in (offer, later._replace(mark="other machine"), later._replace(file=str(tmp_path / "none"))):
             assert stored(part, wrong) is part
     assert stored(part, later) is part  # its client has ended
+
+
+def test_a_client_that_is_killed_leaves_no_other_file_than_its_results(tmp_path):
+    """The file .a.zarr.lock stayed after a client was killed."""
+    from symrot.sweeps.stores.shared_store import offered
+
+    store = sweep(path=tmp_path / "a.zarr", chunk=5)._store
+    with offered(store):
+        assert [path.name for path in tmp_path.iterdir()] == ["a.zarr"]

@@ -69,7 +69,7 @@ def test_a_number_has_the_short_names_of_scenes():
             for key in (name, path)
         ]
         assert np.array_equal(*(result.array("omega_1@end") for result in results))
-    with pytest.raises(InputError, match="expected something that can vary"):
+    with pytest.raises(InputError, match="expected a value that can vary"):
         symrot.sweep(DAMPED_TOP, {"samples": [3, 4]})
 
 

@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 import symrot
-from symrot.certificates import exact_law
 from symrot.certificates.c_machine.machine import Machine
 from symrot.certificates.certificate import certificate_json, seal
-from symrot.certificates.exact_bounds import free_body_bounds
-from symrot.certificates.exact_law import law_section
+from symrot.certificates.exact_step import law
+from symrot.certificates.exact_step.bounds import free_body_bounds
+from symrot.certificates.exact_step.law import law_section
 from symrot.certificates.step_certificate import formula_section
 from symrot.cli.main import main
 from symrot.codegen.steps import SteadyRotations, stepped
@@ -219,7 +219,7 @@ def test_bounds_of_a_step_with_elliptic_functions_hold_at_random_states(bounded)
     compiled = getattr(ctypes.CDLL(str(folder / "step.so")), f"symrot_{text.name}")
     numbers = np.ctypeslib.ndpointer(np.float64)
     compiled.argtypes = [ctypes.c_double, numbers, numbers, ctypes.c_double, numbers]
-    machine, draw = Machine(text.c()[0], exact_law._number, exact_law._OWN), np.random.default_rng(4)
+    machine, draw = Machine(text.c()[0], law._number, law._OWN), np.random.default_rng(4)
     p, worst = np.array([float(value) for _, _, value in text.form.parameters]), np.zeros(7)
     with localcontext(Context(prec=60)):
         for _ in range(8):
@@ -229,7 +229,7 @@ def test_bounds_of_a_step_with_elliptic_functions_hold_at_random_states(bounded)
             result = [Decimal(0)] * 7
             places = [([Decimal(float(number)) for number in numbers], 0) for numbers in (x, p)]
             machine.call(f"symrot_{text.name}", Decimal(0), *places, Decimal(dt), (result, 0))
-            expected = [exact_law._slope(each).value for each in result]
+            expected = [law._slope(each).value for each in result]
             worst = np.maximum(
                 worst, [abs(float(Decimal(a) - b)) for a, b in zip(after.tolist(), expected, strict=True)]
             )

@@ -12,12 +12,15 @@ import numpy as np
 import pytest
 
 import symrot
-from symrot.certificates import truncation
 from symrot.certificates.certificate import certificate_json, seal
 from symrot.certificates.readback.header import check_source
 from symrot.certificates.readback.readback import read_kernel
 from symrot.certificates.step_certificate import _require_intended, bounds_of_step, formula_section, rates_of
-from symrot.certificates.truncation import _OF_SERIES, _number, _Power, _trees, require_order, truncation_bounds
+from symrot.certificates.truncation import bounds as truncation
+from symrot.certificates.truncation import intervals, leading, order
+from symrot.certificates.truncation.bounds import truncation_bounds
+from symrot.certificates.truncation.order import require_order, trees
+from symrot.certificates.truncation.series import SERIES_FUNCTIONS, PowerSeries
 from symrot.cli.main import main
 from symrot.codegen.steps import RK4, TaylorSeries, stepped
 from symrot.errors import CertificateError, InputError
@@ -95,13 +98,13 @@ def test_intervals_alone_bound_rates_that_are_no_polynomials():
     bounds = truncation_bounds(quotient, method, box)
     measured = errors(quotient, method, parameters, box, 2)
     assert all(error <= bound for bound, error in zip(bounds.values(), measured, strict=True))
-    assert not truncation._problem(quotient, method, list(bounds), box).leading
+    assert leading.leading_terms(quotient, method, list(bounds), box) == (quotient, ())
 
 
 def test_polynomials_with_too_many_terms_are_left_to_intervals(monkeypatch):
     rates, method, _, box = problem("tumbling_prism", "rk4", (Fraction(0), Fraction(1, 100)))
     exact = truncation_bounds(rates, method, box)
-    monkeypatch.setattr(truncation, "MOST_TERMS", 10)
+    monkeypatch.setattr(leading, "MOST_TERMS", 10)
     assert max(truncation_bounds(rates, method, box).values()) > max(exact.values())
 
 
@@ -126,7 +129,7 @@ def rounded(method, digits):
 
 def test_defects_of_rounded_coefficients_are_in_the_bound(monkeypatch):
     """With weights of 5 digits, the defects of the order conditions are the larger part of the error."""
-    monkeypatch.setattr(truncation, "DEFECT", Fraction(1, 10**4))
+    monkeypatch.setattr(order, "DEFECT", Fraction(1, 10**4))
     rates, method, parameters, box = problem("tumbling_prism", "rk4", (Fraction(0), Fraction(1, 1000)))
     near = rounded(method, 5)
     bounds, measured = truncation_bounds(rates, near, box), errors(rates, near, parameters, box, 4)
@@ -138,7 +141,7 @@ def test_defects_of_rounded_coefficients_are_in_the_bound(monkeypatch):
 def test_coefficients_of_dop853_fulfil_the_conditions_to_25_digits():
     """One digit of a weight changed in the twentieth place is refused, and so are rates that no polynomial gives."""
     method = step_text("tumbling_prism", "dop853").method
-    assert 0 < max(require_order(method)) < truncation.DEFECT
+    assert 0 < max(require_order(method)) < order.DEFECT
     wrong = replace(method, weights=dict(method.weights) | {0: method.weights[0] + Fraction(1, 10**20)})
     with pytest.raises(CertificateError, match="violates the order condition of a tree with 1 nodes"):
         require_order(wrong)
@@ -176,19 +179,21 @@ def test_a_certificate_of_dop853_bounds_the_errors_of_one_step(tmp_path):
 
 def test_order_conditions_of_all_trees():
     """There are 1, 1, 2, 4, 9 and 20 rooted trees of 1 to 6 nodes; RK4 fulfils those up to 4 and no more."""
-    assert [len(_trees(size)) for size in range(1, 7)] == [1, 1, 2, 4, 9, 20]
+    assert [len(trees(size)) for size in range(1, 7)] == [1, 1, 2, 4, 9, 20]
     require_order(RK4)
     with pytest.raises(CertificateError, match="a tree with 5 nodes"):
         require_order(replace(RK4, order=5))
 
 
-@pytest.mark.parametrize("name", _OF_SERIES)
+@pytest.mark.parametrize("name", SERIES_FUNCTIONS)
 def test_series_of_functions_contain_their_derivatives(name):
     """The series of f(a + b h + c h^2) contains the Taylor coefficients of the composed function."""
     with mpmath.workdps(40):
         a, b, c = (mpmath.mpf(value) / 8 for value in (5, -3, 7))
         exact = mpmath.taylor(lambda h: getattr(mpmath, name)(a + b * h + c * h * h), 0, 5)
-    series = _OF_SERIES[name](_Power((*(_number(Fraction(value, 8)) for value in (5, -3, 7)), 0, 0, 0)))
+    series = SERIES_FUNCTIONS[name](
+        PowerSeries((*(intervals.number(Fraction(value, 8)) for value in (5, -3, 7)), 0, 0, 0))
+    )
     for interval, value in zip(series.terms, exact, strict=True):
         assert float(interval.a) - 1e-12 <= float(value) <= float(interval.b) + 1e-12
         assert float(interval.delta) < 1e-10
@@ -409,7 +414,6 @@ def test_the_rates_in_a_certificate_are_those_of_the_scene():
 
 @pytest.mark.parametrize(("options", "message"), [
     ({"step": "rk4", "box": {"omega_1": (-1, 1)}}, "expected --box omega_2=LOW:HIGH .* --box dt=LOW:HIGH"),
-    ({"step": "exact", "box": BOX}, "away from the rotation about the middle axis"),
     ({"step": "rk4", "objects": True}, "neither objects nor rounding=False"), ({"order": 3}, "expected a step as well"),
     ({"step": "rk4", "box": BOX | {"weight": (1, 2)}}, "an input of the kernel or a constant"),
 ])  # fmt: skip
@@ -427,8 +431,8 @@ def test_an_audit_says_whether_bounds_were_computed_again(certified):
 
 def test_a_quotient_of_whole_numbers_is_enclosed():
     """As a double, 1/3 was a number outside every enclosure of 1/3."""
-    assert truncation._over(0, 3) == 0 and truncation._over(6, 3) == 2
-    third = truncation._over(1, 3)
+    assert intervals.quotient(0, 3) == 0 and intervals.quotient(6, 3) == 2
+    third = intervals.quotient(1, 3)
     assert third.a < third.b and 1 in 3 * third
 
 

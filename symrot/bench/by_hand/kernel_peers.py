@@ -7,7 +7,7 @@ compiled with the flags of symrot's kernels. A tool that is not installed is ski
 import re
 from collections import Counter
 from collections.abc import Callable, Sequence
-from functools import partial, reduce
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -18,13 +18,13 @@ from sympy import Matrix
 from symrot import symbols
 from symrot.certificates.readback.readback import read_kernel
 from symrot.codegen.library_kernels import kernel_program
-from symrot.codegen.lowering.formulas import to_node
-from symrot.codegen.printing.c_source import c_function, c_name
+from symrot.codegen.lowering.formulas import chain, to_node
+from symrot.codegen.printing.c_function import c_arguments, c_function, c_name
 from symrot.conventions import INTRINSIC_SEQUENCES
 from symrot.dynamics.equations import angular_acceleration, inverse
 from symrot.errors import InputError
 from symrot.formula.program import Program, Signature
-from symrot.formula.tree import Node, children
+from symrot.formula.tree import Node, children, with_children
 from symrot.kernels.dynamics import TENSOR
 from symrot.kernels.jacobian import BY
 from symrot.kinematics.euler import rate_jacobian
@@ -36,6 +36,7 @@ __all__ = [
     "by_hand",
     "casadi_counts",
     "casadi_function",
+    "casadi_text",
     "counted",
     "derivatives_of",
     "input_names",
@@ -135,14 +136,9 @@ def _program(name: str, common: Sequence[tuple[Any, Any]], results: Sequence[Any
 
 def products(node: Node) -> Node:
     """Return the formula ``node`` with integer powers written as products (x*x), since C has no power operator."""
-    if not children(node):
-        return node
     if node[0] == "**":
-        base = products(node[1])
-        return reduce(lambda left, right: ("*", left, right), [base] * node[2])
-    if node[0] == "call":
-        return ("call", node[1], tuple(map(products, node[2])))
-    return (node[0], *map(products, node[1:]))
+        return chain("*", [products(node[1])] * node[2])
+    return with_children(node, list(map(products, children(node))))
 
 
 def _sympy(name: str) -> str:
@@ -241,3 +237,24 @@ def casadi_counts(x: Any, outputs: Any) -> tuple[Any, Counter[str]]:
         if number in by_number
     )
     return function, counts
+
+
+def casadi_text(function: Any, signature: Signature) -> str:
+    """Return the C code that CasADi generates for ``function``, and a kernel with ``signature`` that calls it."""
+    import casadi
+
+    generator = casadi.CodeGenerator("peer", {"with_header": False})
+    generator.add(function)
+    inputs, outputs = ([a for a in signature.arguments if a.role == role] for role in ("in", "out"))
+    values = ", ".join(a.name if a.is_scalar else f"{a.name}[{i}]" for a in inputs for i in range(a.size))
+    results = [f"{a.name}[{i}]" for a in outputs for i in range(a.size)]
+    # CasADi writes all results into one array: that of the only output, or another one, which is then copied.
+    alone = len(outputs) == 1
+    body = [
+        f"const double x[] = {{{values}}};", "const double *arg[1] = {x};",
+        *([] if alone else [f"double y[{len(results)}];"]),
+        f"double *res[1] = {{{outputs[0].name if alone else 'y'}}};", "peer(arg, res, 0, 0, 0);",
+        *([] if alone else [f"{result} = y[{i}];" for i, result in enumerate(results)]),
+    ]  # fmt: skip
+    head = f"static inline void {c_name(signature.name)}({c_arguments(Program(signature, (), ()))})"
+    return str(generator.dump()) + "\n".join([head, "{", *(f"    {line}" for line in body), "}"]) + "\n"

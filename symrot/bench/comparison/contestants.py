@@ -13,6 +13,7 @@ import numpy as np
 
 from symrot.bench.comparison.peers import heyoka_integrator, scalar_kernel
 from symrot.bench.comparison.problem import Floats, Problem, State
+from symrot.bench.comparison.race import EndState
 from symrot.build import cache
 from symrot.closed_form.registry import exact_form
 from symrot.errors import InputError, with_hint
@@ -21,8 +22,7 @@ from symrot.propagation.steppers.smoothness import non_smooth_torque
 
 __all__ = ["CONTESTANTS", "Contestant", "Run", "chosen", "tolerances_from"]
 
-EndState = tuple[Any, int]  # integrated states at the end, or State; number of steps
-Run = Callable[[float], EndState]
+Run = Callable[[float], EndState]  # from an end time, s, to the integrated states there, or a State, and the steps
 
 
 def _half_decades(first: int, last: int) -> tuple[float, ...]:

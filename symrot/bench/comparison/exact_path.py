@@ -18,7 +18,7 @@ from symrot.errors import InputError, SymrotError
 from symrot.formula import exact_numbers as number
 from symrot.formula.exact_functions import EXACT_FUNCTIONS
 from symrot.formula.tree import evaluate
-from symrot.kinematics.hamilton import hamilton
+from symrot.kinematics.hamilton import conjugate, hamilton
 from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import Parameters, SceneKernel
 from symrot.propagation.compiled_models import error_blocks, formula_deviations
@@ -203,7 +203,7 @@ class ExactPath:
         """Return omega and quaternion of a free body at ``times`` in 40 digits."""
         period = self._period = self._period or self.period()
         first, last = self.start[self.rates :], self.state(self.t0 + period)[self.rates :]
-        turn = hamilton(last, [first[0], *(-x for x in first[1:])])
+        turn = hamilton(last, conjugate(first))
         length = mpmath.sqrt(sum(x * x for x in turn[1:]))
         half, axis = mpmath.atan2(length, turn[0]), [x / length for x in turn[1:]]
         rows = []

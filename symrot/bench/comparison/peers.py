@@ -2,32 +2,37 @@
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from importlib.util import module_from_spec, spec_from_file_location
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
-from symrot.codegen.printing.banner import Description
+from symrot.codegen.numpy_kernel import UNNAMED, function_in
 from symrot.codegen.printing.numpy_source import numpy_source
 from symrot.formula.program import Program
 
 __all__ = ["heyoka_integrator", "heyoka_system", "scalar_kernel"]
 
-UNNAMED = Description("right-hand side for SciPy", "all states", "derivations/euler_equations.md", "symrot bench")
-
 FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log", "tan", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
 
 
-def heyoka_system(rates: Program, parameters: Mapping[str, float]) -> list[Any]:
-    """Return the right-hand side dy/dt in heyoka's form: pairs (variable, formula), with the parameters' values
-    inserted.
+def heyoka_system(
+    rates: Program, parameters: Mapping[str, Any], number: Callable[[Any], Any] = float
+) -> list[tuple[Any, Any]]:
+    """Return the right-hand side dy/dt in heyoka's form: pairs (variable, formula), in the order of the states.
+
+    Parameters
+    ----------
+    rates : Program
+        The rates dy/dt.
+    parameters : mapping
+        The values of the parameters of the rates, numbers or expressions of heyoka, which replace their names.
+    number : callable
+        Converts the constants in the formulas, for example to long double.
     """
     import heyoka
 
     names = [name for name, *_ in rates.signature.argument("y").components]
     variables = dict(zip(names, heyoka.make_vars(*names), strict=True))
     functions = {name: getattr(heyoka, name) for name in FUNCTIONS}
-    derivatives = rates.evaluate({**variables, **parameters, "t": heyoka.time}, functions, float)
+    derivatives = rates.evaluate({**variables, **parameters, "t": heyoka.time}, functions, number)
     return [(variables[name], derivatives[f"d{name}"]) for name in names]
 
 
@@ -63,12 +68,4 @@ def scalar_kernel(program: Program) -> Callable[..., Any]:
         text = text.replace(f"np.{name}(", f"math.{name}(")
     for name in ("sin", "cos", "tan", "tan2"):
         text = text.replace(f"np.arc{name}(", f"math.a{name}(")
-    with TemporaryDirectory(prefix="symrot-") as directory:
-        path = Path(directory) / "scalar_rates.py"
-        path.write_text(text, encoding="utf-8")
-        spec = spec_from_file_location("scalar_rates", path)
-        assert spec is not None and spec.loader is not None
-        module = module_from_spec(spec)
-        spec.loader.exec_module(module)
-    function: Callable[..., Any] = getattr(module, program.signature.name)
-    return function
+    return function_in(text, program.signature.name)

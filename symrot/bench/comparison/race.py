@@ -11,11 +11,14 @@ from statistics import median
 from time import process_time
 from typing import Any
 
-__all__ = ["Measured", "race", "rounds_for", "seconds_of", "work_ahead"]
+__all__ = ["EndState", "Measured", "Task", "race", "raced", "rounds_for", "seconds_of", "work_ahead"]
 
 SHORTEST = 2e-3  # s, least duration of one timing: long enough to load code and numbers into the caches
 MOST_REPEATS = 200
 SLOW, SLOW_ROUNDS = 0.2, 2  # a run that takes at least SLOW seconds is timed in only SLOW_ROUNDS rounds
+
+EndState = tuple[Any, int]  # the states at the end of a run, and the number of its steps
+Task = tuple[str, float, Callable[[], EndState]]  # contestant, its tolerance (0 if it has none), function to be timed
 
 
 @dataclass
@@ -87,3 +90,16 @@ def race(
     finally:
         if collecting:
             gc.enable()
+
+
+def raced(tasks: Sequence[Task], error: Callable[[Any], float], rounds: int) -> list[Measured]:
+    """Run each task once for its steps and its error, then time all tasks alternately; return the measured runs.
+
+    ``error`` returns the error of the states that a task returns.
+    """
+    entries = []
+    for name, tolerance, run in tasks:
+        states, steps = run()
+        entries.append((Measured(name, tolerance, steps, error(states), seconds_of(run)), run))
+    race(entries, rounds)
+    return [measured for measured, _ in entries]

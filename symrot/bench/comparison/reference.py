@@ -15,6 +15,7 @@ from pathlib import Path
 from time import perf_counter, process_time
 from typing import Any, NamedTuple
 
+import mpmath
 import numpy as np
 
 from symrot.bench.by_hand import BY_HAND
@@ -133,8 +134,6 @@ def reference(problem: Problem, say: Progress = lambda text: None, seconds: floa
 
 def _taylor(problem: Problem, say: Progress, seconds: float) -> list[State]:
     """Return the reference states by Taylor series in 40 digits, computed now or loaded from the cache."""
-    import mpmath
-
     rough = non_smooth_torque(problem.plan)
     if rough:
         raise _Unavailable(rough)
@@ -179,8 +178,6 @@ def _sizes(problem: Problem) -> list[float]:
 
 def _state(problem: Problem, last: list[Any], end: float) -> State:
     """Return omega and quaternion of the body at time ``end`` from the integrated states ``last``, in mpmath."""
-    import mpmath
-
     kernel, plan = problem.kernel, problem.plan
     values: dict[str, Any] = dict(zip(plan.states, last, strict=True))
     exact = exact_parameters(kernel.quantity_parameters, plan)

@@ -13,13 +13,14 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
 from symrot.bench.comparison.exact_path import DIGITS, ORDER, TAIL, ExactPath
-from symrot.bench.comparison.peers import FUNCTIONS
+from symrot.bench.comparison.peers import FUNCTIONS, heyoka_system
 from symrot.bench.comparison.problem import Problem
-from symrot.bench.comparison.race import Measured, race, seconds_of
+from symrot.bench.comparison.race import Measured, raced
 from symrot.bench.taylor import scene as motion_scene
 from symrot.build import cache
 from symrot.formula.tree import evaluate
@@ -57,8 +58,6 @@ STATES = 7
 
 def reference(case: Case, variable: str) -> Floats:
     """Return the derivatives of the seven states by ``variable`` at the last time, from motions in 40 digits."""
-    import mpmath
-
     scene = motion_scene(case.motion)
     value = Fraction(scene.value(variable))
     key = f"derivatives {DIGITS} {ORDER} {TAIL} {STEP} {variable} {case.duration}\n{scene.to_toml()}"
@@ -91,10 +90,8 @@ def _heyoka(case: Case, scene: Scene, settings: dict[str, bool]) -> Callable[[],
     constants |= {name: heyoka.par[k] for k, name in enumerate(names)}
     functions = {name: getattr(heyoka, name) for name in FUNCTIONS}
     parameters = {name: evaluate(node, constants, functions, float) for name, node in problem.kernel.rate_parameters}
-    states = [name for name, *_ in problem.kernel.rates.signature.argument("y").components]
-    variables = dict(zip(states, heyoka.make_vars(*states), strict=True))
-    rates = problem.kernel.rates.evaluate({**variables, **parameters, "t": heyoka.time}, functions, float)
-    system = [(variables[name], rates[f"d{name}"]) for name in states]
+    system = heyoka_system(problem.kernel.rates, parameters)
+    variables = {str(variable): variable for variable, _ in system}
     by = [variables.get(name, heyoka.par[0]) for name in case.variables]
     equations = heyoka.var_ode_sys(system, args=by, order=1)
     integrator = heyoka.taylor_adaptive(
@@ -139,12 +136,8 @@ def measure(case: Case, rounds: int, settings: Sequence[str]) -> list[Measured]:
     exact = np.stack([reference(case, variable) for variable in case.variables], axis=1)
     runs = {"symrot": _symrot(case, scene)}
     runs |= {f"heyoka {name}": _heyoka(case, scene, SETTINGS[name]) for name in settings}
-    entries = []
-    for name, run in runs.items():
-        error = _error(run(), exact)
-        entries.append((Measured(name, 0.0, 0, error, seconds_of(run)), run))
-    race(entries, rounds)
-    return [entry for entry, _ in entries]
+    tasks = [(name, 0.0, lambda run=run: (run(), 0)) for name, run in runs.items()]
+    return raced(tasks, lambda slopes: _error(slopes, exact), rounds)
 
 
 def main() -> None:

@@ -19,14 +19,14 @@ import numpy as np
 import sympy
 from sympy import Expr
 
-from symrot.bench.by_hand.kernel_peers import casadi_counts, counted, products
+from symrot.bench.by_hand.kernel_peers import casadi_counts, casadi_text, counted, products
 from symrot.bench.kernels import FLAGS
 from symrot.build import cache as build_cache
 from symrot.codegen.lowering.formulas import to_node
-from symrot.codegen.printing.c_source import c_function, c_name
+from symrot.codegen.printing.c_function import c_function, c_name
 from symrot.codegen.steps import step_signature, stepped
 from symrot.formula.program import Program
-from symrot.formula.tree import Node
+from symrot.formula.tree import Node, children, with_children
 from symrot.scene.scene import load_scene
 from symrot.workshop.step_text import StepText, step_method
 
@@ -48,11 +48,7 @@ def _plain_rates(rates: Program) -> Program:
     def explicit(node: Node) -> Node:
         if node[0] == "symbol":
             return known.get(node[1], node)
-        if node[0] == "call":
-            return ("call", node[1], tuple(map(explicit, node[2])))
-        if node[0] == "**":
-            return ("**", explicit(node[1]), node[2])
-        return node if node[0] == "number" else (node[0], *map(explicit, node[1:]))
+        return with_children(node, list(map(explicit, children(node))))
 
     for name, node in rates.temporaries:
         known[name] = explicit(node)
@@ -102,19 +98,7 @@ def _casadi(step: StepText) -> tuple[str, Counter[str]]:
     functions = {name: getattr(casadi, name) for name in FUNCTIONS}
     outputs = stepped(_plain_rates(step.certified.rates), step.method, values, values["dt"], functions, float)
     function, operations = casadi_counts(x, casadi.vertcat(*outputs))
-    generator = casadi.CodeGenerator("peer", {"with_header": False})
-    generator.add(function)
-    signature = step_signature(step.certified.rates, step.name)
-    inputs = [a for a in signature.arguments if a.role == "in"]
-    declared = [f"double {a.name}" if a.is_scalar else f"const double {a.name}[{a.size}]" for a in inputs]
-    size = signature.argument("next").size
-    listed = ", ".join(a.name if a.is_scalar else f"{a.name}[{i}]" for a in inputs for i in range(a.size))
-    head = f"void {c_name(step.name)}({', '.join(declared)}, double next[{size}])"
-    body = [
-        f"    const double all[] = {{{listed}}};", "    const double *arg[1] = {all};", "    double *res[1] = {next};",
-        "    peer(arg, res, 0, 0, 0);",
-    ]  # fmt: skip
-    return str(generator.dump()) + "\n".join([head, "{", *body, "}"]) + "\n", operations
+    return casadi_text(function, step_signature(step.certified.rates, step.name)), operations
 
 
 PEERS: dict[str, Callable[[StepText], tuple[str, Counter[str]]]] = {"SymForce": _symforce, "CasADi": _casadi}

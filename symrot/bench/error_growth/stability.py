@@ -8,7 +8,7 @@ a Taylor series with 40 digits; the closed form shares no code with it.
 
 import math
 from collections.abc import Callable, Iterable
-from pathlib import Path
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -20,18 +20,14 @@ from symrot.bench.error_growth.points import carried, laws
 from symrot.errors import InputError, PropagationError
 from symrot.propagation.propagate import propagator
 from symrot.report.layout import columns, room
-from symrot.scene.scene import Scene, load_scene
+from symrot.scene.scene import Scene
 
-__all__ = ["lines", "report", "stability"]
+__all__ = ["lines", "stability"]
 
 Floats = NDArray[np.float64]
 
 STARTS = (("3/8", 1, "1/2"), (1, "1/4", "1/8"), ("5/8", "3/4", "-1/2"))  # rad/s, exact in doubles
-PLATE = (
-    1,
-    3,
-    4,
-)  # kg m^2: (B - C)/A and its permutations are exact in doubles, so that all methods rotate the same body
+PLATE = (1, 3, 4)  # kg m^2; (B - C)/A and its permutations are exact in doubles: all methods rotate the same body
 POWERS = {False: 5, True: 6}  # exponent of ten: revolutions, by default and with --long
 SAMPLES = 241  # samples of a scene
 PASSES = ("1/10", "1/1000", "1/100000", "1/10000000", "1/1000000000", 0)  # smallest distances to gimbal lock, rad
@@ -154,7 +150,7 @@ def passes() -> list[dict[str, Any]]:
         attitude = {"sequence": SEQUENCE, "angles": ["1/5", distance, "3/10"]}
         scene = _scene("pass by gimbal lock", {"principal": [1, "6/5", 2]}, (0, "2/5", 1), attitude)
         exact = propagator(scene, "exact")(t)
-        row: dict[str, Any] = {"distance": float(scene_distance(distance))}
+        row: dict[str, Any] = {"distance": float(Fraction(distance))}
         # quaternion, Euler angles whose sequence is switched, Euler angles of one sequence
         for name, options in (("quaternion", {}), ("switching", {"state": SEQUENCE}),
                               ("angles", {"state": SEQUENCE, "switching": False})):  # fmt: skip
@@ -169,12 +165,6 @@ def passes() -> list[dict[str, Any]]:
             }  # fmt: skip
         rows.append(row)
     return rows
-
-
-def scene_distance(text: str | int) -> float:
-    """Convert an entry of ``PASSES``, a distance to gimbal lock in rad such as ``"1/100"``, to a float."""
-    top, _, bottom = str(text).partition("/")
-    return float(top) / float(bottom or 1)
 
 
 # ------------------------------------------------------------------------------------------------ as text
@@ -268,23 +258,6 @@ def _point_lines(results: Any) -> list[str]:
         rows.append([f"  {name}", each["scheme"], f"{each['h']:g}", f"{each['growth']:.10f}", f"{each['derived']:.10f}",
                      _figure(each["strain"]), _figure(each["error"])])  # fmt: skip
     return [*text_lines, *columns(rows, right=(2, 3, 4, 5, 6))]
-
-
-def report(scene: str | None, long: bool, plot: Path | None, say: Callable[[str], object]) -> Any:
-    """Return the report on numerical stability of a scene (None: the free plate); draw it into ``plot`` if that is a
-    path.
-
-    Raises
-    ------
-    InputError
-        If the scene cannot be used.
-    """
-    results = stability(load_scene(scene) if scene else None, long, say)
-    if plot:
-        from symrot.bench.error_growth.stability_plot import save
-
-        save(results, plot)
-    return results
 
 
 def _finite(value: Any) -> Any:

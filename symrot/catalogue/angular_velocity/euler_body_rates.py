@@ -13,6 +13,7 @@ from symrot.conventions import EXTRINSIC_SEQUENCES, INTRINSIC_SEQUENCES
 from symrot.kinematics.euler import EulerRateMatrix, dcm, factors, rate_jacobian
 from symrot.kinematics.rotations import elementary_rotation, skew, vee
 from symrot.proof.derivation import Derivation, Step
+from symrot.proof.notation.printer import formula
 
 RATES = Matrix(symbols.angle_rates)
 EXAMPLE = "ZXZ"
@@ -62,7 +63,7 @@ def derive() -> Derivation:
         "The matrices $R$, body to space, whose rates prove the tables above. Each is the product of three rotations "
         "about coordinate axes.",
         ("Sequence", "$R$"),
-        [((sequence, f"${_latex(dcm(sequence))}$"), ()) for sequence in others],
+        [((sequence, f"${formula(dcm(sequence))}$"), ()) for sequence in others],
     )
     return d
 
@@ -82,8 +83,8 @@ def _argument(d: Derivation) -> None:
     )  # fmt: skip
     second, third = first.rotation * middle.direction, first.rotation * middle.rotation * last.direction
     d.step(
-        "The angular velocity in space is a sum of three: each rotation contributes its rate times its axis, rotated "
-        "by the rotations before it.",
+        "The angular velocity in space is a sum of three terms: each rotation contributes its rate times its axis, "
+        "rotated by the rotations before it.",
         vee(rate(dcm_sb, pairs(symbols.angles, symbols.angle_rates)) * dcm_sb.T),
         Matrix.hstack(first.direction, second, third) * RATES,
         because="angular velocities add, as [the page on the spin tensor](spin_tensor.md) proves",
@@ -118,7 +119,7 @@ def _tabulate(d: Derivation, text: str, sequences: Sequence[str]) -> None:
         body, space = rate_jacobian(sequence, "body"), rate_jacobian(sequence, "space")
         steps = [_in_body(d, sequence), _in_space(d, sequence), _inverse(d, body), _gimbal_lock(d, body)]
         formulas = body, space, body.inverse, body.determinant
-        rows.append(((sequence, *(f"${_latex(value)}$" for value in formulas), _points(body)), steps))
+        rows.append(((sequence, *(f"${formula(value)}$" for value in formulas), _points(body)), steps))
     d.tabulate(text, ("Sequence", "$B_b$", "$B_s$", "$B_b^{-1}$", r"$\det B_b$", r"Gimbal lock at $\theta =$"), rows)
 
 
@@ -164,7 +165,7 @@ def _inverse(d: Derivation, body: EulerRateMatrix) -> Step:
 
 
 def _gimbal_lock(d: Derivation, body: EulerRateMatrix) -> Step:
-    variable = _latex(body.singular_set.variable)
+    variable = formula(body.singular_set.variable)
     return d.step(
         rf"Gimbal lock occurs at ${variable} \in \lbrace {_points(body).strip('$')}\rbrace$ within one revolution.",
         body.det(),
@@ -175,12 +176,6 @@ def _gimbal_lock(d: Derivation, body: EulerRateMatrix) -> Step:
     )
 
 
-def _latex(expression: object) -> str:
-    from symrot.proof.notation.printer import formula
-
-    return formula(expression)
-
-
 def _points(jacobian: EulerRateMatrix) -> str:
     r"""Return as LaTeX the second Euler angles, from 0 to 2 pi, at gimbal lock, such as ``$0, \pi, 2 \pi$``."""
-    return f"${', '.join(_latex(point) for point in jacobian.singular_set.points())}$"
+    return f"${', '.join(formula(point) for point in jacobian.singular_set.points())}$"

@@ -9,6 +9,7 @@ from symrot.exact import normal_form
 from symrot.kinematics.dossier import LockedPoint, singularity_dossier
 from symrot.kinematics.euler import dcm, factors, rate_jacobian
 from symrot.proof.derivation import Derivation, Step
+from symrot.proof.notation.printer import formula
 
 THETA = symbols.theta
 SCALE = Symbol("lambda", real=True)
@@ -46,7 +47,7 @@ def derive() -> Derivation:
         ("Sequence", "Kind", "$c$", "Gimbal lock at", "Sequences without gimbal lock there"),
         [
             (
-                (sequence, _kind(sequence), f"${_latex(_cosine(sequence))}$", _angles(sequence), _regular(sequence)),
+                (sequence, _kind(sequence), f"${formula(_cosine(sequence))}$", _angles(sequence), _regular(sequence)),
                 (_condition(d, sequence), _cofactors(d, sequence)),
             )
             for sequence in others
@@ -72,7 +73,7 @@ def _condition(d: Derivation, sequence: str) -> Step:
     jacobian, cosine = rate_jacobian(sequence), _cosine(sequence)
     return d.step(
         rf"The condition number of $B$ follows from the eigenvalues $\lambda$ of $B^{{\mathsf T}} B$: they are $1$ "
-        rf"and $1 \pm c$, where $c = {_latex(cosine)}$ is the cosine of the angle between the first and the "
+        rf"and $1 \pm c$, where $c = {formula(cosine)}$ is the cosine of the angle between the first and the "
         "last axis.",
         (SCALE * eye(3) - jacobian.T * jacobian).det(method="berkowitz"),
         (SCALE - 1) * (SCALE - 1 - cosine) * (SCALE - 1 + cosine),
@@ -95,13 +96,13 @@ def _cofactors(d: Derivation, sequence: str) -> Step:
 
 def _locked(d: Derivation, sequence: str, point: LockedPoint) -> tuple[Step, Step, Step]:
     at = {THETA: point.middle}
-    where = rf"\theta = {_latex(point.middle)}"
+    where = rf"\theta = {formula(point.middle)}"
     jacobian = Matrix(rate_jacobian(sequence)).subs(at)
     silent, lost = Matrix(point.silent_rates), Matrix(point.lost_axis_b)
     attitude = dcm(sequence)
     outer = [attitude.subs(at).diff(angle) for angle in (symbols.phi, symbols.psi)]
     alone = d.step(
-        f"At ${where}$ the attitude depends on ${_latex(point.combination)}$ alone.",
+        f"At ${where}$ the attitude depends on ${formula(point.combination)}$ alone.",
         silent[0] * outer[0] + silent[2] * outer[1],
         0,
         because="the first and the last rotation are about the same line",
@@ -130,14 +131,14 @@ def _locked(d: Derivation, sequence: str, point: LockedPoint) -> tuple[Step, Ste
         strength * silent * lost.T,
         because="the matrix of cofactors has rank one at gimbal lock",
         named=r"\lim\, \det B\; B^{-1}",
-        display=rf"{_sign(strength)}s\,n^{{\mathsf T}},\quad s = {_latex(silent)}",
+        display=rf"{_sign(strength)}s\,n^{{\mathsf T}},\quad s = {formula(silent)}",
     )
     return alone, no_rotation, growth
 
 
 def _cells(sequence: str, point: LockedPoint) -> tuple[str, ...]:
     values = point.middle, point.combination, Matrix(point.lost_axis_b), _limit(_strength(sequence, point))
-    return sequence, *(f"${_latex(value)}$" for value in (*values, Matrix(point.silent_rates)))
+    return sequence, *(f"${formula(value)}$" for value in (*values, Matrix(point.silent_rates)))
 
 
 def _cosine(sequence: str) -> Expr:
@@ -169,7 +170,7 @@ def _kind(sequence: str) -> str:
 
 
 def _angles(sequence: str) -> str:
-    points = ", ".join(_latex(point.middle) for point in singularity_dossier(sequence).locked)
+    points = ", ".join(formula(point.middle) for point in singularity_dossier(sequence).locked)
     return rf"$\theta = {points}$"
 
 
@@ -183,10 +184,4 @@ def _limit(strength: object) -> str:
 
 def _sign(strength: object) -> str:
     """Return a factor as LaTeX, to be printed in front of a product: empty for 1, and a minus sign for -1."""
-    return {"1": "", "-1": "-"}.get(_latex(strength), _latex(strength))
-
-
-def _latex(value: object) -> str:
-    from symrot.proof.notation.printer import formula
-
-    return formula(value)
+    return {"1": "", "-1": "-"}.get(formula(strength), formula(strength))

@@ -97,10 +97,8 @@ def _fixed(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  #
         named=r"\omega_b \times (\omega_b \times d)",
         display=r"\omega_b\,(\omega_b \cdot d) - |\omega_b|^2\,d",
     )
-    d.notation(
-        {r"\omega": OMEGA, "v_P": V, "v_Q": V + OMEGA.cross(D), "r": Matrix([symbols.r_1, symbols.r_2, symbols.r_3])}
-    )
-    offset = Matrix([symbols.r_1, symbols.r_2, symbols.r_3])
+    offset = Matrix(symbols.corners[:3])
+    d.notation({r"\omega": OMEGA, "v_P": V, "v_Q": V + OMEGA.cross(D), "r": offset})
     d.step(
         "The angular velocity does not depend on the choice of the point $P$ of the body.",
         V + OMEGA.cross(D) + OMEGA.cross(offset - D),
@@ -140,8 +138,8 @@ def _moving(d: Derivation, dcm_sb: Matrix, place: Matrix, body: dict) -> None:  
         display=r"\omega_b \times d + u",
     )
     d.step(
-        "The acceleration of $Q$ is the sum of three: the acceleration of the point of the body where $Q$ is, the "
-        r"Coriolis acceleration $2\,\omega \times u$, and the relative acceleration $w$.",
+        "The acceleration of $Q$ is the sum of three terms: the acceleration of the point of the body where $Q$ is, "
+        r"the Coriolis acceleration $2\,\omega \times u$, and the relative acceleration $w$.",
         dcm_sb.T * (rate(velocity, moving) - A),
         DOMEGA.cross(D) + OMEGA.cross(OMEGA.cross(D)) + 2 * OMEGA.cross(U) + W,
         because=r"the rate of $u$ and the rate of the offset $d$ each contribute $\omega \times u$",

@@ -99,31 +99,32 @@ def _frames(d: Derivation) -> None:
         named=r"\dot R R^{\mathsf T}",
         display=r"[R\,\omega_b]_\times",
     )
-    inner = pairs(P, quaternion_rates("space", P) * Matrix(symbols.vertical))
+    # the angular velocity of R_2 relative to the frame of R_1 has components in this frame
+    inner = pairs(P, quaternion_rates("space", P) * OMEGA)
     outer = pairs(Q, quaternion_rates("space") * OMEGA_S)
     product = dcm_sb * quaternion_to_dcm(P)
-    d.notation({r"\gamma": Matrix(symbols.vertical)}, inner | outer)
+    d.notation({r"\nu": OMEGA}, inner | outer)
     d.step(
-        r"Angular velocities add. If $R_1$ rotates with $\omega$ in space, and $R_2$ rotates with $\gamma$ relative "
-        r"to the frame of $R_1$, then $R_1 R_2$ rotates with $\omega + R_1 \gamma$.",
+        r"Angular velocities add. If $R_1$ rotates with $\omega$ in space, and $R_2$ rotates with $\nu$ relative "
+        r"to the frame of $R_1$, then $R_1 R_2$ rotates with $\omega + R_1 \nu$.",
         rate(product, inner | outer),
-        skew(OMEGA_S + dcm_sb * Matrix(symbols.vertical)) * product,
+        skew(OMEGA_S + dcm_sb * OMEGA) * product,
         because=r"$\frac{d}{dt} (R_1 R_2) = \dot R_1 R_2 + R_1 \dot R_2$",
         relations=[unit_relation(Q), unit_relation(P)],
         named=r"\frac{d}{dt} \left( R_1 R_2 \right)",
         board=(
             ("The product rule:", r"\dot R_1 R_2 + R_1 \dot R_2"),
             (
-                r"$\dot R_1 = [\omega]_\times R_1$ and $\dot R_2 = [\gamma]_\times R_2$:",
-                r"[\omega]_\times R_1 R_2 + R_1\,[\gamma]_\times R_2",
+                r"$\dot R_1 = [\omega]_\times R_1$ and $\dot R_2 = [\nu]_\times R_2$:",
+                r"[\omega]_\times R_1 R_2 + R_1\,[\nu]_\times R_2",
             ),
             (
-                r"A rotated skew matrix is the skew matrix of the rotated vector, $R_1\,[\gamma]_\times = [R_1 "
-                r"\gamma]_\times R_1$:",
-                r"\left( [\omega]_\times + [R_1 \gamma]_\times \right) R_1 R_2",
+                r"A rotated skew matrix is the skew matrix of the rotated vector, $R_1\,[\nu]_\times = [R_1 "
+                r"\nu]_\times R_1$:",
+                r"\left( [\omega]_\times + [R_1 \nu]_\times \right) R_1 R_2",
             ),
         ),
-        display=r"\left[ \omega + R_1 \gamma \right]_\times R_1 R_2",
+        display=r"\left[ \omega + R_1 \nu \right]_\times R_1 R_2",
     )
 
 

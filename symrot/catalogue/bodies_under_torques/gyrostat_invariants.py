@@ -18,8 +18,8 @@ def derive() -> Derivation:
         source="Hughes, *Spacecraft Attitude Dynamics*, chapter 6",
         about=(
             "A rotor inside the body has an additional angular momentum $h$, which is constant in the body. $I$ is "
-            "the inertia tensor of the body including the rotor at rest. The motor that keeps the speed of the rotor "
-            "constant exchanges energy only with the rotor."
+            "the inertia tensor of the body including the rotor at rest. A motor keeps the speed of the rotor relative "
+            r"to the body constant. Its work changes only the part $h \cdot \omega_b$ of the kinetic energy."
         ),
     )
     d.nonzero("The inertia tensor has an inverse,", TENSOR.det(), r"\det I")

@@ -1,6 +1,6 @@
 """The heavy symmetric top (Landau & Lifshitz, section 35, problems 1 and 2; Goldstein, 3rd ed., section 5.7)."""
 
-from sympy import Expr, Matrix, Rational, Symbol, cos, diag, sin, solve, sqrt, tan
+from sympy import Matrix, Rational, Symbol, cos, diag, sin, solve, sqrt, tan
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import pairs, rate
@@ -14,119 +14,99 @@ P_PHI, P_THETA, P_PSI = symbols.momenta
 HALF = Rational(1, 2)
 RATE = symbols.n  # rate of steady precession
 
+OMEGA = rate_jacobian("ZXZ") * Matrix(symbols.angle_rates)
+KINETIC = HALF * OMEGA.dot(diag(A, A, C) * OMEGA)
+LAGRANGIAN = KINETIC - W * ARM * cos(THETA)
+PRECESSION = (P_PHI - P_PSI * cos(THETA)) / (A * sin(THETA) ** 2)
+RATES = {DPHI: PRECESSION, DPSI: P_PSI / C - cos(THETA) * PRECESSION}  # from the momenta
+POTENTIAL = (P_PHI - P_PSI * cos(THETA)) ** 2 / (2 * A * sin(THETA) ** 2) + P_PSI**2 / (2 * C) + W * ARM * cos(THETA)
+ROOT = sqrt(P_PSI**2 - 4 * A * W * ARM * cos(THETA))
+FAST, SLOW = ((P_PSI + sign * ROOT) / (2 * A * cos(THETA)) for sign in (1, -1))  # rates of steady precession
+
 
 def derive() -> Derivation:
     d = Derivation(
         "heavy_top",
         title="The heavy symmetric top",
         source="Landau & Lifshitz, *Mechanics*, 3rd ed., section 35, problems 1 and 2; Goldstein, Poole & Safko, "
-        "*Classical "
-        "Mechanics*, 3rd ed., section 5.7",
+        "*Classical Mechanics*, 3rd ed., section 5.7",
         about=(
             "A symmetric body rotates about a fixed point of its axis under its weight $W$. The centre of mass is on "
             "the axis, at $c_3$ from the fixed point. The angles of precession and spin do not occur in the "
             "Lagrangian (they are cyclic), so the nutation is the motion of one coordinate in an effective potential."
         ),
     )
-    omega = rate_jacobian("ZXZ") * Matrix(symbols.angle_rates)
-    kinetic = HALF * omega.dot(diag(A, A, C) * omega)
-    lagrangian = kinetic - W * ARM * cos(THETA)
-    _lagrangian(d, kinetic, lagrangian)
-    potential = _potential(d, kinetic, lagrangian)
-    _steady(d, potential)
-    _sleeping(d, potential)
+    _lagrangian(d)
+    _potential(d)
+    _steady(d)
+    _sleeping(d)
     return d
 
 
-def _lagrangian(d: Derivation, kinetic: Expr, lagrangian: Expr) -> None:
+def _lagrangian(d: Derivation) -> None:
     d.section("Lagrangian and cyclic momenta")
     d.passage("The Euler angles have the sequence ZXZ, axis 3 of space points upward, and the moments about the fixed "
         "point are $A, A, C$. The Lagrangian is",
             (r"\mathcal L", r"T - W c_3 \cos\theta"))  # fmt: skip
     d.step(
         "The kinetic energy of the top is:",
-        kinetic,
+        KINETIC,
         HALF * A * (DTHETA**2 + DPHI**2 * sin(THETA) ** 2) + HALF * C * (DPSI + DPHI * cos(THETA)) ** 2,
         because=r"$\omega_b = B \dot q$, and two moments are equal",
         named=r"T = \tfrac12\,\omega \cdot I\,\omega",
     )
     d.step(
         "The angles of precession and spin do not occur in the Lagrangian, so their momenta are constant.",
-        Matrix([lagrangian.diff(PHI), lagrangian.diff(PSI)]),
+        Matrix([LAGRANGIAN.diff(PHI), LAGRANGIAN.diff(PSI)]),
         0,
         because="the top is symmetric about its axis, and gravity about the vertical",
         named=r"\begin{bmatrix} \partial \mathcal L / \partial \phi \\ \partial \mathcal L / \partial \psi "
         r"\end{bmatrix}",
     )
-    spin = DPSI + DPHI * cos(THETA)
+    momenta, spin = Matrix([LAGRANGIAN.diff(DPHI), LAGRANGIAN.diff(DPSI)]), DPSI + DPHI * cos(THETA)
     d.step(
         r"The momenta $p_\phi$ and $p_\psi$ are the angular momenta about the vertical and about the symmetry axis.",
-        Matrix([lagrangian.diff(DPHI), lagrangian.diff(DPSI)]),
+        momenta,
         Matrix([A * DPHI * sin(THETA) ** 2 + C * spin * cos(THETA), C * spin]),
         because="the Lagrangian is differentiated",
         named=r"\begin{bmatrix} p_\phi \\ p_\psi \end{bmatrix}",
     )
-    dphi = (P_PHI - P_PSI * cos(THETA)) / (A * sin(THETA) ** 2)
-    dpsi = P_PSI / C - cos(THETA) * dphi
-    momenta = Matrix([lagrangian.diff(DPHI), lagrangian.diff(DPSI)]).subs({DPHI: dphi, DPSI: dpsi})
     d.step(
         r"Conversely, the momenta give the rates: $\dot\phi = \frac{p_\phi - p_\psi \cos\theta}{A \sin^2\theta}$, "
         r"$\dot\psi = \frac{p_\psi}{C} - \dot\phi \cos\theta$.",
-        momenta,
+        momenta.subs(RATES),
         Matrix([P_PHI, P_PSI]),
         because="the two linear equations for the rates are solved",
         named=r"\left. \begin{bmatrix} \partial \mathcal L / \partial \dot\phi \\ \partial \mathcal L / \partial "
-        r"\dot\psi "
-        r"\end{bmatrix} \right|_{\dot\phi, \dot\psi}",
+        r"\dot\psi \end{bmatrix} \right|_{\dot\phi, \dot\psi}",
     )
 
 
-def _potential(d: Derivation, kinetic: Expr, lagrangian: Expr) -> Expr:
+def _potential(d: Derivation) -> None:
     d.section("The effective potential")
-    dphi = (P_PHI - P_PSI * cos(THETA)) / (A * sin(THETA) ** 2)
-    rates = {DPHI: dphi, DPSI: P_PSI / C - cos(THETA) * dphi}
-    potential = (
-        (P_PHI - P_PSI * cos(THETA)) ** 2 / (2 * A * sin(THETA) ** 2) + P_PSI**2 / (2 * C) + W * ARM * cos(THETA)
-    )
-    d.notation(
-        {
-            r"\\dot\\theta": DTHETA,
-            r"\\ddot\\theta": symbols.ddtheta,
-            r"\\theta": THETA,
-            r"p_\\phi": P_PHI,
-            r"p_\\psi": P_PSI,
-            "A": A,
-            "C": C,
-            "W": W,
-            "c_3": ARM,
-            "U": potential,
-            r"U(\\theta)": potential,
-            "T": kinetic.subs(rates),
-        }
-    )
+    d.notation({"U": POTENTIAL, "T": KINETIC.subs(RATES)})
     d.step(
         r"The energy is the energy of the single coordinate $\theta$, moving in an effective potential $U$.",
-        (kinetic + W * ARM * cos(THETA)).subs(rates),
-        HALF * A * DTHETA**2 + potential,
+        (KINETIC + W * ARM * cos(THETA)).subs(RATES),
+        HALF * A * DTHETA**2 + POTENTIAL,
         because="the rates of the cyclic angles are substituted",
         named="T + V",
         display=r"\tfrac12\,A\,\dot\theta^2 + U(\theta), \quad U = \frac{(p_\phi - p_\psi \cos\theta)^2}{2 A "
-        r"\sin^2\theta} + "
-        r"\frac{p_\psi^2}{2 C} + W c_3 \cos\theta",
+        r"\sin^2\theta} + \frac{p_\psi^2}{2 C} + W c_3 \cos\theta",
     )
     motion = pairs(symbols.angles, symbols.angle_rates) | pairs(symbols.angle_rates, symbols.angle_accelerations)
-    nutation = rate(lagrangian.diff(DTHETA), motion) - lagrangian.diff(THETA)
+    nutation = rate(LAGRANGIAN.diff(DTHETA), motion) - LAGRANGIAN.diff(THETA)
     d.step(
         "Lagrange's equation for the nutation is the equation of motion of one coordinate in the effective potential.",
-        nutation.subs(rates),
-        A * symbols.ddtheta + potential.diff(THETA),
+        nutation.subs(RATES),
+        A * symbols.ddtheta + POTENTIAL.diff(THETA),
         because="the rates are substituted after differentiating",
         named=r"\frac{d}{dt} \frac{\partial \mathcal L}{\partial \dot\theta} - \frac{\partial \mathcal L}{\partial "
         r"\theta}",
         display=r"A\,\ddot\theta + \frac{\partial U}{\partial \theta}",
     )
     energy, height = symbols.E, Symbol("u", real=True)
-    speed = 2 / A * (energy - potential) * sin(THETA) ** 2
+    speed = 2 / A * (energy - POTENTIAL) * sin(THETA) ** 2
     cubic = (2 * energy - P_PSI**2 / C - 2 * W * ARM * height) * (1 - height**2) / A - (
         P_PHI - P_PSI * height
     ) ** 2 / A**2
@@ -149,10 +129,9 @@ def _potential(d: Derivation, kinetic: Expr, lagrangian: Expr) -> Expr:
         because="$1 - u^2$ is zero at the vertical",
         named=r"\begin{bmatrix} \dot u^2 |_{u = 1} \\ \dot u^2 |_{u = -1} \end{bmatrix}",
     )
-    return potential
 
 
-def _steady(d: Derivation, potential: Expr) -> None:
+def _steady(d: Derivation) -> None:
     d.section("Steady precession")
     slope = A * RATE**2 * cos(THETA) - P_PSI * RATE + W * ARM
     steady = {P_PHI: P_PSI * cos(THETA) + A * RATE * sin(THETA) ** 2}
@@ -163,13 +142,12 @@ def _steady(d: Derivation, potential: Expr) -> None:
     )
     d.step(
         "The condition of steady precession is quadratic in the rate $n$.",
-        potential.diff(THETA).subs(steady),
+        POTENTIAL.diff(THETA).subs(steady),
         -sin(THETA) * slope,
         because="in steady precession the effective potential is stationary",
         named=r"\frac{\partial U}{\partial \theta}",
         display=r"-\sin\theta \left( A\,n^2 \cos\theta - p_\psi\,n + W c_3 \right)",
     )
-    fast, slow = _rates()
     d.passage(
         r"The condition of steady precession has two roots, a fast and a slow rate. They are real for $p_\psi^2 \ge 4 "
         r"A W c_3 \cos\theta$:",
@@ -177,7 +155,7 @@ def _steady(d: Derivation, potential: Expr) -> None:
     )
     d.step(
         "Both rates satisfy the condition.",
-        Matrix([slope.subs(RATE, fast), slope.subs(RATE, slow)]),
+        Matrix([slope.subs(RATE, FAST), slope.subs(RATE, SLOW)]),
         0,
         because="the roots of the quadratic equation are substituted",
         named=r"A\,n_\pm^2 \cos\theta - p_\psi\,n_\pm + W c_3",
@@ -185,7 +163,7 @@ def _steady(d: Derivation, potential: Expr) -> None:
     d.step(
         "The sum and the product of the two rates of steady precession have simple forms. For a fast top the rates are "
         r"therefore close to $p_\psi / (A \cos\theta)$, the rate without weight, and to $W c_3 / p_\psi$.",
-        Matrix([fast + slow, fast * slow]),
+        Matrix([FAST + SLOW, FAST * SLOW]),
         Matrix([P_PSI, W * ARM]) / (A * cos(THETA)),
         because="the coefficients of the quadratic equation give sum and product of its roots (Vieta)",
         named=r"\begin{bmatrix} n_+ + n_- \\ n_+\,n_- \end{bmatrix}",
@@ -200,7 +178,7 @@ def _steady(d: Derivation, potential: Expr) -> None:
     d.step(
         r"A small nutation about steady precession oscillates; the square of its frequency, times $A$, is $\partial^2 "
         r"U / \partial \theta^2$.",
-        (potential.diff(THETA, 2).subs(steady) * RATE**2).subs(P_PSI, (A * RATE**2 * cos(THETA) + W * ARM) / RATE),
+        (POTENTIAL.diff(THETA, 2).subs(steady) * RATE**2).subs(P_PSI, (A * RATE**2 * cos(THETA) + W * ARM) / RATE),
         (A**2 * RATE**4 - 2 * A * W * ARM * RATE**2 * cos(THETA) + (W * ARM) ** 2) / A,
         because=r"the condition for steady precession gives $p_\psi$; the right side is positive: it is "
         r"$(A n^2 - W c_3 \cos\theta)^2 + (W c_3 \sin\theta)^2$ divided by $A$",
@@ -215,23 +193,16 @@ def _steady(d: Derivation, potential: Expr) -> None:
     )
 
 
-def _rates() -> tuple[Expr, Expr]:
-    """Return the fast and the slow rate of steady precession of a heavy top, rad/s."""
-    root = sqrt(P_PSI**2 - 4 * A * W * ARM * cos(THETA))
-    return (P_PSI + root) / (2 * A * cos(THETA)), (P_PSI - root) / (2 * A * cos(THETA))
-
-
-def _sleeping(d: Derivation, potential: Expr) -> None:
+def _sleeping(d: Derivation) -> None:
     d.section("The sleeping top")
-    upright = potential.subs(P_PHI, P_PSI)
+    regular = P_PSI**2 / (2 * A) * tan(THETA / 2) ** 2 + P_PSI**2 / (2 * C) + W * ARM * cos(THETA)
     d.step(
         r"For an upright top $p_\phi = p_\psi$, and the potential is regular at the vertical.",
-        upright,
-        P_PSI**2 / (2 * A) * tan(THETA / 2) ** 2 + P_PSI**2 / (2 * C) + W * ARM * cos(THETA),
+        POTENTIAL.subs(P_PHI, P_PSI),
+        regular,
         because=r"$\frac{1 - \cos\theta}{\sin\theta} = \tan\frac\theta2$",
         named=r"U|_{p_\phi = p_\psi}",
     )
-    regular = P_PSI**2 / (2 * A) * tan(THETA / 2) ** 2 + P_PSI**2 / (2 * C) + W * ARM * cos(THETA)
     d.step(
         r"The potential has a minimum at the vertical for $p_\psi^2 > 4 A W c_3$. Then the top stands upright (it "
         "sleeps) until friction has reduced the spin below this bound.",
@@ -241,10 +212,9 @@ def _sleeping(d: Derivation, potential: Expr) -> None:
         named=r"\begin{bmatrix} \partial U / \partial \theta \\ \partial^2 U / \partial \theta^2 "
         r"\end{bmatrix}_{\theta = 0}",
     )
-    fast, slow = _rates()
     d.step(
         r"At the bound $p_\psi^2 = 4 A W c_3$, the two rates of steady precession are equal at the vertical.",
-        (A * (fast - slow)).subs(THETA, 0) ** 2,
+        (A * (FAST - SLOW)).subs(THETA, 0) ** 2,
         P_PSI**2 - 4 * A * W * ARM,
         because=r"$\cos 0 = 1$",
         named=r"A^2 \left. (n_+ - n_-)^2 \right|_{\theta = 0}",

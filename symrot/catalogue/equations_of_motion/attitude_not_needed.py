@@ -23,7 +23,7 @@ def derive() -> Derivation:
         ),
     )
     d.nonzero("The inertia tensor has an inverse,", TENSOR.det(), r"\det I")
-    rotor, linear = Matrix(symbols.rotor), diag(*symbols.excess, symbols.Omega)
+    rotor, linear = Matrix(symbols.rotor), diag(*symbols.damping)
     laws = {
         "without torque": (0 * OMEGA, None, "the torque is zero"),
         "with a torque that is constant in the body": (

@@ -6,6 +6,7 @@ from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, squared
 from symrot.kinematics.rotations import skew
 from symrot.proof.derivation import Derivation
+from symrot.proof.notation.printer import formula
 
 HALF = Rational(1, 2)
 J, PLACE, V, N = (Matrix(s) for s in (symbols.impulse, symbols.offset, symbols.velocity, symbols.axis))
@@ -182,8 +183,8 @@ def _percussion(d: Derivation) -> None:
         "blow.",
         velocity.subs(x, rest),
         0,
-        because=f"$x = {_latex(rest)}$",
-        named=rf"v_y \left( {_latex(rest)} \right)",
+        because=f"$x = {formula(rest)}$",
+        named=rf"v_y \left( {formula(rest)} \right)",
     )
     d.step(
         "The distances of the struck point and of the point at rest from the centre of mass have a constant product. "
@@ -201,9 +202,3 @@ def _percussion(d: Derivation) -> None:
         because=r"$C = m L^2 / 12$ and $x = -L/2$",
         named=r"\tfrac{L}{2} + h",
     )
-
-
-def _latex(value: object) -> str:
-    from symrot.proof.notation.printer import formula
-
-    return formula(value)

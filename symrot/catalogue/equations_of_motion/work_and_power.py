@@ -1,6 +1,6 @@
 """Work and power (Landau & Lifshitz, Mechanics, 3rd ed., section 34; Goldstein, 3rd ed., section 5.5)."""
 
-from sympy import Matrix, Rational, diag
+from sympy import Matrix, Rational, Symbol, diag
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, TENSOR, attitude_rates, pairs, rate, squared
@@ -65,12 +65,12 @@ def _forces(d: Derivation) -> None:
     )
     d.step(
         "Internal forces between two points of the body, along the line between them, do no work.",
-        (symbols.epsilon * (POINT - OTHER)).dot(OMEGA.cross(POINT) - OMEGA.cross(OTHER)),
+        (Symbol("k", real=True) * (POINT - OTHER)).dot(OMEGA.cross(POINT) - OMEGA.cross(OTHER)),
         0,
         because="the distance between the points does not change",
-        named=r"\epsilon\,(r - d) \cdot \left( \omega \times r - \omega \times d \right)",
+        named=r"k\,(r - d) \cdot \left( \omega \times r - \omega \times d \right)",
         board=(
-            ("The cross product is linear:", r"\epsilon\,(r - d) \cdot \left( \omega \times (r - d) \right)"),
+            ("The cross product is linear:", r"k\,(r - d) \cdot \left( \omega \times (r - d) \right)"),
             ("A cross product is perpendicular to its factors:", "0"),
         ),
     )

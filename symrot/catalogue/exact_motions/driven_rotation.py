@@ -131,9 +131,8 @@ def _across(d: Derivation) -> None:
         r"The moments are $A, A, C$. $\Omega$ is the rate $\omega_3(t)$ and $\theta$ the angle of the rotation about "
         r"the axis, with or without a brake. With the initial values $\omega_1, \omega_2$:",
         (r"\omega(t)", omega),
-        (r"\omega_1(t)", omega[0]),
-        (r"\omega_2(t)", omega[1]),
     )
+    d.notation({rf"\omega_{n + 1}(t)": omega[n] for n in range(2)})
     d.step(
         r"The transverse components satisfy Euler's equations for every rate $\Omega$, because the torque is along "
         "the axis.",
@@ -164,12 +163,9 @@ def _weakly_braked(d: Derivation) -> None:
         "digits. This is avoided by the functions $f_1 = (e^x - 1)/x$ and $f_2 = (e^x - 1 - x)/x^2$ of $x = -b_3 t / "
         "C$, which are regular at $x = 0$:"
     )
-    first, second = (
-        (exp(-DRAG * T / C) - 1) / (-DRAG * T / C),
-        (exp(-DRAG * T / C) - 1 + DRAG * T / C) / (DRAG * T / C) ** 2,
-    )
     power = -DRAG * T / C
-    d.notation({"x": power, "f_1": (exp(power) - 1) / power, "f_2": (exp(power) - 1 - power) / power**2})
+    first, second = (exp(power) - 1) / power, (exp(power) - 1 - power) / power**2
+    d.notation({"x": power, "f_1": first, "f_2": second})
     d.step(
         "The rate and the angle under a torque with damping are written with $f_1 = (e^x - 1)/x$ and "
         r"$f_2 = (e^x - 1 - x)/x^2$. Both formulas also hold without damping, with the limits $f_1 = 1$ and $f_2 = "

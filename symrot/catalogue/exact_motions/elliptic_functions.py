@@ -5,6 +5,7 @@ from sympy import Matrix, S, Symbol, cos, diff, sech, sin, tanh
 from symrot.catalogue.tools.elliptic import CN, DN, MU, SN, W_VALUES, I, derivatives, imaginary, shifted, squares
 from symrot.catalogue.tools.motion import rate
 from symrot.proof.derivation import Derivation
+from symrot.proof.notation.printer import formula
 
 SN_W, CN_W, DN_W = W_VALUES
 BELOW = 1 - MU * SN**2 * SN_W**2
@@ -17,9 +18,9 @@ def derive() -> Derivation:
         title="Jacobi's elliptic functions by their derivatives",
         source="Whittaker & Watson, *A Course of Modern Analysis*, 4th ed., chapters 21 and 22",
         about=(
-            "This derivation defines the elliptic functions by their derivatives and proves the properties that the "
-            "exact motions of rigid bodies need: the addition theorems, the zeta function, and the rate of the "
-            "argument of a theta function. Each property follows from the properties before it, without tables."
+            "The elliptic functions sn, cn and dn are defined by their derivatives. The exact motions of rigid bodies "
+            "need the properties of these functions that are proven here; each property follows from the properties "
+            "before it, without tables."
         ),
     )
     _definition(d)
@@ -232,11 +233,5 @@ def _limits(d: Derivation) -> None:
             Matrix([c * dn, -s * dn, -parameter * s * c]),
             because=why,
             relations=[tanh(u) ** 2 + sech(u) ** 2 - 1] if parameter else (),
-            named=rf"\frac{{d}}{{du}} {_latex(values)}",
+            named=rf"\frac{{d}}{{du}} {formula(values)}",
         )
-
-
-def _latex(value: object) -> str:
-    from symrot.proof.notation.printer import formula
-
-    return formula(value)

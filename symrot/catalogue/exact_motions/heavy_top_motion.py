@@ -9,6 +9,7 @@ from symrot.kinematics.euler import dcm
 from symrot.kinematics.quaternion import quaternion_to_dcm
 from symrot.kinematics.rotations import elementary_rotation
 from symrot.proof.derivation import Derivation
+from symrot.proof.notation.printer import formula
 
 A, C, W, ARM = symbols.A, symbols.C, symbols.W, symbols.c_3
 U1, U2, U3 = symbols.heights
@@ -182,8 +183,8 @@ def _theta(d: Derivation) -> None:
         names | {r"\mathrm{sn}(u + w)": at_sum, r"\mathrm{cn}(u + w)": c_sum, r"\mathrm{dn}(u + w)": d_sum, r"\mu": MU}
     )
     d.passage(
-        r"By the [theta functions](elliptic_functions.md), the quotient $\mathrm{H}(u + w) / \Theta(u)$ has the "
-        r"logarithmic derivative $Z(u + w) + \frac{\mathrm{cn}\,\mathrm{dn}}{\mathrm{sn}}(u + w) - Z(u)$. In this "
+        r"By the [theta functions](elliptic_functions_appendix.md), the quotient $\mathrm{H}(u + w) / \Theta(u)$ has "
+        r"the logarithmic derivative $Z(u + w) + \frac{\mathrm{cn}\,\mathrm{dn}}{\mathrm{sn}}(u + w) - Z(u)$. In this "
         r"section $u$ is the argument $p\,t$. The addition theorem of $Z$ turns the derivative into $Z(w)$ plus the "
         "following expression."
     )
@@ -204,11 +205,10 @@ def _theta(d: Derivation) -> None:
     d.notation({"p": SPEED, "u": HEIGHT, r"\dot u": rate(HEIGHT, along), r"\mu": PARAMETER, "i": I, "A": A})
     d.notation({r"p_\phi": (SUM + DIFFERENCE) / 2, r"p_\psi": (SUM - DIFFERENCE) / 2})
     for name, side, s2, c2, d2, momentum, sign in cases:
-        sign_text = sign if sign == "-" else "+"
         d.notation({r"\mathrm{sn}_w": sqrt(s2), r"\mathrm{cn}_w": sqrt(c2), r"\mathrm{dn}_w": sqrt(d2)})
         d.step(
-            rf"For ${name}$, choose $w$ so that $\mathrm{{sn}}_w^2 = {_latex(s2)}$. Where $\mathrm{{sn}} = "
-            rf"\mathrm{{sn}}_w$, $1 {sign_text} u$ is zero. Then $\mathrm{{cn}}_w^2$ and $\mathrm{{dn}}_w^2$ have the "
+            rf"For ${name}$, choose $w$ so that $\mathrm{{sn}}_w^2 = {formula(s2)}$. Where $\mathrm{{sn}} = "
+            rf"\mathrm{{sn}}_w$, $1 {sign} u$ is zero. Then $\mathrm{{cn}}_w^2$ and $\mathrm{{dn}}_w^2$ have the "
             "following values.",
             Matrix([1 - s2, 1 - PARAMETER * s2]),
             Matrix([c2, d2]),
@@ -216,7 +216,7 @@ def _theta(d: Derivation) -> None:
             named=r"\begin{bmatrix} 1 - \mathrm{sn}_w^2 \\ 1 - \mu\,\mathrm{sn}_w^2 \end{bmatrix}",
         )
         d.step(
-            r"The denominator $\mathrm{sn}^2 - \mathrm{sn}_w^2$ is proportional to $1 + u$ or $1 - u$.",
+            rf"For ${name}$, the denominator $\mathrm{{sn}}^2 - \mathrm{{sn}}_w^2$ is proportional to $1 {sign} u$.",
             (U2 - U1) * (SN**2 - s2),
             side * (1 + side * HEIGHT),
             because="$u = u_1 + (u_2 - u_1)\\,\\mathrm{sn}^2$",
@@ -224,8 +224,8 @@ def _theta(d: Derivation) -> None:
             display="1 + u" if side == 1 else "-(1 - u)",
         )
         d.step(
-            r"The real part of the logarithmic derivative of $\mathrm{H}(u + w) / \Theta(u)$ is the rate of $\ln "
-            r"|\alpha|$ or $\ln |\beta|$.",
+            rf"The real part of the logarithmic derivative of $\mathrm{{H}}(u + w) / \Theta(u)$ is the rate of $\ln "
+            rf"|{name}|$.",
             SPEED * SN * CN * DN / (SN**2 - s2),
             side * rate(HEIGHT, along) / (2 * (1 + side * HEIGHT)),
             because=r"$\dot u = 2 (u_2 - u_1)\,p\,\mathrm{sn}\,\mathrm{cn}\,\mathrm{dn}$",
@@ -250,9 +250,3 @@ def _theta(d: Derivation) -> None:
         r"constants $i \kappa$, which contain $p\,Z(w)$ and $\pm \tfrac12 p_\psi (1/C - 1/A)$. The formulas are "
         "regular for every direction of the axis, including the vertical."
     )
-
-
-def _latex(value: object) -> str:
-    from symrot.proof.notation.printer import formula
-
-    return formula(value)

@@ -23,8 +23,8 @@ def derive() -> Derivation:
         source="Klein & Sommerfeld, *The Theory of the Top*, vol. 2, chapters 4 and 6; Goldstein, Poole & Safko, "
         "*Classical Mechanics*, 3rd ed., section 5.7",
         about=(
-            "A [heavy top](heavy_top_motion.md) whose two momenta are equal passes through the vertical, or "
-            "approaches it in an infinite time. The attitude is regular in both cases."
+            "If the axis of a [heavy top](heavy_top_motion.md) passes through the upward vertical, or approaches it in "
+            "an infinite time, then its two momenta are equal. The attitude is regular in both cases."
         ),
     )
     _through(d)
@@ -45,7 +45,7 @@ def _through(d: Derivation) -> None:
         r"p_\phi + p_\psi |_{u_1 = -1} \end{bmatrix}",
     )
     d.step(
-        r"If the top starts upright with too little spin, then $u_2 = 1$, and $\sin\tfrac\theta2$ is proportional to "
+        r"If the axis passes through the upward vertical, then $u_2 = 1$, and $\sin\tfrac\theta2$ is proportional to "
         "cn. It changes its sign when the axis passes through the vertical.",
         (1 - HEIGHT.subs(U2, 1)) / 2,
         (sqrt((1 - U1) / 2) * CN) ** 2,
@@ -150,7 +150,7 @@ def _precession(d: Derivation) -> None:
         "The acceleration of the height $u$ is half the derivative of the cubic polynomial, as it must be.",
         rate(rate(height, along), along),
         cubic(symbols.gamma_3).diff(symbols.gamma_3).subs(both).subs(symbols.gamma_3, height) / 2,
-        because="the acceleration of the height is half the derivative of the cubic",
+        because=r"$\dot h = p\,(1 - h^2)$ is inserted twice",
         named=r"\ddot u",
         display=r"\frac{W c_3}{A} \frac{\partial}{\partial u} (u - u_1)(u - 1)^2",
     )

@@ -1,16 +1,17 @@
 """Jacobi's solution of the free asymmetric body (Landau & Lifshitz, Mechanics, 3rd ed., section 37)."""
 
-from sympy import Matrix, cos, diag, sin, sqrt
+from sympy import Expr, Matrix, cos, diag, sin, sqrt
 
 from symrot import symbols
+from symrot.catalogue.tools.elliptic import CN, DN, MU, SN, derivatives, squares
 from symrot.catalogue.tools.motion import OMEGA, rate, squared
 from symrot.dynamics.equations import angular_acceleration
 from symrot.kinematics.euler import dcm, rate_jacobian
 from symrot.proof.derivation import Derivation
+from symrot.proof.notation.printer import formula
 
 A, B, C = symbols.principal
-SN, CN, DN = symbols.elliptic
-P, MU = symbols.p, symbols.mu
+P = symbols.p
 FIRST, THIRD = symbols.amplitudes
 INERTIA = diag(A, B, C)
 
@@ -26,8 +27,8 @@ def derive() -> Derivation:
             "functions of time. The proof uses only the derivatives of these functions and two quadratic relations."
         ),
     )
-    for one, other in ((A, B), (A, C)):
-        d.nonzero("Two moments are different,", one - other, f"{one} - {other}")
+    for axis, moment in ((2, B), (3, C)):
+        d.nonzero(f"The moments of axes 1 and {axis} are different,", A - moment, f"A - {moment}")
     _functions(d)
     _solution(d)
     _constants(d)
@@ -35,21 +36,16 @@ def derive() -> Derivation:
     return d
 
 
-def _elliptic(p: object, parameter: object) -> dict:  # type: ignore[type-arg]
-    return {SN: p * CN * DN, CN: -p * SN * DN, DN: -p * parameter * SN * CN}  # type: ignore[operator]
-
-
 def _functions(d: Derivation) -> None:
     d.section("The elliptic functions")
-    rates = _elliptic(P, MU)
+    rates = derivatives(P)
     d.notation({r"\mathrm{sn}": SN, r"\mathrm{cn}": CN, r"\mathrm{dn}": DN, r"\mu": MU, "A": A, "B": B, "C": C}, rates)
     d.notation({"a_1": FIRST, "a_3": THIRD, "I": INERTIA})
     d.passage(
         r"Let $\mathrm{sn}, \mathrm{cn}, \mathrm{dn}$ be Jacobi's functions of the argument $p\,t$ with the parameter "
         r"$\mu = k^2$. They have the values $0, 1, 1$ at $t = 0$ and the derivatives",
-        *((rf"\frac{{d}}{{dt}}\,{_latex(name)}", value) for name, value in rates.items()),
+        *((rf"\frac{{d}}{{dt}}\,{formula(name)}", value) for name, value in rates.items()),
     )
-    squares = [CN**2 - 1 + SN**2, DN**2 - 1 + MU * SN**2]
     d.step(
         "Two sums of squares are constant; at $t = 0$ both are 1.",
         Matrix([rate(CN**2 + SN**2, rates), rate(DN**2 + MU * SN**2, rates)]),
@@ -64,12 +60,12 @@ def _functions(d: Derivation) -> None:
         DN**2 - CN**2,
         (1 - MU) * SN**2,
         because="the two sums of squares are subtracted from each other",
-        relations=squares,
+        relations=squares(),
         named=r"\mathrm{dn}^2 - \mathrm{cn}^2",
     )
 
 
-def _amplitudes() -> tuple[Matrix, object, object]:
+def _amplitudes() -> tuple[Matrix, Expr, Expr]:
     """Return amplitudes, frequency and parameter of Jacobi's elliptic functions in the motion of a free body.
 
     They are computed from the initial values of the first and the third component of the angular velocity.
@@ -84,7 +80,7 @@ def _solution(d: Derivation) -> None:
     d.section("The solution")
     amplitudes, p, parameter = _amplitudes()
     omega = Matrix([amplitudes[0] * DN, -amplitudes[1] * SN, amplitudes[2] * CN])
-    rates = _elliptic(p, parameter)
+    rates = derivatives(p, parameter)
     d.notation({}, rates)
     d.passage(
         r"Let the body start with $\omega = (a_1, 0, a_3)$, and let $L^2 > 2 T B$, so that the polhode goes around "
@@ -104,13 +100,12 @@ def _solution(d: Derivation) -> None:
         named=r"I\,\dot\omega",
         display=r"-\omega \times I\,\omega",
     )
-    squares = [CN**2 - 1 + SN**2, DN**2 - 1 + parameter * SN**2]
     d.step(
         "The kinetic energy has its initial value.",
         omega.dot(INERTIA * omega),
         A * FIRST**2 + C * THIRD**2,
         because=r"$\mathrm{dn}^2 = 1 - \mu\,\mathrm{sn}^2$ and $\mathrm{cn}^2 = 1 - \mathrm{sn}^2$",
-        relations=squares,
+        relations=squares(parameter),
         named="2 T",
     )
     d.step(
@@ -118,7 +113,7 @@ def _solution(d: Derivation) -> None:
         squared(INERTIA * omega),
         A**2 * FIRST**2 + C**2 * THIRD**2,
         because="the same two quadratic relations are substituted",
-        relations=squares,
+        relations=squares(parameter),
         named="L^2",
     )
 
@@ -146,7 +141,7 @@ def _constants(d: Derivation) -> None:
     )
     d.step(
         "They give the frequency.",
-        p**2,  # type: ignore[operator]
+        p**2,
         (A - B) * (square - twice * C) / (A * B * C),
         because=r"$a_2$ is substituted",
         named="p^2",
@@ -162,7 +157,7 @@ def _constants(d: Derivation) -> None:
     )
     d.step(
         r"The parameter $\mu$ is 1 on the separatrix, where $L^2 = 2 T B$, and less than 1 for $L^2 > 2 T B$.",
-        (1 - parameter) * (A - B) * (square - twice * C),  # type: ignore[operator]
+        (1 - parameter) * (A - B) * (square - twice * C),
         (A - C) * (square - twice * B),
         because="both sides of the equation are expanded",
         named=r"(1 - \mu)\,(A - B) (L^2 - 2 T C)",
@@ -171,7 +166,7 @@ def _constants(d: Derivation) -> None:
     d.step(
         "With two equal moments, $B = C$, the parameter is 0. Then sn and cn are a sine and a cosine, dn is 1, and "
         "the frequency is the frequency of [regular precession](symmetric_top.md).",
-        Matrix([parameter, p**2]).subs(B, C),  # type: ignore[operator]
+        Matrix([parameter, p**2]).subs(B, C),
         Matrix([0, ((A - C) / C * FIRST) ** 2]),
         because=r"$B - C$ is a factor of $\mu$",
         named=r"\left. \begin{bmatrix} \mu \\ p^2 \end{bmatrix} \right|_{B = C}",
@@ -213,9 +208,3 @@ def _attitude(d: Derivation) -> None:
         because=r"$\dot\theta$ is the component along the line of nodes, $\omega_1 \cos\psi - \omega_2 \sin\psi$",
         named=r"\dot\theta",
     )
-
-
-def _latex(value: object) -> str:
-    from symrot.proof.notation.printer import formula
-
-    return formula(value)

@@ -1,6 +1,6 @@
 """Poinsot's construction and the polhode (Goldstein, 3rd ed., section 5.6; Landau & Lifshitz, 3rd ed., section 37)."""
 
-from sympy import Matrix, diag
+from sympy import Matrix, Symbol, diag
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, attitude_rates, pairs, rate, squared
@@ -86,15 +86,16 @@ def _rolling(d: Derivation) -> None:
         named=r"\omega \times \omega",
     )
     axis = Matrix(symbols.axis)
-    ray = axis / symbols.p
+    root = Symbol("kappa", positive=True)
+    ray = axis / root
     d.step(
         "The ellipsoid shows the moment of inertia about every axis $n$: for $2 T = 1$ its radius along $n$ is "
         r"$1/\sqrt{n \cdot I n}$.",
         ray.dot(INERTIA * ray),
         1,
-        because=r"for $p^2 = n \cdot I\,n$ the point $n/p$ is on the ellipsoid",
-        relations=[symbols.p**2 - axis.dot(INERTIA * axis)],
-        named=r"\frac{n}{p} \cdot I\,\frac{n}{p}",
+        because=r"for $\kappa^2 = n \cdot I\,n$ the point $n/\kappa$ is on the ellipsoid",
+        relations=[root**2 - axis.dot(INERTIA * axis)],
+        named=r"\frac{n}{\kappa} \cdot I\,\frac{n}{\kappa}",
     )
 
 

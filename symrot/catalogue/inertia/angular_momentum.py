@@ -1,17 +1,14 @@
 """Angular momentum and the inertia tensor from the sum over particles (Goldstein, 3rd ed., sections 5.1 and 5.3)."""
 
-from sympy import Matrix, eye, zeros
+from sympy import Matrix, eye
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, TENSOR, squared
-from symrot.catalogue.tools.particles import sums_over
+from symrot.catalogue.tools.particles import COUNT, FIRST_MOMENT, INERTIA, MASS, NAMES, over_particles
 from symrot.inertia.tensor import inertia_of_point
 from symrot.proof.derivation import Derivation
 
-MASSES = symbols.particle_masses
-POINTS = [Matrix(symbols.corners[3 * i : 3 * i + 3]) for i in range(3)]
 PLACE, V = Matrix(symbols.position), Matrix(symbols.velocity)
-COUNT = r"\sum_i"
 
 
 def derive() -> Derivation:
@@ -58,7 +55,7 @@ def _one_particle(d: Derivation) -> None:
     )
     d.step(
         "The matrix of the linear map from angular velocity to angular momentum has the moments of inertia on its "
-        "diagonal and the products of inertia, with a minus sign, beside the diagonal.",
+        "diagonal and the products of inertia, such as $I_{xy} = -m\\,x\\,y$, beside the diagonal.",
         momentum.jacobian(OMEGA),
         Matrix(inertia_of_point(mass, point)),
         because=r"the coefficients of the components of $\omega$ are compared",
@@ -72,21 +69,19 @@ def _sum(d: Derivation) -> None:
         "The proof uses three particles. It holds for any number, because every sum below is linear in the "
         "contributions of the particles."
     )
-    total = sum((p.cross(m * OMEGA.cross(p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3, 1))
-    tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
     d.step(
         "All particles have the same angular velocity, so their inertia tensors add.",
-        total,
-        tensor * OMEGA,
+        over_particles(lambda m, r: r.cross(m * OMEGA.cross(r))),
+        INERTIA * OMEGA,
         because="a sum of linear maps is the map of the sum",
         named=rf"L = {COUNT} r_i \times m_i\,(\omega \times r_i)",
         display=rf"\Bigl( {COUNT} m_i \left( |r_i|^2\,\mathbf{{1}} - r_i\,r_i^{{\mathsf T}} \right) \Bigr) \omega = "
         rf"I\,\omega",
     )
-    d.notation({"I": tensor})
+    d.notation({"I": INERTIA})
     d.step(
         "The inertia tensor is symmetric.",
-        tensor - tensor.T,
+        INERTIA - INERTIA.T,
         0,
         because=r"$r\,r^{\mathsf T}$ is symmetric",
         named=r"I - I^{\mathsf T}",
@@ -95,24 +90,19 @@ def _sum(d: Derivation) -> None:
 
 def _center(d: Derivation) -> None:
     d.section("Angular momentum about any point")
-    balance = sum((m * p for m, p in zip(MASSES, POINTS, strict=True)), zeros(3, 1))
     d.passage(
         "Let the centre of mass be at $x$, with the velocity $v$, and particle $i$ at $x + r_i$:",
         (rf"{COUNT} m_i\,r_i", "0"),
         ("M", rf"{COUNT} m_i"),
     )
-    mass = sum(MASSES)
-    moving = zip(MASSES, POINTS, strict=True)
-    momentum = sum(((PLACE + p).cross(m * (V + OMEGA.cross(p))) for m, p in moving), zeros(3, 1))
-    tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
-    d.notation(sums_over(MASSES, POINTS) | {"x": PLACE, "v": V, "M": mass, "I": tensor})
+    d.notation(NAMES | {"x": PLACE, "v": V, "M": MASS, "I": INERTIA})
     d.step(
         "The angular momentum of a body is the angular momentum of its total mass, moving with the centre of mass, "
         "plus the angular momentum of the rotation about the centre of mass.",
-        momentum,
-        PLACE.cross(mass * V) + tensor * OMEGA,
+        over_particles(lambda m, r: (PLACE + r).cross(m * (V + OMEGA.cross(r)))),
+        PLACE.cross(MASS * V) + INERTIA * OMEGA,
         because=rf"the mixed terms contain the factor ${COUNT} m_i\,r_i = 0$",
-        relations=list(balance),
+        relations=list(FIRST_MOMENT),
         named=rf"{COUNT} \left( (x + r_i) \times m_i \left( v + \omega \times r_i \right) \right)",
         board=(
             (
@@ -132,14 +122,12 @@ def _center(d: Derivation) -> None:
 
 def _properties(d: Derivation) -> None:
     d.section("Properties of every inertia tensor")
-    d.notation({r"\omega": OMEGA})
-    tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
-    d.notation({"I": tensor})
+    d.notation({r"\omega": OMEGA, "I": INERTIA})
     d.step(
         r"The product $\omega \cdot I\,\omega$ is a sum of squares. So no principal moment is negative, and a "
         "principal moment is zero only if all particles lie on one line.",
-        OMEGA.dot(tensor * OMEGA),
-        sum(m * squared(OMEGA.cross(p)) for m, p in zip(MASSES, POINTS, strict=True)),
+        OMEGA.dot(INERTIA * OMEGA),
+        over_particles(lambda m, r: m * squared(OMEGA.cross(r))),
         because=r"$\omega \cdot (r \times (\omega \times r)) = |\omega \times r|^2$",
         named=r"\omega \cdot I\,\omega",
         board=(
@@ -156,15 +144,15 @@ def _properties(d: Derivation) -> None:
     )
     d.step(
         "No moment of inertia exceeds the sum of the other two.",
-        tensor[0, 0] + tensor[1, 1] - tensor[2, 2],
-        2 * sum(m * p[2] ** 2 for m, p in zip(MASSES, POINTS, strict=True)),
+        INERTIA[0, 0] + INERTIA[1, 1] - INERTIA[2, 2],
+        2 * over_particles(lambda m, r: m * r[2] ** 2),
         because="the squares $x^2$ and $y^2$ cancel, and $z^2$ occurs in both of the first two moments",
         named=r"I_{xx} + I_{yy} - I_{zz}",
     )
     d.step(
         "Half the trace of the tensor is the polar moment of inertia, which is the same in all axes.",
-        tensor.trace() / 2,
-        sum(m * squared(p) for m, p in zip(MASSES, POINTS, strict=True)),
+        INERTIA.trace() / 2,
+        over_particles(lambda m, r: m * squared(r)),
         because="each of $x^2$, $y^2$, $z^2$ occurs in two of the three moments",
         named=r"\tfrac12\,\mathrm{tr}\,I",
         display=rf"{COUNT} m_i\,|r_i|^2",

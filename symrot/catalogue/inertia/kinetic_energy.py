@@ -1,20 +1,17 @@
 """Kinetic energy of a rigid body (Landau & Lifshitz, Mechanics, 3rd ed., sections 32 and 35)."""
 
-from sympy import Matrix, Rational, cos, diag, sin, zeros
+from sympy import Matrix, Rational, cos, diag, sin
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA, TENSOR, squared
-from symrot.catalogue.tools.particles import sums_over
+from symrot.catalogue.tools.particles import COUNT, FIRST_MOMENT, INERTIA, MASS, NAMES, over_particles
 from symrot.inertia.tensor import about_point, inertia_of_point
 from symrot.kinematics.euler import rate_jacobian
 from symrot.kinematics.quaternion import quaternion_to_dcm, unit_relation
 from symrot.proof.derivation import Derivation
 
-MASSES = symbols.particle_masses
-POINTS = [Matrix(symbols.corners[3 * i : 3 * i + 3]) for i in range(3)]
 V, ARM = Matrix(symbols.velocity), Matrix(symbols.center_of_mass)
 HALF = Rational(1, 2)
-COUNT = r"\sum_i"
 
 
 def derive() -> Derivation:
@@ -64,16 +61,14 @@ def _sum(d: Derivation) -> None:
         (rf"{COUNT} m_i\,r_i", "0"),
         ("M", rf"{COUNT} m_i"),
     )
-    balance = sum((m * p for m, p in zip(MASSES, POINTS, strict=True)), zeros(3, 1))
-    tensor = sum((Matrix(inertia_of_point(m, p)) for m, p in zip(MASSES, POINTS, strict=True)), zeros(3))
-    d.notation(sums_over(MASSES, POINTS) | {"I": tensor, "v": V, "M": sum(MASSES)})
+    d.notation(NAMES | {"I": INERTIA, "v": V, "M": MASS})
     d.step(
         "König's theorem: the kinetic energy is the energy of the total mass, moving with the centre of mass, plus the "
         "energy of the rotation about the centre of mass.",
-        HALF * sum(m * squared(V + OMEGA.cross(p)) for m, p in zip(MASSES, POINTS, strict=True)),
-        HALF * sum(MASSES) * squared(V) + HALF * OMEGA.dot(tensor * OMEGA),
+        HALF * over_particles(lambda m, r: m * squared(V + OMEGA.cross(r))),
+        HALF * MASS * squared(V) + HALF * OMEGA.dot(INERTIA * OMEGA),
         because=rf"the mixed term is $v \cdot (\omega \times {COUNT} m_i\,r_i) = 0$",
-        relations=list(balance),
+        relations=list(FIRST_MOMENT),
         named=rf"\tfrac12 {COUNT} m_i\,|v + \omega \times r_i|^2",
         board=(
             (

@@ -26,8 +26,8 @@ def derive() -> Derivation:
     crossed = there - here - Matrix(inertia_of_point(mass, D))
     linear = mass * (2 * D.dot(R) * Matrix.eye(3) - D * R.T - R * D.T)
     d.step(
-        "About a reference point at $-d$, the mass has the tensor $I(r)$, plus the tensor $I(d)$, plus a term that is "
-        "linear in $r$.",
+        "About a reference point at $-d$, the mass has the tensor $I(r)$, plus the tensor $I(d)$, plus a term $F(r)$ "
+        "that is linear in $r$.",
         crossed,
         linear,
         because=r"the inertia tensor is quadratic in $r + d$",
@@ -36,8 +36,7 @@ def derive() -> Derivation:
     )
     second = Matrix(symbols.corners[:3])
     d.step(
-        r"The linear term $F$ is additive. Its sum over the body is therefore $F$ at $\sum m\,r$, which is zero "
-        "because $r$ is measured from the centre of mass.",
+        "The linear term $F$ is additive: the term of a sum of two positions is the sum of their terms.",
         linear.subs(dict(zip(R, R + second, strict=True)), simultaneous=True),
         linear + linear.subs(dict(zip(R, second, strict=True)), simultaneous=True),
         because="every entry of $F$ is linear in the position",

@@ -13,6 +13,7 @@ from symrot.catalogue.tools.integral import Stage, iterated
 from symrot.inertia.shapes import SHAPES
 from symrot.inertia.solids import Solid, solid
 from symrot.proof.derivation import Derivation, Step
+from symrot.proof.notation.printer import formula
 
 AXES = "xyz"
 MEASURE = {"solid": "V", "surface": "S", "curve": r"\ell"}
@@ -72,8 +73,8 @@ def _tabulate(d: Derivation, bodies: Sequence[Solid]) -> None:
     """Print the maps of bodies as one table, their moments of inertia as another, and the rest as a third."""
     maps = []
     for body in bodies:
-        jacobian, measure = (f"${_latex(value)}$" for value in (body.jacobian, body.measure))
-        cells = _title(body), _ranges(body), f"${_latex(body.position)}$", jacobian, measure
+        jacobian, measure = (f"${formula(value)}$" for value in (body.jacobian, body.measure))
+        cells = _title(body), _ranges(body), f"${formula(body.position)}$", jacobian, measure
         maps.append((cells, _measure(d, body, f"{_title(body)}: ")))
     d.tabulate(
         "The table has the map of each body, its Jacobian $J$ and its measure, which is a volume, an area or a length. "
@@ -109,7 +110,7 @@ def _title(body: Solid) -> str:
 
 def _ranges(body: Solid) -> str:
     """Return the limits of the integration coordinates of a solid as LaTeX."""
-    return _stack(rf"{_latex(low)} \le {_latex(u)} \le {_latex(high)}" for u, low, high in body.limits)
+    return _stack(rf"{formula(low)} \le {formula(u)} \le {formula(high)}" for u, low, high in body.limits)
 
 
 def _stack(lines: Iterable[str]) -> str:
@@ -121,7 +122,7 @@ def _stack(lines: Iterable[str]) -> str:
 
 
 def _center_cell(body: Solid) -> str:
-    return _stack(f"c_{axis} = {_latex(x)}" for axis, x in zip(AXES, body.center_of_mass, strict=True) if x != 0)
+    return _stack(f"c_{axis} = {formula(x)}" for axis, x in zip(AXES, body.center_of_mass, strict=True) if x != 0)
 
 
 def _moment_cells(tensor: Matrix) -> list[str]:
@@ -136,17 +137,17 @@ def _moment_cells(tensor: Matrix) -> list[str]:
 
 def _terms(moment: Expr) -> Iterator[str]:
     """Yield a moment of inertia as LaTeX; a long one as the sum of a term without the height and a term with it."""
-    if len(_latex(moment)) <= WIDE:
-        yield _latex(moment)
+    if len(formula(moment)) <= WIDE:
+        yield formula(moment)
         return
     numerator, denominator = moment.as_numer_denom()
     powers = collect(numerator.expand(), symbols.h, evaluate=False)
     for number, (power, factor) in enumerate(sorted(powers.items(), key=lambda item: degree(item[0], symbols.h))):
-        yield ("+ " if number else "") + _latex((power * factor / denominator).factor())
+        yield ("+ " if number else "") + formula((power * factor / denominator).factor())
 
 
 def _product_cells(tensor: Matrix) -> list[str]:
-    return [f"${_latex(tensor[i, j].factor())}$" for i, j in PRODUCTS]
+    return [f"${formula(tensor[i, j].factor())}$" for i, j in PRODUCTS]
 
 
 def _claim(prefix: str, claim: str) -> str:
@@ -164,10 +165,10 @@ def _measure(d: Derivation, body: Solid, prefix: str = "") -> list[Step]:
         body.jacobian**2,
         because="the square of the measure of a cell is the determinant of the scalar products of its edges",
         named=r"J^2 = \det \left( \frac{\partial (x,y,z)}{\partial ("
-        + ",".join(map(_latex, coordinates))
+        + ",".join(map(formula, coordinates))
         + r")}^{\mathsf T} "
-        r"\frac{\partial (x,y,z)}{\partial (" + ",".join(map(_latex, coordinates)) + r")} \right)",
-        display=None if body.jacobian.is_number else rf"\left( {_latex(body.jacobian)} \right)^2",
+        r"\frac{\partial (x,y,z)}{\partial (" + ",".join(map(formula, coordinates)) + r")} \right)",
+        display=None if body.jacobian.is_number else rf"\left( {formula(body.jacobian)} \right)^2",
     )
     measure = d.step(
         _claim(prefix, "The measure of the body is:"),
@@ -182,7 +183,7 @@ def _measure(d: Derivation, body: Solid, prefix: str = "") -> list[Step]:
 
 def _limits(body: Solid) -> str:
     """Return the limits of the integration coordinates of a solid in words, such as ``$r$ from $0$ to $R$``."""
-    return ", ".join(f"${_latex(u)}$ from ${_latex(low)}$ to ${_latex(high)}$" for u, low, high in body.limits)
+    return ", ".join(f"${formula(u)}$ from ${formula(low)}$ to ${formula(high)}$" for u, low, high in body.limits)
 
 
 def _moments(d: Derivation, body: Solid, prefix: str = "") -> list[Step]:
@@ -272,8 +273,8 @@ def _antiderivatives(body: Solid, axes: Sequence[int]) -> str:
     If the text would be long, only the last antiderivative is in it.
     """
     constant, stages = _stages(body, axes)
-    formulas = [f"${_latex(factor_terms(stage.antiderivative))}$ in ${_latex(stage.variable)}$" for stage in stages]
-    before = "" if constant == 1 else f", without the constant factor ${_latex(constant)}$"
+    formulas = [f"${formula(factor_terms(stage.antiderivative))}$ in ${formula(stage.variable)}$" for stage in stages]
+    before = "" if constant == 1 else f", without the constant factor ${formula(constant)}$"
     if sum(map(len, formulas)) > LONG:
         return (
             f"the integrals are computed from the innermost outward{before}; the last antiderivative is {formulas[-1]}"
@@ -289,23 +290,23 @@ def _between(body: Solid, axes: Sequence[int]) -> list[tuple[str, Expr, Expr]]:
     equations = []
     for stage in _stages(body, axes)[1]:
         upper, lower = (stage.antiderivative.subs(stage.variable, end) for end in (stage.upper, stage.lower))
-        limits = f"from ${_latex(stage.lower)}$ to ${_latex(stage.upper)}$"
-        antiderivative = f"with the antiderivative ${_latex(stage.antiderivative)}$"
-        words = f"Integration over ${_latex(stage.variable)}$ {limits}, {antiderivative}:"
+        limits = f"from ${formula(stage.lower)}$ to ${formula(stage.upper)}$"
+        antiderivative = f"with the antiderivative ${formula(stage.antiderivative)}$"
+        words = f"Integration over ${formula(stage.variable)}$ {limits}, {antiderivative}:"
         equations.append((words, upper if lower == 0 else Add(upper, -lower, evaluate=False), stage.value))
     return equations
 
 
 def _integral_sign(body: Solid, axes: Sequence[int]) -> str:
-    signs = "".join(rf"\int_{{{_latex(low)}}}^{{{_latex(high)}}} " for _, low, high in reversed(body.limits))
-    measure = "".join(rf"\,d{_latex(variable)}" for variable, _, _ in body.limits)
+    signs = "".join(rf"\int_{{{formula(low)}}}^{{{formula(high)}}} " for _, low, high in reversed(body.limits))
+    measure = "".join(rf"\,d{formula(variable)}" for variable, _, _ in body.limits)
     factors = Counter(factor for factor in (*(body.position[axis] for axis in axes), body.jacobian) if factor != 1)
     integrand = r"\,".join(_factor(factor, power) for factor, power in factors.items())
     return f"{signs}{integrand}{measure}"
 
 
 def _factor(factor: Expr, power: int) -> str:
-    text = _latex(factor)
+    text = formula(factor)
     if factor.is_Add or factor.could_extract_minus_sign() or (power > 1 and not factor.is_Symbol):
         text = rf"\left( {text} \right)"
     return f"{text}^{power}" if power > 1 else text
@@ -320,9 +321,3 @@ def _product(axes: Sequence[int]) -> str:
 def _quantity(axes: Sequence[int]) -> str:
     kind = {1: "first", 2: "second"}[len(axes)]
     return f"{kind} moment {''.join(AXES[axis] for axis in axes)}"
-
-
-def _latex(value: object) -> str:
-    from symrot.proof.notation.printer import formula
-
-    return formula(value)

@@ -1,34 +1,50 @@
-"""Sums over the particles of a body, in LaTeX: ``\\sum_i (m_i r_i)``."""
+"""Sums over the particles of a body; in the LaTeX of a page they are written ``\\sum_i (m_i r_i)``."""
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from typing import Any
 
 from sympy import Expr, Matrix, Symbol
 
-__all__ = ["sums_over"]
+from symrot import symbols
+from symrot.inertia.tensor import inertia_of_point
 
-MASS = Symbol("m_i")
-PLACE = Matrix([Symbol(f"r_i{axis}") for axis in "xyz"])
+__all__ = ["COUNT", "FIRST_MOMENT", "INERTIA", "MASS", "NAMES", "over_particles"]
+
+COUNT = r"\sum_i"
+PLACES = [Matrix(symbols.corners[3 * i : 3 * i + 3]) for i in range(3)]
+ANY_MASS, ANY_PLACE = Symbol("m_i"), Matrix([Symbol(f"r_i{axis}") for axis in "xyz"])
 
 
-def sums_over(masses: Sequence[Expr], places: Sequence[Matrix]) -> dict[str, Any]:
-    r"""Return the meanings of ``m_i``, ``r_i`` and ``\sum_i`` for :meth:`symrot.proof.derivation.Derivation.notation`.
-
-    The sum stands before its terms in parentheses. ``masses`` and ``places`` are the masses and positions of the
-    particles.
+def over_particles(term: Callable[[Expr, Matrix], Any]) -> Any:
+    """Return the sum of ``term(mass, position)`` over three particles.
 
     Examples
     --------
-    >>> from symrot.symbols import m_1, m_2
-    >>> sums_over([m_1, m_2], [Matrix([0, 0, 1]), Matrix([0, 0, 2])])[r"\sum_i"](MASS * PLACE)[2]
-    m_1 + 2*m_2
+    >>> over_particles(lambda m, r: m * r)[2]
+    m_1*z_1 + m_2*z_2 + m_3*z_3
     """
+    first, *others = (term(m, r) for m, r in zip(symbols.particle_masses, PLACES, strict=True))
+    return sum(others, first)
 
-    def total(term: Any) -> Any:
-        terms = [
-            term.subs({MASS: mass} | dict(zip(PLACE, place, strict=True)), simultaneous=True)
-            for mass, place in zip(masses, places, strict=True)
-        ]
-        return sum(terms[1:], terms[0])
 
-    return {"m_i": MASS, "r_i": PLACE, r"\sum_i": total}
+def _sum_of(term: Any) -> Any:
+    """Return the sum of a term over the particles; the term contains the symbols of any mass and any position."""
+    return over_particles(
+        lambda m, r: term.subs({ANY_MASS: m} | dict(zip(ANY_PLACE, r, strict=True)), simultaneous=True)
+    )
+
+
+MASS = over_particles(lambda m, r: m)
+"""The total mass of the particles."""
+
+FIRST_MOMENT = over_particles(lambda m, r: m * r)
+"""The sum of mass times position, which is zero if the positions are measured from the centre of mass."""
+
+INERTIA = over_particles(lambda m, r: Matrix(inertia_of_point(m, r)))
+"""The inertia tensor of the particles about the point from which their positions are measured."""
+
+NAMES: dict[str, Any] = {"m_i": ANY_MASS, "r_i": ANY_PLACE, COUNT: _sum_of}
+"""The meanings of ``m_i``, ``r_i`` and the sum for :meth:`symrot.proof.derivation.Derivation.notation`.
+
+The sum stands before its terms in parentheses.
+"""

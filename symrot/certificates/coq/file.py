@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from hashlib import sha256
 
+from symrot.build.code_digest import text_digest
 from symrot.certificates.coq.text import comment, folded
 
 __all__ = ["CoqFile", "Theorem", "derivatives", "statement"]
@@ -67,7 +67,7 @@ class CoqFile:
     @property
     def digest(self) -> str:
         """The SHA-256 of the file's text, which certificates state."""
-        return sha256(self.text.encode()).hexdigest()
+        return text_digest(self.text)
 
 
 def _short(line: str) -> str:

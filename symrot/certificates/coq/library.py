@@ -2,10 +2,10 @@
 
 from collections.abc import Callable
 from functools import cache, partial
-from hashlib import sha256
 from importlib.resources import files
 from typing import Any
 
+from symrot.build.code_digest import text_digest
 from symrot.certificates.coq.dynamics import dynamics_file
 from symrot.certificates.coq.euler import euler_file, euler_files
 from symrot.certificates.coq.file import CoqFile, Theorem
@@ -129,12 +129,8 @@ def coq_section(kernel: str) -> dict[str, Any] | None:
         "file": f"{name}.v",
         "theorem": theorem.name,
         "statement": statement,
-        "statement_sha256": _sha256(statement),
+        "statement_sha256": text_digest(statement),
         "file_sha256": coq_file(name).digest,
-        "requires": {f"{each}.v": _sha256(text) for each, text in texts.items()},
+        "requires": {f"{each}.v": text_digest(text) for each, text in texts.items()},
         "axioms": list(STANDARD_AXIOMS),
     }
-
-
-def _sha256(text: str) -> str:
-    return sha256(text.encode()).hexdigest()

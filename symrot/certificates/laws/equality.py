@@ -14,7 +14,7 @@ from sympy import QQ, Abs, Expr, Integer, Symbol, atan2
 from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyRing
 
-from symrot.certificates.laws.fractions import FormulaReader, FractionField, Quotient, quotient_text
+from symrot.certificates.laws.fractions import FormulaReader, FractionField, Quotient
 from symrot.certificates.readback.intended_constants import IntendedConstant, intended_value
 from symrot.certificates.readback.operations import Operations
 from symrot.errors import CertificateError
@@ -40,10 +40,6 @@ class Truncation:
 class Equality:
     """The proof that the C text computes the formula of each output."""
 
-    # (symbol, function, arguments), where the symbol stands for the function value
-    atoms: tuple[tuple[str, str, tuple[str, ...]], ...]
-    # (output such as "q[1]", numerator, denominator), as text over inputs, pi and atoms
-    formulas: tuple[tuple[str, str, str], ...]
     # constants of the C text that stand for an exact number, such as 1/3
     rounded: tuple[IntendedConstant, ...]
     truncations: tuple[Truncation, ...]
@@ -328,12 +324,4 @@ def prove_equal(
             raise CertificateError(
                 f"{operations.name}: expected {place} to be {formulas[place]}, but the C text computes another value"
             )
-    return Equality(
-        tuple(
-            (symbol, name, tuple(map(quotient_text, arguments)))
-            for (name, arguments), symbol in fractions.atoms.items()
-        ),
-        tuple((place, str(above), str(below)) for place, (above, below) in expected.items()),
-        tuple(prover.rounded.values()),
-        tuple(prover.truncations),
-    )
+    return Equality(tuple(prover.rounded.values()), tuple(prover.truncations))

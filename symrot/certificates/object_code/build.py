@@ -11,6 +11,7 @@ from shutil import which
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from symrot.build.code_digest import text_digest
 from symrot.certificates.flags import classify_flags
 from symrot.certificates.object_code.comparison import ObjectVerdict, compare_object
 from symrot.certificates.tools import run_tool
@@ -109,7 +110,7 @@ def objects_section(
         for chosen in flag_sets:
             objects.append(_object(source, text, functions, compiler, version, chosen))
     return {
-        "source": {"name": source.name, "sha256": sha256(text.encode()).hexdigest()},
+        "source": {"name": source.name, "sha256": text_digest(text)},
         "objects": objects,
         "missing": missing,
         "accepted": bool(objects) and all(item["accepted"] for item in objects),

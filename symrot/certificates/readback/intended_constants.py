@@ -5,6 +5,7 @@ Only the standard library is used.
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from math import frexp
 from struct import pack, unpack
 
@@ -44,6 +45,7 @@ def rounds_to(value: Fraction, precision: str) -> Fraction:
     return min(nearest, key=lambda candidate: unpack("i", pack("f", float(candidate)))[0] & 1)
 
 
+@lru_cache(maxsize=4096)
 def intended_value(value: Fraction, precision: str) -> IntendedConstant:
     """Return the exact number for which a constant of the C text stands, such as 1/3 for 0.3333333333333333.
 
@@ -76,9 +78,16 @@ def _size(fraction: Fraction) -> int:
 
 def _simplest(low: Fraction, high: Fraction) -> Fraction:
     """Return the fraction with the smallest denominator between ``low`` and ``high``, both positive and included."""
-    whole = low.numerator // low.denominator
-    if low == whole:
-        return Fraction(whole)
-    if whole + 1 <= high:
-        return Fraction(whole + 1)
-    return whole + 1 / _simplest(1 / (high - whole), 1 / (low - whole))
+    above, below = _simplest_quotient(low.numerator, low.denominator, high.numerator, high.denominator)
+    return Fraction(above, below)
+
+
+def _simplest_quotient(a: int, b: int, c: int, d: int) -> tuple[int, int]:
+    """Return numerator and denominator of the simplest fraction between a/b and c/d, by their continued fractions."""
+    whole, rest = divmod(a, b)
+    if not rest:
+        return whole, 1
+    if (whole + 1) * d <= c:
+        return whole + 1, 1
+    below, above = _simplest_quotient(d, c - whole * d, b, rest)
+    return whole * below + above, below

@@ -11,9 +11,10 @@ from typing import Any
 
 from symrot.certificates.readback.operations import Operations
 from symrot.certificates.rounding.adjoint import LIBM_ULP
-from symrot.certificates.rounding.bounds import BUDGET, rounding_section
+from symrot.certificates.rounding.bounds import BUDGET
 from symrot.certificates.rounding.library import library_problem, operations_of
 from symrot.certificates.rounding.region import UNIT_NORM, Region
+from symrot.certificates.rounding.section import rounding_section
 from symrot.errors import InputError
 from symrot.kernels.jacobian import BY
 from symrot.kernels.library import definition

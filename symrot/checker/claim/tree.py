@@ -27,6 +27,7 @@ __all__ = [
     "TIME",
     "Node",
     "derivative",
+    "exchanged",
     "is_derivative",
     "negated",
     "number",
@@ -119,14 +120,19 @@ def walk(node: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
         yield from walk(child, (*path, place))
 
 
-def replaced(node: Node, path: Path, edit: Callable[[Node], Node]) -> Node:
-    """Return the tree in which ``edit`` has been applied to the node at the given path."""
+def replaced(node: Node, path: Path, made: Node) -> Node:
+    """Return the tree with ``made`` in place of the node at the given path."""
     if not path:
-        return edit(node)
+        return made
     place, *rest = path
     args = list(node.args)
-    args[place] = replaced(args[place], tuple(rest), edit)
+    args[place] = replaced(args[place], tuple(rest), made)
     return replace(node, args=tuple(args))
+
+
+def exchanged(node: Node, trees: Mapping[Node, Node]) -> Node:
+    """Return the tree with new parts, by the map ``trees`` from old parts to new ones; new parts are not searched."""
+    return trees.get(node) or replace(node, args=tuple(exchanged(child, trees) for child in node.args))
 
 
 SUM, PRODUCT, SIGN, POWER, ATOM = 10, 20, 30, 40, 50

@@ -25,10 +25,12 @@ from symrot.checker.context.open_choices import with_axes, with_guesses, with_or
 from symrot.checker.context.quantities import plain_words
 from symrot.checker.decide.decision import decide_equation
 from symrot.checker.decide.equation import Equation
-from symrot.checker.recognition.evidence import has_word, words_of
 from symrot.checker.recognition.identification import known_value
 from symrot.checker.recognition.known_formulas import Known
-from symrot.checker.recognition.naming import SQUARED, recognised_edits, verdict_on_name
+from symrot.checker.recognition.naming.edited import recognised_edits
+from symrot.checker.recognition.naming.quantities import has_word, words_of
+from symrot.checker.recognition.naming.readings import SQUARED
+from symrot.checker.recognition.naming.verdicts import verdict_on_name
 from symrot.checker.repair.diagnose import MOST_REPAIRS, diagnose
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.errors import InputError

@@ -17,7 +17,8 @@ from symrot.checker.arrays.matrices import matrices_of_entries
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, text, walk
-from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, single_edits
+from symrot.checker.repair.edits.faults import FAULT_DESCRIPTIONS
+from symrot.checker.repair.edits.single import single_edits
 from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.conventions import SEQUENCES

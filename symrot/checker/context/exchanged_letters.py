@@ -7,7 +7,7 @@ from itertools import combinations, islice
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.tree import Node, text, walk, with_names
-from symrot.checker.repair.edits import COST
+from symrot.checker.repair.edits.faults import COST
 from symrot.checker.verdict import Diagnosis, Repair, Verdict
 
 __all__ = ["by_exchanged_letters"]

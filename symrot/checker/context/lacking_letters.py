@@ -16,8 +16,8 @@ from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import text
 from symrot.checker.recognition.known_formulas import Known
-from symrot.checker.recognition.pairing import absent_name
-from symrot.checker.repair.edits import COST, FAULT_DESCRIPTIONS
+from symrot.checker.recognition.single_faults.absent_names import absent_name
+from symrot.checker.repair.edits.faults import COST, FAULT_DESCRIPTIONS
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.exact.decide import decide
 from symrot.exact.printing import as_text

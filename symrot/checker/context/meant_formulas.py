@@ -18,7 +18,7 @@ from symrot.checker.context.bodies import bodies_of_formula
 from symrot.checker.context.context import Context
 from symrot.checker.recognition.identification import known_value
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint
-from symrot.checker.recognition.naming import SQUARED
+from symrot.checker.recognition.naming.readings import SQUARED
 from symrot.checker.recognition.renaming import axes_of, component, is_consistent
 from symrot.checker.verdict import Identification
 from symrot.exact.printing import as_text

@@ -12,7 +12,7 @@ from typing import Any
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.tree import Node, number, product, walk
-from symrot.checker.recognition.evidence import MOMENT
+from symrot.checker.recognition.naming.fit import MOMENT
 from symrot.checker.verdict import Verdict
 
 __all__ = ["by_other_sizes"]

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from sympy import Abs, Expr, Function, Poly, atan2, cos, pi, sin
 
 from symrot.checker.decide.definite import surely_nonnegative
-from symrot.checker.decide.ranges import range_text
+from symrot.checker.decide.ranges.text import range_text
 from symrot.exact.decide import normal_form
 from symrot.exact.printing import as_text
 

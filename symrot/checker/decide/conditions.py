@@ -14,7 +14,7 @@ from sympy.core.function import AppliedUndef
 from sympy.polys.rings import PolyElement
 
 from symrot.checker.decide.definite import surely_nonnegative
-from symrot.checker.decide.ranges import range_text
+from symrot.checker.decide.ranges.text import range_text
 from symrot.exact.decide import normal_form
 from symrot.exact.evidence import Requirement
 from symrot.exact.factors import factor_list

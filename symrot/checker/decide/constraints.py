@@ -4,20 +4,20 @@ Hypotheses, ``sin^2 + cos^2 - 1`` of angles, and ``root^n - base`` of roots are 
 generator may have every value that these constraints allow. Constraints on others, such as tanh(x), are not used.
 """
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from sympy import Expr, I, Symbol
-from sympy.core.function import AppliedUndef
+from sympy import I
 from sympy.polys.domains import QQ
 from sympy.polys.orderings import grevlex
 from sympy.polys.rings import PolyElement, PolyRing
 
+from symrot.exact.domain.domain import free_angles
 from symrot.exact.factors import factor_list
+from symrot.exact.ring.polynomials import occurring
 from symrot.exact.ring.ring import FormulaRing
 
-__all__ = ["Constraints", "constraints_of", "distinct_factors", "occurring"]
+__all__ = ["Constraints", "constraints_of", "distinct_factors"]
 
 MOST_TERMS, MOST_UNKNOWNS, LARGEST_DEGREE = 40, 4, 12
 """The most terms, the most unknowns and the largest degree of a polynomial that is factored."""
@@ -67,11 +67,6 @@ class Constraints:
         return tuple(sorted(self.free & occurring([*self.zeros, *self.nonzero, *self.products])))
 
 
-def occurring(polynomials: Sequence[PolyElement]) -> set[int]:
-    """Return the indices of the generators (unknowns of the ring) that occur in polynomials."""
-    return {place for poly in polynomials for mono in poly for place, power in enumerate(mono) if power}
-
-
 def distinct_factors(poly: PolyElement) -> list[PolyElement]:
     """Return the different factors of a polynomial that is not constant, each with leading coefficient 1.
 
@@ -92,7 +87,7 @@ def constraints_of(ring: FormulaRing) -> Constraints:
     target = PolyRing(ring.ring.symbols, QQ, grevlex)
     symbols = {leaf: n for leaf, n in ring.symbols.items() if ring.leaves[leaf]}
     # tanh(x) is not free, nor are the sine and cosine of an angle whose symbols occur elsewhere too
-    free = {*symbols.values(), *_free_angles(ring)}
+    free = {*symbols.values(), *(place[angle] for angle in free_angles(ring) for place in (ring.sines, ring.cosines))}
     zeros, products = [], []
     for atom, sine in ring.sines.items():
         if sine in free:
@@ -133,17 +128,3 @@ def constraints_of(ring: FormulaRing) -> Constraints:
         complete=len(stated) == len(hypotheses),
         real=not any(root.expression is I for root in ring.roots),
     )  # fmt: skip
-
-
-def _free_angles(ring: FormulaRing) -> Iterator[int]:
-    """Yield the indices of the generators sin(u) and cos(u) for each angle u that no other generator restricts."""
-    holders: list[Expr] = [*ring.bases, *(leaf for leaf in ring.symbols if not leaf.is_Derivative)]
-    for atom in ring.bases:
-        factors = atom.args if atom.is_Mul else (atom,)
-        others = [holder for holder in holders if holder is not atom]
-        # u is proportional to a symbol or a function of time that occurs nowhere else; its time derivatives may occur,
-        # since at one instant they are independent of the value of the function
-        plain = all(isinstance(factor, Symbol | AppliedUndef) for factor in factors)
-        own = any(not any(other.has(factor) for other in others) for factor in factors)
-        if plain and own and atom not in ring.symbols:
-            yield from (ring.sines[atom], ring.cosines[atom])

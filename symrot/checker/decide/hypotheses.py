@@ -8,18 +8,16 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 
-from sympy import CRootOf, Expr, Rational, Symbol, atan2, pi, preorder_traversal
-from sympy import cos as cosine_of
-from sympy import sin as sine_of
-from sympy.core.function import AppliedUndef
+from sympy import CRootOf, Expr, Rational, Symbol, atan2
 from sympy.polys.rings import PolyElement
 
 from symrot.checker.claim.atoms import atoms_of
-from symrot.checker.decide.constraints import Constraints, constraints_of, occurring
+from symrot.checker.decide.constraints import Constraints, constraints_of
 from symrot.checker.decide.infeasibility import Infeasibility, infeasibility_proof, vanishes_on
-from symrot.checker.decide.real_points import ATTEMPTS, RealPoint, real_points, value_at
+from symrot.checker.decide.real_points import ATTEMPTS, RealPoint, real_points
 from symrot.errors import InputError
 from symrot.exact.angles.angles import base_angle
+from symrot.exact.counterexample import coordinates_of
 from symrot.exact.decide import is_zero, normal_form
 from symrot.exact.decision import Search
 from symrot.exact.domain.domain import is_dense
@@ -27,8 +25,9 @@ from symrot.exact.domain.everywhere import fails_everywhere, range_everywhere
 from symrot.exact.domain.known_points import holds, known_point
 from symrot.exact.domain.needs import Need, is_leaf, leaves_of
 from symrot.exact.evidence import Counterexample
-from symrot.exact.intervals import enclosure
+from symrot.exact.intervals import enclosure, is_nonnegative_at
 from symrot.exact.printing import as_text
+from symrot.exact.ring.polynomials import occurring
 from symrot.exact.ring.ring import FormulaRing
 
 __all__ = ["Hypotheses"]
@@ -213,8 +212,8 @@ class Hypotheses:
         raise InputError(f"the hypotheses hold at no real point{divisors}: {reason}")
 
     def entails(self, numerators: Iterable[PolyElement]) -> bool:
-        """Return whether hypotheses provably make the ``numerators`` of left - right zero; False if there are no
-        hypotheses.
+        """Return whether hypotheses and assumed signs provably make the ``numerators`` of left - right zero; False
+        without any.
         """
         target = self.constraints.ring
         return self.present and all(vanishes_on(self.constraints, poly.set_ring(target)) for poly in numerators)
@@ -266,7 +265,7 @@ class Hypotheses:
             return self._by_enclosures(left, right, entry, attempts)
         candidates = []
         for point in self.points(attempts):
-            if value_at(residual, point) and self._other_divisors_nonzero(point):
+            if point.value(residual) and self._other_divisors_nonzero(point):
                 candidates.append(point)
             if len(candidates) == CANDIDATES:
                 break
@@ -278,8 +277,8 @@ class Hypotheses:
     def _counterexample(
         self, point: RealPoint, left: Expr, right: Expr, entry: tuple[int, int] | None
     ) -> Counterexample:
-        used = set().union(*(preorder_traversal(formula) for formula in (left, right, *self.ring.hypotheses)))
-        pairs = list(self._named(point, used))
+        numbers = {n: point.number(value) for n, value in point.values.items()}
+        pairs = list(coordinates_of(self.ring, numbers, (left, right, *self.ring.hypotheses)))
         sides = [self._value(side, point) for side in (left, right)]
         roots = sorted({root for value in (*sides, *(v for _, v in pairs)) for root in value.atoms(CRootOf)}, key=str)
         names = {root: Symbol("root" + "_" * number) for number, root in enumerate(roots, start=0)}
@@ -287,31 +286,13 @@ class Hypotheses:
         return Counterexample(tuple(values), entry, *(side.xreplace(names) for side in sides))
 
     def _value(self, side: Expr, point: RealPoint) -> Expr:
-        above, below = (value_at(part, point) for part in self._parts(side))
+        above, below = map(point.value, self._parts(side))
         return point.number(above / below)
 
     def _parts(self, side: Expr) -> tuple[PolyElement, PolyElement]:
         """Return the numerator and the denominator of a side of the claim, as polynomials in the constraints' ring."""
         ratio, target = self.ring.ratio(side), self.constraints.ring
         return ratio.numerator.set_ring(target), self.ring.ratios.denominator(ratio).set_ring(target)
-
-    def _named(self, point: RealPoint, used: set[Expr]) -> Iterator[tuple[Expr, Expr]]:
-        """Yield the symbols and angles of a claim with their values at a point."""
-        quarters = {(0, 1): 0, (1, 0): 1, (0, -1): 2, (-1, 0): 3}
-        for leaf, place in self.ring.symbols.items():
-            if leaf in used and place in point.values:
-                yield leaf, point.number(point.values[place])
-        for atom, place in self.ring.sines.items():
-            if not atom.atoms(Symbol, AppliedUndef) & used or place not in point.values:
-                continue
-            sine, cosine = (point.number(point.values[n]) for n in (place, self.ring.cosines[atom]))
-            base = base_angle(atom, self.ring.bases[atom])
-            if (sine, cosine) in quarters:
-                yield atom, quarters[sine, cosine] * pi / 2 * atom / base
-            else:
-                # an angle that is no multiple of pi/2 is stated by its cosine and sine
-                yield cosine_of(base), cosine
-                yield sine_of(base), sine
 
     def _by_enclosures(
         self, left: Expr, right: Expr, entry: tuple[int, int] | None, attempts: int
@@ -342,19 +323,16 @@ class Hypotheses:
         # the random search solves polynomial equations only, and ignores these divisors
         factors = [factor.as_expr(*self.ring.generators) for factor in self.constraints.unconstrained]
         values = self._values_for(factors, point)
-        enclosures = [enclosure(factor, values) for factor in factors]
-        return all(interval is not None and 0 not in interval for interval in enclosures)
+        return all(holds(Need(factor, "!= 0"), values) for factor in factors)
 
     def _divisors_nonzero(self, values: dict[Expr, Expr]) -> bool:
-        factors = [factor.as_expr(*self.ring.generators) for factor in self.ring.ratios.factors]
-        enclosures = [enclosure(factor, values) for factor in factors]
-        return all(interval is not None and 0 not in interval for interval in enclosures)
+        factors = (factor.as_expr(*self.ring.generators) for factor in self.ring.ratios.factors)
+        return all(holds(Need(factor, "!= 0"), values) for factor in factors)
 
     def _defined(self, values: dict[Expr, Expr]) -> bool:
         if not self._divisors_nonzero(values):
             return False
-        intervals = [enclosure(radical.base, values) for radical in self.ring.radicals.values()]
-        return all(interval is not None and interval.a >= 0 for interval in intervals)
+        return all(is_nonnegative_at(radical.base, values) for radical in self.ring.radicals.values())
 
 
 def _need_text(need: Need) -> str:

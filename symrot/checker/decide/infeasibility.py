@@ -7,6 +7,7 @@ replaces the polynomials. A case is impossible if 1 = 0 follows, or if a polynom
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import reduce
 from math import inf, prod
 from typing import Any
 
@@ -14,8 +15,10 @@ from sympy import Poly, Symbol
 from sympy.polys.domains import QQ
 from sympy.polys.rings import PolyElement, PolyRing
 
-from symrot.checker.decide.constraints import Constraints, distinct_factors, occurring
+from symrot.checker.decide.constraints import Constraints, distinct_factors
+from symrot.exact.domain.everywhere import REALS, Range, power_of_range, product_of_ranges, sum_of_ranges
 from symrot.exact.ring.groebner import groebner_basis
+from symrot.exact.ring.polynomials import occurring
 from symrot.exact.ring.ratio import TooLarge
 
 __all__ = ["Infeasibility", "infeasibility_proof", "vanishes_on"]
@@ -81,6 +84,8 @@ def _lifted(poly: PolyElement, ring: PolyRing) -> PolyElement:
 
 
 class _Prover:
+    """A proof by cases that polynomials cannot all vanish, within a budget of cases and of products of terms."""
+
     def __init__(self, ring: PolyRing, constraints: Constraints) -> None:
         self.ring, self.constraints, self.cases, self.spent = ring, constraints, 0, [0]
         self.nonnegative = constraints.positive | constraints.nonnegative
@@ -99,7 +104,7 @@ class _Prover:
         for number, poly in enumerate(zeros):
             factors = self.factors(poly)
             if not factors and poly:
-                return Infeasibility(*self.why(poly))
+                return _never_zero(poly)
             if len(factors) > 1:
                 rest = [*simple, *zeros[number + 1 :]]
                 cases = [self.impossible([factor, *rest], rounds) for factor in factors]
@@ -108,19 +113,16 @@ class _Prover:
             simple.extend(self.parts(factors[0]) if factors else ())
         for poly in simple:
             if self.keeps_its_sign(poly, simple):
-                return Infeasibility(*self.why(poly))
+                return _never_zero(poly)
         basis = groebner_basis(simple, self.ring, MOST_PRODUCTS, self.spent)
         if any(poly.is_ground for poly in basis):
             return Infeasibility("they contradict each other")
         for poly in basis:
             if self.keeps_its_sign(poly, simple):
-                return Infeasibility(*self.why(poly))
+                return _never_zero(poly)
         if {poly.monic() for poly in simple} == set(basis) and all(self.parts(p) == [p] for p in basis):
             raise _Undecided
         return self.impossible(basis, rounds - 1)
-
-    def why(self, poly: PolyElement) -> tuple[str, PolyElement]:
-        return "a polynomial that would have to vanish keeps its sign", poly
 
     def factors(self, poly: PolyElement) -> list[PolyElement]:
         """Return the different factors of a polynomial that may be zero somewhere: x - y for
@@ -223,15 +225,12 @@ class _Prover:
     def out_of_range(self, poly: PolyElement, zeros: Sequence[PolyElement]) -> bool:
         """Return whether bounds of the unknowns keep a polynomial from zero: x - 2 if x^2 + y^2 = 1."""
         bounds = self.bounds(zeros)
-        low, high = Fraction(0), Fraction(0)
-        for mono, coefficient in poly.items():
-            below, above = _term_range(mono, coefficient, bounds)
-            low, high = _plus(low, below), _plus(high, above)
-        return low > 0 or high < 0
+        low, high = reduce(sum_of_ranges, (_term_range(mono, c, bounds) for mono, c in poly.items()))
+        return bool(low > 0 or high < 0)
 
-    def bounds(self, zeros: Sequence[PolyElement]) -> dict[int, tuple[Any, Any]]:
+    def bounds(self, zeros: Sequence[PolyElement]) -> dict[int, Range]:
         """Return the bounds (low, high) of unknowns by their indices: (-1, 1) for x if ``x^2 + 2*y^2 = 1``."""
-        bounds: dict[int, tuple[Any, Any]] = {}
+        bounds: dict[int, Range] = {}
         for poly in (*self.constraints.zeros, *zeros):
             constant = poly.coeff(1)
             squares = [mono for mono in poly if any(mono)]
@@ -247,6 +246,10 @@ class _Prover:
         for place in self.constraints.negative:
             bounds[place] = (bounds.get(place, (-inf, 0))[0], Fraction(0))
         return bounds
+
+
+def _never_zero(poly: PolyElement) -> Infeasibility:
+    return Infeasibility("a polynomial that would have to vanish keeps its sign", poly)
 
 
 def _fraction(value: Any) -> Fraction:
@@ -265,31 +268,10 @@ def _root_above(value: Fraction, power: int) -> Fraction:
     return high
 
 
-def _term_range(mono: tuple[int, ...], coefficient: Any, bounds: dict[int, tuple[Any, Any]]) -> tuple[Any, Any]:
-    number = _fraction(coefficient)
-    low, high = number, number
+def _term_range(mono: tuple[int, ...], coefficient: Any, bounds: dict[int, Range]) -> Range:
+    """Return the bounds of a term, given the bounds of its unknowns."""
+    total: Range = (_fraction(coefficient),) * 2
     for place, power in enumerate(mono):
         if power:
-            a, b = bounds.get(place, (-inf, inf))
-            ends = [_times(x, y) for x in (low, high) for y in _powers(a, b, power)]
-            low, high = min(ends), max(ends)
-    return low, high
-
-
-def _powers(low: Any, high: Any, power: int) -> tuple[Any, Any]:
-    ends = low**power, high**power
-    if power % 2:
-        return ends
-    return (Fraction(0) if low <= 0 <= high else min(ends)), max(ends)
-
-
-def _plus(a: Any, b: Any) -> Any:
-    return b if b in (inf, -inf) else a if a in (inf, -inf) else a + b
-
-
-def _times(a: Any, b: Any) -> Any:
-    if not a or not b:
-        return Fraction(0)
-    if isinstance(a, Fraction) and isinstance(b, Fraction):
-        return a * b
-    return inf if (a > 0) == (b > 0) else -inf
+            total = product_of_ranges(total, power_of_range(bounds.get(place, REALS), power))
+    return total

@@ -11,6 +11,8 @@ from typing import Any
 from sympy.polys.domains import QQ
 from sympy.polys.rings import PolyElement
 
+from symrot.exact.ring.polynomials import value_at
+
 __all__ = ["SIMPLE", "point_of_quadric", "rational_square_root"]
 
 SIMPLE = tuple(
@@ -48,11 +50,11 @@ def point_of_quadric(poly: PolyElement, places: Sequence[int], source: Random) -
     base = _simple_point(poly, places, source)
     if base is None or source.random() < 0.3:
         return base
-    slopes = {n: _at(poly.diff(n), base) for n in places}
+    slopes = {n: value_at(poly.diff(n), base) for n in places}
     leading = poly.new({mono: c for mono, c in poly.items() if sum(mono) == 2})
     for _ in range(TRIES):
         line = {n: QQ(source.randint(-5, 5)) for n in places}
-        along, curved = sum((slopes[n] * line[n] for n in places), QQ(0)), _at(leading, line)
+        along, curved = sum((slopes[n] * line[n] for n in places), QQ(0)), value_at(leading, line)
         if along and curved:  # the line leaves the point and meets the quadric once more
             return {n: base[n] - along / curved * line[n] for n in places}
     return base
@@ -77,13 +79,3 @@ def _simple_point(poly: PolyElement, places: Sequence[int], source: Random) -> d
             continue
         return point
     return None
-
-
-def _at(poly: PolyElement, values: dict[int, Any]) -> Any:
-    total = QQ(0)
-    for mono, coefficient in poly.items():
-        for place, power in enumerate(mono):
-            if power:
-                coefficient = coefficient * values[place] ** power
-        total += coefficient
-    return total

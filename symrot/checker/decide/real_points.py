@@ -13,10 +13,11 @@ from sympy import Expr, Poly, Symbol
 from sympy.polys.domains import QQ
 from sympy.polys.rings import PolyElement
 
-from symrot.checker.decide.constraints import Constraints, distinct_factors, occurring
+from symrot.checker.decide.constraints import Constraints, distinct_factors
 from symrot.checker.decide.quadrics import SIMPLE, point_of_quadric
+from symrot.exact.ring.polynomials import occurring, value_at
 
-__all__ = ["ATTEMPTS", "RealPoint", "real_points", "value_at"]
+__all__ = ["ATTEMPTS", "RealPoint", "real_points"]
 
 ATTEMPTS = 120
 RATIONAL = 60
@@ -56,6 +57,11 @@ class RealPoint:
         """Whether all values are rational."""
         return bool(self.field == QQ)
 
+    def value(self, poly: PolyElement) -> Any:
+        """Return the value of a polynomial at the point, as an element of the point's field of numbers."""
+        domain = poly.ring.domain
+        return value_at(poly, self.values, lambda coefficient: self.field.convert(coefficient, domain))
+
     def number(self, value: Any) -> Expr:
         """Return ``value``, an element of the point's field, as an exact SymPy number."""
         number: Expr = self.field.to_sympy(value)
@@ -65,24 +71,6 @@ class RealPoint:
     def size(self) -> tuple[int, int]:
         """A sort key that puts short points first: rational points, then by the length of the point as text."""
         return (not self.rational, sum(len(str(value)) for value in self.values.values() if value))
-
-
-def value_at(poly: PolyElement, point: RealPoint) -> Any:
-    """Return the value of a rational polynomial at a point, as an element of the point's field of numbers."""
-    field = point.field
-    total = field.zero
-    for mono, coefficient in poly.items():
-        term = field.convert(coefficient, poly.ring.domain)
-        for place, power in enumerate(mono):
-            if power:
-                term = term * point.values[place] ** power
-        total = total + term
-    return total
-
-
-def sign_at(poly: PolyElement, point: RealPoint) -> int:
-    """Return the sign of a polynomial at a point: 1, -1, or 0 if it vanishes."""
-    return _sign(value_at(poly, point), point.field)
 
 
 def _sign(value: Any, field: Any) -> int:
@@ -112,9 +100,9 @@ def real_points(constraints: Constraints, attempts: int = ATTEMPTS) -> Iterator[
 def obeys(constraints: Constraints, point: RealPoint) -> bool:
     """Return whether a point with a value for every unknown obeys all constraints."""
     return (
-        not any(value_at(poly, point) for poly in constraints.zeros)
-        and all(value_at(poly, point) for poly in constraints.nonzero)
-        and all(sign_at(poly, point) >= 0 for poly in constraints.products)
+        not any(map(point.value, constraints.zeros))
+        and all(map(point.value, constraints.nonzero))
+        and all(_sign(point.value(poly), point.field) >= 0 for poly in constraints.products)
         and all(_allowed(constraints, place, value, point.field) for place, value in point.values.items())
     )
 
@@ -161,10 +149,10 @@ class _Drawing:
             self.values[place] = self.field.convert(self.drawn(place), QQ)
         for place, above, below in reversed(self.solved):
             point = RealPoint(self.values, self.field)
-            divisor = value_at(below, point)
+            divisor = point.value(below)
             if not divisor:
                 raise _DeadEnd
-            self.values[place] = value_at(above, point) / divisor
+            self.values[place] = point.value(above) / divisor
         return RealPoint(self.values, self.field)
 
     def drawn(self, place: int) -> Any:

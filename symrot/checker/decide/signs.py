@@ -1,11 +1,12 @@
 """Proofs that a real formula is never negative: by ranges, as a sum of squares, or by factors."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import sympy
 from sympy import Abs, Add, Expr, Mul, Poly, Pow, Rational, S
 
 from symrot.checker.decide.definite import surely_nonnegative
+from symrot.exact.domain.everywhere import range_everywhere
 from symrot.exact.factors import factored
 from symrot.exact.intervals import enclosure
 
@@ -19,11 +20,6 @@ LARGEST_DEGREE = 20
 
 MOST_UNKNOWNS = 12
 """The most unknowns of a polynomial that is written as a sum of squares."""
-
-RANGES = {sympy.sin: (-1, 1), sympy.cos: (-1, 1), sympy.tanh: (-1, 1), sympy.cosh: (1, None), sympy.exp: (0, None)}
-"""Maps a function to its range over the real numbers, with None for no bound."""
-
-Bounds = tuple[Expr | None, Expr | None]
 
 
 def is_proven_nonnegative(formula: Expr) -> bool:
@@ -101,47 +97,12 @@ def _by_range(formula: Expr, strict: bool) -> bool:
     """Return whether bounds of a formula's terms prove it nonnegative, or positive if ``strict``: 2 + sin(x) >= 2 -
     1.
     """
-    low, _ = _bounds(formula)
-    if low is None:
-        return False
-    if low.is_positive or (not strict and low.is_zero):
+    low, _ = range_everywhere(formula)
+    if low > 0 or (low == 0 and not strict):
         return True
+    # a positive term that is not bounded away from zero keeps the sum above its lower bound
     terms = Add.make_args(formula)
-    return bool(low.is_zero) and any(term.is_positive and _bounds(term)[0] == 0 for term in terms)
-
-
-def _bounds(formula: Expr) -> Bounds:
-    """Return a lower and an upper bound of a real formula: (-1, 1) for a sine; None in place of an unknown bound."""
-    if formula.is_Rational:
-        return formula, formula
-    if formula.func in RANGES:
-        least, most = RANGES[formula.func]
-        return (S(least), None if most is None else S(most))
-    if isinstance(formula, Abs):
-        return S.Zero, _size(formula.args[0])
-    if isinstance(formula, Add):
-        parts = [_bounds(term) for term in formula.args]
-        return tuple(None if None in side else Add(*side) for side in zip(*parts, strict=True))  # type: ignore
-    if isinstance(formula, Mul):
-        coefficient, rest = formula.as_coeff_Mul()
-        if coefficient.is_Rational and coefficient != 1:
-            low, high = (bound if bound is None else coefficient * bound for bound in _bounds(rest))
-            return (low, high) if coefficient > 0 else (high, low)
-        sizes = [_size(factor) for factor in formula.args]
-        if None not in sizes:
-            size = Mul(*sizes)
-            return (S.Zero if surely_nonnegative(formula) else -size), size
-    if isinstance(formula, Pow) and formula.exp.is_Integer and formula.exp > 0:
-        size = _size(formula.base)
-        high = None if size is None else size**formula.exp
-        return (S.Zero, high) if formula.exp % 2 == 0 else (None if high is None else -high, high)
-    return (S.Zero, None) if surely_nonnegative(formula) else (None, None)
-
-
-def _size(formula: Expr) -> Expr | None:
-    """Return an upper bound of the absolute value of a formula; None if none is known."""
-    low, high = _bounds(formula)
-    return None if low is None or high is None else sympy.Max(abs(low), abs(high))
+    return bool(low == 0 and any(term.is_positive and range_everywhere(term)[0] <= 0 for term in terms))
 
 
 def _by_absolute_values(formula: Expr) -> bool:
@@ -200,11 +161,7 @@ def _by_squares(formula: Expr, strict: bool) -> bool:
         return False
     if not all(gen.is_extended_real is not False for gen in poly.gens):
         return False
-    return _is_definite(_gram(poly), strict, lambda place: _sign(poly.gens[place]))
-
-
-def _sign(unknown: Expr) -> int:
-    return 1 if surely_nonnegative(unknown) else 0
+    return _is_definite(_gram(poly), strict, list(map(surely_nonnegative, poly.gens)))
 
 
 def _gram(poly: Poly) -> list[list[Rational]]:
@@ -219,12 +176,15 @@ def _gram(poly: Poly) -> list[list[Rational]]:
     return gram
 
 
-def _is_definite(gram: Sequence[Sequence[Rational]], strict: bool, sign: Callable[[int], int]) -> bool:
-    """Return whether a quadratic form with the matrix ``gram`` is never negative, and never zero if ``strict``."""
+def _is_definite(gram: Sequence[Sequence[Rational]], strict: bool, nonnegative: Sequence[bool]) -> bool:
+    """Return whether a quadratic form with the matrix ``gram`` is never negative, and never zero if ``strict``.
+
+    ``nonnegative`` says for each unknown whether it is never negative.
+    """
     rows = [list(row) for row in gram]
     for place in range(1, len(rows)):
         # a linear term with a coefficient >= 0 in a nonnegative unknown only increases the value
-        if rows[0][place] > 0 and sign(place - 1) > 0:
+        if rows[0][place] > 0 and nonnegative[place - 1]:
             rows[0][place] = rows[place][0] = S.Zero
     for place in reversed(range(1, len(rows))):
         pivot = rows[place][place]

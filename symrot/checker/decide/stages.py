@@ -5,14 +5,14 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from sympy import Expr, Ge, Gt, Ne, preorder_traversal
+from sympy import Expr, Ge, Gt, Ne
 from sympy.polys.rings import PolyElement
 
 from symrot.checker.decide.conditions import branch_requirements, requirements
 from symrot.checker.decide.definite import surely_nonnegative
 from symrot.checker.decide.equation import Equation, stated_needs
 from symrot.checker.decide.hypotheses import Hypotheses
-from symrot.checker.decide.ranges import follow, range_text, with_domain
+from symrot.checker.decide.ranges.text import follow, range_text, with_domain
 from symrot.checker.decide.real_points import ATTEMPTS
 from symrot.checker.decide.squares_of_roots import is_square_of_roots
 from symrot.exact.counterexample import closed_form_witness, rational_witness
@@ -23,6 +23,7 @@ from symrot.exact.domain.needs import Need, needs_of
 from symrot.exact.evidence import Counterexample, Requirement
 from symrot.exact.intervals import is_nonnegative_at
 from symrot.exact.inverse_sums import lifts, principal
+from symrot.exact.limits.size import pieces
 from symrot.exact.printing import as_text
 from symrot.exact.ring.ratio import TooLarge
 from symrot.exact.ring.ring import FormulaRing, as_zero
@@ -231,7 +232,7 @@ def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
     """
     remaining = {}
     for text, form in nonzero.items():
-        value = normal_form(form) if form.is_Add and _pieces(form) < MOST_PIECES else form
+        value = normal_form(form) if form.is_Add and pieces([form]) < MOST_PIECES else form
         base, _ = value.as_base_exp()
         # sin(a)**2 + cos(a)**2 never vanishes, and cos(b)**2*(sin(a)**2 + cos(a)**2) follows from cos(b)
         if not (value.is_number and value != 0) and (base == form or as_text(base) not in nonzero):
@@ -241,15 +242,11 @@ def _independent(nonzero: Mapping[str, Expr]) -> dict[str, Expr]:
 
 def _shorter(first: Expr, second: Expr) -> Expr:
     """Return the more readable one of two formulas for the same divisor."""
-    few, many = sorted((first, second), key=_pieces)
-    if _pieces(many) > MUCH_LARGER * _pieces(few):
+    few, many = sorted((first, second), key=lambda formula: pieces([formula]))
+    if pieces([many]) > MUCH_LARGER * pieces([few]):
         # a much larger formula is not even written as text
         return few
     return min(first, second, key=lambda formula: len(written(formula)))
-
-
-def _pieces(formula: Expr) -> int:
-    return sum(1 for _ in preorder_traversal(formula))
 
 
 def _branches(

@@ -4,15 +4,14 @@ P, Q, R are p, q, r, the rates of roll, pitch and yaw; the words roll, pitch and
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.tree import Node, is_derivative, walk, with_names
-from symrot.checker.equivalents.equivalent_claim import brought_back
+from symrot.checker.claim.tree import TIME, Node, is_derivative, walk
+from symrot.checker.equivalents.equivalent_claim import EquivalentClaim
 from symrot.checker.typed.readings import Relation
-from symrot.checker.verdict import Verdict
 
-__all__ = ["Renamed", "with_usual_letters"]
+__all__ = ["with_usual_letters"]
 
 SMALL = {"P": "p", "Q": "q", "R": "r"}
 IN_WORDS = {"roll": "phi", "pitch": "theta", "yaw": "psi"}
@@ -21,26 +20,7 @@ RATES_NOTE = "P, Q and R are read as the rates of roll, pitch and yaw, p, q and 
 WORDS_NOTE = "roll, pitch and yaw are read as the angles phi, theta and psi"
 
 
-@dataclass(frozen=True)
-class Renamed:
-    """A claim with other letters, the map from the names of the original claim to them, and a note for the user."""
-
-    claim: Claim
-    names: Mapping[str, str]
-    note: str
-
-    def in_claim(self, verdict: Verdict) -> Verdict:
-        """Return ``verdict``, on the renamed claim, for the original one."""
-        original = {letter: name for name, letter in self.names.items()}
-        readings = tuple(
-            replace(reading, mapping={own: original.get(other, other) for own, other in reading.mapping.items()})
-            for reading in verdict.recognised_as
-        )
-        verdict = replace(verdict, recognised_as=readings)
-        return brought_back(verdict, lambda relation: _renamed(relation, original), self.note)
-
-
-def with_usual_letters(claim: Claim) -> Renamed | None:
+def with_usual_letters(claim: Claim) -> EquivalentClaim | None:
     """Return a claim with p, q, r for P, Q, R beside Euler angles, or with phi for roll; None for other claims."""
     if claim.relation is None or claim.define or claim.hypotheses or claim.context:
         return None
@@ -54,11 +34,13 @@ def with_usual_letters(claim: Claim) -> Renamed | None:
         names, note = IN_WORDS, WORDS_NOTE
     else:
         return None
-    return Renamed(claim.with_relation(_renamed(claim.relation, names), alternatives=()), names, note)
+    original = {letter: name for name, letter in names.items()}
+    other = claim.with_relation(_renamed(claim.relation, names), alternatives=())
+    return EquivalentClaim(other, lambda relation: _renamed(relation, original), note, original)
 
 
 def _is_quantity(node: Node) -> bool:
-    return node.kind == "name" or (node.kind == "call" and [argument.value for argument in node.args] == ["t"])
+    return node.kind == "name" or (node.kind == "call" and node.args == (TIME,))
 
 
 def _renamed(relation: Relation, names: Mapping[str, str]) -> Relation:
@@ -68,6 +50,6 @@ def _renamed(relation: Relation, names: Mapping[str, str]) -> Relation:
 
 def _with_names(tree: Node, names: Mapping[str, str]) -> Node:
     """Return a tree with other names of its symbols and functions of time."""
-    if tree.kind == "call" and tree.value in names and [argument.value for argument in tree.args] == ["t"]:
+    if _is_quantity(tree) and tree.value in names:
         return replace(tree, value=names[str(tree.value)])
-    return replace(with_names(tree, names), args=tuple(_with_names(child, names) for child in tree.args))
+    return replace(tree, args=tuple(_with_names(child, names) for child in tree.args))

@@ -1,31 +1,52 @@
-"""The verdict on a claim that was decided in an equivalent form, with its repairs changed back to the typed form.
+"""A claim in an equivalent form that symrot derives, whose repairs are changed back to the typed form.
 
 With I_xy = integral of x*y dm, ``I_xy = a`` is decided as ``I_xy = -a``; the repair ``I_xy = -b`` becomes ``I_xy = b``.
 """
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 
-from symrot.checker.claim.claims import relation_text
+from symrot.checker.claim.claims import Claim, relation_text
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.typed.readings import Relation
 from symrot.checker.verdict import Repair, Verdict
 from symrot.errors import InputError
 
-__all__ = ["brought_back"]
+__all__ = ["EquivalentClaim"]
 
 
-def brought_back(verdict: Verdict, original: Callable[[Relation], Relation], note: str) -> Verdict:
-    """Return ``verdict``, on an equivalent claim, for the typed claim: ``original`` rewrites each repair.
+@dataclass(frozen=True)
+class EquivalentClaim:
+    """An equivalent form of a typed claim.
 
-    ``note`` tells the user about the equivalent claim.
+    Attributes
+    ----------
+    claim : Claim
+        The claim in the other form.
+    original : callable
+        Rewrites an equation of this form as one of the typed form.
+    note : str
+        A sentence that tells the user about the form.
+    names : mapping
+        Name in this form -> name in the typed claim, where they differ.
     """
-    repairs = [changed for repair in verdict.repairs if (changed := _brought_back(repair, original)) is not None]
-    return replace(verdict, repairs=tuple(repairs), notes=(*verdict.notes, note))
 
+    claim: Claim
+    original: Callable[[Relation], Relation]
+    note: str
+    names: Mapping[str, str] = field(default_factory=dict)
 
-def _brought_back(repair: Repair, original: Callable[[Relation], Relation]) -> Repair | None:
-    try:
-        return replace(repair, text=relation_text(original(read_relation(repair.text))))
-    except InputError:
-        return None
+    def in_typed_form(self, verdict: Verdict) -> Verdict:
+        """Return ``verdict``, on the equivalent claim, for the typed one."""
+        repairs = [changed for repair in verdict.repairs if (changed := self._rewritten(repair)) is not None]
+        known = tuple(
+            replace(formula, mapping={own: self.names.get(other, other) for own, other in formula.mapping.items()})
+            for formula in verdict.recognised_as
+        )
+        return replace(verdict, repairs=tuple(repairs), recognised_as=known, notes=(*verdict.notes, self.note))
+
+    def _rewritten(self, repair: Repair) -> Repair | None:
+        try:
+            return replace(repair, text=relation_text(self.original(read_relation(repair.text))))
+        except InputError:
+            return None

@@ -2,17 +2,14 @@
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.tree import Node, number, product
-from symrot.checker.equivalents.equivalent_claim import brought_back
+from symrot.checker.equivalents.equivalent_claim import EquivalentClaim
 from symrot.checker.typed.readings import Relation
-from symrot.checker.verdict import Verdict
 
-__all__ = ["in_claim", "multiplied"]
+__all__ = ["multiplied"]
 
 
-def multiplied(claim: Claim) -> tuple[Claim, Node] | None:
-    """Return the claim multiplied by the matrix J whose inverse is the first factor of its right side, and J; else
-    None.
-    """
+def multiplied(claim: Claim) -> EquivalentClaim | None:
+    """Return the claim multiplied by the matrix J whose inverse is the first factor of its right side; else None."""
     if claim.relation is None or not claim.define:
         return None
     sign, left, right = claim.relation
@@ -20,11 +17,6 @@ def multiplied(claim: Claim) -> tuple[Claim, Node] | None:
     if matrix is None or matrix.value not in dict(claim.define):
         return None
     relation = sign, product([matrix, left]), product(list(right.args[1:]))
-    return claim.with_relation(relation, alternatives=()), matrix
-
-
-def in_claim(verdict: Verdict, matrix: Node) -> Verdict:
-    """Return ``verdict``, on the claim multiplied by ``matrix``, for the original claim."""
 
     def divided(relation: Relation) -> Relation:
         sign, left, right = relation
@@ -33,7 +25,8 @@ def in_claim(verdict: Verdict, matrix: Node) -> Verdict:
         inverse = Node("power", None, (matrix, number(-1)))
         return sign, product(list(left.args[1:])), product([inverse, right])
 
-    return brought_back(verdict, divided, f"it is decided after multiplying both sides by {matrix.value}")
+    note = f"it is decided after multiplying both sides by {matrix.value}"
+    return EquivalentClaim(claim.with_relation(relation, alternatives=()), divided, note)
 
 
 def _inverted(factor: Node) -> Node | None:

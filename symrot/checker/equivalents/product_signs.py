@@ -6,15 +6,14 @@ So each claim is decided with the opposite sign of every product of inertia.
 from dataclasses import replace
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.tree import Node, is_derivative, negated
+from symrot.checker.claim.tree import TIME, Node, is_derivative, negated
 from symrot.checker.context.context import Context, Meaning
 from symrot.checker.context.quantities import QUANTITIES
-from symrot.checker.equivalents.equivalent_claim import brought_back
-from symrot.checker.repair.edits import PRODUCT_OF_INERTIA
+from symrot.checker.equivalents.equivalent_claim import EquivalentClaim
+from symrot.checker.repair.edits.names import PRODUCT_OF_INERTIA
 from symrot.checker.typed.readings import Relation
-from symrot.checker.verdict import Verdict
 
-__all__ = ["in_claim", "sign_by_integral", "with_minus_sign", "with_sign"]
+__all__ = ["sign_by_integral", "with_minus_sign", "with_sign"]
 
 NOTE = "products of inertia are those without the minus sign, I_xy = integral of x*y dm"
 WITH_MINUS, WITHOUT_MINUS = (
@@ -43,24 +42,20 @@ def with_sign(context: Context, name: Node, sign: str) -> Context:
     return replace(context, meanings=(*context.meanings, meaning))
 
 
-def with_minus_sign(claim: Claim) -> Claim:
-    """Return a claim with -I_xy for each product of inertia I_xy.
+def with_minus_sign(claim: Claim) -> EquivalentClaim | None:
+    """Return a claim with -I_xy for each product of inertia I_xy, if its context defines them without the minus sign.
 
     ``L = I_xy*w`` becomes ``L = -I_xy*w``; ``I_xy = a`` becomes ``I_xy = -a``, which says the same as ``-I_xy = a``.
     """
-    if claim.relation is None:
-        return claim
+    if claim.relation is None or claim.context.sign_of_products != "plus":
+        return None
     meanings = tuple(
         replace(meaning, quantity=WITH_MINUS) if meaning.quantity.sign else meaning
         for meaning in claim.context.meanings
     )
     context = replace(claim.context, meanings=meanings)
-    return replace(claim.with_relation(_changed(claim.relation), alternatives=()), context=context)
-
-
-def in_claim(verdict: Verdict) -> Verdict:
-    """Return ``verdict``, on the claim of :func:`with_minus_sign`, for the original claim."""
-    return brought_back(verdict, _changed, NOTE)
+    other = replace(claim.with_relation(_changed(claim.relation), alternatives=()), context=context)
+    return EquivalentClaim(other, _changed, NOTE)
 
 
 def _changed(relation: Relation) -> Relation:
@@ -68,19 +63,15 @@ def _changed(relation: Relation) -> Relation:
     sign, *sides = relation
     left, right = (_with_other_sign(side) for side in sides)
     if any(map(_is_product, sides)):  # I_xy = -a, not -I_xy = a
-        left, right = _negative(left), _negative(right)
+        left, right = negated(left), negated(right)
     return sign, left, right
-
-
-def _negative(tree: Node) -> Node:
-    return tree.args[0] if tree.kind == "neg" else negated(tree)
 
 
 def _is_product(tree: Node) -> bool:
     """Return whether a tree has the name of a product of inertia: I_xy, I_xy(t), or the time derivative of one."""
     if is_derivative(tree):
         return _is_product(tree.args[0])
-    is_function = tree.kind == "call" and [argument.value for argument in tree.args] == ["t"]
+    is_function = tree.kind == "call" and tree.args == (TIME,)
     stem = str(tree.value).removesuffix("_prime").removesuffix("_bar")
     return (tree.kind == "name" or is_function) and PRODUCT_OF_INERTIA.fullmatch(stem) is not None
 

@@ -16,7 +16,7 @@ from symrot.checker.claim.interpreter import time
 from symrot.checker.claim.tree import Node, is_derivative
 from symrot.checker.decide.decision import decide_equation
 from symrot.checker.decide.equation import Equation
-from symrot.checker.repair.edits import FAULT_DESCRIPTIONS
+from symrot.checker.repair.edits.faults import FAULT_DESCRIPTIONS
 from symrot.checker.typed.readings import Relation
 from symrot.checker.verdict import Diagnosis, Repair, Verdict
 from symrot.kinematics.rotations import elementary_rotation, vee

@@ -6,11 +6,10 @@ from dataclasses import replace
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.tree import Node
-from symrot.checker.equivalents.equivalent_claim import brought_back
+from symrot.checker.equivalents.equivalent_claim import EquivalentClaim
 from symrot.checker.typed.readings import Relation
-from symrot.checker.verdict import Verdict
 
-__all__ = ["in_claim", "with_axis_z"]
+__all__ = ["with_axis_z"]
 
 TURNED: Mapping[str, Mapping[str, str]] = {"x": {"x": "z", "y": "x", "z": "y"}, "y": {"x": "y", "y": "z", "z": "x"}}
 """Stated axis of symmetry -> for each axis, the axis with its place if the axis of symmetry is z."""
@@ -19,21 +18,22 @@ MOMENT = re.compile(r"([IJk](?:_bar)?_?)([xyz])(\2)?")
 """A moment of inertia, or a radius of gyration, about an axis; its second group is the axis."""
 
 
-def with_axis_z(claim: Claim) -> Claim:
-    """Return an equivalent claim about the body with z as its axis of symmetry: ``I_z = ..`` for ``I_x = ..``."""
+def with_axis_z(claim: Claim) -> EquivalentClaim | None:
+    """Return the claim ``I_z = ..`` for ``I_x = ..``, if the body's stated axis of symmetry is x; likewise for y.
+
+    None for other claims.
+    """
     body = claim.context.body
-    if body is None or claim.relation is None:
-        return claim
-    context = replace(claim.context, body=replace(body, symmetry_axis=""))
-    relation = _renamed(claim.relation, TURNED[body.symmetry_axis])
-    return replace(claim.with_relation(relation, alternatives=()), context=context)
-
-
-def in_claim(verdict: Verdict, axis: str) -> Verdict:
-    """Return ``verdict``, on the equivalent claim about the axis z, for the original claim about ``axis``."""
-    back = {new: old for old, new in TURNED[axis].items()}
-    note = f"{axis} is the axis of symmetry of the body; in the names of derived formulas it is z"
-    return brought_back(verdict, lambda relation: _renamed(relation, back), note)
+    if body is None or not body.symmetry_axis or claim.relation is None:
+        return None
+    axes = TURNED[body.symmetry_axis]
+    other = replace(
+        claim.with_relation(_renamed(claim.relation, axes), alternatives=()),
+        context=replace(claim.context, body=replace(body, symmetry_axis="")),
+    )
+    back = {new: old for old, new in axes.items()}
+    note = f"{body.symmetry_axis} is the axis of symmetry of the body; in the names of derived formulas it is z"
+    return EquivalentClaim(other, lambda relation: _renamed(relation, back), note)
 
 
 def _renamed(relation: Relation, axes: Mapping[str, str]) -> Relation:

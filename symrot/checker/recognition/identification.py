@@ -5,17 +5,15 @@ of a quaternion first or last. The signature of a symbol is the value of a formu
 all others have another; symbols with equal signatures are paired. Every match is proven by the exact engine.
 """
 
-import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache, lru_cache
-from itertools import islice, permutations, product
+from functools import cache
+from itertools import islice, permutations
 from typing import Any
 
 from sympy import Expr, Function, ImmutableMatrix, Rational, Symbol
 from sympy.matrices import MatrixBase
 
-from symrot import symbols
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.interpreter import Interpreter, time
 from symrot.checker.claim.named_formula import named_formula
@@ -26,29 +24,24 @@ from symrot.checker.claim.tree import Node, walk
 from symrot.checker.context.admission import admits_letters, admits_name
 from symrot.checker.context.context import read_context
 from symrot.checker.latex.reader import read_latex_formula
-from symrot.checker.recognition.fingerprint import PRIME, Fingerprint, NotInField, Values, fingerprint, values_at
-from symrot.checker.recognition.known_formulas import CROSS_PRODUCT, Known, by_fingerprint, relation_key
-from symrot.checker.recognition.relations import OTHERS
-from symrot.checker.recognition.renaming import axes_of, component, is_consistent
-from symrot.checker.units.units import conventional_unit
+from symrot.checker.recognition.fingerprint import PRIME, Fingerprint, NotInField, fingerprint, values_at
+from symrot.checker.recognition.formulas.attitudes import CROSS_PRODUCT
+from symrot.checker.recognition.known_formulas import Known, by_fingerprint, relation_key
+from symrot.checker.recognition.printed_text import read_printed
+from symrot.checker.recognition.renaming import component, is_consistent
+from symrot.checker.recognition.signature_pairs import MOST_TRIES, name_of, pairings
+from symrot.checker.recognition.usual_letters import UNIT_OF_NAME, agree_in_unit, has_usual_letter, plain_name
 from symrot.checker.verdict import Identification
 from symrot.errors import InputError, complaint
 from symrot.exact.decide import decide
 from symrot.exact.decision import flatten
-from symrot.exact.printing import as_text
 from symrot.exact.ring.ratio import TooLarge
 
-__all__ = [
-    "Identification", "agree_in_unit", "identified", "identify", "known_value", "named_parts", "pairings", "plain_name",
-    "unit_of",
-]  # fmt: skip
-
-UNIT_OF_NAME = {symbol.name: unit for symbol, unit in (symbols.UNIT | OTHERS).items()}
+__all__ = ["Identification", "identified", "identify", "known_value", "named_parts"]
 
 MOST = 8
 """The most names that are returned by default."""
-MOST_TRIES = 720
-"""The most ways of pairing symbols of equal signatures that are tried."""
+
 MOST_DRAWS = 24
 """The most points at which the constant factor between two formulas is sought."""
 FACTORS = tuple(Rational(*pair) for pair in ((1, 1), (-1, 1)))
@@ -60,20 +53,6 @@ For a matrix, whose entries say more, it is one symbol less.
 """
 LAST_FIRST = (3, 0, 1, 2)
 """The order of the rows of a scalar-last quaternion that puts the scalar first."""
-
-
-LETTERS = {
-    "kg m^2": r"[ABCIJ]\w*|lambda_?[1-3]", "kg": r"[mM]\w*", "N": r"[WPFG]\w*",
-    "N, of a string": r"[TSF](_\w+)?", "m": r"[a-hlrsxyzLRD]\w*|ell",
-    "kg m^2/s": r"[LHGhpM]\w*",
-    "kg m/s": r"[pP]\w*", "N m, of momentum": r"d[LHhM]\w*",
-    "N m": r"(M|N|T|Q|tau|Gamma)(_\w+)?|K_?[1-3xyz]",
-    "rad/s": r"(omega|w|Omega|n|nu|p|q|r|s|S|lambda)(_?\w+)?|d(phi|theta|psi|alpha|beta|gamma)(_?[1-3])?",
-    "rad/s^2": r"alpha\w*|d(omega|w|Omega)\w*|dd\w+|d[pqr]", "m/s": r"[vuV]\w*", "m/s^2": r"[ga]\w*",
-    "s": r"[tTP]\w*|tau|Delta_t", "J": r"[ETKVUW]\w*", "N m/rad": r"(k|c|kappa)(_\w+)?", "m, of gyration": r"[kri]\w*",
-    "1": r"([nkeulqpsgcabdr]|beta|eps|epsilon|varepsilon|eta|xi|rho|sigma|gamma|lambda|mu|[RACQ]_?[0-9])\w*",
-}  # fmt: skip
-"""Unit of a symbol -> the letters that books use for it; a product of few symbols is recognised in these letters."""
 
 
 @dataclass(frozen=True)
@@ -273,7 +252,7 @@ def _permuted(entries: Sequence[Expr], shape: tuple[int, int] | None) -> Iterato
 @cache
 def known_value(text: str) -> Any:
     """Return the SymPy value of a known formula's text, whose names become real symbols."""
-    tree = read_expression(text)
+    tree = read_printed(text)
     names = {str(node.value) for _, node in walk(tree) if node.kind == "name" and node.value != "pi"}
     interpreter = Interpreter(values={name: Symbol(name, real=True) for name in names}, implied=True)
     return interpreter.read(tree, text)
@@ -314,7 +293,7 @@ def _matched(
         few = known.is_relation or (quantity is not None and len(pairing) <= FEW_SYMBOLS - (view.shape is not None))
         if (known.only_named or few) and not all(_is_usual(*pair) for pair in pairing.items()):
             continue
-        pairs = [(_name(mine), _name(other)) for mine, other in pairing.items()]
+        pairs = [(name_of(mine), name_of(other)) for mine, other in pairing.items()]
         if (few or (known.only_named and view.shape is not None)) and not _keeps_names(pairs):
             continue
         has_units = view.shape == (3, 1) and not known.name.endswith(CROSS_PRODUCT)  # v and n are any vectors there
@@ -342,12 +321,6 @@ def _matched(
     return None
 
 
-@lru_cache(maxsize=4096)  # thousands of renamings of one claim need the same texts
-def _name(atom: Expr) -> str:
-    """Return the text of a symbol or rate, such as ``omega_1`` or ``diff(phi(t), t)``."""
-    return as_text(atom)
-
-
 def _keeps_names(pairs: Sequence[tuple[str, str]]) -> bool:
     """Return whether a name that occurs in both formulas is paired with itself: False for (I, J) and (J, I)."""
     # pairs (I, J) and (J, I) exchange two names
@@ -371,27 +344,13 @@ def _keeps_units(pairs: Sequence[tuple[str, str]]) -> bool:
     # a symbol without unit may have any letter; x, y, z may be the components of any vector
     with_unit = [(mine, other) for mine, other in pairs if UNIT_OF_NAME.get(mine) != "1"]
     return all(agree_in_unit(mine, other) for mine, other in with_unit) and all(
-        _has_usual_letter(mine, other) for mine, other in with_unit if mine not in ("x", "y", "z")
+        has_usual_letter(mine, other) for mine, other in with_unit if mine not in ("x", "y", "z")
     )
 
 
 def _is_usual(known: Expr, own: Expr) -> bool:
     """Return whether books use the claim's letter ``own`` with the unit of ``known``, a symbol of a known formula."""
-    return _has_usual_letter(_name(known), _name(own))
-
-
-def _has_usual_letter(known: str, own: str) -> bool:
-    pattern = LETTERS.get(UNIT_OF_NAME.get(known, ""))
-    return pattern is None or re.fullmatch(pattern, plain_name(own)) is not None
-
-
-@lru_cache(maxsize=20_000)
-def plain_name(name: str) -> str:
-    """Return the plain name of a quantity: x for ``x(t)``, dx for ``diff(x(t), t)`` and ``x_dot``."""
-    rate = re.fullmatch(r"diff\((\w+)(\(t\))?((, t)+)\)", name)
-    if rate is None and (dots := re.fullmatch(r"(\w+?)_(d*)dot", name)) is not None:
-        return f"d{dots[2]}{dots[1]}"
-    return "d" * rate[3].count("t") + rate[1] if rate else name.removesuffix("(t)")
+    return has_usual_letter(name_of(known), name_of(own))
 
 
 def _alike(mine: str, other: str) -> bool:
@@ -401,84 +360,6 @@ def _alike(mine: str, other: str) -> bool:
 
 def _factor_text(factor: Rational) -> str:
     return {1: "", -1: "with the other sign"}.get(factor, f"{factor} times")
-
-
-def pairings(theirs: Fingerprint, own: Fingerprint, order: Sequence[int]) -> Iterator[dict[Expr, Expr]]:
-    """Yield the ways to pair all symbols of a known formula ``theirs`` with those of ``own``, as dictionaries.
-
-    ``order`` is the order in which the entries of ``own`` are compared.
-    """
-    # symbols are paired if their signatures are equal; pairs with equal names come first
-    mine: dict[Values, list[Expr]] = {}
-    for atom, row in zip(own.atoms, own.rows(order), strict=True):
-        mine.setdefault(row, []).append(atom)
-    groups: dict[Values, list[Expr]] = {}
-    for atom, row in zip(theirs.atoms, theirs.rows(range(len(theirs.signatures[0]))), strict=True):
-        groups.setdefault(row, []).append(atom)
-    if {row: len(atoms) for row, atoms in mine.items()} != {row: len(atoms) for row, atoms in groups.items()}:
-        return
-    choices = []
-    own_names = {plain_name(_name(atom)) for atom in own.atoms}
-    # symbols with the names of the known formula stay as they are while the orders of the others are tried
-    ordered_groups = sorted(groups.items(), key=lambda group: not {*map(_name, group[1])} <= own_names)
-    for row, atoms in ordered_groups:
-        names = {_name(atom) for atom in atoms}
-        ordered = sorted(mine[row], key=lambda atom: (_name(atom) not in names, _name(atom)))
-        choices.append([(atoms, chosen) for chosen in _nearest(atoms, ordered)])
-    for chosen in product(*choices):
-        yield {a: b for atoms, others in chosen for a, b in zip(atoms, others, strict=True)}
-
-
-def _nearest(atoms: Sequence[Expr], others: Sequence[Expr]) -> list[tuple[Expr, ...]]:
-    """Return ``others`` in several orders, to be paired one by one with ``atoms``; the most plausible order first."""
-    known = {atom: (_name(atom), unit_of(_name(atom))) for atom in (*atoms, *others)}
-
-    def difference(atom: Expr, other: Expr) -> int:
-        (name, unit), (own, own_unit) = known[atom], known[other]
-        contradicting = None not in (unit, own_unit) and unit != own_unit
-        # a sum of these is ordered by contradicting units, then by other names, then by other first letters
-        return (contradicting << 40) + ((name != own) << 20) + (name[0].lower() != own[0].lower())
-
-    differences = [{other: difference(atom, other) for other in others} for atom in atoms]
-    orders = islice(permutations(_likeliest(atoms, others, known)), MOST_TRIES)
-    return sorted(orders, key=lambda order: sum(row[other] for row, other in zip(differences, order, strict=True)))
-
-
-def _likeliest(
-    atoms: Sequence[Expr], others: Sequence[Expr], known: Mapping[Expr, tuple[str, str | None]]
-) -> list[Expr]:
-    """Return ``others`` reordered so that each symbol fits the one at the same position in ``atoms``."""
-    # for many symbols the caller cannot try all orders, and begins with this one
-    rest, ordered = list(others), []
-    names = {plain_name(known[atom][0]) for atom in atoms}
-    for atom in atoms:
-        name, unit = plain_name(known[atom][0]), known[atom][1]
-        axes = axes_of(name)
-        costs = []
-        for place, other in enumerate(rest):
-            own, own_unit = plain_name(known[other][0]), known[other][1]
-            is_other_unit = None not in (unit, own_unit) and unit != own_unit
-            is_other_axis = bool(axes) and axes_of(own) != axes
-            is_other_letter = own[0].lower() != name[0].lower()
-            costs.append((is_other_unit, own != name, own in names, is_other_letter, is_other_axis, place))
-        ordered.append(rest.pop(min(costs)[-1]))
-    return ordered
-
-
-@lru_cache(maxsize=20_000)
-def unit_of(name: str) -> str | None:
-    """Return the conventional unit of a symbol, or None if books use the symbol for different quantities."""
-    name = plain_name(name)
-    if re.fullmatch(r"[ABC]", name):
-        return "kg m^2"
-    return "1" if re.fullmatch(r"[qp][0-3]", name) else conventional_unit(name)
-
-
-def agree_in_unit(known: str, own: str) -> bool:
-    """Return whether a claim's symbol ``own`` may have the unit of ``known``, a symbol of a known formula."""
-    unit, conventional = UNIT_OF_NAME.get(known), unit_of(own)
-    # books use some letters for different quantities
-    return unit is None or conventional is None or conventional == unit
 
 
 def _factor(

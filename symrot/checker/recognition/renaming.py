@@ -82,9 +82,10 @@ def _orders(known: str, new: str) -> tuple[frozenset[tuple[int, ...]], frozenset
 def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
     """Return whether numbered names for initial and final values are in order: w_1 for omega_i, w_2 for omega_f."""
     for earlier, later in EARLIER_AND_LATER:
-        numbers = [re.search(r"[0-9]$", renaming.get(name, "")) for name in (earlier, later)]
-        if all(numbers) and [n[0] for n in numbers if n] != sorted(n[0] for n in numbers if n):
-            return False
+        if earlier in renaming and later in renaming:
+            numbers = [name[-1] for name in (renaming[earlier], renaming[later]) if re.search("[0-9]$", name)]
+            if len(numbers) == 2 and numbers[0] > numbers[1]:
+                return False
     return True
 
 

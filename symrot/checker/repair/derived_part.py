@@ -11,7 +11,6 @@ from sympy import Derivative, Dummy, Expr, ImmutableMatrix, Matrix, MatrixBase, 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, number, product, replaced, walk
-from symrot.checker.repair.entries import replacement
 from symrot.checker.repair.filter import matrix_entries
 from symrot.checker.typed.readings import Declared
 from symrot.exact.decide import normal_form
@@ -91,7 +90,7 @@ def _with_entries(claim: Claim, matrix: Node, entries: Sequence[Expr]) -> Node |
     for place, path in cells.items():
         entry = _with_cosecants(entries[place]) if calls & {"cot", "csc"} else entries[place]
         made = _with_rates_first(read_expression(as_text(entry), "", names))
-        matrix = replaced(matrix, path, replacement(made))
+        matrix = replaced(matrix, path, made)
     return matrix
 
 

@@ -16,7 +16,9 @@ from symrot.checker.claim.tree import text as written
 from symrot.checker.decide.decision import decide_equation
 from symrot.checker.decide.equation import Equation
 from symrot.checker.repair.canonical_form import canonical, terms_of_equation, with_ordered_products
-from symrot.checker.repair.edits import FAULT_DESCRIPTIONS, Edit, normalise_factors, single_edits
+from symrot.checker.repair.edits.faults import FAULT_DESCRIPTIONS
+from symrot.checker.repair.edits.single import Edit, single_edits
+from symrot.checker.repair.edits.trees import normalise_factors
 from symrot.checker.repair.entries import by_entries
 from symrot.checker.repair.filter import SIDES, Candidate, Change, NumericFilter
 from symrot.checker.repair.insertions import exchanged_definitions, missing_matrices, missing_terms

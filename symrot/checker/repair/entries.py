@@ -1,14 +1,15 @@
 """Repairs of a written-out matrix with several wrong entries: one edit for each wrong entry."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import combinations
 
 from symrot.checker.claim.tree import Node, Path, replaced
-from symrot.checker.repair.edits import COST, Edit, single_edits
+from symrot.checker.repair.edits.faults import COST
+from symrot.checker.repair.edits.single import Edit, single_edits
 from symrot.checker.repair.filter import Candidate, Change, NumericFilter, at, matrix_entries
 from symrot.checker.repair.points import UndefinedValue, agree, entries_of
 
-__all__ = ["by_entries", "merged", "replacement"]
+__all__ = ["by_entries", "merged"]
 
 MOST_PAIRS_OF = 60
 """The number of edits of an entry, the cheapest ones, that are tried in pairs."""
@@ -41,7 +42,7 @@ def by_entries(numeric: NumericFilter) -> list[Candidate]:
             if len(edits) > 1 or any(edit.code == "two_faults" for _, edit in edits):
                 made = tree
                 for path, edit in edits:
-                    made = replaced(made, path, replacement(edit.tree))
+                    made = replaced(made, path, edit.tree)
                 codes = {edit.code for _, edit in edits}
                 code = codes.pop() if len(codes) == 1 else "two_faults"
                 cost = COST["share_of_entries"] * sum(edit.cost for _, edit in edits)
@@ -77,18 +78,13 @@ def _entry_edit(numeric: NumericFilter, cell: Node, targets: Sequence[float]) ->
     return None
 
 
-def replacement(made: Node) -> Callable[[Node], Node]:
-    """Return a function that returns ``made`` for any node; :func:`replaced` then puts ``made`` in place of a part."""
-    return lambda _: made
-
-
 def merged(tree: Node, first: Edit, second: Edit) -> Node | None:
     """Return ``tree`` with both edits, made in different parts of it; None if one part contains the other."""
     a, b = first.path, second.path
     if not a or not b or a[: len(b)] == b or b[: len(a)] == a:
         return None
     piece = at(second.tree, b) if _same_shape(tree, first.tree, b) else None
-    return None if piece is None else replaced(first.tree, b, replacement(piece))
+    return None if piece is None else replaced(first.tree, b, piece)
 
 
 def _same_shape(tree: Node, edited: Node, path: Path) -> bool:

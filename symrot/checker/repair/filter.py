@@ -11,7 +11,8 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.functions import BUILT_IN
 from symrot.checker.claim.tree import TIME, Node, Path, is_derivative, text, walk
 from symrot.checker.latex.cursor import MATRIX_CALLS
-from symrot.checker.repair.edits import COST, Edit
+from symrot.checker.repair.edits.faults import COST
+from symrot.checker.repair.edits.single import Edit
 from symrot.checker.repair.points import Point, UndefinedValue, agree, entries_of, points
 
 __all__ = ["SIDES", "Candidate", "Change", "NumericFilter", "at", "is_nontrivial", "matrix_entries"]

@@ -10,8 +10,8 @@ from sympy import Add, Expr, Integer
 
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, Path, number, product, replaced, sum_of, text, walk
-from symrot.checker.repair.edits import COST, Edit
-from symrot.checker.repair.entries import replacement
+from symrot.checker.repair.edits.faults import COST
+from symrot.checker.repair.edits.single import Edit
 from symrot.checker.repair.filter import (
     Candidate,
     Change,
@@ -97,7 +97,7 @@ def _whole(numeric: NumericFilter, place: str, lacking: Mapping[Path, Any]) -> I
         if term is None or piece is None:
             return
         whole = term if piece == number(0) else sum_of([piece, term])
-        made = replaced(made, path, replacement(whole))
+        made = replaced(made, path, whole)
     cost = COST["missing_term_of_entry"] * len(lacking)
     yield Candidate(cost, "missing_term", (Change(place, Edit("missing_term", cost, (), made)),))
 
@@ -114,13 +114,13 @@ def _inside(
     brackets = sorted(_linear_pieces(whole), key=lambda bracket: bracket[1].kind != "sum")
     for path, piece in [bracket for bracket in brackets if bracket[0]][:most]:
         # residual, a*m, divided by the factor of the bracket, a, gives the term
-        ends = [interpreter.read(replaced(whole, path, replacement(number(value)))) for value in (0, 1)]
+        ends = [interpreter.read(replaced(whole, path, number(value))) for value in (0, 1)]
         try:
             term = _term(_short_form(residual / (ends[1] - ends[0]), hypotheses), whole)
         except (TooLarge, InputError):
             continue
         if term is not None:
-            made = replaced(tree, (*cell, *path), replacement(sum_of([piece, term])))
+            made = replaced(tree, (*cell, *path), sum_of([piece, term]))
             cost = COST["missing_term_in_bracket"]
             yield Candidate(cost, "missing_term", (Change(place, Edit("missing_term", cost, path, made)),))
 
@@ -136,7 +136,7 @@ def missing_matrices(numeric: NumericFilter) -> Iterator[Candidate]:
         for path, piece in pieces(tree):
             for by in factors if numeric.is_matrix(piece) and is_nontrivial(tree) else ():
                 for both in ([by, piece], [piece, by]):
-                    made = replaced(tree, path, replacement(product(both)))
+                    made = replaced(tree, path, product(both))
                     cost = COST["missing_matrix"] + COST["per_level_of_matrix"] * len(path)
                     change = Change(place, Edit("factor", cost, path, made))
                     if numeric.holds([change]):
@@ -150,7 +150,7 @@ def exchanged_definitions(numeric: NumericFilter) -> Iterator[Candidate]:
         tree = numeric.tree_at(place)
         for path, node in walk(tree):
             for name in used if node.kind == "name" and node.value in used else ():
-                made = replaced(tree, path, replacement(Node("name", name)))
+                made = replaced(tree, path, Node("name", name))
                 change = Change(place, Edit("wrong_symbol", COST["other_definition"], path, made))
                 if name != node.value and numeric.holds([change]):
                     yield Candidate(COST["other_definition"], "wrong_symbol", (change,))

@@ -7,7 +7,7 @@ pair. Edits of factors likewise change left/right by factors.
 from collections.abc import Callable, Iterator, Sequence
 from itertools import chain, islice
 
-from symrot.checker.repair.edits import Edit
+from symrot.checker.repair.edits.single import Edit
 from symrot.checker.repair.entries import merged
 from symrot.checker.repair.filter import SIDES, Candidate, Change, NumericFilter
 from symrot.checker.repair.points import UndefinedValue, entries_of

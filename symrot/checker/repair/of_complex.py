@@ -9,7 +9,9 @@ from symrot.checker.arrays.complex_parts import with_parts
 from symrot.checker.claim.claims import Claim, relation_text
 from symrot.checker.claim.tree import Node, negated, product, walk
 from symrot.checker.decide.decision import decide_equation
-from symrot.checker.repair.edits import COST, FAULT_DESCRIPTIONS, Edit, put, single_edits
+from symrot.checker.repair.edits.faults import COST, FAULT_DESCRIPTIONS
+from symrot.checker.repair.edits.single import Edit, single_edits
+from symrot.checker.repair.edits.trees import put
 from symrot.checker.repair.filter import Change, NumericFilter, is_nontrivial
 from symrot.checker.verdict import Diagnosis, Repair
 from symrot.errors import InputError

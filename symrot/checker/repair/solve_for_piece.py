@@ -12,7 +12,10 @@ from itertools import combinations_with_replacement, islice
 
 from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.tree import TIME, Node, Path, negated, number, product, replaced, sum_of, walk
-from symrot.checker.repair.edits import COST, OPPOSITE, Edit, flattened, neighbours, normalise_factors, scaled
+from symrot.checker.repair.edits.faults import COST
+from symrot.checker.repair.edits.names import OPPOSITE, neighbours
+from symrot.checker.repair.edits.single import Edit
+from symrot.checker.repair.edits.trees import flattened, normalise_factors, scaled
 from symrot.checker.repair.filter import SIDES, Candidate, Change, NumericFilter, is_nontrivial
 from symrot.checker.repair.points import Point, UndefinedValue, entries_of
 
@@ -26,11 +29,10 @@ HOLE = Node("name", "?")
 
 CLOSE = 1e-8
 """The largest relative difference between values that are taken to be equal."""
-MOST_ATOMS = 24
-MOST_PRODUCTS = 4000
-MOST_SUMS = 24
-MOST_MATRICES = 40
-MOST_COLUMNS = 5
+MOST_ATOMS, MOST_SUMS, MOST_PRODUCTS = 24, 24, 4000
+"""The most symbols and functions, and the most brackets, from which products are made, and the most products."""
+MOST_MATRICES, MOST_COLUMNS = 40, 5
+"""The most matrices of which a multiple is added to another one, and the most vectors in dot products."""
 LARGEST_RATIO = 60
 LARGEST_OF_SIDE = 1000
 """The largest denominator of a rational factor of a piece, and of a whole term of a side."""
@@ -225,7 +227,7 @@ def _pieces(tree: Node, path: Path = (), term: bool = False) -> Iterator[tuple[P
 
 def _candidate(numeric: NumericFilter, place: str, path: Path, made: Node, edit: tuple[str, float]) -> Candidate:
     code, cost = edit
-    tree = flattened(replaced(numeric.tree_at(place), path, lambda _: made))
+    tree = flattened(replaced(numeric.tree_at(place), path, made))
     tree = normalise_factors(tree) if code == "factor" else tree
     change = Change(place, Edit(code, cost + COST["per_level"] * len(path), path, tree))
     return Candidate(change.cost, code, (change,))
@@ -237,7 +239,7 @@ def _needed(numeric: NumericFilter, place: str, path: Path, made: Node, start: V
     There is one value for each test point; None if the search for a value fails.
     """
     # the unknown is the node HOLE in made, which replaces the part at path of a side or definition
-    tree = replaced(numeric.tree_at(place), path, lambda _: made)
+    tree = replaced(numeric.tree_at(place), path, made)
     if place not in SIDES and not numeric.sensible(place, tree):
         return None
     change = [Change(place, Edit("none", 0.0, path, tree))]

@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator
 
-from symrot.checker.claim.tree import Node, Path, negated, number, product, replaced, sum_of, walk
-from symrot.checker.repair.edits import COST, Edit
-from symrot.checker.repair.entries import replacement
+from symrot.checker.claim.tree import Node, Path, negated, product, replaced, sum_of, walk
+from symrot.checker.repair.edits.faults import COST
+from symrot.checker.repair.edits.single import Edit
+from symrot.checker.repair.edits.trees import square_of
 from symrot.checker.repair.filter import Candidate, Change, NumericFilter
 
 __all__ = ["vector_edits"]
@@ -23,7 +24,7 @@ def vector_edits(numeric: NumericFilter) -> Iterator[Candidate]:
     for place in numeric.sides_to_edit:
         tree = numeric.tree_at(place)
         for path, made, code in (*_squares(tree, numeric), *_terms(tree, numeric)):
-            edit = Edit(code, COST[code], path, replaced(tree, path, replacement(made)))
+            edit = Edit(code, COST[code], path, replaced(tree, path, made))
             change = Change(place, edit)
             if numeric.holds([change]):
                 yield Candidate(change.cost, code, (change,))
@@ -36,7 +37,7 @@ def _squares(tree: Node, numeric: NumericFilter) -> Iterator[tuple[Path, Node, s
         if node.kind == "power" and numeric.is_matrix(node.args[0]):
             yield path, node.args[0], "exponent"
         elif node.kind in ("name", "call") and path[:-1] not in squares and numeric.is_matrix(node):
-            yield path, Node("power", None, (node, number(2))), "exponent"
+            yield path, square_of(node), "exponent"
 
 
 def _terms(tree: Node, numeric: NumericFilter) -> Iterator[tuple[Path, Node, str]]:

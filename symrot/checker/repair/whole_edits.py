@@ -7,7 +7,7 @@ looks for the other fault as in a claim with one fault only.
 from collections.abc import Iterator, Sequence
 from itertools import islice
 
-from symrot.checker.repair.edits import single_edits
+from symrot.checker.repair.edits.single import single_edits
 from symrot.checker.repair.filter import Candidate, Change, NumericFilter
 from symrot.checker.repair.insertions import missing_terms
 from symrot.checker.repair.solve_for_piece import solutions

@@ -1,4 +1,4 @@
-"""Rotation matrices whose entries are fractions, and their quaternions, to 30 digits; they convert between axes."""
+"""Rotation matrices whose entries are fractions, and their quaternions, to 90 digits; they convert between axes."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -24,7 +24,7 @@ def quaternion_of(r: Rows) -> tuple[Fraction, ...]:
 
 
 def to_axis(direction: Sequence[Fraction]) -> tuple[tuple[Fraction, ...], ...]:
-    """Return a rotation matrix, to 30 digits, whose third column is the unit vector along ``direction``."""
+    """Return a rotation matrix, to 90 digits, whose third column is the unit vector along ``direction``."""
     third = unit(direction)
     if third[0] == third[1] == 0:  # only 0, 1 and -1
         sign = 1 if third[2] > 0 else -1

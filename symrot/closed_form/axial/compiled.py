@@ -9,16 +9,15 @@ import ctypes
 import math
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import cache
 from typing import Any, NamedTuple
 
-from symrot.build import cache as codegen
 from symrot.build.address import address
-from symrot.closed_form import build as library
-from symrot.closed_form.build import Floats
+from symrot.closed_form.build import Floats, load
 from symrot.errors import CompilerError, InputError
 from symrot.formula import exact_numbers as number
 
-__all__ = ["OUT_OF_RANGE", "TOO_MANY_TURNS", "Constants", "Loops", "Ratio", "available", "functions", "parts"]
+__all__ = ["OUT_OF_RANGE", "TOO_MANY_TURNS", "Constants", "Loops", "Ratio", "functions", "parts"]
 
 Ratio = tuple[int, int]
 """A rational number: numerator and positive denominator."""
@@ -33,7 +32,6 @@ _TURNING = 14  # doubles in a struct `turning` of axial.h
 _TURN_BITS = 340  # bits of the factor that converts radians to a multiple of the angle in revolutions
 _EXPONENT = 700.0  # exp of a larger number may exceed the range of a double
 _PI_TOP, _PI_BOTTOM = number.PI.as_integer_ratio()
-_bound: dict[str, tuple[Any, Any]] = {}
 
 
 def parts(top: int, bottom: int, count: int) -> list[float]:
@@ -71,11 +69,7 @@ class Loops(NamedTuple):
         return status
 
 
-def available() -> bool:
-    """Return whether C can compute the samples: the compiled loops are loaded already, or there is a C compiler."""
-    return bool(_bound) or not codegen.missing()
-
-
+@cache
 def functions() -> tuple[Any, Any]:
     """Return the compiled loop of :file:`axial_at.c` over samples, and the ctypes type of the constants that it reads.
 
@@ -84,18 +78,14 @@ def functions() -> tuple[Any, Any]:
     CompilerError
         If there is no C compiler, or if it does not round every operation separately.
     """
-    if not _bound:
-        (compiled,) = library.load("axial")
-        if not compiled.symrot_axial_sound():
-            raise CompilerError(
-                "expected a C compiler that rounds every operation separately, got one that combines some"
-            )
-        evaluate, length = compiled.symrot_axial_at, compiled.symrot_axial_length
-        pointer, size = ctypes.c_void_p, ctypes.c_ssize_t
-        evaluate.argtypes, evaluate.restype = (pointer, size, pointer, pointer, pointer), ctypes.c_int
-        length.restype = size
-        _bound["axial"] = evaluate, ctypes.c_double * length()
-    return _bound["axial"]
+    (compiled,) = load("axial")
+    if not compiled.symrot_axial_sound():
+        raise CompilerError("expected a C compiler that rounds every operation separately, got one that combines some")
+    evaluate, length = compiled.symrot_axial_at, compiled.symrot_axial_length
+    pointer, size = ctypes.c_void_p, ctypes.c_ssize_t
+    evaluate.argtypes, evaluate.restype = (pointer, size, pointer, pointer, pointer), ctypes.c_int
+    length.restype = size
+    return evaluate, ctypes.c_double * length()
 
 
 class Constants:

@@ -18,7 +18,7 @@ from symrot.closed_form.arithmetic.double_double import two_product
 from symrot.closed_form.arithmetic.pairs import LARGEST, SMALLEST, Number, numbers, pair
 from symrot.closed_form.axial import compiled as axial_compiled
 from symrot.closed_form.axial.angle import Turning, exp_and_expm1
-from symrot.closed_form.build import Floats, times_of
+from symrot.closed_form.build import Floats, available, times_of
 from symrot.errors import InputError
 from symrot.formula import exact_numbers as number
 from symrot.scene.tables import Initial
@@ -41,7 +41,7 @@ class AxialMotion:
         self._attitude, self._turned = attitude
         self._known: dict[Fraction, Turning] = {}
         self._first = body.constants.first
-        self._loops = body.constants(rates, attitude) if axial_compiled.available() else None
+        self._loops = body.constants(rates, attitude) if available("axial") else None
 
     @property
     def has_attitude(self) -> bool:

@@ -26,7 +26,7 @@ from symrot.closed_form.arithmetic.pairs import (
 from symrot.closed_form.free_body import motion as free_body
 from symrot.closed_form.motion import ExactMotion, prepared
 from symrot.errors import InputError
-from symrot.kinematics.hamilton import hamilton
+from symrot.kinematics.hamilton import conjugate, hamilton
 from symrot.scene.tables import Initial
 
 __all__ = ["Frame", "Top", "motion", "starts"]
@@ -148,7 +148,7 @@ class Frame:
         self.before, self.after = None, None  # left and right factor of an attitude
         if up[0] or up[1] or up[2] < 0:  # the third axis does not point up yet
             turn = quaternion_of(to_axis([Fraction(x) for x in up]))
-            self.space, self.before = flatten_pairs(turn), (turn[0], -turn[1], -turn[2], -turn[3])
+            self.space, self.before = flatten_pairs(turn), conjugate(turn)
         if axis != 2:
             matrix = [[Fraction(int(self.named[k] == i)) for k in range(3)] for i in range(3)]
             self.after = quaternion_of(matrix)

@@ -24,8 +24,8 @@ from symrot.closed_form.portable.phases import (
     turned_by,
     vector,
 )
-from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, matrix_quaternion, unit
-from symrot.kinematics.hamilton import hamilton
+from symrot.closed_form.portable.quaternions import Axes, mapping, matrix_quaternion, unit
+from symrot.kinematics.hamilton import conjugate, hamilton
 
 __all__ = ["PortableFreeBody"]
 

@@ -5,8 +5,8 @@ from mpmath import mp, mpf
 
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import DIGITS, Phase, number, power_of_two, vector
-from symrot.closed_form.portable.quaternions import conjugate, mapping, matrix_quaternion, unit
-from symrot.kinematics.hamilton import hamilton
+from symrot.closed_form.portable.quaternions import mapping, matrix_quaternion, unit
+from symrot.kinematics.hamilton import conjugate, hamilton
 
 __all__ = ["PortableGyrostat"]
 

@@ -22,8 +22,8 @@ from symrot.closed_form.portable.phases import (
     quarter_periods,
     vector,
 )
-from symrot.closed_form.portable.quaternions import Axes, conjugate, mapping, unit
-from symrot.kinematics.hamilton import hamilton
+from symrot.closed_form.portable.quaternions import Axes, mapping, unit
+from symrot.kinematics.hamilton import conjugate, hamilton
 
 __all__ = ["PortableHeavyTop"]
 

@@ -1,22 +1,19 @@
 """Quaternions and changes of axes with arrays and numbers of any precision; formulas of :file:`series.h`."""
 
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 from mpmath import mp, mpf
 
+from symrot.closed_form.arithmetic.frames import quaternion_of
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import vector
 
-__all__ = ["UNIT", "Axes", "conjugate", "mapping", "matrix_quaternion", "unit"]
+__all__ = ["UNIT", "Axes", "mapping", "matrix_quaternion", "unit"]
 
 UNIT = [mpf(1), mpf(0), mpf(0), mpf(0)]
-
-
-def conjugate(a: Sequence[Any]) -> list[Any]:
-    """Return the conjugate of a quaternion: ``[a, b, c, d]`` gives ``[a, -b, -c, -d]``."""
-    return [a[0], -a[1], -a[2], -a[3]]
 
 
 def unit(a: Sequence[Any]) -> list[Any]:
@@ -25,17 +22,10 @@ def unit(a: Sequence[Any]) -> list[Any]:
     return [x / norm for x in a]
 
 
-def matrix_quaternion(r: Sequence[Sequence[Any]]) -> list[Any]:
-    """Return the unit quaternion, scalar first, of a proper rotation matrix ``r``, given by its rows."""
-    # Shepperd's method divides by the largest component of the quaternion, so that no digits are lost
-    trace = r[0][0] + r[1][1] + r[2][2]
-    rows = (
-        [1 + trace, r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]],
-        [r[2][1] - r[1][2], 1 + 2 * r[0][0] - trace, r[0][1] + r[1][0], r[2][0] + r[0][2]],
-        [r[0][2] - r[2][0], r[0][1] + r[1][0], 1 + 2 * r[1][1] - trace, r[1][2] + r[2][1]],
-        [r[1][0] - r[0][1], r[2][0] + r[0][2], r[1][2] + r[2][1], 1 + 2 * r[2][2] - trace],
-    )
-    return unit([mpf(x) for x in max(rows, key=lambda row: sum(x * x for x in row))])
+def matrix_quaternion(r: Sequence[Sequence[int]]) -> list[Any]:
+    """Return the unit quaternion of a rotation matrix that renames axes: rows ``r`` with the entries 0, 1 and -1."""
+    quaternion = quaternion_of([list(map(Fraction, row)) for row in r])
+    return [mpf(x.numerator) / x.denominator for x in quaternion]
 
 
 class Axes:

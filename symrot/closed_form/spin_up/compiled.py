@@ -1,18 +1,18 @@
 """Driven symmetric bodies by compiled code: constants (:file:`spin_up.c`) and samples (:file:`spin_up_at.c`)."""
 
 import ctypes
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from symrot.build import cache as library
 from symrot.build.address import address
 from symrot.closed_form.build import Floats, load
 from symrot.closed_form.spin_up import series as spin_up_series
 from symrot.closed_form.spin_up.resonance import DEGREE, PIECES
 from symrot.errors import CompilerError
 
-__all__ = ["TABLE", "Compiled", "available", "functions", "limits"]
+__all__ = ["TABLE", "Compiled", "functions", "limits"]
 
 TABLE = int(spin_up_series.NEAR) * PIECES * (DEGREE + 1) * 4
 """Number of doubles in the table of Taylor polynomials."""
@@ -28,9 +28,6 @@ class _Functions(NamedTuple):
     limits: Any
 
 
-_bound: list[_Functions] = []
-
-
 def limits() -> tuple[float, float, float]:
     """Return NEAR, WIDE and MOST for C: the smallest x and kappa for the series, and the largest phase, rad.
 
@@ -39,11 +36,7 @@ def limits() -> tuple[float, float, float]:
     return spin_up_series.NEAR, spin_up_series.WIDE, spin_up_series.MOST
 
 
-def available() -> bool:
-    """Return whether C can compute the samples: the compiled loops are loaded already, or there is a C compiler."""
-    return bool(_bound) or not library.missing()
-
-
+@cache
 def functions() -> _Functions:
     """Return the compiled functions of :file:`spin_up.c` and :file:`spin_up_at.c`, and ctypes types of their arguments.
 
@@ -52,16 +45,14 @@ def functions() -> _Functions:
     CompilerError
         If there is no C compiler, or it rejects the source.
     """
-    if not _bound:
-        constants, samples = load("spin_up")
-        prepare, length = constants.symrot_spin_up_prepare, constants.symrot_spin_up_length
-        evaluate, pointer, size = samples.symrot_spin_up_at, ctypes.c_void_p, ctypes.c_ssize_t
-        length.restype, prepare.restype, evaluate.restype = size, ctypes.c_int, ctypes.c_int
-        prepare.argtypes = (ctypes.c_int, pointer, pointer, pointer, pointer)
-        evaluate.argtypes = (pointer, pointer, size, pointer, pointer, pointer)
-        double = ctypes.c_double
-        _bound.append(_Functions(prepare, evaluate, double * length(), double * 20, double * 3))
-    return _bound[0]
+    constants, samples = load("spin_up")
+    prepare, length = constants.symrot_spin_up_prepare, constants.symrot_spin_up_length
+    evaluate, pointer, size = samples.symrot_spin_up_at, ctypes.c_void_p, ctypes.c_ssize_t
+    length.restype, prepare.restype, evaluate.restype = size, ctypes.c_int, ctypes.c_int
+    prepare.argtypes = (ctypes.c_int, pointer, pointer, pointer, pointer)
+    evaluate.argtypes = (pointer, pointer, size, pointer, pointer, pointer)
+    double = ctypes.c_double
+    return _Functions(prepare, evaluate, double * length(), double * 20, double * 3)
 
 
 class Compiled:

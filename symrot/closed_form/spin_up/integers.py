@@ -23,7 +23,6 @@ from symrot.closed_form.spin_up.off_resonance import (
     Quaternion,
     Sweep,
     about_third,
-    conjugate,
     fixed,
     product,
 )
@@ -31,6 +30,7 @@ from symrot.closed_form.spin_up.resonance import Near
 from symrot.closed_form.spin_up.series import MOST, NEAR, series
 from symrot.formula import exact_numbers as number
 from symrot.formula.exact_numbers import rounded
+from symrot.kinematics.hamilton import conjugate
 
 __all__ = ["Integers"]
 

@@ -19,8 +19,7 @@ from numpy.typing import ArrayLike
 
 from symrot.closed_form.arithmetic.pairs import SMALLEST, Number, flatten_pairs, numbers, same
 from symrot.closed_form.arithmetic.pairs import attitude as pairs_of
-from symrot.closed_form.build import Floats, times_of
-from symrot.closed_form.spin_up import compiled as spin_up_compiled
+from symrot.closed_form.build import Floats, available, times_of
 from symrot.closed_form.spin_up.compiled import Compiled
 from symrot.errors import InputError
 from symrot.formula.exact_numbers import show
@@ -52,7 +51,7 @@ class SpinUp:
         turned = rates[axis - 2], rates[axis - 1], rates[axis]
         self._source = (
             Compiled(axis, [*body.shared, *flatten_pairs(turned), *pairs_of(attitude)])
-            if spin_up_compiled.available()
+            if available("spin_up")
             else self.integers
         )
 

@@ -19,9 +19,9 @@ from symrot.closed_form.build import Floats
 from symrot.closed_form.spin_up.series import NEAR, Series
 from symrot.formula import exact_numbers as number
 from symrot.formula.exact_numbers import rounded
-from symrot.kinematics.hamilton import hamilton
+from symrot.kinematics.hamilton import conjugate, hamilton
 
-__all__ = ["FIXED", "ONE", "Quaternion", "Sweep", "about_third", "conjugate", "fixed", "product"]
+__all__ = ["FIXED", "ONE", "Quaternion", "Sweep", "about_third", "fixed", "product"]
 
 FIXED = 144
 """Bits after the binary point of unit quaternions in fixed-point arithmetic, four times as fast as Fractions."""
@@ -46,11 +46,6 @@ def product(a: Quaternion, *others: Quaternion) -> Quaternion:
         q0, q1, q2, q3 = hamilton(a, b)
         a = (q0 >> FIXED, q1 >> FIXED, q2 >> FIXED, q3 >> FIXED)
     return a
-
-
-def conjugate(q: Quaternion) -> Quaternion:
-    """Return the conjugate of a quaternion, the inverse rotation: (q0, q1, q2, q3) gives (q0, -q1, -q2, -q3)."""
-    return (q[0], -q[1], -q[2], -q[3])
 
 
 def about_third(angle: Fraction) -> Quaternion:

@@ -15,7 +15,7 @@ from symrot.codegen.enclosure.terms import (
     rounded_terms,
     value_operands,
 )
-from symrot.codegen.printing.c_source import c_expression
+from symrot.codegen.printing.c_function import c_expression
 from symrot.codegen.taylor.recurrences import Recurrences, recurrences
 from symrot.errors import InputError
 from symrot.formula.program import Program

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from symrot.codegen.lowering.tape import Operation, Tape, tape_of
-from symrot.codegen.printing.c_source import c_expression
+from symrot.codegen.printing.c_function import c_expression
 from symrot.formula.program import Program
 from symrot.formula.tree import FUNCTIONS, Node
 

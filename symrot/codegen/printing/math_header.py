@@ -9,7 +9,7 @@ from fractions import Fraction
 from functools import cache
 from math import cos, factorial, pi
 
-from symrot.codegen.printing.c_source import DOUBLE, FLOAT, Real
+from symrot.codegen.printing.c_function import DOUBLE, FLOAT, Real
 from symrot.formula.exact_numbers import PI
 
 __all__ = ["FAR", "math_header", "quarter_turn_parts", "tail_coefficients"]

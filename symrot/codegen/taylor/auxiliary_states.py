@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from symrot.codegen.taylor.linear_forms import ONE
 from symrot.codegen.taylor.recurrences import Recurrences, Series
 from symrot.formula.polynomial import Monomial, Polynomial, constant, generator, products_of_monomials
 from symrot.formula.tree import Node, children
@@ -17,7 +18,6 @@ __all__ = ["with_companions"]
 
 QUATERNION = ("q0", "q1", "q2", "q3")
 MOST_COMPANIONS, MOST_TERMS = 9, 200  # nine are the companions of three directions; more do not save time
-ONE: Node = ("number", Fraction(1))
 
 
 class _Open(Exception):

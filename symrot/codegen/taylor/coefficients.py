@@ -8,7 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from symrot.codegen.taylor.recurrences import ONE, ZERO, Recurrences, Series
+from symrot.codegen.taylor.linear_forms import ONE, ZERO
+from symrot.codegen.taylor.recurrences import Recurrences, Series
 from symrot.formula.tree import Node, evaluate
 
 __all__ = ["coefficients"]

@@ -7,16 +7,16 @@ convolutions. The code is placed between :file:`lanes.h` and :file:`lanes.c` of 
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from symrot.codegen.printing.c_source import c_expression
+from symrot.codegen.printing.c_function import c_expression
 from symrot.codegen.taylor.lane_functions import lane_functions
-from symrot.codegen.taylor.recurrences import Recurrences, Series, recurrences, split_sign
+from symrot.codegen.taylor.linear_forms import ONE, ZERO, split_sign
+from symrot.codegen.taylor.recurrences import Recurrences, Series, recurrences
 from symrot.codegen.taylor.source import checked_system
 from symrot.formula.program import Program
 from symrot.formula.tree import Node, names, rename
 
 __all__ = ["lane_definitions", "multiplications"]
 
-ONE: Node = ("number", 1)
 CIRCLE = {"sin", "cos"}  # both are computed by one call
 LOAD_OF_LOOP = 24  # accumulators and factors of a loop: by measurement, half more than the 16 registers of AVX2
 
@@ -157,7 +157,7 @@ class _Jet:
 
     def signed(self, node: Node | None) -> str:
         """Return the C expression of a constant of any sign; None stands for zero."""
-        sign, size = split_sign(node or ("number", 0))
+        sign, size = split_sign(node or ZERO)
         return self.weight(size) if sign > 0 else f"V_SUB(V_ALL(0.0), {self.weight(size)})"
 
     def slot(self, number: int, stage: str, sums: str) -> str:
@@ -181,7 +181,7 @@ class _Jet:
         """Return the C expression of the sum ``s`` of weighted series, times ``factor`` if it is not empty."""
         value = ""
         *weights, constant = s.weights
-        if first and constant is not None and constant != ("number", 0):  # coefficient 0
+        if first and constant is not None and constant != ZERO:  # coefficient 0
             sign, size = split_sign(constant)
             value = f"V_MUL({self.weight(size)}, {factor})" if factor else self.weight(size)
             value = value if sign > 0 else f"V_SUB(V_ALL(0.0), {value})"

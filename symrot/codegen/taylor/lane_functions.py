@@ -8,7 +8,7 @@ angles in the vector.
 from fractions import Fraction
 from functools import cache
 
-from symrot.codegen.printing.c_source import DOUBLE
+from symrot.codegen.printing.c_function import DOUBLE
 from symrot.codegen.printing.math_header import FAR, quarter_turn_parts, tail_coefficients
 from symrot.formula.exact_numbers import PI
 

@@ -5,19 +5,17 @@ a column the convolution of two packs. A slot is a sum of columns times a vector
 """
 
 from collections.abc import Iterable, Sequence
-from fractions import Fraction
 from itertools import pairwise, product
 from typing import NamedTuple
 
-from symrot.codegen.taylor.recurrences import Recurrences, Series, split_sign
+from symrot.codegen.taylor.linear_forms import ONE, ZERO, split_sign
+from symrot.codegen.taylor.recurrences import Recurrences, Series
 from symrot.formula.tree import Node
 
 __all__ = ["LANES", "Address", "Column", "Layout", "Pack", "Row", "Slot", "Term", "cost", "lay_out"]
 
 LANES = 4
 MOST_USES = (1, 2)  # a product in at most this many sums is computed in each of them; the faster layout is used
-ZERO: Node = ("number", Fraction(0))
-ONE: Node = ("number", Fraction(1))
 
 
 class Address(NamedTuple):

@@ -24,14 +24,23 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from symrot.codegen.taylor.linear_forms import (
+    ONE,
+    ZERO,
+    Linear,
+    alone,
+    folded,
+    number_and_rest,
+    scaled,
+    total,
+    value_of,
+)
 from symrot.errors import InputError
 from symrot.formula.program import Program
-from symrot.formula.tree import Node, children, evaluate
+from symrot.formula.tree import Node, children
 
-__all__ = ["ONE", "ZERO", "Recurrences", "Series", "recurrences", "split_sign"]
+__all__ = ["Recurrences", "Series", "recurrences"]
 
-ONE: Node = ("number", Fraction(1))
-ZERO: Node = ("number", Fraction(0))
 SINE_COSINE_PAIRS: dict[str, tuple[str, str, int, int]] = {  # function -> pair, signs of their derivatives
     "sin": ("sin", "cos", 1, -1), "cos": ("sin", "cos", 1, -1),
     "sinh": ("sinh", "cosh", 1, 1), "cosh": ("sinh", "cosh", 1, 1),
@@ -66,16 +75,6 @@ class Recurrences(NamedTuple):
 POLYNOMIAL = {"state", "time", "sum", "product"}  # rules of polynomials; other functions, as tanh, may tend to -1
 
 
-class _Linear(NamedTuple):
-    """A linear form, ``constant + sum(weight * series)``: ``terms`` maps indices of series to constant weights.
-
-    A ``constant`` None stands for 0.
-    """
-
-    constant: Node | None
-    terms: dict[int, Node]
-
-
 def recurrences(program: Program) -> Recurrences:
     """Return the recurrences for the Taylor coefficients of y, for the rates ``dy = f(t, y, p)``.
 
@@ -99,15 +98,15 @@ class _Builder:
         self.states, self.parameters = inputs["y"], inputs.get("p", ())
         self.series: list[Series] = []
         self.known: dict[tuple[Any, ...], int] = {}
-        self.cosh_arguments: dict[int, _Linear] = {}
-        self.values: dict[str, _Linear] = {name: _Linear(("symbol", name), {}) for name in self.parameters}
+        self.cosh_arguments: dict[int, Linear] = {}
+        self.values: dict[str, Linear] = {name: Linear(("symbol", name), {}) for name in self.parameters}
         for i, name in enumerate(self.states):
-            self.values[name] = _alone(self.add(Series("state", number=i)))
+            self.values[name] = alone(self.add(Series("state", number=i)))
         self.clock_names = inputs.get("t", ())
 
     def result(self) -> Recurrences:
         for name in self.clock_names:
-            self.values[name] = _Linear(None, {})  # made when it is first used
+            self.values[name] = Linear(None, {})  # made when it is first used
         for name, node in self.program.temporaries:
             self.values[name] = self.read(node)
         rates = tuple(self.sum_of(self.read(node)) for _, node in self.program.outputs)
@@ -119,39 +118,39 @@ class _Builder:
             self.series.append(series)
         return self.known[series]
 
-    def read(self, node: Node) -> _Linear:
+    def read(self, node: Node) -> Linear:
         """Return a formula as a linear form: for ``2*x*y + 1``, the constant 1 plus 2 times the series of x*y."""
         kind = node[0]
         if kind == "number":
-            return _Linear(node, {})
+            return Linear(node, {})
         if kind == "symbol":
-            return _alone(self.add(Series("time"))) if node[1] in self.clock_names else self.values[node[1]]
+            return alone(self.add(Series("time"))) if node[1] in self.clock_names else self.values[node[1]]
         parts = [self.read(child) for child in children(node)]
         if kind in "+-*/neg" and not any(part.terms for part in parts):
-            return _Linear(_folded((kind, *map(_value, parts))), {})
+            return Linear(folded((kind, *map(value_of, parts))), {})
         # adds a series for each new operation
         return _READERS[kind](self, node, parts)
 
-    def series_of(self, form: _Linear) -> int:
+    def series_of(self, form: Linear) -> int:
         """Return the index of the series that equals ``form``; a sum is added as a new series."""
         if form.constant is None and list(form.terms.values()) == [ONE]:
             return next(iter(form.terms))
         return self.add(self.sum_of(form))
 
     @staticmethod
-    def sum_of(form: _Linear) -> Series:
+    def sum_of(form: Linear) -> Series:
         terms = sorted(form.terms.items())
         return Series("sum", tuple(i for i, _ in terms), (*(weight for _, weight in terms), form.constant))
 
-    def factored(self, form: _Linear) -> tuple[Node, int]:
+    def factored(self, form: Linear) -> tuple[Node, int]:
         """Return (constant, index of a series), whose product equals ``form``: ``2*u + 4*v`` gives 2 and u + 2*v."""
         if form.constant is None and len(form.terms) == 1:
             ((series, weight),) = form.terms.items()
             return weight, series
-        parts = [_number_and_rest(weight) for _, weight in sorted(form.terms.items())]
+        parts = [number_and_rest(weight) for _, weight in sorted(form.terms.items())]
         rests = {rest for _, rest in parts}
         if form.constant is not None:
-            rests.add(_number_and_rest(form.constant)[1])
+            rests.add(number_and_rest(form.constant)[1])
         lead, rest = parts[0][0], ONE
         if len(rests) == 1:
             (rest,) = rests
@@ -159,25 +158,25 @@ class _Builder:
             lead = Fraction(1 if lead > 0 else -1)
 
         def reduced(weight: Node) -> Node:
-            number, own = _number_and_rest(weight)
-            return _folded(("*", ("number", number / lead), ONE if len(rests) == 1 else own))
+            number, own = number_and_rest(weight)
+            return folded(("*", ("number", number / lead), ONE if len(rests) == 1 else own))
 
         constant = None if form.constant is None else reduced(form.constant)
         # proportional forms, such as 2*u + 4*v and u + 2*v, share one series
-        whole = self.series_of(_Linear(constant, {series: reduced(w) for series, w in form.terms.items()}))
-        return _folded(("*", ("number", lead), rest)), whole
+        whole = self.series_of(Linear(constant, {series: reduced(w) for series, w in form.terms.items()}))
+        return folded(("*", ("number", lead), rest)), whole
 
-    def sum(self, left: _Linear, right: _Linear, sign: int) -> _Linear:
+    def sum(self, left: Linear, right: Linear, sign: int) -> Linear:
         """Return ``left + sign*right``, where ``sign`` is 1 or -1."""
         # a sum in brackets that may become zero during the motion is not expanded
         if left.terms and right.terms:
             left, right = self.bracket(left), self.bracket(right)
-        return _sum(left, right, sign)
+        return total(left, right, sign)
 
-    def bracket(self, form: _Linear) -> _Linear:
+    def bracket(self, form: Linear) -> Linear:
         """Return ``m + m*tanh(u)`` as ``m*s`` with the series ``s = 1 + tanh(u)``; other sums are unchanged."""
         parts = [*form.terms.values(), *([] if form.constant is None else [form.constant])]
-        factors = [_number_and_rest(part) for part in parts]
+        factors = [number_and_rest(part) for part in parts]
         if (
             len(parts) < 2
             or len({rest for _, rest in factors}) > 1
@@ -188,28 +187,28 @@ class _Builder:
             return form
         # expanded, the form would have a rounding error proportional to m where the sum tends to zero
         weight, series = self.factored(form)
-        return _Linear(None, {series: weight})
+        return Linear(None, {series: weight})
 
-    def product(self, left: _Linear, right: _Linear) -> _Linear:
+    def product(self, left: Linear, right: Linear) -> Linear:
         if not left.terms or not right.terms:
             constant, form = (left, right) if not left.terms else (right, left)
-            return _scaled(form, _value(constant))
+            return scaled(form, value_of(constant))
         (a, u), (b, v) = self.factored(left), self.factored(right)
-        return _Linear(None, {self.add(Series("product", (min(u, v), max(u, v)))): _folded(("*", a, b))})
+        return Linear(None, {self.add(Series("product", (min(u, v), max(u, v)))): folded(("*", a, b))})
 
-    def quotient(self, left: _Linear, right: _Linear) -> _Linear:
+    def quotient(self, left: Linear, right: Linear) -> Linear:
         if not right.terms:
-            return _scaled(left, _folded(("/", ONE, _value(right))))
+            return scaled(left, folded(("/", ONE, value_of(right))))
         b, v = self.factored(right)
         over = self.reciprocal(v)
         if over is not None:
-            return _scaled(self.product(left, over), _folded(("/", ONE, b)))
+            return scaled(self.product(left, over), folded(("/", ONE, b)))
         if left.terms:
             a, u = self.factored(left)
-            return _Linear(None, {self.add(Series("quotient", (u, v))): _folded(("/", a, b))})
-        return _Linear(None, {self.add(Series("quotient", (v,))): _folded(("/", _value(left), b))})
+            return Linear(None, {self.add(Series("quotient", (u, v))): folded(("/", a, b))})
+        return Linear(None, {self.add(Series("quotient", (v,))): folded(("/", value_of(left), b))})
 
-    def reciprocal(self, number: int) -> _Linear | None:
+    def reciprocal(self, number: int) -> Linear | None:
         """Return 1/v, where v is the series ``number``: ``cosh(a)*cosh(b)`` gives ``sech(a)*sech(b)``.
 
         None if v is no product of hyperbolic cosines.
@@ -223,7 +222,7 @@ class _Builder:
         # hyperbolic cosines could overflow
         return self.secant(self.cosh_arguments[number])
 
-    def secant(self, argument: _Linear) -> _Linear:
+    def secant(self, argument: Linear) -> Linear:
         """Return sech(u), the hyperbolic secant of u = ``argument``."""
         # its series w is computed from the equation t w' = -tanh(u) w t u'
         u = self.series_of(argument)
@@ -233,20 +232,20 @@ class _Builder:
             self.known[("sech", u)] = own
             self.series.append(Series("driven", (drive, own + 1, u), (), "sech", -1))
             self.add(Series("product", (tangent, own)))
-        return _alone(self.known[("sech", u)])
+        return alone(self.known[("sech", u)])
 
-    def power(self, base: _Linear, exponent: int) -> _Linear:
+    def power(self, base: Linear, exponent: int) -> Linear:
         if exponent < 0:
-            return self.quotient(_Linear(ONE, {}), self.power(base, -exponent))
-        result = _Linear(ONE, {})
+            return self.quotient(Linear(ONE, {}), self.power(base, -exponent))
+        result = Linear(ONE, {})
         for bit in format(exponent, "b"):
             result = self.product(result, result)
             result = self.product(result, base) if bit == "1" else result
         return result
 
-    def call(self, name: str, arguments: list[_Linear]) -> _Linear:
+    def call(self, name: str, arguments: list[Linear]) -> Linear:
         if not any(argument.terms for argument in arguments):
-            return _Linear(("call", name, tuple(map(_value, arguments))), {})
+            return Linear(("call", name, tuple(map(value_of, arguments))), {})
         if name in SINE_COSINE_PAIRS:
             return self.sine_or_cosine(name, arguments[0])
         if name not in _FUNCTIONS:
@@ -259,12 +258,12 @@ class _Builder:
     def theta(self, series: int) -> int:
         return self.add(Series("theta", (series,)))
 
-    def clock(self, form: _Linear) -> tuple[Node, Node | None] | None:
+    def clock(self, form: Linear) -> tuple[Node, Node | None] | None:
         """Return (a, b) if ``form`` is a t + b with constants a and b, otherwise None; b = 0 is returned as None."""
         ((series, weight),) = form.terms.items() if len(form.terms) == 1 else ((-1, ONE),)
         return (weight, form.constant) if series >= 0 and self.series[series].rule == "time" else None
 
-    def driven(self, functions: Sequence[tuple[str, int]], partners: Sequence[int], argument: _Linear) -> int:
+    def driven(self, functions: Sequence[tuple[str, int]], partners: Sequence[int], argument: Linear) -> int:
         """Add a series for each of ``functions``, unless it exists, and return the index of the first series.
 
         ``functions`` are pairs (name, sign): the derivative of function i is sign times function ``partners[i]``.
@@ -282,72 +281,72 @@ class _Builder:
                 self.series.append(Series(rule, (*drive, first + partner, *seed), clock or (), function, sign))
         return self.known[key]
 
-    def sine_or_cosine(self, name: str, argument: _Linear) -> _Linear:
+    def sine_or_cosine(self, name: str, argument: Linear) -> Linear:
         """Return sin, cos, sinh or cosh (``name``) of ``argument``."""
         sine, cosine, *signs = SINE_COSINE_PAIRS[name]
         # the derivative of each function of a pair contains the other, so both series are added
         first = self.driven(((sine, signs[0]), (cosine, signs[1])), (1, 0), argument)
         if cosine == "cosh":
             self.cosh_arguments[first + 1] = argument
-        return _alone(first + (name == cosine))
+        return alone(first + (name == cosine))
 
-    def exponential(self, name: str, argument: _Linear) -> _Linear:
-        return _alone(self.driven(((name, 1),), (0,), argument))
+    def exponential(self, name: str, argument: Linear) -> Linear:
+        return alone(self.driven(((name, 1),), (0,), argument))
 
-    def tangent(self, name: str, argument: _Linear) -> _Linear:
+    def tangent(self, name: str, argument: Linear) -> Linear:
         u = self.series_of(argument)
         drive, own = self.theta(u), len(self.series)
         if ("tangent", name, u) in self.known:
-            return _alone(self.known[("tangent", name, u)])
+            return alone(self.known[("tangent", name, u)])
         self.known[("tangent", name, u)] = own
         self.series.append(Series("driven", (drive, own + 2, u), (), name))
         square = self.add(Series("product", (own, own)))
-        self.add(self.sum_of(_Linear(ONE, {square: ("number", Fraction(TANGENTS[name]))})))
-        return _alone(own)
+        self.add(self.sum_of(Linear(ONE, {square: ("number", Fraction(TANGENTS[name]))})))
+        return alone(own)
 
-    def primitive(self, name: str, drive: int, divisor: int, seeds: tuple[int, ...]) -> _Linear:
+    def primitive(self, name: str, drive: int, divisor: int, seeds: tuple[int, ...]) -> Linear:
         key = ("primitive", name, drive, divisor, seeds)
         own = self.known.get(key, len(self.series))
         if own == len(self.series):
             self.known[key] = own
             self.series.append(Series("primitive", (drive, own + 1, divisor, *seeds), (), name))
             self.theta(own)
-        return _alone(own)
+        return alone(own)
 
-    def one_and_square(self, series: int, sign: int) -> _Linear:
+    def one_and_square(self, series: int, sign: int) -> Linear:
         """Return ``1 + sign*u^2``, where u is the series with index ``series``."""
-        return _sum(_Linear(ONE, {}), _scaled(self.product(_alone(series), _alone(series)), sign), 1)
+        return total(Linear(ONE, {}), scaled(self.product(alone(series), alone(series)), sign), 1)
 
-    def root(self, name: str, argument: _Linear) -> _Linear:
-        return _alone(self.add(Series("root", (self.series_of(argument),), (), name)))
+    def root(self, name: str, argument: Linear) -> Linear:
+        return alone(self.add(Series("root", (self.series_of(argument),), (), name)))
 
-    def logarithm(self, name: str, argument: _Linear) -> _Linear:
+    def logarithm(self, name: str, argument: Linear) -> Linear:
         u = self.series_of(argument)
         return self.primitive(name, self.theta(u), u, (u,))
 
-    def arc_sine(self, name: str, argument: _Linear) -> _Linear:
+    def arc_sine(self, name: str, argument: Linear) -> Linear:
         u = self.series_of(argument)
         ((divisor, _),) = self.root("sqrt", self.one_and_square(u, -1)).terms.items()
         drive = self.theta(u)
         if name == "acos":
-            drive = self.series_of(_scaled(_alone(drive), -1))
+            drive = self.series_of(scaled(alone(drive), -1))
         return self.primitive(name, drive, divisor, (u,))
 
-    def arc_tangent(self, name: str, argument: _Linear) -> _Linear:
+    def arc_tangent(self, name: str, argument: Linear) -> Linear:
         u = self.series_of(argument)
         return self.primitive(name, self.theta(u), self.series_of(self.one_and_square(u, 1)), (u,))
 
-    def angle(self, name: str, y: _Linear, x: _Linear) -> _Linear:
+    def angle(self, name: str, y: Linear, x: Linear) -> Linear:
         """Return atan2(y, x)."""
         # its series w is computed from the equation (x^2 + y^2) t w' = x t y' - y t x'
-        turning = _sum(self.product(x, self.theta_form(y)), self.product(y, self.theta_form(x)), -1)
-        square = _sum(self.product(x, x), self.product(y, y), 1)
+        turning = total(self.product(x, self.theta_form(y)), self.product(y, self.theta_form(x)), -1)
+        square = total(self.product(x, x), self.product(y, y), 1)
         return self.primitive(
             name, self.series_of(turning), self.series_of(square), (self.series_of(y), self.series_of(x))
         )
 
-    def theta_form(self, form: _Linear) -> _Linear:
-        return _alone(self.theta(self.series_of(form))) if form.terms else _Linear(ZERO, {})
+    def theta_form(self, form: Linear) -> Linear:
+        return alone(self.theta(self.series_of(form))) if form.terms else Linear(ZERO, {})
 
 
 def _without_unused(system: Recurrences) -> Recurrences:
@@ -371,96 +370,16 @@ def _without_unused(system: Recurrences) -> Recurrences:
     )
 
 
-def _alone(series: int) -> _Linear:
-    return _Linear(None, {series: ONE})
-
-
-def _value(form: _Linear) -> Node:
-    return form.constant if form.constant is not None else ZERO
-
-
-def _folded(node: Node) -> Node:
-    """Return a shorter constant formula of equal value: ``2*3`` gives 6, ``1*a`` gives a, ``a*(-b)`` gives -(a*b)."""
-    kind, parts = node[0], children(node)
-    if kind == "neg":
-        sign, inner = split_sign(parts[0])
-        return _signed(-sign, inner)
-    if kind in "+-*/" and all(part[0] == "number" for part in parts) and (kind != "/" or parts[1] != ZERO):
-        return ("number", evaluate(node, {}))
-    if kind not in "*/":
-        return node
-    (s, a), (r, b) = map(split_sign, parts)
-    if b == ONE or (kind == "*" and a == ONE):
-        return _signed(s * r, a if b == ONE else b)
-    return _signed(s * r, (kind, b, a) if kind == "*" and b[0] == "number" else (kind, a, b))
-
-
-def _signed(sign: int, node: Node) -> Node:
-    if sign > 0:
-        return node
-    return ("number", -node[1]) if node[0] == "number" else ("neg", node)
-
-
-def split_sign(node: Node) -> tuple[int, Node]:
-    """Return (sign, formula) whose product is ``node``: ``-a`` gives -1 and a, ``a`` gives 1 and a."""
-    if node[0] == "neg":
-        sign, inner = split_sign(node[1])
-        return -sign, inner
-    if node[0] == "number" and node[1] < 0:
-        return -1, ("number", -node[1])
-    return 1, node
-
-
-def _number_and_rest(weight: Node) -> tuple[Fraction, Node]:
-    """Return (number, formula) whose product equals a constant formula.
-
-    The formula ``-(2*a)`` gives -2 and a, and ``a`` gives 1 and a.
-    """
-    sign, size = split_sign(weight)
-    if size[0] == "number":
-        return (sign * size[1], ONE) if size[1] else (Fraction(1), size)
-    if size[0] == "*" and size[1][0] == "number":
-        return sign * size[1][1], size[2]
-    return Fraction(sign), size
-
-
-def _scaled(form: _Linear, factor: Node | int) -> _Linear:
-    weight: Node = ("number", Fraction(factor)) if isinstance(factor, int) else factor
-    if weight == ZERO:
-        return _Linear(ZERO, {})
-
-    def times(value: Node) -> Node:
-        return _folded(("*", weight, value))
-
-    constant = None if form.constant is None else times(form.constant)
-    return _Linear(constant, {series: times(value) for series, value in form.terms.items()})
-
-
-def _sum(left: _Linear, right: _Linear, sign: int) -> _Linear:
-    right = right if sign > 0 else _scaled(right, -1)
-    constant = left.constant if right.constant is None else right.constant
-    if left.constant is not None and right.constant is not None:
-        constant = _folded(("+", left.constant, right.constant))
-    terms = dict(left.terms)
-    for series, weight in right.terms.items():
-        total = _folded(("+", terms[series], weight)) if series in terms else weight
-        if total == ZERO:
-            del terms[series]
-        else:
-            terms[series] = total
-    return _Linear(None if terms and constant == ZERO else constant, terms)
-
-
-_READERS: dict[str, Callable[[_Builder, Node, list[_Linear]], _Linear]] = {
+_READERS: dict[str, Callable[[_Builder, Node, list[Linear]], Linear]] = {
     "+": lambda builder, node, parts: builder.sum(parts[0], parts[1], 1),
     "-": lambda builder, node, parts: builder.sum(parts[0], parts[1], -1),
-    "neg": lambda builder, node, parts: _scaled(parts[0], -1),
+    "neg": lambda builder, node, parts: scaled(parts[0], -1),
     "*": lambda builder, node, parts: builder.product(*parts),
     "/": lambda builder, node, parts: builder.quotient(*parts),
     "**": lambda builder, node, parts: builder.power(parts[0], node[2]),
     "call": lambda builder, node, parts: builder.call(node[1], parts),
 }
-_FUNCTIONS: dict[str, Callable[..., _Linear]] = {
+_FUNCTIONS: dict[str, Callable[..., Linear]] = {
     "sqrt": _Builder.root, "exp": _Builder.exponential, "tan": _Builder.tangent, "tanh": _Builder.tangent,
     "log": _Builder.logarithm, "asin": _Builder.arc_sine, "acos": _Builder.arc_sine, "atan": _Builder.arc_tangent,
     "atan2": _Builder.angle,

@@ -7,13 +7,14 @@ The series are arranged in rows (SIMD vectors of four), and their products in co
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from symrot.codegen.printing.c_source import c_expression
+from symrot.codegen.printing.c_function import c_expression
 from symrot.codegen.taylor.auxiliary_states import with_companions
 from symrot.codegen.taylor.lanes import LANES, Address, Layout, Pack, Row, cost, lay_out
+from symrot.codegen.taylor.linear_forms import ONE, ZERO
 from symrot.codegen.taylor.recurrences import Recurrences, recurrences
 from symrot.errors import InputError
 from symrot.formula.program import Program
-from symrot.formula.tree import Node, children, names, rename
+from symrot.formula.tree import Node, children, names, rename, with_children
 
 __all__ = ["ORDER", "checked_system", "jet_source", "taylor_definitions"]
 
@@ -190,12 +191,12 @@ class _Jet:
             series = None if number is None else self.layout.series[number]
             pairs = zip(series.operands, series.weights, strict=False) if series else ()
             own = [w for operand, w in pairs if w and self.layout.series[operand].rule == "time"]
-            weights.append(own[0] if own else ("number", 0))
-        return self.constant(tuple(weights)) if any(weight != ("number", 0) for weight in weights) else ""
+            weights.append(own[0] if own else ZERO)
+        return self.constant(tuple(weights)) if any(weight != ZERO for weight in weights) else ""
 
     def _weighted(self, weights: tuple[Node, ...], factor: str) -> str:
         """Return the C expression of four constants times ``factor``; an argument or result ``""`` stands for 1."""
-        ones = all(weight == ("number", 1) for weight in weights)
+        ones = all(weight == ONE for weight in weights)
         if ones:
             return factor
         constant = self.constant(weights)
@@ -253,7 +254,7 @@ class _Jet:
             upper = f"V_MUL({terms[1]}, {weights})" if weights else terms[1]
         if stage != "first":
             return [f"{name} = V_DIV(V_SUB({upper}, {total}), {divisor});"]
-        if row.constant is not None and set(row.constant) != {("number", 0)}:
+        if row.constant is not None and set(row.constant) != {ZERO}:
             upper = f"V_ADD({upper}, {self.constant(row.constant)})"
         # v[0] is stored for later orders
         return [f"{divisor} = {terms[0]};", f"{name} = V_DIV({upper}, {divisor});"]
@@ -275,7 +276,7 @@ class _Jet:
         """Return the C statements that set ``name`` to coefficient 0 of four series, sines and cosines of a t + b."""
         series = [self.layout.series[i] for i in row.lanes if i is not None]
         rates = self.constant(tuple(s.weights[0] for s in series))  # type: ignore[misc]
-        offsets = self.constant(row.constant) if row.constant and set(row.constant) != {("number", 0)} else ""
+        offsets = self.constant(row.constant) if row.constant and set(row.constant) != {ZERO} else ""
         lines, turns = [], {}  # series with equal phases share one call
         for lane, s in enumerate(series):
             if s.weights not in turns:
@@ -455,9 +456,7 @@ def _with_calls(node: Node, calls: Mapping[Node, str]) -> Node:
     """
     if node in calls:
         return ("symbol", calls[node])
-    if node[0] in ("number", "symbol"):
-        return node
-    return (node[0], *(_with_calls(child, calls) for child in children(node)))
+    return with_children(node, [_with_calls(child, calls) for child in children(node)])
 
 
 def _indented(lines: Iterable[str]) -> list[str]:

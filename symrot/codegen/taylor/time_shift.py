@@ -10,15 +10,14 @@ from fractions import Fraction
 from math import comb
 from typing import NamedTuple
 
-from symrot.codegen.printing.c_source import c_function
+from symrot.codegen.printing.c_function import c_function
+from symrot.codegen.taylor.linear_forms import ONE, ZERO
 from symrot.formula.program import Argument, Program, Signature
-from symrot.formula.tree import Node, children, evaluate, names
+from symrot.formula.tree import Node, children, evaluate, names, with_children
 from symrot.planning.scene_kernel import EPOCH, Parameters, SceneKernel
 
 __all__ = ["from_epoch", "moved", "moved_formulas"]
 
-ZERO: Node = ("number", Fraction(0))
-ONE: Node = ("number", Fraction(1))
 TIME = "t"
 TURNING = {"sin", "cos", "tan"}
 HIGHEST = 12  # largest degree of a polynomial of t that is shifted as a whole
@@ -222,11 +221,7 @@ class _Mover:
         """Return a constant formula in which each parameter is replaced by its formula: p0 becomes ``(B - C)/A``."""
         if node[0] == "symbol":
             return self.formulas[node[1]]
-        if node[0] == "number":
-            return node
-        if node[0] == "call":
-            return ("call", node[1], tuple(map(self.resolved, node[2])))
-        return (node[0], *map(self.resolved, children(node)), *(node[2:] if node[0] == "**" else ()))
+        return with_children(node, list(map(self.resolved, children(node))))
 
 
 def _is_shifted(form: _Form) -> bool:

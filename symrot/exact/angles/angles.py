@@ -7,9 +7,10 @@ which all its angles are whole multiples: theta/6 if theta/2 and theta/3 occur (
 from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from math import gcd, lcm
 
-from sympy import Expr, Rational, cos, pi, sin, sqrt
+from sympy import Expr, Rational, chebyshevt_poly, chebyshevu_poly, cos, pi, sin, sqrt
 
 from symrot.errors import InputError
 
@@ -83,23 +84,15 @@ def base_angle(atom: Expr, coefficient: Fraction) -> Expr:
     return Rational(coefficient.numerator, coefficient.denominator) * atom
 
 
+@cache
 def chebyshev(multiple: int) -> tuple[list[int], list[int]]:
     """Return the Chebyshev polynomials T_n and U_(n-1), n = ``multiple`` >= 1, as lists of integer coefficients.
 
     The lowest power comes first.
     """
     # cos(n x) = T_n(cos x) and sin(n x) = sin(x) U_(n-1)(cos x)
-    first, first_next = [1], [0, 1]  # T_0, T_1
-    second, second_next = [0], [1]  # U_(-1), U_0
-    for _ in range(multiple - 1):
-        first, first_next = first_next, _double_shift_minus(first_next, first)
-        second, second_next = second_next, _double_shift_minus(second_next, second)
-    return first_next, second_next
-
-
-def _double_shift_minus(last: list[int], before: list[int]) -> list[int]:
-    """Return the coefficients of ``2 x * last - before``, the Chebyshev polynomial after ``before`` and ``last``."""
-    result = [0] + [2 * c for c in last]
-    for power, coefficient in enumerate(before):
-        result[power] -= coefficient
-    return result
+    first, second = (
+        polynomial(degree, polys=True).all_coeffs()
+        for polynomial, degree in ((chebyshevt_poly, multiple), (chebyshevu_poly, multiple - 1))
+    )
+    return [int(c) for c in reversed(first)], [int(c) for c in reversed(second)]

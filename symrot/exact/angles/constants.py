@@ -12,7 +12,9 @@ from typing import Any
 from mpmath import iv
 from sympy.polys.rings import PolyElement
 
-__all__ = ["MOST_BITS", "Number", "cosine_number", "root_number", "vanishes"]
+from symrot.exact.ring.polynomials import occurring
+
+__all__ = ["MOST_BITS", "Number", "cosine_number", "root_number", "vanishes", "without_zeros"]
 
 MOST_BITS = 40_000
 """Largest working precision, in bits; a sum that would need more is not decided."""
@@ -52,8 +54,8 @@ def root_number(place: int, index: int, inside: PolyElement, known: Mapping[int,
 
     ``inside`` is a polynomial in the numbers ``known`` (index of the variable -> number).
     """
-    needs = _places(inside)
-    needs = needs.union(*(known[n].needs for n in needs)) if needs else needs
+    needs = frozenset(occurring([inside]))
+    needs = needs.union(*(known[n].needs for n in needs))
     multiplier, bound = _integral(inside.items(), known)
     # (multiplier g)^index = multiplier^(index - 1) * (multiplier * inside)
     bound = -(-((index - 1) * multiplier.bit_length() + bound) // index)
@@ -70,8 +72,8 @@ def vanishes(poly: PolyElement, known: Mapping[int, Number]) -> bool:
         return True
     if len(terms) == 1:
         return False
-    used = _places(poly)
-    used = used.union(*(known[n].needs for n in used)) if used else used
+    used = occurring([poly])
+    used = used.union(*(known[n].needs for n in used))
     multiplier, bound = _integral(terms, known)
     bits = bound * (prod(known[n].degree for n in used) - 1) + multiplier.bit_length()
     before, iv.prec = iv.prec, 100
@@ -92,8 +94,22 @@ def vanishes(poly: PolyElement, known: Mapping[int, Number]) -> bool:
         iv.prec = before
 
 
-def _places(poly: PolyElement) -> frozenset[int]:
-    return frozenset(n for mono in poly for n, power in enumerate(mono) if power)
+def without_zeros(poly: PolyElement, numbers: Mapping[int, Number]) -> PolyElement:
+    """Return a polynomial without the terms whose coefficients are proven to be zero.
+
+    A coefficient is a sum of products of the algebraic ``numbers``.
+    """
+    groups: dict[Monomial, dict[Monomial, Any]] = {}
+    for mono, coefficient in poly.items():
+        free = tuple(0 if n in numbers else power for n, power in enumerate(mono))
+        number = tuple(power if n in numbers else 0 for n, power in enumerate(mono))
+        groups.setdefault(free, {})[number] = coefficient
+    for free, terms in groups.items():
+        # the relations do not show every such zero
+        coefficient = poly.new(terms)
+        if vanishes(coefficient, numbers):
+            poly = poly - coefficient.mul_monom(free)
+    return poly
 
 
 def _integral(terms: Iterable[tuple[Monomial, Any]], known: Mapping[int, Number]) -> tuple[int, int]:

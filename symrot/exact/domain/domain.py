@@ -3,12 +3,13 @@
 from collections.abc import Container, Iterable
 
 from sympy import Abs, Expr, Pow, acos, asin, atan2, log
+from sympy.core.function import AppliedUndef
 
 from symrot.exact.domain.needs import is_leaf
 from symrot.exact.ring.ring import FormulaRing
 from symrot.exact.ring.roots import Root
 
-__all__ = ["divisors", "is_dense", "radicands", "signs", "split_radicands"]
+__all__ = ["divisors", "free_angles", "is_dense", "radicands", "signs", "split_radicands"]
 
 
 def divisors(ring: FormulaRing, granted: Container[int] = ()) -> list[tuple[Expr, Expr]]:
@@ -65,6 +66,24 @@ def _is_plain(atom: Expr) -> bool:
     if atom.is_Add or atom.is_Mul or (atom.is_Pow and atom.exp.is_Integer):
         return all(map(_is_plain, atom.args))
     return bool(atom.is_Rational)
+
+
+def free_angles(ring: FormulaRing) -> list[Expr]:
+    """Return the angles of a ring's sines and cosines that may have any value, whatever the other variables are.
+
+    Such an angle is proportional to a symbol or a function of time that occurs in no other variable, as x is in
+    ``sin(x) + y``, but not in ``sin(x) + x``.
+    """
+    # time derivatives may occur: at one instant they are independent of the value of the function
+    holders = [*ring.bases, *(leaf for leaf in ring.symbols if not leaf.is_Derivative)]
+    free = []
+    for atom in ring.bases:
+        factors = atom.args if atom.is_Mul else (atom,)
+        others = [holder for holder in holders if holder is not atom]
+        is_plain = all(factor.is_Symbol or isinstance(factor, AppliedUndef) for factor in factors)
+        if is_plain and atom not in ring.symbols and any(not any(o.has(f) for o in others) for f in factors):
+            free.append(atom)
+    return free
 
 
 def signs(ring: FormulaRing) -> list[Expr]:

@@ -12,9 +12,17 @@ import sympy
 from sympy import Expr
 
 from symrot.exact.domain.needs import Need, is_leaf
-from symrot.exact.intervals import enclosure
+from symrot.exact.intervals import enclosure, fraction_of_end
 
-__all__ = ["fails_everywhere", "range_everywhere"]
+__all__ = [
+    "REALS",
+    "Range",
+    "fails_everywhere",
+    "power_of_range",
+    "product_of_ranges",
+    "range_everywhere",
+    "sum_of_ranges",
+]
 
 Bound = Any  # Fraction or +-inf
 Range = tuple[Bound, Bound]
@@ -55,7 +63,7 @@ def _computed(node: Expr, known: dict[Expr, Range]) -> Range:
     if node.is_Add or node.is_Mul:
         total = parts[0]
         for part in parts[1:]:
-            total = _plus(total, part) if node.is_Add else _times(total, part)
+            total = sum_of_ranges(total, part) if node.is_Add else product_of_ranges(total, part)
         return total
     if node.is_Pow:
         return _power(parts[0], node.exp)
@@ -77,13 +85,14 @@ def _end(value: Any) -> Fraction:
 
     Raise OverflowError if it is too large or too small.
     """
-    sign, mantissa, power, _ = value._mpi_[0]
+    _, _, power, _ = value._mpi_[0]
     if abs(power) > MOST_BITS:
         raise OverflowError
-    return (-1 if sign else 1) * int(mantissa) * Fraction(2) ** int(power)
+    return fraction_of_end(value)
 
 
-def _plus(a: Range, b: Range) -> Range:
+def sum_of_ranges(a: Range, b: Range) -> Range:
+    """Return the bounds of x + y for x in the range ``a`` and y in the range ``b``."""
     low, high = (next((end for end in ends if end in (inf, -inf)), ends[0] + ends[1] if _finite(ends) else None)
                  for ends in zip(a, b, strict=True))  # fmt: skip
     return low, high
@@ -93,7 +102,8 @@ def _finite(ends: Sequence[Bound]) -> bool:
     return all(isinstance(end, Fraction) for end in ends)
 
 
-def _times(a: Range, b: Range) -> Range:
+def product_of_ranges(a: Range, b: Range) -> Range:
+    """Return the bounds of x*y for x in the range ``a`` and y in the range ``b``."""
     ends = [_product(x, y) for x in a for y in b]
     return min(ends), max(ends)
 
@@ -115,6 +125,12 @@ def _power(base: Range, exponent: Expr) -> Range:
     power = int(exponent)
     if power < 0:
         return (Fraction(0), inf) if power % 2 == 0 or low >= 0 else (-inf, Fraction(0)) if high <= 0 else REALS
+    return power_of_range(base, power)
+
+
+def power_of_range(base: Range, power: int) -> Range:
+    """Return the bounds of x^power for x in the range ``base``; the power is a whole number above zero."""
+    low, high = base
     ends = (low**power, high**power)
     if power % 2:
         return ends

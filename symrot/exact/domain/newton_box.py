@@ -12,7 +12,7 @@ from mpmath import iv
 from sympy import Dummy, Expr
 
 from symrot.exact.floats import NoValue, float_at
-from symrot.exact.intervals import enclosure
+from symrot.exact.intervals import as_interval, enclosure
 from symrot.exact.limits.size import pieces
 
 __all__ = ["EquationSystem"]
@@ -96,14 +96,14 @@ class EquationSystem:
     ) -> dict[Expr, Any] | None:
         middle = {name: Fraction(near[name]) for name in unknowns}
         spread = {name: iv.mpf([-1, 1]) * (radius * (1 + abs(near[name]))) for name in unknowns}
-        box = {name: _point(middle[name]) + spread[name] for name in unknowns}
+        box = {name: as_interval(middle[name]) + spread[name] for name in unknowns}
         values = [enclosure(formula, fixed | middle) for formula in self.formulas]
         places = [list(self.names.values()).index(name) for name in unknowns]
         slopes = [[enclosure(row[place], fixed | box) for place in places] for row in self.slopes]
         if None in values or any(None in row for row in slopes):
             return None
         for n, name in enumerate(unknowns):
-            image = _point(middle[name])
+            image = as_interval(middle[name])
             for k, value in enumerate(values):
                 image = image - inverse[n][k] * value
             for j, other in enumerate(unknowns):
@@ -114,10 +114,6 @@ class EquationSystem:
             if not (image.a > box[name].a and image.b < box[name].b):
                 return None
         return fixed | box
-
-
-def _point(value: Fraction) -> Any:
-    return iv.mpf(value.numerator) / value.denominator
 
 
 def _shortest(rows: list[Row], residuals: Row) -> Row | None:

@@ -15,7 +15,7 @@ from sympy.polys.rings import PolyElement
 from symrot.exact.factors import factor_list
 from symrot.exact.ring.roots import Root, absolute, sign_of, written
 
-__all__ = ["Dependence", "dependences", "take_squares"]
+__all__ = ["Dependence", "dependences", "take_squares", "without_circles"]
 
 MOST_TERMS = 60
 """Largest number of terms of a radicand that is factored."""
@@ -77,6 +77,11 @@ class Dependence:
     roots: tuple[Root, ...]
     divisors: tuple[tuple[Root | Expr, int], ...]
 
+    @property
+    def needs(self) -> list[Root]:
+        """The roots by which the square root is expressed: sqrt(a) and sqrt(b) for sqrt(a*b)."""
+        return [*self.roots, *(factor for factor, _ in self.divisors if isinstance(factor, Root))]
+
 
 def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr]) -> dict[Root, Dependence]:
     """Return a map from each square root that is a product of other roots to this product, a :class:`Dependence`.
@@ -114,6 +119,25 @@ def dependences(radicands: Mapping[Root, PolyElement], generators: Sequence[Expr
             divisors = ((absolute(f.as_expr(*generators)), n // 2) for f, n in sorted(total.items(), key=str) if n)
             relations[root] = Dependence(number, tuple(others), tuple(divisors))
     return relations
+
+
+def without_circles(new: Mapping[Root, Dependence], known: Mapping[Root, Dependence]) -> dict[Root, Dependence]:
+    """Return those of the dependences ``new`` in which no root is expressed by itself, not even through others.
+
+    ``known`` holds dependences that were accepted before.
+    """
+    accepted: dict[Root, Dependence] = {}
+    for root, dependence in new.items():
+        stack, seen = dependence.needs, set[Root]()
+        while stack:
+            other = stack.pop()
+            if other not in seen:
+                seen.add(other)
+                further = accepted.get(other) or known.get(other)
+                stack += further.needs if further else []
+        if root not in seen:
+            accepted[root] = dependence
+    return accepted
 
 
 def _factored(poly: PolyElement) -> tuple[Rational, dict[PolyElement, int]]:

@@ -6,7 +6,6 @@ or ``s^2 = 1 - c^2``, replaces a power of its own variable. That gives the uniqu
 """
 
 from collections.abc import Iterable, Iterator, Sequence
-from fractions import Fraction
 from typing import Any
 
 import sympy
@@ -22,29 +21,24 @@ from symrot.exact.angles.angles import (
     LinearForm,
     base_angle,
     base_coefficients,
-    chebyshev,
     constant_cosine_sine,
     linear_form,
 )
-from symrot.exact.angles.constants import Number, cosine_number, root_number, vanishes
-from symrot.exact.angles.inverse import INVERSE, cosine_sine
-from symrot.exact.angles.known_angles import halved, is_bound, parts_of, unbound
+from symrot.exact.angles.constants import Number, cosine_number, root_number, without_zeros
+from symrot.exact.angles.inverse import INVERSE
+from symrot.exact.angles.known_angles import is_bound, parts_of, unbound
 from symrot.exact.functions import REWRITTEN, TRIGONOMETRIC, is_function_of_time
 from symrot.exact.limits.budget import remembered, spend_ring
 from symrot.exact.limits.operations import spend
+from symrot.exact.ring.angles import Angles
 from symrot.exact.ring.logarithms import logarithms_in, product_of, sums_of_logarithms
-from symrot.exact.ring.radicands import Dependence, dependences, take_squares
+from symrot.exact.ring.polynomials import occurring, univariate
+from symrot.exact.ring.radicands import Dependence, dependences, take_squares, without_circles
 from symrot.exact.ring.ratio import Ratio, Ratios, TooLarge
 from symrot.exact.ring.relations import Relations, Rule, relate
 from symrot.exact.ring.roots import Radical, Radicand, Root, is_root, radical, square_root_of_number, written
 
 __all__ = ["FormulaRing", "as_zero"]
-
-MOST_MULTIPLES = 240
-"""Largest multiple of a base angle."""
-
-MOST_ANGLE_TERMS = 4096
-"""Largest number of terms in the expanded sine or cosine of a sum of base angles; twelve angles give 2048."""
 
 MOST_NESTED_TERMS = 40
 """Largest number of terms of a radicand that contains roots: each level of nesting multiplies the work."""
@@ -126,7 +120,7 @@ class FormulaRing:
             relations_found = self._relate(ZZ) or self._relate(QQ)
             assert relations_found is not None  # rational coefficients suffice for any polynomial
             self.relations: Relations = relations_found
-            new = self._without_circles(self._dependences())
+            new = without_circles(self._dependences(), self.dependences)
             if not new:
                 break
             self.dependences |= new
@@ -149,8 +143,8 @@ class FormulaRing:
         )
         self.cosines = self._number((atom, cos(base_angle(atom, self.bases[atom]))) for atom in atoms)
         self.own = {self.generators[n]: n for n in range(len(self.roots), len(self.generators))}
-        if self.fine:
-            (self.fine_place,) = self._number([(pi, 2 * cos(pi / self.fine))]).values()
+        constants = [(pi, 2 * cos(pi / self.fine))] if self.fine else []
+        self.fine_place = self._number(constants).get(pi, -1)
 
     def _number(self, named: Iterable[tuple[Any, Expr]]) -> dict[Any, int]:
         """Append a variable to the ring for each pair (key, expression), and return a map from key to its index."""
@@ -248,20 +242,6 @@ class FormulaRing:
             return {}
         return dependences({root: self._polynomial(root) for root in places}, self.generators)
 
-    def _without_circles(self, dependences: dict[Root, Dependence]) -> dict[Root, Dependence]:
-        """Return those of the ``dependences`` in which no root is expressed by itself, not even through others."""
-        accepted: dict[Root, Dependence] = {}
-        for root, dependence in dependences.items():
-            stack, seen = _named(dependence), set()
-            while stack:
-                other = stack.pop()
-                if other not in seen:
-                    seen.add(other)
-                    stack.extend(_named((self.dependences | accepted).get(other)))
-            if root not in seen:
-                accepted[root] = dependence
-        return accepted
-
     def _take_fine_constants(self) -> int:
         """Return the even N of the variable 2 cos(pi/N), which angles such as pi/7 need; 0 if no angle needs one."""
         # no such number for multiples of pi/24, which have square roots as sines and cosines, or if N is too large
@@ -289,11 +269,13 @@ class FormulaRing:
         self.numbers: dict[int, Number] = {}
         self.ratios = Ratios(self.ring, self.generators, self.reduce)
         self._read_already: dict[Expr, Ratio] = {}
-        self._angles_read: dict[Expr, tuple[Ratio, Ratio]] = {}
+        self._angles = Angles(
+            self.ratios, self.ratio, self.forms, self.bases, self.cosines, self.sines, self.fine, self.fine_place
+        )
         rules = [Rule(self.sines[atom], 2, 1 - self.ring.gens[self.cosines[atom]] ** 2) for atom in self.bases]
         if self.fine:
             *low, _ = cyclotomic.minimal_polynomial(self.fine)
-            rules.append(Rule(self.fine_place, len(low), -self._in_generator(self.fine_place, low), minimal=True))
+            rules.append(Rule(self.fine_place, len(low), -univariate(self.ring, self.fine_place, low), minimal=True))
             self.relations = Relations(tuple(rules[-1:]))
         try:
             rules += [Rule(number, root.index, self._polynomial(root)) for root, number in self.roots.items()]
@@ -329,7 +311,7 @@ class FormulaRing:
             known[self.fine_place] = cosine_number(self.fine_place, cyclotomic.degree(self.fine), self.fine)
         inside = {rule.generator: rule.replacement for rule in rules}
         for root, place in reversed(self.roots.items()):
-            if root.power_expression.is_number and all(n in known for n in _occurring(inside[place])):
+            if root.power_expression.is_number and all(n in known for n in occurring([inside[place]])):
                 known[place] = root_number(place, root.index, inside[place], known)
         simple = all(number.index == 2 and not number.needs for number in known.values())
         # an equation such as sqrt(2)*sqrt(3) = sqrt(6); square roots of primes satisfy none
@@ -339,21 +321,7 @@ class FormulaRing:
     def reduce(self, poly: PolyElement) -> PolyElement:
         """Return the normal form of a polynomial; it is zero if and only if the relations make the polynomial zero."""
         poly = self.relations.reduce(poly)
-        return self._without_zeros(poly) if self.numbers and poly else poly
-
-    def _without_zeros(self, poly: PolyElement) -> PolyElement:
-        """Return a polynomial without the terms whose coefficients are proven to be zero."""
-        groups: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
-        for mono, coefficient in poly.items():
-            free = tuple(0 if n in self.numbers else power for n, power in enumerate(mono))
-            number = tuple(power if n in self.numbers else 0 for n, power in enumerate(mono))
-            groups.setdefault(free, {})[number] = coefficient
-        for free, terms in groups.items():
-            # a sum of algebraic numbers, which may be zero although the relations do not show it
-            coefficient = poly.new(terms)
-            if vanishes(coefficient, self.numbers):
-                poly = poly - coefficient.mul_monom(free)
-        return poly
+        return without_zeros(poly, self.numbers) if self.numbers and poly else poly
 
     # -- reading ----------------------------------------------------------------------------------------------------
 
@@ -392,7 +360,7 @@ class FormulaRing:
         if node.is_Pow:
             return self._power(self.ratio(node.base), int(node.exp), node.base)
         above, below = TRIGONOMETRIC[type(node)]
-        cosine, sine = self._cosine_sine(node.args[0])
+        cosine, sine = self._angles.cosine_sine(node.args[0])
         values = {"cos": cosine, "sin": sine, None: ratios.number(1)}
         if below is None:
             return values[above]
@@ -435,85 +403,12 @@ class FormulaRing:
             factors.append(self._power(generator, int(coefficient / base), self.generators[self.exponentials[atom]]))
         return self.ratios.multiply(factors)
 
-    def _cosine_sine(self, argument: Expr) -> tuple[Ratio, Ratio]:
-        """Return (cosine, sine) of an angle as fractions of polynomials in the cosines and sines of base angles."""
-        known = self._angles_read.get(argument)
-        if known is not None:
-            return known
-        form = self.forms[argument]
-        cosine, sine = self.ring.one, self.ring.zero
-        c0, s0 = map(self.ratio, constant_cosine_sine(form.half_turns))
-        pairs = [(c0, s0)]
-        for atom, coefficient in form.terms:
-            if is_bound(atom, coefficient):
-                pairs += self._known_angle(atom, coefficient)
-                continue
-            if atom is pi and self.fine:
-                pairs.append(self._fine_constant(coefficient))
-                continue
-            multiple = int(coefficient / self.bases[atom])
-            most = MOST_MULTIPLES // (1 + 7 * (atom is pi))
-            if abs(multiple) > most:
-                raise TooLarge(f"expected an angle of at most {most} times {self.bases[atom] * atom}, got {argument}")
-            first, second = chebyshev(abs(multiple))
-            c = self._in_generator(self.cosines[atom], first)
-            s = self._in_generator(self.cosines[atom], second) * self.ring.gens[self.sines[atom]]
-            s = s if multiple > 0 else -s
-            if len(cosine) * (len(c) + len(s)) > MOST_ANGLE_TERMS:
-                raise TooLarge(
-                    f"the expanded sine of a sum of angles has more than {MOST_ANGLE_TERMS} terms; split the formula"
-                )
-            cosine, sine = cosine * c - sine * s, sine * c + cosine * s
-        turned = Ratio(cosine), Ratio(sine)
-        for pair in pairs:
-            turned = self._turned(turned, pair)
-        self._angles_read[argument] = turned
-        return turned
-
-    def _turned(self, angle: tuple[Ratio, Ratio], by: tuple[Ratio, Ratio]) -> tuple[Ratio, Ratio]:
-        """Return (cosine, sine) of the sum of two angles, each given as (cosine, sine)."""
-        (cosine, sine), (c0, s0) = angle, by
-        minus_s0 = self.ratios.multiply([self.ratios.number(-1), s0])
-        turn, add = self.ratios.multiply, self.ratios.add
-        return (
-            add([turn([cosine, c0]), turn([sine, minus_s0])]),
-            add([turn([sine, c0]), turn([cosine, s0])]),
-        )
-
-    def _known_angle(self, atom: Expr, coefficient: Fraction) -> Iterator[tuple[Ratio, Ratio]]:
-        """Yield (cosine, sine) of angles that add up to ``coefficient * atom``; the atom is an inverse function.
-
-        ``2*asin(u)`` gives the pair of asin(u) twice.
-        """
-        for halvings, times in halved(coefficient):
-            c, s = map(self.ratio, cosine_sine(atom, halvings))
-            if times < 0:
-                s = self.ratios.multiply([self.ratios.number(-1), s])
-            for _ in range(abs(times)):
-                yield c, s
-
-    def _fine_constant(self, half_turns: Fraction) -> tuple[Ratio, Ratio]:
-        both = (cyclotomic.doubled_cosine(times, self.fine) for times in cyclotomic.multiples(half_turns, self.fine))
-        cosine, sine = (Ratio(self._in_generator(self.fine_place, coefficients), 2) for coefficients in both)
-        return cosine, sine
-
-    def _in_generator(self, place: int, coefficients: Sequence[int]) -> PolyElement:
-        """Return the polynomial in the variable number ``place`` with the given coefficients, lowest power first."""
-        gen = self.ring.gens[place]
-        return sum((gen**power * number for power, number in enumerate(coefficients) if number), self.ring.zero)
-
     # -- back to SymPy ----------------------------------------------------------------------------------------------
 
     def expression(self, value: Ratio) -> Expr:
         """Return a fraction in lowest terms as a SymPy expression; exactly 0 if its numerator reduces to zero."""
-        constant, above, below = self.lowest_terms(value)
-        return constant * above / below
-
-    def lowest_terms(self, value: Ratio) -> tuple[Rational, Expr, Expr]:
-        """Return (c, P, Q) with value = c*P/Q in lowest terms, as expressions; c is a rational number >= 0."""
-        # the coefficients of P, and those of Q, are integers without a common divisor
         constant, above, below = self.lowest_polynomials(value)
-        return constant, above.as_expr(*self.generators), below.as_expr(*self.generators)
+        return constant * above.as_expr(*self.generators) / below.as_expr(*self.generators)
 
     def lowest_polynomials(self, value: Ratio) -> tuple[Rational, PolyElement, PolyElement]:
         """Return (c, P, Q) with value = c*P/Q in lowest terms; c is a rational number >= 0, P and Q are polynomials."""
@@ -546,18 +441,6 @@ def _is_of_real(logarithm: Expr) -> bool:
     """
     leaves = logarithm.atoms(sympy.Symbol, AppliedUndef)
     return not logarithm.has(I) and all(leaf.is_extended_real for leaf in leaves)
-
-
-def _named(dependence: Dependence | None) -> list[Root]:
-    """Return the roots by which a dependent root is expressed: sqrt(a) and sqrt(b) for sqrt(a*b)."""
-    # the root is independent
-    if dependence is None:
-        return []
-    return [*dependence.roots, *(factor for factor, _ in dependence.divisors if isinstance(factor, Root))]
-
-
-def _occurring(poly: PolyElement) -> set[int]:
-    return {number for mono in poly for number, power in enumerate(mono) if power}
 
 
 def _order(node: Expr) -> tuple[str, str]:

@@ -12,7 +12,7 @@ from symrot.exercises.formats.moodle import moodle_quiz
 __all__ = ["FORMATS", "HANDOUTS", "TITLE"]
 
 TITLE = "Exercises"
-"""The title of a sheet without another one."""
+"""The title of a sheet that is given no other title."""
 
 
 def _json(exercises: Sequence[Exercise]) -> str:
@@ -23,11 +23,14 @@ FORMATS: dict[str, Callable[[Sequence[Exercise]], str]] = {
     "moodle": moodle_quiz,
     "json": _json,
 }
-"""Format for a program -> the function that prints exercises in it."""
+"""Format that another program reads -> the function that prints exercises in this format."""
 
 HANDOUTS: dict[str, Callable[[Sequence[Exercise], str, bool, bool], str]] = {
     "markdown": markdown_sheet,
     "latex": latex_sheet,
     "html": html_sheet,
 }
-"""Format -> the function that prints exercises in it under a title, without their statements or their solutions."""
+"""Format for readers -> the function that prints exercises in this format.
+
+Its arguments are the exercises, the title, whether the statements and whether the solutions are printed.
+"""

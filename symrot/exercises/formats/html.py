@@ -23,8 +23,8 @@ HINTS = ("Hint 1: the law", "Hint 2: the equation", "Hint 3: with numbers")
 def html_sheet(exercises: Sequence[Exercise], title: str, statements: bool, solutions: bool) -> str:
     """Return one self-contained HTML page with exercises, which grades numerical answers.
 
-    Without ``statements`` the page has the solutions alone; without ``solutions`` it has no hints and no formulas of
-    answers either.
+    Without ``statements`` the page contains only the solutions; without ``solutions`` it contains no solutions, no
+    hints and no answers to questions for formulas.
     """
     folder = files(__package__)
     heading = f"<h1>{prose(title)}</h1>"
@@ -115,14 +115,13 @@ def _inline_display(latex: str) -> str:
     """Return MathML that displays a formula on a line of its own, with ``span`` instead of ``div``.
 
     A paragraph of HTML cannot contain a ``div``.
-
     """
     return display(latex).replace("<div ", "<span ").replace("</div>", "</span>")
 
 
 def _data(exercises: Sequence[Exercise]) -> dict[str, Any]:
-    """Return what the page needs to grade numbers: for each question (``1a``) the answer, unit and typical wrong
-    numbers.
+    """Return the data with which the page grades numbers: answer, unit and typical wrong numbers of each question,
+    and the factors and dimensions of all units.
     """
     questions = {
         f"{number}{question.key}": {

@@ -29,18 +29,14 @@ ESCAPES = {"&": r"\&", "%": r"\%", "#": r"\#", "_": r"\_", "^": r"\^{}", "~": r"
 
 
 def latex_sheet(exercises: Sequence[Exercise], title: str, statements: bool, solutions: bool) -> str:
-    """Return a LaTeX document with the statements of exercises, their hints and solutions, or one of both alone."""
+    """Return a LaTeX document with the statements of exercises, or with their hints and solutions, or with both."""
     parts = [HEAD + rf"\section*{{{prose(title)}}}"]
     for number, exercise in enumerate(exercises if statements else (), 1):
         questions = "\n".join(rf"\item[({each.key})] {prose(each.prompt)}" for each in exercise.questions)
         parts += [
             rf"\subsection*{{{number}. {prose(exercise.title)}}}",
             prose(exercise.statement),
-            *(
-                [f"\\nopagebreak\n\\begin{{center}}\n{tikz(exercise.figure)}\n\\end{{center}}"]
-                if exercise.figure
-                else []
-            ),
+            *(f"\\nopagebreak\n\\begin{{center}}\n{tikz(svg)}\n\\end{{center}}" for svg in [exercise.figure] if svg),
             prose(data_text(exercise.data)),
             f"\\begin{{itemize}}\n{questions}\n\\end{{itemize}}",
         ]
@@ -61,7 +57,7 @@ def latex_sheet(exercises: Sequence[Exercise], title: str, statements: bool, sol
 
 
 def prose(text: str) -> str:
-    """Convert Markdown to LaTeX: formulas are copied, displayed formulas wider than a line are scaled to fit."""
+    """Return Markdown as LaTeX; displayed formulas that are wider than a line are scaled to fit."""
     pieces = re.split(r"(\$\$.+?\$\$|\$[^$]+\$)", text)
     return "".join(_piece(piece) for piece in pieces)
 

@@ -16,7 +16,7 @@ def data_text(data: Sequence[Datum]) -> str:
 
 
 def markdown_sheet(exercises: Sequence[Exercise], title: str, statements: bool, solutions: bool) -> str:
-    """Return the statements of exercises as Markdown, then their hints and solutions, or one of both alone."""
+    """Return the statements of exercises as Markdown, or their hints and solutions, or both, in this order."""
     lines = [f"# {title}", ""]
     for number, exercise in enumerate(exercises if statements else (), 1):
         lines += [f"## {number}. {exercise.title}", "", exercise.statement, ""]

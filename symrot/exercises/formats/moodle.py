@@ -12,11 +12,9 @@ from symrot.exercises.exercise import Exercise, Question
 from symrot.exercises.formats.figures import image, title_of
 from symrot.exercises.formats.html import mathjax, solution_html
 from symrot.exercises.formats.markdown import data_text
+from symrot.exercises.grading.numbers import TOLERANCE
 
 __all__ = ["moodle_quiz"]
-
-TOLERANCE = 0.005
-"""The largest relative error of a number that Moodle accepts: three significant digits."""
 
 UNIT_PENALTY = "0.1"
 SPELLING = "Write products with * and powers with ^, with one fraction, letters in the order of the alphabet."

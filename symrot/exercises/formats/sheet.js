@@ -1,7 +1,7 @@
 "use strict";
 // Grades the numbers of a sheet of exercises in the page, without network.
 const { questions, units } = JSON.parse(document.getElementById("questions").textContent);
-const TOLERANCE = 0.005; // three significant digits
+const TOLERANCE = 0.005; // largest relative error, as for `symrot grade`
 const NAMES = Object.keys(units).sort((a, b) => b.length - a.length);
 const UNIT = new RegExp(`(/?)\\s*(${NAMES.join("|")})(?![A-Za-z])(?:\\^?\\(?(-?\\d+)\\)?)?`, "gy");
 
@@ -90,14 +90,14 @@ function rounding(text, value) {
 function grade(text, question) {
   const typed = text.replace(/^.*=/, "").trim().replace(/[.,;]+$/, "").replace(/²/g, "^2").replace(/³/g, "^3");
   const number = arithmetic(typed);
-  if (!number) return ["wrong", "This is no number: write for example 0.125, 1.2e-3 or 3/8."];
+  if (!number) return ["wrong", "This is not a number: write for example 0.125, 1.2e-3 or 3/8."];
   const [value, rest] = number;
   const name = rest.trim().replace(/^\[([^[\]]*)\]$|^\(([^()]*)\)$/, "$1$2");
   const unit = rest.trim() ? unitOf(name, /rad|rev|rpm|deg/.test(question.unit)) : null;
-  if (rest.trim() && !unit) return ["wrong", `“${rest.trim()}” is no unit that this page knows.`];
+  if (rest.trim() && !unit) return ["wrong", `“${rest.trim()}” is not a unit that this page knows.`];
   const truth = Number(question.value);
   if (unit && !same(unit.dimension, question.dimension))
-    return ["wrong", `The unit does not fit: the answer is in ${question.unit || "no unit, a pure number"}.`];
+    return ["wrong", `The unit is wrong: the answer is ${question.unit ? `in ${question.unit}` : "a pure number"}.`];
   const angle = !unit && question.unit && !Object.keys(question.dimension).length;
   const scale = unit ? unit.factor / question.factor : 1, answer = value * scale;
   const [half, digits] = rounding(typed.slice(0, typed.length - rest.length), value);
@@ -109,18 +109,18 @@ function grade(text, question) {
   }
   const slip = question.slips.find(([number]) => near(answer, Number(number)));
   if (slip) return ["wrong", slip[1]];
-  if (near(-answer, truth)) return ["wrong", "The size is right, the sign is not."];
+  if (near(-answer, truth)) return ["wrong", "The size is right, but the sign is wrong."];
   if (angle && near((answer * Math.PI) / 180, truth * question.factor)) return ["wrong", "This is in degrees."];
   for (const factor of [2, 0.5, 4, 0.25])
-    if (near(answer, factor * truth)) return ["wrong", `A factor of ${factor > 1 ? factor : `1/${1 / factor}`} is too much.`];
+    if (near(answer, factor * truth)) return ["wrong", `This is ${factor > 1 ? factor : `1/${1 / factor}`} times the answer.`];
   if (truth && near(answer, (truth * 180) / Math.PI)) return ["wrong", "This is in degrees, not in radians."];
   if (truth && near(answer, (truth * Math.PI) / 180)) return ["wrong", "This is in radians, not in degrees."];
-  if (truth && near(answer, 1 / truth)) return ["wrong", "This is the inverse of the answer."];
+  if (truth && near(answer, 1 / truth)) return ["wrong", "This is the reciprocal of the answer."];
   const power = truth && answer / truth > 0 ? Math.log10(answer / truth) : NaN;
   if (Math.abs(power - Math.round(power)) < 0.002 && Math.round(power))
-    return ["wrong", "Wrong by a power of ten: check the conversion of units."];
-  if (rounds) return ["partial", "Rounded too much: give three digits."];
-  return ["wrong", "Not right. Try a hint."];
+    return ["wrong", "This is wrong by a power of ten: check how you converted the units."];
+  if (rounds) return ["partial", "This is rounded too much: give at least three significant digits."];
+  return ["wrong", "This is wrong. Try a hint."];
 }
 
 for (const form of document.querySelectorAll("form.numeric")) {

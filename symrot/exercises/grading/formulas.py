@@ -23,22 +23,10 @@ GREEK = {
 """Greek letter -> its name in claims."""
 
 FUNCTIONS = (
-    "sin",
-    "cos",
-    "tan",
-    "cot",
-    "sec",
-    "csc",
-    "sqrt",
-    "pi",
-    "asin",
-    "acos",
-    "atan",
-    "atan2",
-    "abs",
-    "exp",
-    "log",
-)
+    "sin", "cos", "tan", "cot", "sec", "csc", "sqrt", "pi", "asin", "acos", "atan", "atan2", "abs", "exp", "log",
+)  # fmt: skip
+"""The names, besides those of the given quantities, that a formula may contain: functions and pi."""
+
 LONGEST_PRODUCT = 12
 """The most letters of a product that is written without signs."""
 
@@ -79,7 +67,10 @@ def mark_formula(key: str, answer: str, question: Question) -> Mark:
 
 
 def _misfit(own: str, truth: str, question: Question) -> str:
-    """Return a sentence that says how the units of an answer differ from the right units; empty if they agree."""
+    """Return a sentence that says how the units of an answer differ from the right units.
+
+    It is empty if the units agree or cannot be compared.
+    """
     try:
         dimension = _verdict(own, truth, question, repair=False, units=question.symbols).dimension
     except InputError:  # LaTeX in which the names of the units do not occur
@@ -160,6 +151,7 @@ def _split(match: re.Match[str], known: Collection[str]) -> str:
 
 
 def _partitions(name: str, known: Collection[str]) -> Iterator[tuple[str, ...]]:
+    """Yield the ways to write a name as a product of known symbols: ``mgl`` gives ``("m", "g", "l")``."""
     if not name:
         yield ()
     if len(name) > LONGEST_PRODUCT:
@@ -170,8 +162,9 @@ def _partitions(name: str, known: Collection[str]) -> Iterator[tuple[str, ...]]:
 
 
 def _code(own: str, truth: str, verdict: Verdict, question: Question) -> str:
-    """Return the code of the student's error, such as ``"inverse"`` for 1/x instead of x, a key of
-    ``FORMULA_FAULTS``.
+    """Return the code of the student's error, such as ``"inverse"`` for 1/x instead of x.
+
+    Most codes are keys of :data:`symrot.exercises.grading.words.FORMULA_FAULTS`.
     """
     if "\\" not in own:
         if _holds(f"1/({own})", truth, question):
@@ -208,9 +201,7 @@ def _code_without_units(own: str, truth: str, question: Question) -> str:
 
 
 def _holds(own: str, truth: str, question: Question) -> bool:
-    """Return whether ``own``, a modified form of the student's formula such as its inverse, equals the right
-    formula.
-    """
+    """Return whether ``own``, such as the reciprocal of the student's formula, equals the right formula."""
     try:
         return _is_right(_verdict(own, truth, question, repair=False))
     except InputError:

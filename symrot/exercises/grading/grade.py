@@ -28,7 +28,7 @@ def grade(exercises: Exercise | ExerciseSheet, answers: Mapping[str, str] | Sequ
     exercises : Exercise or ExerciseSheet
         The exercise, or the sheet of exercises, that was answered.
     answers : mapping of str to str, or sequence of str
-        Answers by question, ``"a"`` of an exercise and ``"1a"`` of a sheet; or one answer for each question in order.
+        Answers by question, ``"a"`` of an exercise or ``"1a"`` of a sheet; or answers in the order of the questions.
         Numbers have a unit and at least two significant digits; formulas are typed text or LaTeX.
 
     Returns
@@ -39,7 +39,7 @@ def grade(exercises: Exercise | ExerciseSheet, answers: Mapping[str, str] | Sequ
     Raises
     ------
     InputError
-        If there is an answer to a question that does not exist.
+        If there is an answer to a question that does not exist, or if the answers are one text.
 
     Examples
     --------
@@ -78,7 +78,7 @@ def _mark(key: str, answer: Any, question: Question) -> Mark:
         return Mark(key, "", "missing", text="no answer was written")
     text = str(answer)
     if len(text) > LONGEST:
-        return Mark(key, text[:60], "unread", text=f"expected at most {LONGEST} letters, got {len(text)}")
+        return Mark(key, text[:60], "unread", text=f"expected at most {LONGEST} characters, got {len(text)}")
     return KINDS[question.kind](key, text, question)
 
 
@@ -91,6 +91,13 @@ def grade_files(exercises: str | Path, answers: str | Path) -> Grades:
         A file that ``symrot exercise --format json`` wrote.
     answers : str or Path
         A JSON object ``{"1a": "m*L^2/3"}``, or a text with a line ``1a: m*L^2/3`` for each answer.
+
+    Raises
+    ------
+    InputError
+        If a file has another form, or answers a question that the sheet does not have.
+    OSError
+        If a file cannot be read.
     """
     sheet = read_sheet(_json(exercises, Path(exercises).read_text(encoding="utf-8")), str(exercises))
     text = Path(answers).read_text(encoding="utf-8")

@@ -17,13 +17,13 @@ class Mark:
     key : str
         The question, such as ``"1a"`` or ``"a"``.
     answer : str
-        The answer as the student wrote it; its first 60 letters if it is too long to be read.
+        The answer as the student wrote it; its first 60 characters if it is too long to be graded.
     outcome : str
         ``"right"``, ``"wrong"``, ``"unread"`` (the answer cannot be read), ``"undecided"`` or ``"missing"``.
     credit : Fraction
-        From 0 to 1.
+        The share of the question's points that the answer gets, from 0 to 1.
     code : str
-        The kind of error of a wrong answer; otherwise empty.
+        The kind of error of a wrong answer, such as ``"sign"``; otherwise empty.
     text : str
         One sentence for the student; empty for a right answer.
 

@@ -18,10 +18,10 @@ from symrot.formula.tree import evaluate, parse
 __all__ = ["TOLERANCE", "mark_number"]
 
 TOLERANCE = 0.005
-"""The largest relative error of a right number: half a unit of the third significant digit of 100."""
+"""The largest relative error of a right number; 0.005 is half a unit of the third significant digit of 100."""
 
-FEWEST_DIGITS = 2
-SMALL = 1e-12
+FEWEST_DIGITS = 2  # significant digits from which a correctly rounded number is right, whatever its relative error
+SMALL = 1e-12  # difference below which two numbers count as equal
 
 _LATEX = (
     (r"\\d?t?frac\{([^{}]*)\}\{([^{}]*)\}", r"(\1)/(\2)"), (r"\\sqrt\{([^{}]*)\}", r"sqrt(\1)"),
@@ -43,7 +43,10 @@ _FUNCTIONS: dict[str, Callable[..., float]] = {"sqrt": sqrt, "abs": abs}
 
 @dataclass(frozen=True)
 class _Number:
-    """A number typed by a student: value in its unit, unit, and significant digits (None if it is exact, as 1/3)."""
+    """A number typed by a student: its value in its unit, its unit (None if missing), and its significant digits.
+
+    The digits are None for a number that counts as exact, such as 1/3.
+    """
 
     value: float
     unit: UnitProduct | None
@@ -99,9 +102,9 @@ def _readings(answer: str) -> Iterator[_Number]:
 
 
 def _read(text: str) -> _Number | None:
-    """Return the number and unit in a text such as ``0.5 kg m^2``.
+    """Return the number and unit in a text such as ``0.5 kg m^2``, whose unit may be missing.
 
-    Return None if the text has another form; the unit may be missing.
+    Return None if the text is not a number with a unit.
     """
     for end in range(len(text), 0, -1):
         rest = text[end:].strip().removeprefix("*")
@@ -153,11 +156,9 @@ def _mark(key: str, answer: str, number: _Number, question: Question) -> Mark:
     value = number.value * scale
     if _is_right(value, truth, number.half_digit * scale, number.digits):
         forgotten = number.unit is None and own is not None and bool(own.dimension)
-        return (
-            _wrong(key, answer, "unit_forgotten", {"unit": question.unit})
-            if forgotten
-            else Mark(key, answer, "right", RIGHT)
-        )
+        if forgotten:
+            return _wrong(key, answer, "unit_forgotten", {"unit": question.unit})
+        return Mark(key, answer, "right", RIGHT)
     for code, texts in _faults(value, truth, question):
         return _wrong(key, answer, code, texts)
     if _rounds(value, truth, number.half_digit * scale):
@@ -184,9 +185,10 @@ def _is_right(value: float, truth: float, half_digit: float, digits: int | None)
 
 
 def _faults(value: float, truth: float, question: Question) -> Iterator[tuple[str, dict[str, str]]]:
-    """Yield (error code, words for the message) for each usual error that explains a wrong number, likeliest first.
+    """Yield each usual error that explains a wrong number, likeliest first, as a pair (code, words for the message).
 
-    ``value`` is the student's number and ``truth`` the right one, both in the unit of the question.
+    The code is a key of :data:`symrot.exercises.grading.words.NUMBER_FAULTS`. ``value`` is the student's number and
+    ``truth`` the right one, both in the unit of the question.
     """
     if _near(-value, truth):
         yield "sign", {}

@@ -12,7 +12,7 @@ NUMBER_FAULTS: dict[str, tuple[Fraction, str]] = {
     "sign": (Fraction(1, 2), "the size is right, but the sign is wrong: check the directions"),
     "factor": (
         Fraction(1, 2),
-        "the number is {factor} times the answer: look for a factor that is missing or too many",
+        "the number is {factor} times the answer: look for a factor that is missing or superfluous",
     ),
     "degrees": (Fraction(1, 2), "degrees and radians are mixed up: work in radians, and convert at the end"),
     "power_of_ten": (Fraction(1, 2), "the number is wrong by a power of ten: check how you converted the units"),
@@ -30,14 +30,14 @@ SLIPS: dict[str, str] = {
     "degrees": "the angle {} is used in degrees where radians are needed",
     "unconverted": "the unit of {} is not converted",
 }
-"""Kind of a quantity used wrongly -> sentence, with the letter of the quantity."""
+"""Kind of mistake in using a quantity -> sentence, with a place for the symbol of the quantity."""
 
 HALF, QUARTER, NOTHING = Fraction(1, 2), Fraction(1, 4), Fraction(0)
 
 FORMULA_FAULTS: dict[str, tuple[Fraction, str]] = {
     "sign_of_term": (HALF, "one term has the wrong sign"),
     "overall_sign": (HALF, "the whole formula has the wrong sign: check the directions"),
-    "factor": (HALF, "a factor is wrong, missing or too many"),
+    "factor": (HALF, "a factor is wrong, missing or superfluous"),
     "exponent": (HALF, "a power is wrong: look for a square that is missing"),
     "half_angle": (HALF, "an angle is used where half the angle is needed"),
     "double_half_angle": (HALF, "half an angle is used where the whole angle is needed"),
@@ -45,7 +45,7 @@ FORMULA_FAULTS: dict[str, tuple[Fraction, str]] = {
     "lost_brackets": (HALF, "brackets are missing"),
     "wrong_symbol": (HALF, "one letter is used in place of another"),
     "missing_term": (HALF, "a term is missing"),
-    "extra_term": (HALF, "there is a term too many"),
+    "extra_term": (HALF, "one term is superfluous"),
     "inertia_product_sign": (HALF, "the products of inertia have the wrong sign"),
     "active_passive_transpose": (HALF, "the rotation is applied in the wrong direction (the matrix is transposed)"),
     "frame_body_space": (HALF, "body components and space components are mixed up"),
@@ -54,9 +54,12 @@ FORMULA_FAULTS: dict[str, tuple[Fraction, str]] = {
     "exchanged": (HALF, "two letters are exchanged"),
     "letter_missing": (QUARTER, "a letter of the answer is missing"),
     "inverse": (QUARTER, "this is the reciprocal of the answer"),
-    "two_faults": (QUARTER, "two things are wrong"),
-    "requires_condition": (HALF, "this is right only in a special case"),
-    "unit": (NOTHING, "the units do not agree, so something is missing or too many"),
+    "two_faults": (QUARTER, "the formula has two errors"),
+    "requires_condition": (HALF, "this holds only in a special case"),
+    "unit": (NOTHING, "the units do not agree, so a factor or a power is missing or superfluous"),
     "none": (NOTHING, "the formula is not equal to the answer"),
 }
-"""Code of the checker's diagnosis -> credit and sentence; the codes without an entry have that of ``none``."""
+"""Code of an error, mostly the code of the checker's diagnosis -> credit and sentence.
+
+A code that is not in this table gets the credit and the sentence of ``"none"``.
+"""

@@ -55,9 +55,9 @@ def locked_gimbal(sequence: str) -> str:
     return _gimbal(sequence, 0.0 if sequence[0] == sequence[2] else 90.0, f"Gimbal rings for {sequence} at lock")
 
 
-def _fixed_axes(picture: Picture, view: View = VIEW, length: float = 1.3) -> None:
+def _fixed_axes(picture: Picture, length: float = 1.3) -> None:
     for i in range(3):
-        picture.arrow(view, (0, 0, 0), length * np.eye(3)[i], LETTERS[i], "soft")
+        picture.arrow(VIEW, (0, 0, 0), length * np.eye(3)[i], LETTERS[i], "soft")
 
 
 def _path(picture: Picture, start: Floats, axis: str, angle: float, letter: str, style: str) -> Floats:

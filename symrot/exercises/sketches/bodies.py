@@ -74,9 +74,9 @@ def box_with_rate(*others: str) -> str:
     return picture.svg("A rigid body with its principal axes and its angular velocity")
 
 
-def _wobbling(picture: Picture, half_length: float, radius: float) -> None:
-    """Draw a cylinder whose axis is inclined from the vertical angular momentum H, and goes around it."""
-    view = VIEW
+def _wobbling(half_length: float, radius: float) -> Picture:
+    """Return a picture of a cylinder whose inclined axis goes around the vertical angular momentum H."""
+    picture, view = Picture(), VIEW
     tilt = rotation((1, 0, 0), -26.0)
     axis = tilt[:, 2]
 
@@ -101,17 +101,14 @@ def _wobbling(picture: Picture, half_length: float, radius: float) -> None:
     path = rotated(reach * axis, (0, 0, 1), 360.0, 121)
     picture.curve(view, path, "soft dashed")
     picture.arc(view, path[10:34], "ϕ", "soft")
+    return picture
 
 
 def wobbling_disk() -> str:
     """Return an SVG drawing of a thin plate whose axis wobbles about the angular momentum."""
-    picture = Picture()
-    _wobbling(picture, 0.03, 0.95)
-    return picture.svg("A thin plate that spins and wobbles")
+    return _wobbling(0.03, 0.95).svg("A thin plate that spins and wobbles")
 
 
 def wobbling_pencil() -> str:
     """Return an SVG drawing of a long cylinder whose axis wobbles about the angular momentum."""
-    picture = Picture()
-    _wobbling(picture, 0.8, 0.2)
-    return picture.svg("A long cylinder that spins and wobbles")
+    return _wobbling(0.8, 0.2).svg("A long cylinder that spins and wobbles")

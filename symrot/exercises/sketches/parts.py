@@ -67,11 +67,9 @@ def rod(x: float, y: float, to_x: float, to_y: float) -> Part:
     return line(x, y, to_x, to_y, BAR)
 
 
-def shape(*points: tuple[float, float], width: str = USUAL, fill: bool = False) -> Part:
-    """Return the closed polygon through points, filled if ``fill``."""
-    if fill:
-        return lambda picture: picture.area(SHEET, points, "fill-ink solid")
-    return curve(np.array(points), width, closed=True)
+def shape(*points: tuple[float, float]) -> Part:
+    """Return the outline of the closed polygon through points."""
+    return curve(np.array(points), USUAL, closed=True)
 
 
 def arrow(x: float, y: float, to_x: float, to_y: float, width: str = USUAL) -> Part:
@@ -111,12 +109,11 @@ def turn(x: float, y: float, wide: float, high: float, first: float, last: float
     return together(arc(x, y, wide, high, first, last - back), arrow(*start, *tip))
 
 
-def circle(x: float, y: float, radius: float, fill: bool = False, width: str = USUAL) -> Part:
+def circle(x: float, y: float, radius: float, fill: bool = False) -> Part:
     """Return a circle, filled if ``fill``."""
-    points = around(x, y, radius, radius, 0, 360)[:-1]
     if fill:
-        return lambda picture: picture.area(SHEET, points, "fill-ink solid")
-    return curve(points, width, closed=True)
+        return lambda picture: picture.area(SHEET, around(x, y, radius, radius, 0, 360)[:-1], "fill-ink solid")
+    return ellipse(x, y, radius, radius)
 
 
 def dot(x: float, y: float) -> Part:

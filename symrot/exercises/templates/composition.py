@@ -54,8 +54,7 @@ def angle_of_two_rotations(random: Random) -> Problem:
     return Problem(
         "One rotation in place of two",
         rf"A body is rotated by $\phi$ about the fixed axis ${one}$, and then by $\theta$ about the fixed axis "
-        f"${two}$. One rotation "
-        r"by an angle $\alpha$ has the same effect.",
+        rf"${two}$. One rotation by an angle $\alpha$ has the same effect.",
         r"The trace of a rotation matrix is $1 + 2\cos\alpha$.",
         (FIRST, SECOND),
         (
@@ -78,8 +77,7 @@ def order_matters(random: Random) -> Problem:
     return Problem(
         "The order of two rotations",
         rf"A pointer of length 1 is along the fixed axis ${one}$. It is rotated by $\phi$ about ${one}$ and by "
-        rf"$\theta$ about ${two}$, "
-        "once in this order and once in the other.",
+        rf"$\theta$ about ${two}$, once in this order and once in the other.",
         "Rotate the pointer in both orders, and subtract the two results.",
         (FIRST, SECOND),
         (Line("The square of the length of the difference.", (difference.T * difference)[0], square, "d^2"),),
@@ -96,8 +94,7 @@ def relative_rotation(random: Random) -> Problem:
     return Problem(
         "The angle between two attitudes",
         rf"One camera is rotated by $\phi$ about the axis ${one}$, another camera by $\theta$ about the axis "
-        f"${two}$, from the same "
-        r"attitude. The rotation from one to the other has the angle $\alpha$.",
+        rf"${two}$, from the same attitude. The rotation from one to the other has the angle $\alpha$.",
         r"The relative rotation is $R_1^{\mathsf T} R_2$, and its trace is $1 + 2\cos\alpha$.",
         (FIRST, SECOND),
         (Line("The trace minus one, divided by two.", (relative.trace() - 1) / 2, cosine, r"\cos\alpha"),),

@@ -2,11 +2,12 @@
 
 from random import Random
 
-from sympy import Expr, Matrix, sqrt
+from sympy import Expr, Matrix, prod, sqrt
 
 from symrot.exact.decide import normal_form
 from symrot.exercises.problem import Asked, Line, Problem, Quantity, chain, quantity
 from symrot.kinematics.euler import dcm, rate_jacobian
+from symrot.kinematics.rotations import elementary_rotation
 from symrot.symbols import angle_rates, angles, dphi, dpsi, dtheta, omega_1, omega_2, omega_3, phi, psi, theta
 
 ANGLES = "30 45 60 120 135 150"
@@ -18,12 +19,12 @@ MEANING = (
 )
 
 
-def _quantities(*formulas: Expr) -> tuple[Quantity, ...]:
-    """Return the angles and rates that occur in ``formulas`` as given quantities of an exercise.
+def _quantities(formula: Expr) -> tuple[Quantity, ...]:
+    """Return the angles and rates that occur in a formula as given quantities of an exercise.
 
     Each has a list of numbers from which its value is drawn.
     """
-    used = Matrix(formulas).free_symbols
+    used = formula.free_symbols
     first = tuple(quantity(each, ANGLES, "deg", NAMES[each]) for each in angles if each in used)
     second = tuple(
         quantity(rate, RATES, "rad/s", f"rate of the {NAMES[angle]}")
@@ -33,12 +34,12 @@ def _quantities(*formulas: Expr) -> tuple[Quantity, ...]:
     return first + second
 
 
-def _rate(random: Random, frame: str, name: str) -> Problem:
+def _rate(random: Random, frame: str) -> Problem:
     sequence = random.choice(SEQUENCES)
     matrix = rate_jacobian(sequence, frame)
     omega = matrix * Matrix(angle_rates)
     row = random.choice([n for n in range(3) if len(omega[n].free_symbols) > 2])
-    letter = name.format("123"[row] if frame == "body" else "xyz"[row])
+    letter = rf"\omega_{'123'[row] if frame == 'body' else 'xyz'[row]}"
     columns = [matrix[row, n] * rate for n, rate in enumerate(angle_rates)]
     axes = "the body" if frame == "body" else "space"
     return Problem(
@@ -61,12 +62,12 @@ def _rate(random: Random, frame: str, name: str) -> Problem:
 
 def body_rates(random: Random) -> Problem:
     """Return a problem that asks for a body component of the angular velocity, given the Euler angle rates."""
-    return _rate(random, "body", r"\omega_{}")
+    return _rate(random, "body")
 
 
 def space_rates(random: Random) -> Problem:
     """Return a problem that asks for a space component of the angular velocity, given the Euler angle rates."""
-    return _rate(random, "space", r"\omega_{}")
+    return _rate(random, "space")
 
 
 def angle_rates_from_omega(random: Random) -> Problem:
@@ -77,15 +78,13 @@ def angle_rates_from_omega(random: Random) -> Problem:
     rate = (matrix.inv() * omega)[place]
     result = normal_form(rate)
     name = (r"\dot\phi", r"\dot\theta", r"\dot\psi")[place]
-    used = result.free_symbols
-    symbols = tuple(quantity(each, ANGLES, "deg", NAMES[each]) for each in angles if each in used)
-    rates = tuple(quantity(each, RATES, "rad/s", "component in the body") for each in omega if each in used)
+    rates = tuple(quantity(each, RATES, "rad/s", "component in the body") for each in omega if result.has(each))
     return Problem(
         f"Rates of the angles {sequence} from gyroscopes",
         MEANING.format(sequence)
         + r" Gyroscopes in the body measure the components $\omega_1$, $\omega_2$, $\omega_3$.",
         r"Solve the three equations $\omega = B \, \dot q$ for the rates.",
-        symbols + rates,
+        _quantities(result) + rates,
         (Line("Row of the inverse of the rate matrix, times the angular velocity.", rate, result, name),),
         (Asked(name, f"the rate of the {('first', 'second', 'third')[place]} angle", result, "rad/s"),),
         sketch=(sequence,),
@@ -111,19 +110,8 @@ def matrix_entry(random: Random) -> Problem:
 
 
 def _product(sequence: str) -> Matrix:
-    """Return the matrix of a sequence's three rotations as the product of their matrices, multiplied one by one.
-
-    A solution compares it with the direction cosine matrix that symrot derives.
-    """
-    factors = (dcm(axis + _other(axis) + axis, (angle, 0, 0)) for axis, angle in zip(sequence, angles, strict=True))
-    product = Matrix.eye(3)
-    for factor in factors:
-        product = product * factor
-    return product
-
-
-def _other(axis: str) -> str:
-    return "XYZ"[("XYZ".index(axis) + 1) % 3]
+    """Return the product of the matrices of a sequence's three rotations, which a solution compares with the DCM."""
+    return prod(map(elementary_rotation, sequence, angles))
 
 
 def space_direction_of_axis(random: Random) -> Problem:
@@ -155,7 +143,7 @@ def speed_of_rotation(random: Random) -> Problem:
         _quantities(square),
         (
             Line("The sum of the squares of the components.", (omega.T * omega)[0], square, r"|\omega|^2"),
-            Line("The root is taken.", sqrt(square), speed, r"|\omega|"),
+            Line("The square root is taken.", sqrt(square), speed, r"|\omega|"),
         ),
         (Asked(r"|\omega|", "the magnitude of the angular velocity", speed, "rad/s"),),
         sketch=(sequence,),

@@ -18,7 +18,7 @@ TORQUES = tuple(
     quantity(tau, "2 4 6 8 10 12", "N m", f"torque about axis {n}") for n, tau in enumerate((tau_1, tau_2, tau_3), 1)
 )
 BODY = (
-    "A rigid body has the principal moments $A$, $B$, $C$. At one moment its angular velocity in body axes is "
+    "A rigid body has the principal moments $A$, $B$, $C$. At a given time its angular velocity in body axes is "
     r"$(\omega_1, \omega_2, \omega_3)$."
 )
 
@@ -99,7 +99,7 @@ def torque_to_keep(random: Random) -> Problem:
             needed,
             torque,
             needed.factor(),
-            "A factor is put in front.",
+            "The common factor is put in front.",
         ),
         (Asked(name, f"the torque about axis {row + 1}", needed.factor(), "N m"),),
         sketch=(f"τ_{row + 1}",),
@@ -137,7 +137,7 @@ def angular_momentum(random: Random) -> Problem:
                 A**2 * omega_1**2 + B**2 * omega_2**2 + C**2 * omega_3**2,
                 "H^2",
             ),
-            Line("The root is taken.", sqrt(square), sqrt(square), "H"),
+            Line("The square root is taken.", sqrt(square), sqrt(square), "H"),
         ),
         (Asked("H", "the magnitude of the angular momentum", sqrt(square), "kg m^2/s"),),
         sketch=("H",),
@@ -151,7 +151,6 @@ def unbalanced_shaft(random: Random) -> Problem:
     torque = rotation.cross(tensor * rotation)
     row = random.choice((0, 1))
     product = (I_yz, I_xz)[row]
-    acceleration = tensor * torque.zeros(3, 1) + torque
     name = rf"\tau_{'xy'[row]}"
     return Problem(
         "An unbalanced shaft",
@@ -162,7 +161,7 @@ def unbalanced_shaft(random: Random) -> Problem:
             quantity(product, "0.01 0.02 0.04 0.05 0.1", "kg m^2", "product of inertia"),
             quantity(Omega, "300 600 900 1200 1500 3000", "rpm", "speed"),
         ),
-        (Line(r"The component of $\omega \times I\omega$.", acceleration[row], torque[row], name),),
+        (Line(r"The component of $\omega \times I\omega$.", torque[row], torque[row], name),),
         (Asked(name, f"the torque of the bearings about the ${'xy'[row]}$ axis of the rotor", torque[row], "N m"),),
     )
 

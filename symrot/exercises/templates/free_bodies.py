@@ -33,7 +33,7 @@ def body_precession(random: Random) -> Problem:
         (TRANSVERSE, AXIAL, SPIN),
         (
             Line("Euler's equation of axis 2.", rates[1], omega_1 * formula, r"\dot\omega_2"),
-            Line("Its factor is the rate of the rotation.", rates[1] / omega_1, formula, r"\lambda"),
+            Line(r"Divided by $\omega_1$, it gives the rate $\lambda$.", rates[1] / omega_1, formula, r"\lambda"),
         ),
         (
             Asked(
@@ -61,7 +61,7 @@ def space_precession(random: Random) -> Problem:
                 formula**2,
                 r"\dot\phi^2",
             ),
-            Line("The root is taken.", sqrt(square), formula, r"\dot\phi"),
+            Line("The square root is taken.", sqrt(square), formula, r"\dot\phi"),
         ),
         (Asked(r"\dot\phi", "the rate of precession about the angular momentum", formula, "rad/s"),),
         lambda values: values[A] != values[C] and values[C] < 2 * values[A],
@@ -113,7 +113,7 @@ def disk_wobble(random: Random) -> Problem:
     formula = 2 * omega_3
     return Problem(
         "Feynman's plate",
-        r"A thin uniform plate is thrown up. It spins with $\omega_3$ about its axis and wobbles slightly.",
+        r"A thin uniform disk is thrown up. It spins with $\omega_3$ about its axis and wobbles slightly.",
         r"The axis precesses at $H/A$. For a small wobble $H$ is nearly $C\omega_3$.",
         (SPIN,),
         (
@@ -162,9 +162,8 @@ def separatrix_momentum(random: Random) -> Problem:
     formula = sqrt(2 * B * T)
     return Problem(
         "The separatrix of a free body",
-        "A free body with the moments $A > B > C$ has the kinetic energy $T$. Its angular momentum $H$ is such "
-        "that it may rotate "
-        "steadily about the intermediate axis: this is the separatrix.",
+        "A free body with the moments $A > B > C$ has the kinetic energy $T$. Its angular momentum $H$ is that of a "
+        "steady rotation about the intermediate axis with the same energy: this is the separatrix.",
         "Compare the energy and the angular momentum of a rotation about the intermediate axis alone.",
         (_moments()[1], quantity(T, "2 8 10 18 40 50 90", "J", "kinetic energy")),
         (
@@ -172,7 +171,6 @@ def separatrix_momentum(random: Random) -> Problem:
             Line("With the energy $T$.", formula, formula, "H"),
         ),
         (Asked("H", "the angular momentum on the separatrix", formula, "kg m^2/s"),),
-        lambda values: values[T] > 0,
     )
 
 
@@ -183,8 +181,8 @@ def polhode_constants(random: Random) -> Problem:
     energy = (A * first + C * square) / 2
     return Problem(
         "Where a polhode crosses a plane",
-        "A free body has the moments $A > B > C$, the kinetic energy $T$ and the angular momentum $H$. At one "
-        r"moment $\omega_2 = 0$.",
+        "A free body has the moments $A > B > C$, the kinetic energy $T$ and the angular momentum $H$. At a "
+        r"given time $\omega_2 = 0$.",
         r"Two equations remain: $A\omega_1^2 + C\omega_3^2 = 2T$ and $A^2\omega_1^2 + C^2\omega_3^2 = H^2$.",
         (
             _moments()[0],
@@ -214,8 +212,7 @@ def wobble_period(random: Random) -> Problem:
     return Problem(
         "The period of a wobble",
         r"A free symmetric body has the moments $A$, $A$, $C$ with $C > A$ and spins with $\omega_3$. Its angular "
-        "velocity goes around "
-        "the axis in the body, as the pole of the Earth does.",
+        "velocity goes around the axis in the body, as the pole of the Earth does.",
         r"The rate of this motion is $\lambda = \omega_3 (C - A)/A$; the period is $2\pi$ divided by the rate.",
         (
             quantity(A, "8 9 10 12", "kg m^2", "transverse moment"),

@@ -16,7 +16,10 @@ TRAIN = (
     r"A planetary train has a sun with $Z_S$ teeth and a ring with $Z_R$ teeth. Their rates are $\omega_S$ and "
     r"$\omega_R$; the carrier has the rate $\omega_C$."
 )
-LAW = r"Relative to the carrier: $Z_S(\omega_S - \omega_C) = -Z_R(\omega_R - \omega_C)$."
+LAW = (
+    "Relative to the carrier, teeth in contact have equal speeds: "
+    r"$Z_S(\omega_S - \omega_C) = -Z_R(\omega_R - \omega_C)$."
+)
 CONTACT = r"Z_S(\omega_S - \omega_C) + Z_R(\omega_R - \omega_C)"
 
 

@@ -93,8 +93,7 @@ def reaction_wheel(random: Random) -> Problem:
     return Problem(
         "A reaction wheel",
         "A satellite at rest has the moment $A$ about an axis, without its wheel. The wheel has the moment $C$ "
-        "about the same axis. A motor "
-        r"brings the wheel to the rate $\omega_3$ relative to the satellite.",
+        r"about the same axis. A motor brings the wheel to the rate $\omega_3$ relative to the satellite.",
         "No external torque acts, so the total angular momentum stays zero.",
         (
             quantity(A, "9.5 19.5 49.5 99 199", "kg m^2", "moment of the satellite"),

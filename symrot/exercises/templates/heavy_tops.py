@@ -114,7 +114,7 @@ def slowest_spin(random: Random) -> Problem:
                 0,
                 r"C^2\omega_3^2 - 4 A m g h\cos\theta",
             ),
-            Line("This is the rate.", formula, formula, r"\omega_3"),
+            Line("The equation is solved for the rate about the axis.", formula, formula, r"\omega_3"),
         ),
         (Asked(r"\omega_3", "the least rate about the axis", formula, "rad/s"),),
         _is_possible,
@@ -137,7 +137,7 @@ def sleeping_top(random: Random) -> Problem:
                 0,
                 r"C^2\omega_3^2 - 4 A m g h",
             ),
-            Line("This is the rate.", formula, formula, r"\omega_3"),
+            Line("The equation is solved for the rate about the axis.", formula, formula, r"\omega_3"),
         ),
         (Asked(r"\omega_3", "the least rate about the axis at which the top sleeps", formula, "rad/s"),),
         _is_possible,
@@ -170,8 +170,7 @@ def energy_of_top(random: Random) -> Problem:
         "The energy of a top",
         ABOUT
         + r" It precesses steadily at $\dot\phi$ at the angle $\theta$ to the vertical and rotates with $\omega_3$ "
-        "about its axis. "
-        "Heights count from the fixed point.",
+        "about its axis. Heights are measured from the fixed point.",
         "Add the kinetic energy of the three components of the angular velocity and the potential energy.",
         _quantities(formula),
         (Line("Kinetic and potential energy.", energy, formula, "E"),),

@@ -43,7 +43,7 @@ def struck_rod(random: Random) -> Problem:
         (MASS, LENGTH, BLOW, PLACE),
         (
             Line("The angular momentum about the centre afterwards.", ROD * rate, J * d, r"\tfrac{1}{12} m L^2 \omega"),
-            Line("It is solved for the rate.", rate, formula, r"\omega"),
+            Line("The equation is solved for the rate.", rate, formula, r"\omega"),
         ),
         (Asked(r"\omega", "the rate of rotation after the blow", formula, "rad/s"),),
         _fits,
@@ -54,9 +54,9 @@ def struck_place(random: Random) -> Problem:
     """Return a problem that asks for the speed of the point of a rod that is struck."""
     speed, formula = J / m + _rate() * d, J * (L**2 + 12 * d**2) / (m * L**2)
     return Problem(
-        "The place that is struck",
+        "The point that is struck",
         STRUCK,
-        LAW + " The speed of the place is that of the centre plus that of the rotation.",
+        LAW + " The speed of the struck point is that of the centre plus that of the rotation about the centre.",
         (MASS, LENGTH, BLOW, PLACE),
         (
             Line(
@@ -66,7 +66,7 @@ def struck_place(random: Random) -> Problem:
                 "u",
             ),
         ),
-        (Asked("u", "the speed of the place that was struck", formula, "m/s"),),
+        (Asked("u", "the speed of the point that was struck", formula, "m/s"),),
         _fits,
     )
 
@@ -78,7 +78,7 @@ def energy_of_blow(random: Random) -> Problem:
     return Problem(
         "The energy of a blow",
         STRUCK,
-        LAW + " The energy has two parts, of the centre and of the rotation.",
+        LAW + " The kinetic energy is that of the centre of mass plus that of the rotation.",
         (MASS, LENGTH, BLOW, PLACE),
         (Line("The energy of the motion of the centre plus the energy of the rotation.", energy, formula, "T"),),
         (Asked("T", "the kinetic energy after the blow", formula, "J"),),
@@ -120,8 +120,7 @@ def bullet_and_rod(random: Random) -> Problem:
     return Problem(
         "A bullet and a hanging rod",
         "A thin uniform rod of mass $m_1$ and length $L$ hangs at rest from its upper end. A bullet of mass $m_2$ "
-        "with the speed $v$ hits "
-        "its lower end at right angles and stays in it.",
+        "with the speed $v$ hits its lower end at right angles and stays in it.",
         "The angular momentum about the upper end does not change during the impact.",
         (
             quantity(m_1, "1 2 3 4 5", "kg", "mass of the rod"),
@@ -136,7 +135,7 @@ def bullet_and_rod(random: Random) -> Problem:
                 m_2 * v * L,
                 r"\left(\tfrac13 m_1 L^2 + m_2 L^2\right) \omega",
             ),
-            Line("It is solved for the rate.", rate, formula, r"\omega"),
+            Line("The equation is solved for the rate.", rate, formula, r"\omega"),
         ),
         (Asked(r"\omega", "the rate of rotation just after the impact", formula, "rad/s"),),
     )

@@ -20,10 +20,11 @@ RADIUS = quantity(R, RADII, "mm", "radius")
 
 
 def _about(body: Solid, point: tuple[Expr, ...], axis: int, distance: Expr) -> tuple[Expr, tuple[Line, ...]]:
-    """Return a body's moment of inertia about the axis in direction 0, 1 or 2 through a point, and its
-    solution lines.
+    """Return a body's moment of inertia about an axis, and the lines of a solution that prove it.
+
+    The axis has the direction ``axis`` (0, 1 or 2) and passes through ``point``; ``distance`` is its distance from the
+    centre of mass.
     """
-    # distance: from the centre of mass to the axis
     moment = body.inertia_about(point)[axis, axis]
     law = "The parallel axis theorem, from the centre of mass to the axis."
     return moment, chain("I_O", law, moment, written_sum(body.inertia[axis, axis], m * distance**2), moment, ADD)
@@ -47,7 +48,7 @@ def rod_about_point(random: Random) -> Problem:
     distance = L / random.choice((3, 4, 6))
     moment, lines = _about(solid("rod"), (0, 0, distance), 0, distance)
     return Problem(
-        "A rod on an axle beside its centre",
+        "A rod on an axle away from its centre",
         f"A thin uniform rod of mass $m$ and length $L$ rotates about a perpendicular axle at $L/{L / distance}$ from "
         "its centre.",
         PARALLEL,
@@ -68,6 +69,7 @@ def _second_moments(body: Solid) -> tuple[Expr, Expr]:
 
 
 def _by_integration(body: Solid) -> tuple[Expr, tuple[Line, ...]]:
+    """Return a body's moment of inertia about z, and the lines of a solution that add two integrals to it."""
     moment = body.inertia[2, 2]
     law = "The integrals of $x^2$ and of $y^2$ over the mass are added."
     return moment, chain("I_{zz}", law, moment, written_sum(*_second_moments(body)), moment, ADD)
@@ -169,8 +171,7 @@ def rod_with_ball(random: Random) -> Problem:
     return Problem(
         "A pendulum with a ball",
         "A thin uniform rod of mass $m_1$ and length $L$ hangs from its upper end. A uniform ball of mass $m_2$ "
-        "and radius $R$ is "
-        "fixed to its lower end, so that the ball's centre is at $L + R$ from the upper end.",
+        "and radius $R$ is fixed to its lower end, so that the ball's centre is at $L + R$ from the upper end.",
         "Add the moments of the parts about the same axis, each by the parallel axis theorem.",
         (
             quantity(m_1, MASSES, "kg", "mass of the rod"),
@@ -215,8 +216,7 @@ def product_of_triangle(random: Random) -> Problem:
     return Problem(
         "The product of inertia of a set square",
         "A thin uniform plate of mass $m$ is a right triangle with the legs $b$ along $x$ and $h$ along $y$. The "
-        "origin is at the "
-        "right angle. Here $I_{xy} = -\\int x y \\, dm$.",
+        "origin is at the right angle. The product of inertia is $I_{xy} = -\\int x y \\, dm$.",
         "Use the parallel axis theorem for products, $I_{xy} = I_{C,xy} - m x_C y_C$.",
         (MASS, quantity(b, LENGTHS, "m", "leg"), quantity(h, LENGTHS, "m", "leg")),
         chain(
@@ -237,9 +237,8 @@ def product_of_two_masses(random: Random) -> Problem:
     product = bodies.inertia_about((0, 0, 0))[0, 1]
     return Problem(
         "Two masses on a plate",
-        "A small mass $m_1$ is at the point $(a, b)$ and a small mass $m_2$ at $(-b, c)$ of the $x$-$y$ plane, "
-        "about the origin. "
-        "Here $I_{xy} = -\\sum m x y$.",
+        "A small mass $m_1$ is at the point $(a, b)$ and a small mass $m_2$ at $(-b, c)$ of the $x$-$y$ plane. "
+        "The product of inertia about the origin is $I_{xy} = -\\sum m x y$.",
         "Add $-m x y$ for both masses, with the signs of the coordinates.",
         (
             quantity(m_1, MASSES, "kg", "first mass"),
@@ -252,7 +251,7 @@ def product_of_two_masses(random: Random) -> Problem:
             product,
             written_sum(-m_1 * a * b, m_2 * b * c),
             product,
-            "A factor is put in front.",
+            "The common factor is put in front.",
         ),
         (Asked("I_{xy}", "the product of inertia about the origin", product, "kg m^2"),),
         lambda values: values[m_1] * values[a] != values[m_2] * values[c],
@@ -299,7 +298,7 @@ def radius_of_gyration(random: Random) -> Problem:
         (LENGTH,),
         (
             Line("The moment about the end, divided by the mass.", moment / m, L**2 / 3, "k^2"),
-            Line("The root is taken.", radius, L / sqrt(3), "k"),
+            Line("The square root is taken.", radius, L / sqrt(3), "k"),
         ),
         (Asked("k", "the radius of gyration", L / sqrt(3), "m"),),
     )

@@ -30,7 +30,8 @@ def period_of_rod(random: Random) -> Problem:
     return Problem(
         "The period of a rod",
         HANGS,
-        r"For small swings $I_O\ddot\theta = -m g d\,\theta$, so that the period is $2\pi\sqrt{I_O/(m g d)}$.",
+        r"For small swings $I_O\ddot\theta = -m g d\,\theta$, so that the period is $2\pi\sqrt{I_O/(m g d)}$; "
+        "$d$ is the distance of the centre of mass from the axis.",
         (LENGTH, GRAVITY),
         (
             Line(
@@ -53,7 +54,8 @@ def period_of_disk(random: Random) -> Problem:
     return Problem(
         f"The period of a {name}",
         f"A thin uniform {name} of mass $m$ and radius $R$ hangs from a nail at its rim and swings in its own plane.",
-        r"For small swings $I_O\ddot\theta = -m g d\,\theta$, so that the period is $2\pi\sqrt{I_O/(m g d)}$.",
+        r"For small swings $I_O\ddot\theta = -m g d\,\theta$, so that the period is $2\pi\sqrt{I_O/(m g d)}$; "
+        "$d$ is the distance of the centre of mass from the axis.",
         (RADIUS, GRAVITY),
         (
             Line(
@@ -71,8 +73,8 @@ def falling_rod(random: Random) -> Problem:
     formula = sqrt(3 * g / L)
     return Problem(
         "A rod that falls",
-        HANGS + " It is released from rest where it is level.",
-        "Energy is conserved: the centre falls by $L/2$.",
+        HANGS + " It is released from rest when it is horizontal.",
+        "Energy is conserved: the centre of mass falls by $L/2$.",
         (LENGTH, GRAVITY),
         (
             Line(
@@ -93,7 +95,7 @@ def start_of_fall(random: Random) -> Problem:
     formula = Rational(3, 2) * g / L
     return Problem(
         "The start of a fall",
-        HANGS + " It is released from rest where it is level.",
+        HANGS + " It is released from rest when it is horizontal.",
         r"The torque of gravity about the upper end is $m g L/2 = I_O\ddot\theta$.",
         (LENGTH, GRAVITY),
         (

@@ -17,7 +17,7 @@ UNITS = sorted(
     {tuple(map(mul, sizes, signs)) for sizes in {(5, 5, 5, 5), *permutations((1, 5, 5, 7))}
      for signs in products((-1, 1), repeat=4)}
 )  # fmt: skip
-"""Unit quaternions, in tenths."""
+"""The components, in tenths, of the unit quaternions whose components are all 0.5 or all among 0.1, 0.5, 0.5, 0.7."""
 
 PARTS = ("scalar part", "component 1", "component 2", "component 3")
 PRODUCT = (
@@ -71,7 +71,7 @@ def norm_of_product(random: Random) -> Problem:
         _numbers(second_quaternion, "0 1 2 3 4") + _numbers(quaternion, "0 1 2 3 4"),
         (
             Line("The square of the norm of the product.", square, formula**2, "|pq|^2"),
-            Line("The root is taken.", sqrt(formula**2), formula, "|pq|"),
+            Line("The square root is taken.", sqrt(formula**2), formula, "|pq|"),
         ),
         (Asked("|pq|", "the norm of the product", formula, ""),),
         lambda values: all(any(values[each] != 0 for each in group) for group in (second_quaternion, quaternion)),
@@ -104,8 +104,7 @@ def rotated_vector(random: Random) -> Problem:
     return Problem(
         "A vector that is rotated by a quaternion",
         f"The unit vector along body axis {column + 1} is rotated by the quaternion $(q_0, q_1, q_2, q_3)$ as $v = "
-        "q e \\bar q$. "
-        "The quaternion need not be a unit.",
+        "q e \\bar q$. The norm of the quaternion need not be 1.",
         r"Multiply $q$, the vector as a quaternion without scalar part, and the conjugate of $q$.",
         _numbers(tuple(symbol for symbol in quaternion if entry.has(symbol))),
         (Line("The component of the triple product.", rotated, entry, name),),
@@ -124,8 +123,7 @@ def rate_of_component(random: Random) -> Problem:
     return Problem(
         "The rate of a quaternion",
         "The attitude of a body is the unit quaternion $(q_0, q_1, q_2, q_3)$, body to space. Its angular "
-        "velocity in the body is "
-        r"$(\omega_1, \omega_2, \omega_3)$.",
+        r"velocity in the body is $(\omega_1, \omega_2, \omega_3)$.",
         r"The rate is $\dot q = \tfrac12 q \, \omega$, with the angular velocity as a quaternion without scalar part.",
         (
             *(quantity(q, "-0.5 0.5", "", "component") for q in quaternion if q in used),
@@ -136,8 +134,8 @@ def rate_of_component(random: Random) -> Problem:
             ),
         ),
         (
-            Line(r"A component of half of the product.", rate, product_of, rf"\dot q_{place}"),
-            Line("Multiplied out.", rate, formula, rf"\dot q_{place}"),
+            Line(r"A component of half the product $q \, \omega$.", rate, product_of, rf"\dot q_{place}"),
+            Line("The product is multiplied out.", rate, formula, rf"\dot q_{place}"),
         ),
         (Asked(rf"\dot q_{place}", f"the rate of the {PARTS[place]}", formula, "1/s"),),
     )

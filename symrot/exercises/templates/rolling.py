@@ -88,7 +88,7 @@ def speed_at_bottom(random: Random) -> Problem:
         f"How fast a {name} arrives",
         f"A uniform {name} of mass $m$ and radius $R$ starts at rest and rolls without slipping down through the "
         "height $h$.",
-        "Energy is conserved: the potential energy becomes that of the centre and of the rotation.",
+        "Energy is conserved: the potential energy becomes kinetic energy of the centre and of the rotation.",
         (GRAVITY, HEIGHT),
         (
             Line(
@@ -111,11 +111,11 @@ def share_of_rotation(random: Random) -> Problem:
     return Problem(
         f"The energy of a rolling {name}",
         f"A uniform {name} of mass $m$ and radius $R$ rolls without slipping with the speed $v$.",
-        r"The energies are $\tfrac12 m v^2$ and $\tfrac12 I v^2/R^2$.",
+        r"The kinetic energy of the centre is $\tfrac12 m v^2$, that of the rotation $\tfrac12 I v^2/R^2$.",
         (),
         (
             Line(
-                "The energy of the rotation, divided by the whole energy.",
+                "The energy of the rotation divided by the total kinetic energy.",
                 rotation / (rotation + m * v_x**2 / 2),
                 share,
                 "s",
@@ -136,7 +136,7 @@ def cue_height(random: Random) -> Problem:
         "table. The ball rolls without slipping at once, without friction.",
         r"The blow gives $m v = J$ and $I\omega = J (h - R)$; rolling needs $v = R\omega$.",
         (quantity(R, "26 28 30", "mm", "radius"),),
-        (Line("The height above the centre is the moment over mass times radius.", height, formula, "h"),),
+        (Line("The radius plus the moment of inertia divided by mass and radius.", height, formula, "h"),),
         (Asked("h", "the height of the blow above the table", formula, "mm"),),
     )
 

@@ -20,8 +20,7 @@ def determinant(random: Random) -> Problem:
     return Problem(
         f"The determinant of the rate matrix of {sequence}",
         rf"Intrinsic Euler angles $\phi$, $\theta$, $\psi$ of the sequence {sequence} give the angular velocity in "
-        "the body "
-        r"$\omega = B(\phi, \theta, \psi) \, \dot q$.",
+        r"the body $\omega = B(\phi, \theta, \psi) \, \dot q$.",
         "Write the rate matrix, whose columns are the three axes of rotation in the body, and take its determinant.",
         (quantity(theta, "30 45 60 120 135 150", "deg", "second angle"),),
         (Line("The determinant depends on the second angle alone.", Matrix(matrix).det(), value, r"\det B"),),
@@ -39,9 +38,9 @@ def growth_near_lock(random: Random) -> Problem:
     near = "2 3 4 5" if at == 0 else "85 86 87 88"
     return Problem(
         f"Near the gimbal lock of {sequence}",
-        rf"A body with the angles {sequence} is near gimbal lock, with $\psi = 0$. It rotates with the component "
-        rf"$\{used!s}$ in the body.",
-        r"Solve $\omega = B \, \dot q$ for the first rate. A small divisor makes it large.",
+        rf"The attitude of a body, given by Euler angles {sequence}, is near gimbal lock, with $\psi = 0$. One body "
+        rf"component of its angular velocity is $\{used!s}$.",
+        r"Solve $\omega = B \, \dot q$ for the rate of the first angle. A small divisor makes it large.",
         (quantity(theta, near, "deg", "second angle"), quantity(used, "1 2 3 5", "rad/s", "component in the body")),
         (
             Line(
@@ -62,7 +61,7 @@ def only_sum_of_angles(random: Random) -> Problem:
     entry = cos(phi + psi)
     return Problem(
         "The attitude in gimbal lock",
-        r"The angles ZXZ of a body are $\phi$, $\theta = 0$, $\psi$, so that the first and the third axis coincide.",
+        r"The Euler angles ZXZ of a body are $\phi$, $\theta = 0$, $\psi$, so that the first and third axes coincide.",
         "Two rotations about the same axis add.",
         (quantity(phi, "10 20 30 40 50", "deg", "first angle"), quantity(psi, "10 20 30 40 70", "deg", "third angle")),
         (
@@ -83,7 +82,7 @@ def angle_of_lock(random: Random) -> Problem:
     """Return a problem that asks for the smallest second angle, zero or more, at which a sequence is in gimbal lock."""
     sequence = random.choice(SEQUENCES)
     determinant_of = normal_form(rate_jacobian(sequence).determinant)
-    lock = min((root for root in solve(determinant_of, theta) if root >= 0), key=lambda root: root)
+    lock = min(root for root in solve(determinant_of, theta) if root >= 0)
     return Problem(
         f"Where {sequence} locks",
         rf"Intrinsic Euler angles of the sequence {sequence} are used, with the second angle $\theta$ from "

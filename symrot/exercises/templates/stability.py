@@ -47,13 +47,12 @@ def growth_rate(random: Random) -> Problem:
     return Problem(
         "The intermediate axis",
         r"A free body with the moments $A > B > C$ rotates at $\Omega$ about its intermediate axis. A small "
-        "disturbance grows as "
-        r"$e^{\lambda t}$.",
+        r"disturbance grows as $e^{\lambda t}$.",
         LAW,
         (*MOMENTS, RATE),
         (
-            Line(r"The square of the matrix of the linear equations.", square, written, r"\lambda^2"),
-            Line("The root is taken.", sqrt(written), formula, r"\lambda"),
+            Line("An entry of the square of the matrix of the linear equations.", square, written, r"\lambda^2"),
+            Line("The square root is taken.", sqrt(written), formula, r"\lambda"),
         ),
         (Asked(r"\lambda", "the rate of growth", formula, "1/s"),),
         _ordered,
@@ -74,10 +73,8 @@ def _swing(axis: int, which: str) -> Problem:
         LAW,
         (*MOMENTS, RATE),
         (
-            Line(
-                "The square of the matrix of the linear equations, with the opposite sign.", square, written, r"\nu^2"
-            ),
-            Line("The root is taken.", sqrt(written), formula, r"\nu"),
+            Line("An entry of the square of the matrix of the linear equations, negated.", square, written, r"\nu^2"),
+            Line("The square root is taken.", sqrt(written), formula, r"\nu"),
         ),
         (Asked(r"\nu", "the rate of the oscillation in the body", formula, "rad/s"),),
         _ordered,
@@ -103,8 +100,7 @@ def thrown_book(random: Random) -> Problem:
     return Problem(
         "A thrown book",
         r"A uniform book has the sides $a > b > c$. It is thrown with the rate $\Omega$ about the axis parallel to "
-        "the side $b$, the "
-        r"intermediate axis. A small disturbance grows as $e^{\lambda t}$.",
+        r"the side $b$, the intermediate axis. A small disturbance grows as $e^{\lambda t}$.",
         LAW + " The moments are those of a box.",
         (
             quantity(a, "200 240 300", "mm", "longest side"),
@@ -114,7 +110,7 @@ def thrown_book(random: Random) -> Problem:
         ),
         (
             Line("The square of the rate with the moments of a box; the mass cancels.", square, written, r"\lambda^2"),
-            Line("The root is taken.", sqrt(written), sqrt(written), r"\lambda"),
+            Line("The square root is taken.", sqrt(written), sqrt(written), r"\lambda"),
         ),
         (Asked(r"\lambda", "the rate of growth", sqrt(written), "1/s"),),
     )

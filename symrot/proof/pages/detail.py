@@ -90,7 +90,7 @@ def _on_one_screen(passages: list[Passage]) -> list[Passage]:
         if lines > LINES - (2 if passage is not passages[-1] else 0):  # 2 for the sentence on what is left out
             break
         screen.append(passage)
-    # a last paragraph says how many expressions are left out
+    # a last paragraph says that expressions are left out
     if len(screen) < len(passages):
         screen.append(Passage(f"{'The rest' if screen else 'The calculation'} {LEFT_OUT}"))
     return screen

@@ -275,8 +275,8 @@ def _side(motion: Motion, end: float) -> _Side:
 
     rates = anywhere(np.linspace(start, end, SAMPLES_OF_RATE))[:, : blocks[0][1]]
     longest = min(TURN_PER_PIECE / max(float(np.abs(rates).max()), 1e-300), abs(end - start))
-    pieces = fitted_pieces(anywhere, start, end, longest, *blocks)
-    return _Side(pieces, anywhere, broken, lambda: Stats(0, 0, 0, 0.0))
+    followed = fitted_pieces(anywhere, start, end, longest, *blocks)
+    return _Side(followed, anywhere, broken, lambda: Stats(0, 0, 0, 0.0))
 
 
 def _without_residues(pieces: Sequence[Piece], blocks: Sequence[int]) -> Generator[Piece, None, None]:

@@ -1,10 +1,10 @@
 """The entries of the errata: each describes one error of a document, with its formulas, its reason and its proof."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from symrot.checker.claim.reader import read_expression, read_relation
-from symrot.checker.claim.tree import Node, number, sum_of
+from symrot.checker.claim.tree import number, sum_of
 from symrot.checker.textbook import Finding, findings
 from symrot.checker.typed.readings import Relation
 from symrot.report.errata.typesetting import filled, latex, marked
@@ -108,10 +108,9 @@ def _correction(item: Finding, formula: PrintedFormula) -> Correction:
     # parts and their corrections.
     where = item.claim["where"]
     if not item.parts:
-        digits = {"printed": item.claim["printed_value"]}
-        right = f"\\boxed{{{item.right}}}" if item.right else ""
-        return Correction(where, _with_text(formula.template, digits),
-                          _with_text(formula.corrected, {"printed": right}) if right else "")  # fmt: skip
+        digits = item.claim["printed_value"]
+        corrected_text = formula.corrected.replace("@printed@", f"\\boxed{{{item.right}}}") if item.right else ""
+        return Correction(where, formula.template.replace("@printed@", digits), corrected_text)
     printed, corrected = dict(item.parts), dict(item.parts)
     for place, tree in item.corrected.items():
         printed[place], corrected[place] = marked(item.parts[place], tree)
@@ -121,12 +120,6 @@ def _correction(item: Finding, formula: PrintedFormula) -> Correction:
         filled(formula.template, printed, formula.letters, functions),
         filled(formula.corrected, corrected, formula.letters, functions) if item.corrected else "",
     )
-
-
-def _with_text(template: str, texts: Mapping[str, str]) -> str:
-    for name, text in texts.items():
-        template = template.replace(f"@{name}@", text)
-    return template
 
 
 ORIGINS = {
@@ -164,7 +157,7 @@ def _example(item: Finding, letters: Mapping[str, str]) -> str:
         return ""
     functions = item.claim.get("functions", [])
     at = [
-        f"${_typeset(read_expression(name), letters, functions)} = {_typeset(read_expression(value))}$"
+        f"${latex(read_expression(name), letters, functions)} = {latex(read_expression(value))}$"
         for name, value in witness.values.items()
         if value != "0"
     ]
@@ -195,10 +188,10 @@ def condition_words(condition: str) -> str:
     """
     sign, left, right = _without_negative_terms(read_relation(condition))
     signs = {"!=": "\\neq", ">=": "\\ge", "<=": "\\le", "==": "="}
-    formula = f"${_typeset(left)} {signs.get(sign, sign)} {_typeset(right)}$"
+    formula = f"${latex(left)} {signs.get(sign, sign)} {latex(right)}$"
     words = WORDS.get((str(left.value), sign)) if left.kind == "call" and right == number(0) else None
     if words:
-        return f"{formula}: {words.format(f'${_typeset(left.args[0])}$')}"
+        return f"{formula}: {words.format(f'${latex(left.args[0])}$')}"
     return formula
 
 
@@ -210,7 +203,3 @@ def _without_negative_terms(relation: Relation) -> Relation:
     if not negative or not positive or right != number(0):
         return relation
     return sign, sum_of(positive), sum_of(negative)
-
-
-def _typeset(node: Node, letters: Mapping[str, str] = {}, functions: Collection[str] = ()) -> str:
-    return latex(node, letters, functions)

@@ -27,6 +27,8 @@ __all__ = ["MemoryStore"]
 class MemoryStore:
     """A store that holds all arrays in memory."""
 
+    only_statistics = ""  # a sweep in memory is never continued
+
     def __init__(self, header: Header) -> None:
         self.header, self.tables = header, list[Table]()
         sizes = {TIME: len(header.times), COMPONENT[0]: len(COMPONENT[1])}
@@ -36,11 +38,6 @@ class MemoryStore:
         }
         self._arrays[STATUS] = np.full(header.count, NOT_COMPUTED, dtype=np.int8)
         self._arrays[MESSAGE] = np.full(header.count, "", dtype=object)
-
-    @property
-    def only_statistics(self) -> str:
-        """Always an empty text: a sweep in memory is never continued."""
-        return ""
 
     def pending(self) -> list[tuple[int, int]]:
         """Return the pairs (start, stop) of trajectories, one per chunk, whose results are not stored yet."""
@@ -67,10 +64,9 @@ class MemoryStore:
     def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        Remove the values of inputs and outputs if ``only_statistics`` is not empty.
+        Remove the values of inputs and outputs if ``only_statistics``, a description of the statistics, is not empty.
         """
         self.tables = tables
-        # its text, a description of the statistics for files, is not needed here
         if only_statistics:
             for variable in self.header.variables:
                 self._arrays.pop(variable.name, None)

@@ -22,7 +22,7 @@ from symrot.sweeps.layout import (
     Header,
     Table,
     arrays_of,
-    difference,
+    continued,
     frame_labels,
     messages_of,
 )
@@ -43,26 +43,14 @@ class ParquetStore:
         If pyarrow is not installed, or if the path contains something else than results of the same sweep.
     """
 
-    def __init__(self, path: Path, header: Header) -> None:
-        from dataclasses import replace
+    only_statistics = ""  # values cannot be removed from these files
 
+    def __init__(self, path: Path, header: Header) -> None:
         self._parquet, self._arrow = optional("pyarrow.parquet", "-o"), optional("pyarrow", "-o")
         self.path = path
         description = path / DESCRIPTION
         if path.exists() and not (path.is_dir() and not any(path.iterdir())):
-            expectation = f"{path}: expected a new name or the results of this sweep"
-            try:
-                other = json.loads(description.read_text(encoding="utf-8"))
-                identity, rows = other["identity"], int(other["rows"])
-            except (OSError, LookupError, ValueError, TypeError):
-                raise InputError(
-                    f"{expectation}, got a file or folder with other content; choose another name"
-                ) from None
-            if different := difference(header.identity, identity):
-                raise InputError(
-                    f"{expectation}, got the results of a sweep with a different {different}; choose another name"
-                )
-            header = replace(header, rows=rows)
+            header = continued(header, path, lambda: json.loads(description.read_text(encoding="utf-8")))
         else:
             path.mkdir(exist_ok=True)
             text = json.dumps({"identity": dict(header.identity), "rows": header.rows}, indent=2)
@@ -72,11 +60,6 @@ class ParquetStore:
 
     def _file(self, start: int) -> Path:
         return self.path / f"part-{start:012d}.parquet"
-
-    @property
-    def only_statistics(self) -> str:
-        """Always an empty text: this store has the values of the outputs, not only statistics."""
-        return ""
 
     def pending(self) -> list[tuple[int, int]]:
         """Return the pairs (start, stop) of trajectories, one per chunk, whose file does not exist yet."""
@@ -106,7 +89,7 @@ class ParquetStore:
         write(self._file(chunk.start), lambda stream: writer(table, stream, compression="zstd"))
 
     def _metadata(self) -> dict[str, str]:
-        """Return unit, meaning and frame of all columns as JSON text for a file; pandas shows them as ``attrs``."""
+        """Return the metadata of a file: units, meanings and frames of all columns, which pandas shows as ``attrs``."""
         return {"PANDAS_ATTRS": json.dumps(frame_labels(self.header))}
 
     def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
@@ -141,7 +124,7 @@ class ParquetStore:
     def finish(self, tables: list[Table], only_statistics: str) -> None:
         """Store the statistics ``tables`` at the end of a sweep.
 
-        Raise InputError if only statistics should stay: values cannot be removed from these files.
+        Raise InputError if ``only_statistics`` is not empty, since values cannot be removed from these files.
         """
         if tables:
             rows = self._arrow.Table.from_pylist([row for table in tables for row in _rows(table, self.header.times)])

@@ -1,8 +1,7 @@
 """Writing of chunks by workers on the machine of the client, which then need not send them.
 
-While a client runs, it holds a lock on a file beside the results. A worker writes only if it is on the same machine,
-this file has the mark of its own client, and the lock is held. Otherwise the client is remote, dead, or another one,
-and the worker returns its chunk.
+While a client runs, it holds a file in memory that contains a mark of this client. A worker writes only if it finds the
+mark in the memory of the running client. Otherwise the client is remote or has ended, and the worker returns its chunk.
 """
 
 import os
@@ -17,11 +16,6 @@ from uuid import uuid4
 from symrot.sweeps.chunk import Chunk
 from symrot.sweeps.layout import Store
 
-try:
-    import fcntl
-except ImportError:  # Windows has no such locks
-    fcntl = None  # type: ignore[assignment]
-
 __all__ = ["Offer", "Written", "offered", "stored"]
 
 BOOT = Path("/proc/sys/kernel/random/boot_id")  # of Linux: differs between machines
@@ -35,16 +29,16 @@ class Written(NamedTuple):
 
 
 class Offer(NamedTuple):
-    """What a worker needs to write: the file with the lock, the client's mark in it, and a store to be opened."""
+    """What a worker needs to write: the path of the client's file in memory, its mark, and the store."""
 
-    lock: str
+    file: str
     mark: str
-    # class, path and header
+    # class, path and header of the store, pickled
     store: bytes
 
 
 def _machine() -> str:
-    """Return a text that is the same for all processes on a running machine; empty if there is none."""
+    """Return a text that is the same for all processes on a running Linux machine; empty on other systems."""
     try:
         return BOOT.read_text(encoding="ascii").strip()
     except OSError:
@@ -53,35 +47,20 @@ def _machine() -> str:
 
 @contextmanager
 def offered(store: Store) -> Iterator[Offer | None]:
-    """Provide the offer to workers to write into a store; None if they cannot.
+    """Provide the offer to workers to write into a store; None if they cannot, because it is in memory or not on Linux.
 
     Use: ``with offered(store) as offer: ..``. The offer ends with the block, or with the process.
     """
-    path = getattr(store, "path", None)
-    machine = _machine()
-    if path is None or fcntl is None or not machine:
+    path, machine = getattr(store, "path", None), _machine()
+    if path is None or not machine or not hasattr(os, "memfd_create"):
         yield None
         return
-    path = path.resolve()
-    lock, mark = path.with_name(f".{path.name}.lock"), f"{machine} {uuid4().hex}"
-    try:
-        stream = os.open(lock, os.O_RDWR | os.O_CREAT, 0o600)
-    except OSError:  # a folder in which nobody may write new files
-        yield None
-        return
-    try:
-        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:  # another client runs the same sweep
-        os.close(stream)
-        yield None
-        return
-    try:
-        os.ftruncate(stream, 0)
-        os.write(stream, mark.encode())
-        yield Offer(str(lock), mark, pickle.dumps((type(store), path, store.header)))
-    finally:
-        lock.unlink(missing_ok=True)
-        os.close(stream)
+    mark = f"{machine} {uuid4().hex}"
+    # no file on a disk, which would stay there if the client were killed
+    with os.fdopen(os.memfd_create("symrot"), "wb", buffering=0) as stream:
+        stream.write(mark.encode())
+        file = f"/proc/{os.getpid()}/fd/{stream.fileno()}"
+        yield Offer(file, mark, pickle.dumps((type(store), path.resolve(), store.header)))
 
 
 @lru_cache(maxsize=1)
@@ -91,21 +70,12 @@ def _opened(store: bytes, mark: str) -> Any:
     return kind(path, header) if path.is_dir() else None
 
 
-def _stands(offer: Offer) -> bool:
-    """Return whether the client that made an offer runs on this machine."""
-    if fcntl is None or not offer.mark.startswith(f"{_machine()} "):
-        return False
+def _is_valid(offer: Offer) -> bool:
+    """Return whether the client that made an offer still runs, on this machine."""
     try:
-        with Path(offer.lock).open("rb") as stream:
-            if stream.read() != offer.mark.encode():
-                return False
-            try:
-                fcntl.flock(stream, fcntl.LOCK_SH | fcntl.LOCK_NB)
-            except BlockingIOError:
-                return True
+        return offer.mark.startswith(f"{_machine()} ") and Path(offer.file).read_bytes() == offer.mark.encode()
     except OSError:
-        pass
-    return False
+        return False
 
 
 def stored(chunk: Chunk, offer: Offer) -> Chunk | Written:
@@ -114,7 +84,7 @@ def stored(chunk: Chunk, offer: Offer) -> Chunk | Written:
     The client then writes the chunk, or says why it cannot.
     """
     try:
-        store = _opened(offer.store, offer.mark) if _stands(offer) else None
+        store = _opened(offer.store, offer.mark) if _is_valid(offer) else None
         if store is None or not store.path.is_dir():
             return chunk
         store.write(chunk)

@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.errors import InputError
 from symrot.sweeps.chunk import Chunk
 from symrot.sweeps.layout import (
     COMPONENT,
@@ -26,7 +25,7 @@ from symrot.sweeps.layout import (
     Header,
     Table,
     arrays_of,
-    difference,
+    continued,
     messages_of,
 )
 from symrot.sweeps.optional import optional
@@ -49,31 +48,12 @@ class ZarrStore:
         zarr = optional("zarr", "-o")
         self.path = path
         if path.exists():
-            header = self._continued(zarr, header)
+            header = continued(header, path, lambda: _description(zarr, path))
         else:
             self._create(zarr, header)
         self.header = header
         self._group = zarr.open_group(str(path), mode="r+")
         self._open: dict[str, Any] = {}
-
-    def _continued(self, zarr: Any, header: Header) -> Header:
-        """Return the header for continuing the sweep in an existing folder, with the chunk size stored there.
-
-        Raise InputError for any other folder.
-        """
-        from dataclasses import replace
-
-        expectation = f"{self.path}: expected a new name or the results of this sweep"
-        try:
-            attributes = dict(zarr.open_group(str(self.path), mode="r").attrs)
-            identity, rows = json.loads(attributes[IDENTITY]), int(attributes[ROWS])
-        except (OSError, LookupError, ValueError, TypeError):
-            raise InputError(f"{expectation}, got a file or folder with other content; choose another name") from None
-        if different := difference(header.identity, identity):
-            raise InputError(
-                f"{expectation}, got the results of a sweep with a different {different}; choose another name"
-            )
-        return replace(header, rows=rows)
 
     def _create(self, zarr: Any, header: Header) -> None:
         """Create the arrays that ``header`` describes, without values, in a new folder; ``zarr`` is the package."""
@@ -170,8 +150,14 @@ class ZarrStore:
         return xarray.open_zarr(str(self.path), consolidated=None if self.finished else False)
 
 
+def _description(zarr: Any, path: Path) -> dict[str, Any]:
+    """Return what identifies the sweep whose results are in a folder, and its number of trajectories in a chunk."""
+    attributes = dict(zarr.open_group(str(path), mode="r").attrs)
+    return {"identity": json.loads(attributes[IDENTITY]), "rows": attributes[ROWS]}
+
+
 def _fast(zarr: Any) -> Any:
-    """Return a fast compressor of the package ``zarr``; others save little, as digits of results look random."""
+    """Return a fast compressor of the package ``zarr``; slower ones save little more, as digits look random."""
     # equal bits of numbers are stored together, so that signs and exponents take little room
     return zarr.codecs.BloscCodec(cname="lz4", clevel=1, shuffle="bitshuffle")
 

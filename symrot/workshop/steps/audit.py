@@ -11,7 +11,7 @@ from symrot.certificates.audit import LARGEST
 from symrot.certificates.certificate import Data, certificate_json, seal
 from symrot.certificates.readback.header import check_header, check_source
 from symrot.certificates.readback.readback import read_kernel
-from symrot.certificates.rounding.bounds import check_section
+from symrot.certificates.rounding.section import check_section
 from symrot.certificates.step_certificate import (
     SCHEMA,
     bounds_of_step,
@@ -233,7 +233,7 @@ def _bounds(path: Path, data: Data, method: Method, source: str, rerun: bool) ->
             place: (Fraction(float.fromhex(low)), Fraction(float.fromhex(high)))
             for place, (low, high) in section["box"].items()
         }
-        check_section(section, operations, None, rerun)
+        check_section(section, operations, None)
         for index, (symbol, _, value) in enumerate(data["rates"]["parameters"]):
             low, high = box.get(f"p[{index}]", (Fraction(0), Fraction(0)))
             if f"p[{index}]" in box and not low <= Fraction(float.fromhex(value)) <= high:

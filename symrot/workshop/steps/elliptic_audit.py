@@ -8,7 +8,7 @@ from pathlib import Path
 
 from symrot.certificates.audit import LARGEST
 from symrot.certificates.certificate import Data, certificate_json
-from symrot.certificates.exact_law import DIGITS, STATES
+from symrot.certificates.exact_step.law import DIGITS, STATES
 from symrot.certificates.step_certificate import with_bounds
 from symrot.codegen.steady_rotations import STATES as STATE_NAMES
 from symrot.errors import CertificateError, InputError

@@ -8,20 +8,21 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
-from hashlib import sha256
 from typing import Any, NamedTuple
 
-from symrot.certificates.certificate import Data, KernelUnderTest, certificate_json
-from symrot.certificates.exact_bounds import TINY, free_body_bounds
-from symrot.certificates.exact_law import STATES as CHECKED
-from symrot.certificates.exact_law import law_section
+from symrot.build.code_digest import text_digest
+from symrot.certificates.certificate import Data, certificate_json
+from symrot.certificates.exact_step.bounds import free_body_bounds
+from symrot.certificates.exact_step.box import TINY
+from symrot.certificates.exact_step.law import STATES as CHECKED
+from symrot.certificates.exact_step.law import law_section
 from symrot.certificates.step_certificate import SCHEMA, trusted
 from symrot.closed_form.build import joined
 from symrot.closed_form.registry import exact_form
-from symrot.codegen.printing.c_source import DOUBLE, FLOAT, Real
+from symrot.codegen.printing.c_function import DOUBLE, FLOAT, Real
 from symrot.codegen.printing.parameters_header import parameters_file
 from symrot.codegen.steady_rotations import STATES
-from symrot.errors import CertificateError, InputError
+from symrot.errors import InputError
 from symrot.formula.tree import text as formula_text
 from symrot.planning.plan import make_plan
 from symrot.scene.scene import Scene
@@ -185,13 +186,6 @@ class ExactStepText(StepFiles):
         """Raise InputError: an exact step exists in C only."""
         return self._other("jax")
 
-    def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
-        """Raise CertificateError: a step has a certificate of its own kind."""
-        raise CertificateError(
-            f"{self.name}: expected a kernel of the library or of a scene, got a time step; "
-            "`symrot certify SCENE --step METHOD` certifies steps"
-        )
-
     def certificate(self, bounds: Bounds | None = None) -> str:
         """Return the text of the certificate; raise CertificateError if the C text violates the equations of motion."""
         rates, source = WholeState(self.scene), self.c()[0]
@@ -245,7 +239,7 @@ class ExactStepText(StepFiles):
                 "temporaries": [[name, formula_text(node)] for name, node in rates.program.temporaries],
                 "formulas": [[name, formula_text(node)] for name, node in rates.program.outputs],
             },
-            "files": {path: sha256(text.encode()).hexdigest() for path, text in self.c_files().items()},
+            "files": {path: text_digest(text) for path, text in self.c_files().items()},
         }  # fmt: skip
 
     @property

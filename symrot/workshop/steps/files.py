@@ -4,8 +4,9 @@ from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
+from symrot.certificates.certificate import KernelUnderTest
 from symrot.codegen.printing.parameters_header import parameters_file, parameters_header
-from symrot.errors import InputError
+from symrot.errors import CertificateError, InputError
 from symrot.workshop.kernel_text import Bounds, KernelText
 
 __all__ = ["StepFiles", "constant_table"]
@@ -44,6 +45,13 @@ class StepFiles(KernelText):
                 "`symrot certify SCENE --step METHOD --box NAME=LOW:HIGH` bounds its errors"
             )
         return self._source_and_header
+
+    def under_test(self, bounds: Bounds | None = None) -> KernelUnderTest:
+        """Raise CertificateError: a step has a certificate of its own kind."""
+        raise CertificateError(
+            f"{self.name}: expected a kernel of the library or of a scene, got a time step; "
+            "`symrot certify SCENE --step METHOD` certifies steps"
+        )
 
     def c_files(self, bounds: Bounds | None = None) -> dict[str, str]:
         """Return the C files as a map from name to text: header, source, values of the parameters, test."""

@@ -15,7 +15,7 @@ from sympy import Abs, Expr, Integer, Symbol, atan2, cos, pi, sin, sqrt
 from symrot.certificates.certificate import Data
 from symrot.certificates.laws.laws import hypotheses, prove_law
 from symrot.certificates.readback.operations import Operations
-from symrot.certificates.rounding.bounds import check_section
+from symrot.certificates.rounding.section import check_section
 from symrot.errors import CertificateError
 from symrot.kernels.definition import Law
 from symrot.kernels.removable import arc_ratio, copysign, select_ge, sinc, sine_gap, tangent_gap

@@ -18,7 +18,7 @@ from typing import Any
 from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, number, product, replaced, sum_of, text, walk
 from symrot.checker.interface import check
-from symrot.checker.repair.edits import single_edits
+from symrot.checker.repair.edits.single import single_edits
 from symrot.errors import InputError
 from tests.campaigns.checker.oracle import ANGLES, FUNCTIONS, QUATERNIONS, SYMBOLS
 from tests.campaigns.checker.oracle_extended import EXPONENTS, HYPOTHESES, INVERSES, truth_under
@@ -193,7 +193,7 @@ def rewritten(tree: Node, source: Random, rules: Rules = _COMPILED) -> Node:
         found: dict[str, Node] = {}
         if _matched(left, node, found) and (found or node.kind != "name"):
             made = _filled(right, found)
-            return read_expression(text(replaced(tree, path, lambda _, made=made: made)))  # type: ignore[misc]
+            return read_expression(text(replaced(tree, path, made)))
     return tree
 
 

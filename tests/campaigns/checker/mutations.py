@@ -227,7 +227,7 @@ def mutated(claim: Claim, code: str, source: Random, is_matrix: IsMatrix, among:
     for step in path:
         node = node.args[step]
     made = source.choice(list(MUTATIONS[code](node, is_matrix)))
-    trees[place] = _flattened(replaced(trees[place], path, lambda _: made))
+    trees[place] = _flattened(replaced(trees[place], path, made))
     define = tuple((name, trees[name]) for name, _ in claim.define)
     relation = (sign, trees["left"], trees["right"])
     used = {piece.value for tree in trees.values() for _, piece in walk(tree) if piece.kind == "name"}

@@ -46,9 +46,9 @@ from symrot.checker.claim.tree import Node, negated
 from symrot.checker.claim.tree import product as product_of
 from symrot.checker.latex.reader import Names, latex_readings
 from symrot.checker.recognition.fingerprint import NotInField, fingerprint
-from symrot.checker.recognition.identification import pairings
-from symrot.checker.recognition.letters import is_atom
-from symrot.checker.recognition.relations import primitive
+from symrot.checker.recognition.formulas.common_factors import primitive
+from symrot.checker.recognition.signature_pairs import pairings
+from symrot.checker.recognition.single_faults.letters import is_atom
 from symrot.checker.repair.canonical_form import terms_of_equation
 from symrot.checker.typed.readings import Declared, Reading
 from symrot.errors import SymrotError

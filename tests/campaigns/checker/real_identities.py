@@ -155,7 +155,7 @@ def _rewritten(tree: Node, source: Random, rules: Sequence[tuple[Node, Node]]) -
         if _matched(left, node, found):
             found.setdefault("Y", read_expression(source.choice(PIECES)))
             made = _filled(right, found)
-            return read_expression(text(replaced(tree, path, lambda _, made=made: made)))  # type: ignore[misc]
+            return read_expression(text(replaced(tree, path, made)))
     return tree
 
 

@@ -1,11 +1,11 @@
 """Moments of inertia in forms that books use: with a density, radii of gyration, tilted rods, pairs of masses."""
 
 from collections.abc import Iterator
-from typing import Any
 
 from sympy import Matrix, Symbol, cancel, cos, expand, factor, sin
 
 from symrot import symbols
+from symrot.checker.recognition.formulas.named import Named
 from symrot.inertia import tensor
 from symrot.inertia.shapes import SHAPES
 from symrot.inertia.solids import solid
@@ -13,9 +13,6 @@ from symrot.inertia.solids import solid
 __all__ = ["bodies"]
 
 SOLIDS, AXES = "derivations/standard_solids.md", "derivations/parallel_axis.md"
-
-Named = tuple[str, str, Any]
-"""Name, source and value of a formula."""
 
 
 def bodies() -> Iterator[Named]:

@@ -12,6 +12,7 @@ from typing import Any
 from sympy import Expr, Matrix, Symbol, cancel, cos, diag, expand, eye, sin, solve, sqrt, together, trace
 
 from symrot import symbols
+from symrot.checker.recognition.formulas.named import Named
 from symrot.conventions import SEQUENCES
 from symrot.kinematics import attitude, euler, quaternion, rotation_vector
 from symrot.kinematics.rotations import skew
@@ -37,9 +38,6 @@ OF_ONE_ENTRY = (PITCH, SECOND_ANGLE_OF_MATRIX)
 """Angles that one entry of a matrix gives; only the name and the place of the entry say what is meant."""
 
 GYROSCOPE = "torque on a gyroscope whose axis precesses"
-
-Named = tuple[str, str, Any]
-"""Name, source and value of a formula."""
 
 
 def vectors() -> Iterator[Named]:

@@ -4,12 +4,12 @@ Formulas of heavy tops occur twice: with the weight W, and with m g.
 """
 
 from collections.abc import Iterator
-from typing import Any
 
 from sympy import Expr, Matrix, Rational, cancel, cos, diag, expand, factor, limit, oo, pi, sin, solve
 
 from symrot import symbols
 from symrot.catalogue.tools.motion import OMEGA
+from symrot.checker.recognition.formulas.named import Named
 from symrot.dynamics.equations import angular_acceleration
 from symrot.inertia import tensor
 from symrot.kinematics.euler import rate_jacobian
@@ -25,9 +25,6 @@ WEIGHTS = (symbols.W, symbols.m * symbols.g)
 HEAVY, FREE, TURNING, WHEEL = (
     f"derivations/{name}.md" for name in ("heavy_top", "symmetric_top", "planar_motion", "gyroscopic_wheel")
 )
-
-Named = tuple[str, str, Any]
-"""Name, source and value of a formula."""
 
 
 def tops() -> Iterator[Named]:

@@ -1,27 +1,27 @@
 """Formulas of first courses, from cross products: torque of a force, angular momentum of a point, speed of a point."""
 
 from collections.abc import Iterator
-from typing import Any
 
 from sympy import Matrix, Symbol, cos, pi, sin
 
 from symrot import symbols
-from symrot.checker.recognition.relations import new_symbol
+from symrot.checker.recognition.formulas.named import Named
+from symrot.checker.recognition.formulas.new_symbols import (
+    DISTANCE,
+    MOMENTUM_RATE,
+    MOMENTUM_RATES,
+    ONE_FORCE,
+    ONE_MOMENTUM,
+    POINT_MOMENTUM,
+    SPEED,
+)
 
 __all__ = ["ANY_VECTORS", "GENERAL", "points"]
 
 MOMENTUM, MOTION, POWER = (
     f"derivations/{name}.md" for name in ("angular_momentum", "relative_motion", "work_and_power")
 )
-POINT_MOMENTUM = tuple(new_symbol(f"p_{axis}", "kg m/s") for axis in "xyz")
-ONE_MOMENTUM, ONE_FORCE, SPEED = new_symbol("p_m", "kg m/s"), new_symbol("F", "N"), new_symbol("v", "m/s")
-DISTANCE = new_symbol("d", "m")
-MOMENTUM_RATE = new_symbol("dH", "N m, of momentum")
-MOMENTUM_RATES = tuple(new_symbol(f"dL_{n}", "N m, of momentum") for n in "123")
 ANGLE = symbols.theta
-
-Named = tuple[str, str, Any]
-"""Name, source and value of a formula."""
 
 TORQUE, OF_POINT, BY_MOMENTUM = (
     "torque of a force", "angular momentum of a point mass", "angular momentum of a point mass from its momentum",

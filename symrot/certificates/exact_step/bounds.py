@@ -1,0 +1,332 @@
+"""Bounds of the errors of an exact step of a free body on a box of states, from its C text.
+
+The C text runs on numbers with bounds of their errors (bounded_number.py), for parts of the box: of each sign of each
+component of omega, and of the phase of the elliptic functions. Operations on sums of two doubles have the relative
+errors of functions.py; every operation on doubles, which makes nearly all of the error, is bounded where the C text has
+it. Some intervals are cut to what is known of exact values, such as 0 <= m <= 1 of the modulus.
+
+Bounds exist where the modulus m is below 0.7, that is not near the rotation about the middle axis. There the series
+in the nome q are cut after q^15, with an error below 40 q^16 of the elliptic functions.
+"""
+
+from collections.abc import Callable
+from fractions import Fraction
+from functools import lru_cache
+from math import exp, inf, pi, sqrt
+from typing import Any
+
+from symrot.certificates.c_machine.machine import Machine
+from symrot.certificates.c_machine.values import Place, called
+from symrot.certificates.exact_step.bounded_number import DOUBLE, PAIR, Bounded, UndecidedError, point
+from symrot.certificates.exact_step.box import MIDDLE, Box, halves, power_near, shells, signed_parts
+from symrot.certificates.exact_step.functions import (
+    ELLIPTIC,
+    SLACK,
+    SMALL,
+    agm,
+    carlson_rf,
+    exponential,
+    mean_of,
+    pair,
+    pair_total,
+    sine_and_cosine,
+    unit_quaternion,
+    widened,
+    with_pairs,
+)
+from symrot.errors import CertificateError, InputError
+
+__all__ = ["free_body_bounds"]
+
+CELLS = 64  # parts of the phase of a period
+MOST_PARTS = 600  # of the box of omega
+LONGEST = 2.0**20  # revolutions of a phase
+SIZES = 1e298  # products of dt and the scale of omega, of which the C text computes rounding errors without overflow
+SMALL_MODULUS = 0.7
+
+
+class _Context:
+    """What is known of the part of the box for which the machine runs."""
+
+    def __init__(self, source: str, prefix: str) -> None:
+        self.scale = 1.0  # the power of two by which omega is divided
+        self.phase = (0.0, 1.0)  # of the elliptic functions, in revolutions
+        self.nome = 1.0
+        self.series_error = 0.0
+        self.motion: list[Any] = []
+        self.prefix = prefix
+        changes = {
+            # components of the angular momentum are at most its length
+            "signs[n]*dd_div(c.amplitudes[n], c.total).hi": "signs[n]*known_sine(dd_div(c.amplitudes[n], c.total)).hi",
+            "GROUP = 8": "GROUP = 1",  # samples are independent of each other
+            "static void canonical(const dd inertia[3],": "static void canonical_plain(const dd inertia[3],",
+            # terms of series that the C text omits, because they are below 2^-110, are computed
+            "#define NEGLIGIBLE 0x1p-110": "#define NEGLIGIBLE (-1.0)",
+            "/* The quaternion of the change from": "static dd known_nome(dd x);\nstatic dd known_positive(dd x);\n"
+            "static dd known_sine(dd x);\n/* The quaternion of the change from",
+            "dd_scale(dd_div(L[1], c->amplitudes[1]), c->s)": "dd_scale(known_sine(dd_div(L[1], c->amplitudes[1])), "
+            "c->s)",
+            "const dd nome = dd_mul(shift, close);": "const dd nome = known_nome(dd_mul(shift, close));",
+            "dd_mul(per, dd_sub(k_prime, c->eta))": "dd_mul(per, known_positive(dd_sub(k_prime, c->eta)))",
+        }
+        for old, new in changes.items():
+            if source.count(old) != 1:
+                raise CertificateError(f"expected {old!r} once in the C text of a free body, got another text")
+            source = source.replace(old, new)
+        self.machine = Machine(source, lambda value: point(float(value)), self._own())
+        self.fields = self.machine.structs["free_body"].names
+
+    def _own(self) -> dict[str, tuple[str, Callable[..., Any]]]:
+        pairs: dict[str, tuple[str, Callable[..., Any]]] = {
+            "dd_of": ("s", lambda x: [Bounded(x.low, x.high, x.error, x.relative, x), point(0.0)]),
+            "dd_pair": ("s", self._dd_pair),
+            "dd_negative": ("s", with_pairs(lambda x: -x)),
+            "dd_abs": ("s", with_pairs(abs)),
+            "dd_add": ("s", with_pairs(lambda x, y: x.plus(y, PAIR))),
+            "dd_sub": ("s", with_pairs(lambda x, y: x.plus(-y, PAIR))),
+            "dd_mul": ("s", with_pairs(lambda x, y: x.times(y, PAIR))),
+            "dd_square": ("s", with_pairs(lambda x: abs(x).times(abs(x), PAIR))),
+            "dd_div": ("s", with_pairs(lambda x, y: x.over(y, PAIR))),
+            "dd_sqrt": ("s", with_pairs(lambda x: x.root(PAIR))),
+            "dd_scale": ("s", lambda a, power: pair(pair_total(a).times(power, PAIR))),
+            "dd_agm": ("s", with_pairs(agm)),
+            "dd_rf": ("s", with_pairs(carlson_rf)),
+            "dd_exp": ("s", with_pairs(exponential)),
+            "known_nome": ("s", with_pairs(lambda x: x.clipped(0.0, self.nome))),
+            "known_positive": ("s", with_pairs(lambda x: x.clipped(0.0, inf))),
+            "known_sine": ("s", with_pairs(lambda x: x.clipped(-1.0, 1.0))),
+        }
+        return pairs | {
+            "fabs": ("rr", abs), "sqrt": ("rr", lambda x: x.root(DOUBLE)), "rint": ("rr", _nearest),
+            "dd_less": ("", lambda a, b: int(pair_total(a) < pair_total(b))), "dd_sound": ("", lambda: 1),
+            "near_power": ("", self._near_power), "exact_defect": ("", _exact_defect), "normalise": ("", _normalise),
+            "quaternion_product": ("", _quaternion_product), "dd_sincos_turns": ("", _sincos),
+            "canonical": ("vppppp", self._canonical), "put_quaternion": ("", _put_quaternion), "turn": ("", self._turn),
+            "exp_moderate": ("", _refused), "memcpy": ("vppi", _refused),
+        }  # fmt: skip
+
+    @staticmethod
+    def _dd_pair(high: Bounded, low: Any) -> list[Any]:
+        if low is None or not (low.is_exact and low.low == 0):
+            return [high, low]
+        return [Bounded(high.low, high.high, high.error, high.relative, high), low]
+
+    def _near_power(self, values: Place, count: int) -> Bounded:
+        container, start = values
+        numbers = [container[start + 2 * i] for i in range(count)]
+        if count == 4:  # a quaternion, which is divided by its norm
+            return point(1.0)
+        if all(each.is_exact for each in numbers):
+            return point(power_near(max(each.most for each in numbers)))
+        return point(self.scale)
+
+    def _canonical(self, inertia: Place, omega: Place, differences: Place, defect: Any, c: Place) -> None:
+        machine = self.machine
+        called(machine.functions["canonical_plain"], (inertia, omega, differences, defect, c))
+        fields, names = c[0][c[1]], machine.structs["canonical_motion"].names
+
+        def clip(name: str, low: float, high: float) -> Bounded:
+            place = names.index(name)
+            value = pair_total(fields[place]).clipped(low, high)
+            fields[place] = pair(value)
+            return value
+
+        modulus = clip("modulus", 0.0, 1.0)
+        complement = clip("complement", 0.0, 1.0)
+        clip("eta", 0.0, inf)
+        if not modulus < point(SMALL_MODULUS):
+            raise UndecidedError
+        # m + m' = 1, and |u| <= K
+        most = min(modulus.high, 1 - complement.low, SMALL_MODULUS)
+        clip("complement", 1 - most - 1e-15, 1.0)
+        quarter = pi / 2 / mean_of(sqrt(1 - most)) * (1 + SLACK)
+        clip("u", -quarter, quarter)
+        self.nome = exp(-pi * mean_of(sqrt(1 - most)) / mean_of(sqrt(max(most, 1e-300)))) * (1 + 1e-9) + 1e-300
+
+    def _turn(
+        self, phase: Place, slope: Bounded, count: int, t: Place, whole: Place, sine: Place, cosine: Place
+    ) -> None:
+        """Sine and cosine of a phase, for the function ``turn`` of the C text."""
+        values, first = phase
+        rate, start = pair_total([values[first], values[first + 1]]), pair_total([values[first + 2], values[first + 3]])
+        size = t[0][t[1]]
+        turns = rate.most * size.most
+        if not (slope.is_exact and slope.low == 0 and turns <= LONGEST):
+            raise InputError(f"expected steps of at most {LONGEST:.0f} revolutions of a phase, got {turns:.3g}")
+        if not size.most <= SIZES:
+            raise InputError(f"expected dt times |omega| of at most {SIZES}, got {size.most:.3g}")
+        # the error of the phase: of its rate and start, and of the roundings in `phase_rest`. Where `small` moves the
+        # phase beyond 1/8, one more, 2^-56, makes 3*2^-57; sine and cosine, with slopes of 0.708, have 0.1327*2^-53
+        error = (
+            size.most * rate.error
+            + turns * 2.0**-104
+            + start.error
+            + DOUBLE * (0.1327 + 4 * (turns * 2.0**-52 + 2.0**-54))
+        )
+        # of the polynomials in `sincos_quarters`: rounding, coefficients and the rest of the series
+        both = 2 * pi * error * (1 + SLACK) + self.series_error
+        cell = self.phase if values is self.motion[self.fields.index("axial")] else (0.0, 1.0)
+        s, c = sine_and_cosine(Bounded(*cell, 0.0, 0.0), both)
+        for i in range(count):
+            sine[0][sine[1] + i], cosine[0][cosine[1] + i] = s, c
+
+    # --- runs ---------------------------------------------------------------------------------------------------------
+
+    def prepare(self, moments: list[float], omega: list[Bounded]) -> None:
+        """Compute the constants of the motions of a part of the box."""
+        motion = [self.machine.blank("free_body")]
+        zero = point(0.0)
+        arguments = (
+            ([x for m in moments for x in (point(m), zero)], 0), ([x for w in omega for x in (w, zero)], 0),
+            ([x for _ in range(4) for x in (Bounded(-1.0, 1.0, 0.0, 0.0), zero)], 0), None, None, (motion, 0),
+        )  # fmt: skip
+        if self.machine.call(f"{self.prefix}_prepare", *arguments):
+            raise InputError("expected states in the domain of the step, got others")
+        self.motion = motion[0]
+
+    def after(self, size: Bounded) -> list[Bounded]:
+        """Return the state after a step, for the present part of the phase."""
+        result: list[Any] = [point(0.0)] * 7
+        self.machine.call(f"{self.prefix}_at", ([self.motion], 0), 1, ([size], 0), (result, 0), (result, 3))
+        return result
+
+    @property
+    def is_steady(self) -> bool:
+        return int(self.motion[self.fields.index("regime")]) == self.machine.constants["STEADY"]
+
+
+def _refused(*arguments: Any) -> Any:
+    raise UndecidedError
+
+
+def _nearest(x: Bounded) -> Bounded:
+    low, high = x.computed
+    if not -0.49 < low <= high < 0.49:
+        raise UndecidedError
+    return point(0.0)
+
+
+def _pairs_at(place: Place, count: int) -> list[Bounded]:
+    return [pair_total(place[0][place[1] + i]) for i in range(count)]
+
+
+def _exact_defect(moments: Place, omega: Place) -> list[Any]:
+    """|L|^2 - 2 T I_mid: the C text sums it exactly, and rounds it once."""
+    inertia, rates = _pairs_at(moments, 3), _pairs_at(omega, 3)
+    middle = sorted(range(3), key=lambda i: inertia[i].low)[1]
+    total = point(0.0)
+    for i in range(3):
+        if i != middle:
+            share = Fraction(inertia[i].low) * (Fraction(inertia[i].low) - Fraction(inertia[middle].low))
+            sizes = rates[i].least, rates[i].most
+            ends = sorted(float(share) * x * x for x in sizes)
+            if share and any(x and abs(end) < SMALL for x in sizes for end in ends):
+                raise UndecidedError  # the product may underflow
+            total = total.plus(Bounded(*widened(*ends), 0.0, 0.0), 0.0)
+    return pair(Bounded(total.low, total.high, inf, PAIR))
+
+
+def _normalise(q: Place) -> None:
+    for i, x in enumerate(unit_quaternion(_pairs_at(q, 4))):
+        q[0][q[1] + i] = pair(x)
+
+
+def _quaternion_product(a: Place, b: Place, c: Place) -> None:
+    """The product of two quaternions of norm 1, and with the quaternion 0 of a body at rest."""
+    left, right = _pairs_at(a, 4), _pairs_at(b, 4)
+    error = 4 * (max(x.error for x in left) + max(x.error for x in right)) + 64 * PAIR
+    for i in range(4):
+        c[0][c[1] + i] = pair(Bounded(-1.0, 1.0, error, inf))
+
+
+def _put_quaternion(rows: Place, count: int, *columns: Any) -> None:
+    """The product of an orthogonal matrix and a unit vector: errors of the vector keep their length.
+
+    The rows and the vector have length 1, so that all partial sums are at most 1. Each of four products, three sums and
+    the rounding of the matrix to doubles makes an error of at most 2^-53 of terms that sum to 1 in squares.
+    """
+    *vector, q = columns
+    before = 2 * max((x.pair or x).error for row in rows[0] for x in row)  # of the matrix, before it was rounded
+    for i in range(count):
+        error = sqrt(sum(each[0][each[1] + i].error ** 2 for each in vector)) + 5.1 * DOUBLE + before
+        for k in range(4):
+            q[0][q[1] + 4 * i + k] = Bounded(-1.0, 1.0, error, inf)
+
+
+def _sincos(turns: list[Any], sine: Place, cosine: Place) -> None:
+    value = pair_total(turns)
+    s, c = sine_and_cosine(value, 2 * pi * value.error * (1 + SLACK) + ELLIPTIC)
+    sine[0][sine[1]], cosine[0][cosine[1]] = pair(s), pair(c)
+
+
+def _series_error(machine: Machine) -> float:
+    """Return a bound of the error of ``sincos_quarters`` for phases of at most 1/8, apart from that of the phase."""
+    results: list[Any] = [None, None]
+    machine.call("sincos_quarters", Bounded(-0.1251, 0.1251, 0.0, 0.0), point(0.0), (results, 0), (results, 1))
+    rounding = max(each.error for each in results)
+    # of a polynomial whose coefficients are the doubles nearest to those of the series, after r^17 and r^16
+    angle = 2 * pi * 0.1251
+    coefficients = 2.0**-53 * exp(angle)
+    return float(rounding + coefficients + angle**18 / 6.4e15) * (1 + SLACK)
+
+
+def free_body_bounds(source: str, name: str, moments: list[float], box: Box) -> tuple[list[float], list[float]]:
+    """Return bounds of rounding and of truncation of an exact step of a free body: of omega, then of the quaternion.
+
+    Equal calls are computed once per process.
+
+    Parameters
+    ----------
+    source : str
+        The C text of the step.
+    name : str
+        The name of its function for doubles.
+    moments : list of float
+        The principal moments.
+    box : mapping
+        Ranges of omega_1, omega_2, omega_3 and dt.
+
+    Raises
+    ------
+    InputError
+        If the box contains states near a rotation about the middle axis, where no bounds are known.
+    CertificateError
+        If the C text is no exact step of a free body.
+    """
+    rounding, truncation = _bounds(source, name, tuple(moments), tuple(box.items()))
+    return list(rounding), list(truncation)
+
+
+@lru_cache(maxsize=16)
+def _bounds(
+    source: str, name: str, moments: tuple[float, ...], ranges: tuple[tuple[str, tuple[Fraction, Fraction]], ...]
+) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    box = dict(ranges)
+    context = _Context(source, name)
+    context.series_error = _series_error(context.machine)
+    low, high = (float(end) for end in box["dt"])
+    size = Bounded(low, high, 0.0, 0.0)
+    rounding, truncation = [0.0] * 7, [0.0] * 7
+    parts = [(scale, each) for part in signed_parts(box) for scale, each in shells(part)]
+    count = 0
+    while parts:
+        scale, part = parts.pop()
+        count += 1
+        if count > MOST_PARTS:
+            raise InputError(f"{MIDDLE}, got one with such states; the step taylor of order 16 has bounds there")
+        context.scale = scale
+        try:
+            context.prepare(list(moments), [point(a) if a == b else Bounded(a, b, 0.0, 0.0) for a, b in part])
+            cells = 1 if context.is_steady else CELLS
+            for k in range(cells):
+                context.phase = (k / cells, (k + 1) / cells)
+                errors = context.after(size)
+                rounding = [max(a, b.error) for a, b in zip(rounding, errors, strict=True)]
+                cut = 0.0 if context.is_steady else 40 * context.nome**16
+                sizes = [b.most for b in errors[:3]] + [2.0] * 4
+                truncation = [max(a, cut * b + 2.0**-100 * b) for a, b in zip(truncation, sizes, strict=True)]
+        except UndecidedError:
+            parts += [(scale, half) for half in halves(part)]
+    if not all(x < inf for x in rounding):
+        raise InputError("expected a smaller box, on which the errors of the step have bounds, got one without bounds")
+    return tuple(rounding), tuple(truncation)

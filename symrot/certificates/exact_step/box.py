@@ -1,0 +1,85 @@
+"""The parts of a box of angular velocities on which errors of an exact step are bounded one by one.
+
+A part contains numbers of one sign for each component, all scaled by the same power of two in the C text.
+"""
+
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
+from itertools import product
+from math import frexp, inf, ldexp, ulp
+
+from symrot.errors import InputError
+
+__all__ = ["MIDDLE", "TINY", "Box", "Part", "halves", "power_near", "shells", "signed_parts"]
+
+TINY = 1e-100  # smaller components of omega, relative to the largest, are not covered; the C text takes some as zero
+LEAST_POWER, LARGEST_POWER = -1000, 1000  # of the scale of omega in the C text
+MIDDLE = (
+    "expected a box of omega away from the rotation about the middle axis, where the modulus of the elliptic functions "
+    "is below 0.7"
+)
+
+Box = Mapping[str, tuple[Fraction, Fraction]]  # name of an input, such as "omega_1" or "dt" -> least and largest value
+Part = tuple[tuple[float, float], ...]  # the range of each component of omega
+
+
+def signed_parts(box: Box) -> Iterator[Part]:
+    """Yield the parts of a box of omega in which no component changes its sign: it is negative, zero or positive.
+
+    Components that are smaller than TINY of the largest, but not zero, are left out.
+    """
+    ends = [(float(low), float(high)) for low, high in (box[f"omega_{i}"] for i in (1, 2, 3))]
+    least = max(max(max(abs(low), abs(high)) for low, high in ends) * TINY, ulp(0.0))
+    choices = []
+    for i, (low, high) in enumerate(ends, start=1):
+        parts = [(0.0, 0.0)] if low <= 0 <= high else []
+        parts += [(max(low, least), high)] if high >= least else []
+        parts += [(low, min(high, -least))] if low <= -least else []
+        if not parts:
+            raise InputError(
+                f"expected a range of omega_{i} with numbers that are 0 or at least {TINY:g} of the largest |omega| in "
+                f"the box, got {low:g} to {high:g}"
+            )
+        choices.append(parts)
+    yield from product(*choices)
+
+
+def shells(part: Part) -> Iterator[tuple[float, Part]]:
+    """Yield the powers of two by which omega is divided in a part of the box, each with the part of omega for it."""
+    smallest = max(min(abs(low), abs(high)) for low, high in part)
+    largest = max(max(abs(low), abs(high)) for low, high in part)
+    if largest == 0:
+        yield 1.0, part
+        return
+    first, last = frexp(smallest)[1] if smallest else -1100, frexp(largest)[1]
+    if last - first > 8:
+        raise InputError(f"{MIDDLE}, got one that contains omega = 0, or nearly")
+    for exponent in range(first, last + 1):
+        most = ldexp(1.0, exponent) if exponent < 1024 else inf
+        clipped = tuple((max(low, -most), min(high, most)) for low, high in part)
+        largest = max(max(abs(a), abs(b)) for a, b in clipped)
+        if all(low <= high for low, high in clipped) and largest >= ldexp(1.0, exponent - 1):
+            yield _power(exponent), clipped
+
+
+def _power(exponent: int) -> float:
+    """Return the power of two by which the C text divides numbers, from the binary exponent of the largest."""
+    return 2.0 ** min(max(exponent, LEAST_POWER), LARGEST_POWER)
+
+
+def power_near(largest: float) -> float:
+    """Return the power of two by which the C text divides numbers whose largest absolute value is ``largest``."""
+    return _power(frexp(largest)[1]) if largest else 1.0
+
+
+def halves(part: Part) -> tuple[Part, Part]:
+    """Return a part of the box, divided in the middle of its widest range; InputError is raised if it is a point."""
+    widths = [abs(high - low) for low, high in part]
+    place = widths.index(max(widths))
+    low, high = part[place]
+    middle = (low + high) / 2
+    if not low < middle < high:
+        raise InputError(f"{MIDDLE}, got one on the border")
+    return tuple((low, middle) if i == place else each for i, each in enumerate(part)), tuple(
+        (middle, high) if i == place else each for i, each in enumerate(part)
+    )

@@ -1,0 +1,230 @@
+"""Whether a claim's formula is a known formula with a fault, or may be right: only evident faults are reported.
+
+A claim gives a formula for a quantity (``named``); ``near`` is a known formula that differs from it by one fault. The
+evidence is the number of letters, the unit, the names, and the context, which a user states besides the claim.
+"""
+
+import re
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.named_formula import NamedFormula
+from symrot.checker.claim.tree import TIME, Node, walk
+from symrot.checker.context.admission import COMPONENTS
+from symrot.checker.recognition.naming.fit import ENTRY, MOMENT, PARALLEL
+from symrot.checker.recognition.naming.quantities import has_terms, names_in, quantities_in, quantity_name, words_of
+from symrot.checker.recognition.single_faults.comparison import Near
+from symrot.checker.repair.edits.names import neighbours
+
+__all__ = ["LEAST_SYMBOLS_EDITED", "is_evident", "is_inverted", "is_of_body", "is_steady", "says_too_little"]
+
+LEAST_SYMBOLS_EDITED = 3
+"""The fewest symbols of a scalar formula that is edited."""
+
+MANY_LETTERS = 5
+"""The fewest letters of a formula, for a quantity of an unknown name, that has a fault rather than another meaning."""
+
+MANY_ENTRIES = 4
+"""The fewest letters, each counted as often as it occurs, of a matrix that has a fault rather than another meaning."""
+
+SAFE_BY_UNIT = ("exponent", "factor", "wrong_symbol", "extra_term", "missing_term")
+"""The faults that a wrong unit proves."""
+
+SURE_IF_STATED = ("sin_cos_swap", "half_angle", "double_half_angle", "exponent")
+"""The faults of a formula whose letters are all stated, so that it can be no other formula."""
+
+OF_ANGLES = re.compile(r"angle rates of|angular velocity of [xyzXYZ]{3}\b")
+"""Names of known formulas in Euler angles, two of which are not equal in a special case that books print."""
+
+
+def says_too_little(claim: Claim, named: NamedFormula, near: Near) -> bool:
+    """Return whether a claim ``I = ..`` names no body, so that it may be right for a body that symrot does not know."""
+    # a letter without an axis, and no body in the context: the claim may be for any body
+    is_bare = re.fullmatch("[IJ]", named.name) is not None
+    return is_bare and claim.context.body is None and is_of_body(near.code, near.known.name)
+
+
+def is_of_body(code: str, known: str) -> bool:
+    """Return whether the fault ``code`` is a wrong factor or term, and ``known`` names a moment of inertia."""
+    # such a formula may be right for another body
+    return code in ("factor", "missing_term", "extra_term") and known.startswith("moment of inertia of")
+
+
+def is_evident(claim: Claim, named: NamedFormula, near: Near) -> bool:
+    """Return whether a formula is more likely a known one with a fault than a right formula that symrot does not know.
+
+    Only evident faults give the verdict "doubtful".
+    """
+    letters, words = names_in(named.formula), words_of(named)
+    quantities = len(quantities_in(named.formula))
+    count = len(letters | names_in(named.side)) if named.side.kind == "product" else quantities  # an equation
+    count += is_steady(near.known.name) and TIME in [node for _, node in walk(named.formula)]  # t is a letter of it
+    is_new = not quantities_in(near.tree) <= quantities_in(named.formula)
+    is_special = near.is_symmetric and not OF_ANGLES.search(near.known.name)
+    is_component = _is_component_of_parameters(named, near) or _is_angle_of_entries(named, near)
+    if is_new and near.code == "wrong_symbol" and is_component:
+        return True
+    if is_new and (
+        max(quantities, near.array_letters) < LEAST_SYMBOLS_EDITED or near.code == "missing_term" or is_special
+    ):
+        return False  # a special case: the missing letter is zero, or equal to another one
+    if near.code in ("overall_sign", "sign_of_term") and re.fullmatch("lambda|sigma|s", named.name):
+        return False  # the root of a growth rate, whose square has the other sign
+    if near.code == "sign_of_term" and is_steady(near.known.name):
+        return False  # alpha may be a deceleration
+    if near.code == "factor" and PARALLEL.search(near.known.name):
+        return False  # the distance of the axes may be a multiple of a length, as in I_cm + m L^2/4
+    if is_inverted(named, near) or _is_multiple_of_period(named, near):
+        return True
+    if near.has_other_unit and near.code in SAFE_BY_UNIT:
+        is_energy = near.known.name.startswith("kinetic energy") and near.known.name.endswith("rolls")
+        has_tension = "T" in letters | names_in(named.side) and claim.context.body is None
+        return words is not None and not (is_energy and has_tension)
+    is_general = not letters <= names_in(near.tree)  # the formula may have a letter of its own
+    if near.code == "factor" and _is_of_stated_body(claim, near):
+        return True
+    is_alike = bool(neighbours(near.letter, letters))  # such as I_1 in I_1 + I_3
+    if near.code == "extra_term" and (is_general or not is_alike or len(letters) < LEAST_SYMBOLS_EDITED):
+        return False  # the formula may be a more general one
+    angles = _only_in_sines(named.formula) - names_in(near.tree)  # as theta in the factor sin(theta)
+    has_own_angle = near.code == "factor" and words is not None and letters <= names_in(near.tree) | angles
+    is_of_axis = near.code == "wrong_symbol" and _is_of_axis(named, near) and count > LEAST_SYMBOLS_EDITED
+    is_long = (near.code == "wrong_symbol" or has_own_angle) and count >= MANY_LETTERS
+    if is_general and not is_long and not is_of_axis:
+        return False
+    entries = [node for _, node in walk(named.formula) if node.kind in ("call", "name") and node.value in letters]
+    is_matrix_given = any(node.value == "Matrix" for _, node in walk(named.formula))
+    if is_matrix_given and len(entries) >= MANY_ENTRIES:
+        return True
+    if near.array_letters >= LEAST_SYMBOLS_EDITED and len(entries) + near.array_letters > 2 * MANY_ENTRIES - 2:
+        return True
+    is_rotation = near.array_letters > 0 and near.known.name.startswith("rotation matrix")
+    if is_rotation and re.fullmatch(r"[RCAQ](_\w+)?", named.name):
+        return True
+    if _is_stated(claim, named, near) or _is_component_of_quaternion(named, near) or _is_entry_of_matrix(named, near):
+        return True
+    if is_component:
+        return True
+    if near.code == "sign_of_term" and _is_of_stated_flat_body(claim, near):
+        return True
+    if near.code in SURE_IF_STATED and _are_letters_stated(claim, letters):
+        return True
+    if words is None:
+        return max(count, near.array_letters) >= MANY_LETTERS
+    is_sum = has_terms(named.formula)
+    if near.code == "sign_of_term" and not is_sum:
+        return False  # the direction of an axis or angle may be the other one
+    is_exact = is_sum and not near.renamed and near.code == "sign_of_term"
+    least = LEAST_SYMBOLS_EDITED + (not is_sum and near.code != "exponent") - is_exact
+    return max(count, near.array_letters) >= least
+
+
+def is_steady(known: str) -> bool:
+    """Return whether ``known`` names a formula for constant angular acceleration."""
+    return "constant angular acceleration" in known
+
+
+def is_inverted(named: NamedFormula, near: Near) -> bool:
+    """Return whether a claim is the equation of motion of a pendulum with the wrong sign, ``theta'' = g/l*sin(theta)``.
+
+    For an angle from the upright position this sign is right.
+    """
+    is_motion = named.is_rate and len(named.side.args) > 2 and "pendulum" in near.known.name
+    return is_motion and near.code in ("sign_of_term", "overall_sign") and not has_terms(named.formula)
+
+
+def _is_multiple_of_period(named: NamedFormula, near: Near) -> bool:
+    """Return whether a claim gives a multiple of a known period: ``pi*sqrt(L/g)`` for ``2*pi*sqrt(L/g)``."""
+    # the factor before the root is 2 pi for all bodies, the one in it depends on the body
+    roots = [
+        {node for _, node in walk(tree) if node.kind == "call" and node.value == "sqrt"}
+        for tree in (named.formula, near.tree)
+    ]
+    has_pi = all(any(node.value == "pi" for _, node in walk(tree)) for tree in (named.formula, near.tree))
+    is_period = near.known.name.startswith("period of") and re.fullmatch("T(_[a-z]+)?", named.name) is not None
+    return is_period and near.code == "factor" and has_pi and bool(roots[0]) and roots[0] == roots[1]
+
+
+def _is_stated(claim: Claim, named: NamedFormula, near: Near) -> bool:
+    """Return whether the context of a claim states what its quantity is, and ``near`` is a formula for this meaning."""
+    meaning = claim.context.meaning_of(quantity_name(named))
+    return meaning is not None and any(phrase in near.known.name for phrase in meaning.quantity.formulas)
+
+
+def _are_letters_stated(claim: Claim, letters: set[str]) -> bool:
+    """Return whether the context states the meanings of two or more letters, and the others are moments of inertia."""
+    stated = {letter for letter in letters if claim.context.meaning_of(letter) is not None}
+    return len(stated) > 1 and all(map(MOMENT.fullmatch, letters - stated))
+
+
+def _is_of_stated_body(claim: Claim, near: Near) -> bool:
+    """Return whether the context of a claim states a body, and the known formula ``near`` is for this body."""
+    body = claim.context.body
+    return body is not None and body.kind.title in near.known.name
+
+
+def _is_of_axis(named: NamedFormula, near: Near) -> bool:
+    """Return whether a quantity's name ends with an axis, as I_x does, and ``near`` is a formula for the same axis."""
+    axis, own = re.search(r", ([xyz]) axis$", near.known.name), re.search("[xyz]+$", quantity_name(named))
+    return axis is not None and own is not None and {*own[0]} == {axis[1]}
+
+
+def _is_of_stated_flat_body(claim: Claim, near: Near) -> bool:
+    """Return whether the context states a flat body, and ``near`` is the theorem I_z = I_x + I_y for flat bodies."""
+    body = claim.context.body
+    return body is not None and "a flat body" in body.formulas and "of a flat body about the axis" in near.known.name
+
+
+def _is_component_of_quaternion(named: NamedFormula, near: Near) -> bool:
+    """Return whether a quaternion component has a wrong angle or function: beta_1 = e_1 sin(phi) for e_1 sin(phi/2)."""
+    place = re.fullmatch(r"(beta|eta|epsilon|q)_?([0-4])", named.name)
+    word, _, rest = near.known.name.partition(" component of the quaternion of axis")
+    return (
+        place is not None
+        and near.code in ("half_angle", "double_half_angle", "sin_cos_swap")
+        and bool(rest)
+        and place[2] in COMPONENTS.get(word, "")
+    )
+
+
+def _is_entry_of_matrix(named: NamedFormula, near: Near) -> bool:
+    """Return whether a claim's quantity is named as a matrix entry, such as R_12, and ``near`` is a formula for it."""
+    # a single product may be an entry of another matrix
+    own, entry = re.fullmatch(ENTRY, named.name), re.match(r"entry ([1-3]{2}) of the rotation matrix", near.known.name)
+    is_same = own is not None and entry is not None and own[1] in (entry[1], entry[1][::-1])
+    return is_same and has_terms(named.formula)
+
+
+def _is_angle_of_entries(named: NamedFormula, near: Near) -> bool:
+    """Return whether a claim gives an angle by three or more entries of a matrix, and ``near`` is such an angle."""
+    letters = names_in(named.formula)
+    is_of_entries = len(letters) >= LEAST_SYMBOLS_EDITED and all(re.fullmatch(ENTRY, letter) for letter in letters)
+    return is_of_entries and re.search(r"angle .*of a rotation matrix", near.known.name) is not None
+
+
+def _is_component_of_parameters(named: NamedFormula, near: Near) -> bool:
+    """Return whether a claim is for a component of Rodrigues parameters, as ``sigma_1`` is, from those of a quaternion,
+    as beta_1 and beta_0 are, and ``near`` is a formula for this component.
+    """
+    place = re.fullmatch(r"[a-z]+_?([1-3])", named.name)
+    word, _, rest = near.known.name.partition(" component of the ")
+    series = {re.sub("_?[0-4]$", "", name) for name in names_in(named.formula)}
+    is_series = len(series) == 1 and not names_in(named.formula) & series
+    return (
+        place is not None
+        and is_series
+        and place[1] in COMPONENTS.get(word, "")
+        and "Rodrigues parameters of a quaternion" in rest
+    )
+
+
+def _only_in_sines(formula: Node) -> set[str]:
+    """Return the letters that occur in a formula only inside sines and cosines."""
+    inside = {name for _, node in walk(formula) if node.kind == "call" and node.value in ("sin", "cos")
+              for name in names_in(node)}  # fmt: skip
+    return inside - _outside_of_sines(formula)
+
+
+def _outside_of_sines(node: Node) -> set[str]:
+    if node.kind == "call" and node.value in ("sin", "cos"):
+        return set()
+    return names_in(node) if not node.args else {name for child in node.args for name in _outside_of_sines(child)}

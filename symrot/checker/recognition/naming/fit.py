@@ -1,0 +1,207 @@
+"""Whether a claim may mean a known formula, judged by names, units, axes and letters, and by the context.
+
+A claim gives a formula for a quantity (``named``); ``known`` is a known formula that is equal to it, with the letters
+that its symbols have in the claim. The context is what a user states besides the claim.
+"""
+
+import re
+from collections.abc import Iterable
+
+from symrot.checker.claim.named_formula import NamedFormula
+from symrot.checker.context.admission import ANGLES, admits_letters, admits_name
+from symrot.checker.context.angle_orders import are_roll_pitch_yaw
+from symrot.checker.context.context import Context
+from symrot.checker.recognition.formulas.attitudes import CROSS_PRODUCT
+from symrot.checker.recognition.formulas.dynamics import SYMMETRIC_EULER
+from symrot.checker.recognition.formulas.kinematics import OF_ONE_ENTRY
+from symrot.checker.recognition.naming.quantities import has_word, names_in, quantity_name, words_of
+from symrot.checker.recognition.usual_letters import plain_name, unit_of
+from symrot.checker.verdict import Identification
+
+__all__ = [
+    "ENTRY",
+    "MOMENT",
+    "PARALLEL",
+    "fits_context",
+    "fits_quantity",
+    "has_other_length",
+    "is_unusual",
+    "keeps_places",
+]
+
+CENTRE, POINT = re.compile(r"[IJk]_?(bar|G|C|cm|c|S)"), re.compile(r"[IJk]_?[OAPQB0]")
+"""Names of moments and radii of gyration about the centre of mass, and about another point."""
+
+MOMENTA = {"phi": "precession", "theta": "nutation", "psi": "spin"}
+"""Angle of ZXZ -> the word for its momentum in the names of known formulas."""
+
+MOMENT, KNOWN_MOMENT = re.compile(r"[IJ](_?\w+)?"), re.compile(r"[ABCIJ](_?\w+)?")
+"""Names that are moments of inertia in any claim, and names of moments of inertia in known formulas."""
+
+RATE_OF_ANGLE = re.compile(rf"diff\(({'|'.join(ANGLES)}|varphi|vartheta)\(t\), t\)")
+KNOWN_RATE = re.compile(r"d[a-z]+(_?\w+)?|(omega|Omega|w|n)(_?\w+)?")
+"""Rates of angles in claims, and symbols of known formulas that they may stand for."""
+
+RATES = {"precession": "dphi", "nutation": "dtheta", "spin": "dpsi"}
+"""Word for the momentum of an angle -> the rate of this angle in known formulas."""
+
+RATES_OF_TOPS = ("precession", "nutation", "frequency")
+"""Words for rates of a top; a component of an angular velocity, such as omega_2 next to omega_1, is no such rate."""
+
+OTHER_LENGTHS = (("R(_[12])?", r"[dD].*|[lLhH]|ell"), ("[abcLh]", r"[rR]"))
+"""Symbols of known formulas for radii, and for lengths and sides -> letters that books use for other lengths only."""
+
+PARALLEL = re.compile("parallel.ax")
+"""A part of the names of the formulas for a parallel axis."""
+
+OF_ROLL = re.compile(r"d?([pqr]|[Hh](_?\w+)?)")
+"""Rates of an aircraft and letters of angular momentum: next to them, the name L may mean a torque, as for a roll."""
+
+RATES_OF_AIRCRAFT = {"p": "x1", "q": "y2", "r": "z3"}
+"""Rate of an aircraft -> the axis of this component of its angular velocity in the body frame."""
+
+COMPONENTS_OF_OMEGA = tuple(f"omega_{axis}" for axis in "xyz123")
+
+ENTRY = r"[RrACQ]_?([1-3]{2})"
+"""Pattern of the names of the entries of a rotation matrix."""
+
+FIRST_ANGLE, LAST_ANGLE = r"(var)?phi|alpha|\w+_1", r"psi|gamma|\w+_3"
+"""Patterns of the names of the first and of the third of three Euler angles."""
+
+
+def has_other_length(known: str, renaming: Iterable[tuple[str, str]]) -> bool:
+    """Return whether a claim has the letter of another length than a body's formula, as L for the radius R.
+
+    ``known`` is the name of the formula; ``renaming`` has pairs (symbol, letter of the claim).
+    """
+    if re.match("moment of inertia of a|radius of gyration of a", known) is None or "ellip" in known:
+        return False
+    return any(
+        re.fullmatch(symbol, old) and re.fullmatch(letters, new)
+        for old, new in renaming
+        for symbol, letters in OTHER_LENGTHS
+    )
+
+
+def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> bool:
+    """Return whether a claim may mean a known formula, judged by the quantity's name and the units of the symbols."""
+    words = words_of(named)
+    if words is None and "inertia" in known.name and named.name[:1].islower():
+        return False  # books call moments of inertia by capital letters
+    if _is_component_of_rate(named) and any(word in known.name for word in RATES_OF_TOPS):
+        return False
+    is_torque = not matrix and "torque" in known.name and re.fullmatch(r"L(_\w+)?", named.name) is not None
+    if is_torque and not any(map(OF_ROLL.fullmatch, names_in(named.formula))):
+        return False
+    # a matrix may be the transpose of the known one; the other sign or, for a known quantity, a multiple is a fault
+    is_multiple = "times" in known.how and words is not None
+    if known.how and (not matrix or "sign" in known.how or is_multiple):
+        return False
+    if not has_word(known.name, words) or not keeps_places(named, known) or _is_of_other_angles(named, known):
+        return False
+    units = [(unit_of(own), unit_of(other)) for own, other in known.mapping.items()]
+    return all(own is None or other is None or own == other for own, other in units)
+
+
+def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
+    """Return whether a formula for an aircraft's rate p, q or r has other Euler angles than roll, pitch and yaw, or is
+    for the space frame.
+    """
+    sequence = re.search(r"angular velocity of (\w{3}) ", known.name)
+    if named.name not in RATES_OF_AIRCRAFT or sequence is None:
+        return False
+    if "space frame" in known.name:
+        return True
+    old_names = {plain_name(new).removeprefix("d"): old.removeprefix("d") for old, new in known.mapping.items()}
+    letters = {name.removeprefix("d") for name in names_in(named.formula)} & {*ANGLES}
+    places = {letter: ANGLES.index(old_names.get(letter, letter)) for letter in letters
+              if old_names.get(letter, letter) in ANGLES}  # fmt: skip
+    return not are_roll_pitch_yaw(sequence[1], places)
+
+
+def is_unusual(known: Identification) -> bool:
+    """Return whether a known formula is for the space frame, though the claim's omega_1 or p usually is a body rate."""
+    # books use omega_1, and p, q, r, for components in the body frame
+    components = [new for old, new in known.mapping.items() if old in COMPONENTS_OF_OMEGA]
+    return "space frame" in known.name and any(
+        re.fullmatch(r"(omega|w)_?[1-3]|[pqr]", plain_name(new)) for new in components
+    )
+
+
+def keeps_places(named: NamedFormula, known: Identification) -> bool:
+    """Return whether a claim agrees with a known formula in axis, entry, angle and point: R_12 contradicts entry 13."""
+    momentum = re.match(r"momentum of (\w+)", known.name)
+    angle = re.fullmatch(r"[pP]_?(?:var)?(phi|theta|psi)", named.name)
+    if momentum and angle and MOMENTA[angle[1]] != momentum[1]:
+        return False
+    # R_12 contradicts entry 13
+    entry, own = re.match(r"entry ([1-3]{2}) of", known.name), re.fullmatch(ENTRY, named.name)
+    if entry and own and own[1] not in (entry[1], entry[1][::-1]):
+        return False
+    # with numbered moments, as I_1 in I_3 - I_1, an index may be wrong
+    transverse = known.mapping.get("A", "A")
+    if SYMMETRIC_EULER in known.name and re.fullmatch(r"\w*[1-3xyz]", transverse):
+        return False
+    if known.name in OF_ONE_ENTRY and not all(re.fullmatch(ENTRY, new) for new in known.mapping.values()):
+        return False  # asin of a letter is any angle
+    angle_of = re.match(r"(first|third) angle of (ZXZ|ZYZ) of a rotation matrix", known.name)
+    if angle_of and re.fullmatch(LAST_ANGLE if angle_of[1] == "first" else FIRST_ANGLE, named.name):
+        return False
+    letters = [*known.mapping.values()] or [*names_in(named.formula)]
+    is_parallel = PARALLEL.search(known.name) is not None
+    about_other = [letter for letter in letters if MOMENT.fullmatch(letter) and not CENTRE.fullmatch(letter)]
+    # the theorem of parallel axes gives the moment about a point from the one about the centre of mass
+    if is_parallel and CENTRE.fullmatch(named.name) and (about_other or any(map(POINT.fullmatch, letters))):
+        return False
+    of_aircraft = [
+        (old, new) for old, new in known.mapping.items() if new in RATES_OF_AIRCRAFT and old in COMPONENTS_OF_OMEGA
+    ]
+    if any(old[-1] not in RATES_OF_AIRCRAFT[new] for old, new in of_aircraft):
+        return False
+    if len(of_aircraft) > 1 and "space frame" in known.name:
+        return False
+    if known.name.endswith(CROSS_PRODUCT) and _is_reversed(named.name, known):
+        return False
+    if re.fullmatch(r"(omega|w)_?[1-3xyz]|[nr]", known.mapping.get("dpsi", "")):
+        return False  # the whole spin is no rate of an angle
+    if (own_angle := re.fullmatch(r"p_?(phi|theta|psi|varphi)", named.name)) and "momentum of" in known.name:
+        rate = next((new for word, old in RATES.items() if f"momentum of {word}" in known.name
+                     for new in [known.mapping.get(old, old)]), "")  # fmt: skip
+        return plain_name(rate) == f"d{own_angle[1]}" and not (
+            "nutation" in known.name and own_angle[1] in ("phi", "psi")
+        )
+    momenta = [known.mapping.get(momentum, "") for momentum in ("p_phi", "p_psi")]
+    if momenta[0].endswith(("3", "psi")) or momenta[1].endswith(("z", "phi")):
+        return False
+    # a letter of a moment of inertia, and a rate of an angle, stand for nothing else
+    return not any(
+        (MOMENT.fullmatch(new) and not KNOWN_MOMENT.fullmatch(old))
+        or (RATE_OF_ANGLE.fullmatch(new) and not KNOWN_RATE.fullmatch(old))
+        for old, new in known.mapping.items()
+    )
+
+
+def _is_reversed(name: str, known: Identification) -> bool:
+    """Return whether a claim gives the velocity ``name`` as r x omega in place of omega x r."""
+    second = {new.rpartition("_")[0] for old, new in known.mapping.items() if old.startswith("n")}
+    return re.fullmatch(r"v(_?[a-zA-Z0-9]+)?", name) is not None and bool(second & {"omega", "w", "Omega"})
+
+
+def _is_component_of_rate(named: NamedFormula) -> bool:
+    """Return whether a claim's quantity is one component of an angular velocity, as omega_2 in a claim with omega_1."""
+    stem = re.fullmatch(r"(omega|w|Omega)_?[1-3xyzif]", named.name)
+    return stem is not None and any(
+        re.fullmatch(rf"{stem[1]}_?[0-3xyzif]", other) and other != named.name for other in names_in(named.formula)
+    )
+
+
+def fits_context(context: Context, named: NamedFormula, known: Identification, letters: set[str]) -> bool:
+    """Return whether a known formula agrees with what the context states of a claim's quantity and ``letters``.
+
+    True without a context.
+    """
+    if not context:
+        return True
+    return admits_name(context, known.name, quantity_name(named)) and admits_letters(
+        context, known.name, known.mapping, letters
+    )

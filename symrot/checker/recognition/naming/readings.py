@@ -1,0 +1,184 @@
+"""The known formulas and relations that a claim can mean (its readings), the likeliest first."""
+
+from dataclasses import replace
+from itertools import islice
+from typing import Any
+
+from sympy import Function, Matrix, Mul, Pow, Rational, Symbol, acos, asin, atan, atan2, fraction
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.interpreter import Interpreter, time
+from symrot.checker.claim.named_formula import NamedFormula
+from symrot.checker.claim.scope import is_matrix
+from symrot.checker.claim.tree import Node, is_derivative, negated, sum_of, walk
+from symrot.checker.context.context import letters_of
+from symrot.checker.recognition.formulas.common_factors import terms_expanded, without_common_powers
+from symrot.checker.recognition.identification import identified
+from symrot.checker.recognition.known_formulas import ending_of
+from symrot.checker.recognition.naming.fit import fits_context, fits_quantity, has_other_length, keeps_places
+from symrot.checker.recognition.naming.quantities import (
+    names_in,
+    quantity_name,
+    words_of,
+)
+from symrot.checker.recognition.naming.ranks import rarity_of, strangeness_of
+from symrot.checker.verdict import Identification
+from symrot.errors import InputError
+
+__all__ = [
+    "LEAST_SYMBOLS",
+    "SQUARED",
+    "all_letters_stated",
+    "has_root_of_sum",
+    "least_symbols_related",
+    "readings_of_claim",
+    "readings_of_formula",
+    "readings_of_relation",
+]
+
+LEAST_SYMBOLS = 2
+"""The fewest symbols of a scalar formula that is looked up as it is written."""
+
+LEAST_SYMBOLS_RELATED = 5
+"""The fewest symbols of a relation that is edited, or is for a quantity whose name says what it is.
+
+With fewer symbols, it may be another formula.
+"""
+
+LEAST_SYMBOLS_OF_MOTION = 3
+"""The fewest symbols of a relation with an angle's second time derivative and its sine: an equation of motion."""
+
+MOST_TERMS = 5000
+"""The most terms of an equation, when multiplied out, that is compared with known relations: these are shorter."""
+
+MOST_READINGS = 4
+"""The most formulas that one verdict names."""
+
+SQUARED = ", squared"
+"""The end of the names of those known formulas whose root has the name."""
+
+
+def least_symbols_related(left: Node, right: Node) -> int:
+    """Return how many symbols the equation ``left == right`` must have to be compared with known relations."""
+    nodes = [node for side in (left, right) for _, node in walk(side)]
+    accelerated = {node.args[0] for node in nodes if is_derivative(node) and len(node.args) > 2}
+    # an equation of motion, such as L theta'' = -g sin theta, needs fewer than another equation
+    of_motion = any(
+        node.kind == "call" and node.value in ("sin", "cos") and accelerated & {*node.args} for node in nodes
+    )
+    return LEAST_SYMBOLS_OF_MOTION if of_motion else LEAST_SYMBOLS_RELATED
+
+
+def readings_of_claim(
+    claim: Claim, named: NamedFormula, tree: Node, least_symbols: int, interpreter: Interpreter | None = None
+) -> tuple[Identification, ...]:
+    """Return the known formulas and relations that a claim with the right side ``tree`` can mean, the likeliest first.
+
+    Empty for too few symbols; ``least_symbols`` is the usual minimum. ``interpreter`` is by default that of the claim.
+    """
+    interpreter = claim.interpreter() if interpreter is None else interpreter
+    solved: tuple[Identification, ...] = ()
+    if named.solve is not None:
+        solved = readings_of_formula(claim, named, named.solve(tree), least_symbols, interpreter)
+    is_open = all_letters_stated(claim, named) or (words_of(named) is None and least_symbols == LEAST_SYMBOLS)
+    least = LEAST_SYMBOLS if is_open else least_symbols_related(named.side, tree)
+    return solved or readings_of_relation(claim, named, tree, least, interpreter)
+
+
+def all_letters_stated(claim: Claim, named: NamedFormula) -> bool:
+    """Return whether the context says what each letter of a claim means."""
+    letters = names_in(named.side) | names_in(named.formula)
+    return bool(letters) and all(claim.context.meaning_of(letter) is not None for letter in letters)
+
+
+def readings_of_relation(
+    claim: Claim, named: NamedFormula, tree: Node, least_symbols: int, interpreter: Interpreter | None = None
+) -> tuple[Identification, ...]:
+    """Return the known relations that are equivalent to the equation ``named.side == tree``.
+
+    Empty if the equation has fewer than ``least_symbols`` symbols.
+    """
+    difference = sum_of([named.side, negated(tree)])
+    try:
+        value = claim.with_definitions((interpreter or claim.interpreter()).read(difference))
+    except InputError:
+        return ()
+    if is_matrix(value) or len(value.atoms(Function, Symbol) - {time}) < least_symbols:
+        return ()
+    if terms_expanded(value) > MOST_TERMS or has_root_of_sum(value):
+        return ()
+    value = without_common_powers(value)
+    letters = {*letters_of(tree), *letters_of(named.side)}
+
+    def fits(known: Identification) -> bool:
+        return keeps_places(named, known) and fits_context(claim.context, named, known, letters)
+
+    fitting = identified(value, steps=False, named=True, quantity="", is_relation=True, fits=fits)
+    return tuple(islice(fitting, MOST_READINGS))
+
+
+def has_root_of_sum(value: Any) -> bool:
+    """Return whether a formula contains the root of a sum, which no known relation does."""
+    return any(power.base.is_Add and not power.exp.is_Integer for power in value.atoms(Pow))
+
+
+def readings_of_formula(
+    claim: Claim, named: NamedFormula, formula: Node, least_symbols: int, interpreter: Interpreter | None = None
+) -> tuple[Identification, ...]:
+    """Return the known formulas for the claim's quantity that are equal to ``formula``, the likeliest first.
+
+    Usually empty if a scalar ``formula`` has fewer than ``least_symbols`` symbols.
+    """
+    try:
+        value = claim.with_definitions((interpreter or claim.interpreter()).read(formula))
+    except InputError:
+        return ()
+    if is_matrix(value) and value.shape == (1, 1):
+        value = value[0]
+    # one symbol suffices in the claim's own formula if books use the name for one thing, as I_zz;
+    # a short edited formula may equal a known one by chance
+    fewest = 1 if words_of(named) is not None and least_symbols == LEAST_SYMBOLS else least_symbols
+    if not is_matrix(value) and len(value.atoms(Function, Symbol) - {time}) < fewest:
+        return ()
+    letters = {*letters_of(formula)}
+    is_tangent = named.side.kind == "call" and named.side.value == "tan"
+    searched, ending = _without_function(value, is_tangent)
+
+    def fits(known: Identification) -> bool:
+        return (
+            ending_of(known.name) == ending
+            and fits_quantity(named, known, is_matrix(value))
+            and fits_context(claim.context, named, replace(known, name=known.name.removesuffix(ending)), letters)
+            and not has_other_length(known.name, known.mapping.items())
+        )
+
+    is_named = words_of(named) is not None
+    looked_up = identified(searched, steps=False, named=is_named, quantity=quantity_name(named), fits=fits)
+    fitting = [replace(known, name=known.name.removesuffix(ending)) for known in looked_up]
+    fitting.sort(key=lambda known: (*strangeness_of(named, known), rarity_of(known)))
+    likeliest = [
+        known for known in fitting if strangeness_of(named, known)[:2] == strangeness_of(named, fitting[0])[:2]
+    ]
+    return tuple(likeliest[:MOST_READINGS])
+
+
+def _without_function(value: Any, of_tangent: bool = False) -> tuple[Any, str]:
+    """Return a value without its outer root or inverse function, and words for that function.
+
+    ``acos(u)`` gives (u, ", acos"), ``sqrt(u)`` gives (u, ", squared"); another u gives (u, "").
+    ``of_tangent``: ``atan(a/b)``, the solution of ``tan(x) = a/b``, gives (a and b, ", atan2").
+    """
+    if is_matrix(value):
+        return value, ""
+    # known formulas with roots and inverse functions are stored without them; the words end their names
+    if any(power.exp == Rational(1, 2) for power in Mul.make_args(value) if power.is_Pow):
+        return value**2, SQUARED
+    factor, function = value.as_coeff_Mul()
+    if of_tangent and isinstance(function, atan) and factor == 1:
+        return Matrix(fraction(function.args[0])), ", atan2"
+    if not isinstance(function, acos | asin | atan2):
+        return value, ""
+    if factor < 0 and isinstance(function, asin):
+        factor, function = -factor, asin(-function.args[0], evaluate=False)  # asin is odd: -asin(u) is asin(-u)
+    inside = Matrix(function.args) if isinstance(function, atan2) else function.args[0]
+    return inside, f", {f'{factor} ' * (factor != 1)}{function.func}"

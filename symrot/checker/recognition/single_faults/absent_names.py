@@ -1,0 +1,118 @@
+"""Names for a symbol of a known formula that a claim lacks: omega_3 in a claim with omega_1 and omega_2."""
+
+import re
+from collections.abc import Collection
+
+from symrot.checker.recognition.renaming import axes_of
+from symrot.checker.recognition.single_faults.renamings import NUMBERED, is_fitting
+from symrot.checker.recognition.usual_letters import UNIT_OF_NAME, plain_name
+
+__all__ = ["absent_name"]
+
+INDEX = re.compile("([1-3]|[xyz]|([1-3xyz])\\2|[1-3xyz]{2})$")
+"""The index of an axis at the end of a name."""
+
+ORDER = {"phi": "1", "theta": "2", "psi": "3"}
+"""Euler angle -> its index where all three have one letter, as theta_1, theta_2 and theta_3."""
+
+RATES = {"omega_1": "p", "omega_2": "q", "omega_3": "r"}
+"""Component of an angular velocity -> the letter of an aircraft's rate."""
+
+MATRIX_ENTRY = re.compile("R_[1-3]{2}")
+"""An entry of a rotation matrix in known formulas."""
+
+USUAL = {"c_3": "l", "mu": "m", "omega_3": "omega", "domega_3": "alpha"}
+"""Name in known formulas -> the name that books use where it is the only quantity of its kind."""
+
+
+def _absent_of_product(known: str, renaming: dict[str, str | None]) -> str | None:
+    """Return a name for the component ``known`` of a quaternion product: c2 for p2 if q2 is c1 and p0 is a2.
+
+    None for names without such numbers.
+    """
+    if re.fullmatch("[qp][0-3]", known) is None:
+        return None
+    beside = renaming.get(("p" if known[0] == "q" else "q") + known[1])
+    sibling = next((renaming[name] for name in renaming if name[0] == known[0] and renaming[name] is not None), None)
+    if beside is None or sibling is None or not NUMBERED.fullmatch(beside) or not NUMBERED.fullmatch(sibling):
+        return None
+    return beside[:-1] + sibling[-1]
+
+
+def _without_mark(name: str) -> tuple[str, str]:
+    """Return a name and the mark over it: ("z", "_bar") for ``z_bar``."""
+    mark = re.search("(_bar|_prime)*$", name)
+    assert mark is not None
+    return name[: mark.start()], mark[0]
+
+
+def _numbered_angle(known: str, mine: str, other: str) -> str:
+    """Return the name for the angle ``known`` if ``mine`` is called ``other``: theta_3 for psi if phi is theta_1.
+
+    An ``other`` without such a number gives "".
+
+    Examples
+    --------
+    >>> _numbered_angle("psi", "phi", "theta_1"), _numbered_angle("theta", "psi", "theta_1")
+    ('theta_3', 'theta_2')
+    >>> _numbered_angle("dpsi", "theta", "theta_2"), _numbered_angle("psi", "phi", "omega_2")
+    ('dtheta_3', '')
+    """
+    place, own = ORDER.get(known.removeprefix("d")), ORDER.get(mine.removeprefix("d"))
+    stem, number = other.removeprefix("d" if mine.startswith("d") else "")[:-1], other[-1:]
+    # numbered from the first rotation to the last or, as for aircraft, the other way round
+    if place is None or own is None or number not in (own, str(4 - int(own))):
+        return ""
+    return ("d" if known.startswith("d") else "") + stem + (place if number == own else str(4 - int(place)))
+
+
+def absent_name(known: str, renaming: dict[str, str | None], unused: Collection[str] = ()) -> tuple[str, bool]:
+    """Return a name for the symbol ``known`` that a claim lacks, and whether a series gives it: w_3 after w_1, w_2.
+
+    ``unused`` are the claim's letters that are no other symbol of the known formula: I_1 gives I_3 for C.
+    """
+    for mine, other in renaming.items():
+        if other is not None and (numbered := _numbered_angle(known, mine, plain_name(other))):
+            return numbered, True
+        if known in ORDER and mine.removeprefix("d") in ORDER and plain_name(other or "") == mine:
+            return known, True
+    if (of_product := _absent_of_product(known, renaming)) is not None:
+        return of_product, True
+    if known in RATES and any(renaming.get(mine) == letter for mine, letter in RATES.items()):
+        return RATES[known], True
+    if (entry := _absent_entry(known, renaming)) is not None:
+        return entry, True
+    axis = axes_of(known)
+    unit = UNIT_OF_NAME.get(known)
+    for mine, other in renaming.items():
+        name, mark = _without_mark(plain_name(other or ""))
+        index = INDEX.search(name)
+        if other is None or index is None or UNIT_OF_NAME.get(mine) != unit or len(axes_of(mine)) != len(axis):
+            continue
+        own, new = axes_of(mine), axes_of(name)
+        if axis and own == new:
+            return name[: index.start()] + _index_like(index[0], axis) + mark, True
+    for other in unused:
+        name, mark = _without_mark(plain_name(other))
+        index = INDEX.search(name)
+        if index is not None and len(axis) == 1 and len(axes_of(name)) == 1 and is_fitting(known, other, False):
+            return name[: index.start()] + _index_like(index[0], axis) + mark, True
+    return USUAL.get(known, known), False
+
+
+def _absent_entry(known: str, renaming: dict[str, str | None]) -> str | None:
+    """Return a name for the entry ``known`` of a rotation matrix: r_21 for R_21 if R_11 is r_11.
+
+    None if the claim has no entry of the matrix, or if an entry has other indices than in the known formula.
+    """
+    pairs = [(mine, other) for mine, other in renaming.items() if other is not None and MATRIX_ENTRY.fullmatch(mine)]
+    if MATRIX_ENTRY.fullmatch(known) is None or not pairs or any(mine[-2:] != other[-2:] for mine, other in pairs):
+        return None
+    return pairs[0][1][:-2] + known[-2:]
+
+
+def _index_like(index: str, axes: Collection[int]) -> str:
+    """Return the index for the axes, written as ``index`` is: "z" or "zz" for axis 3 beside "x" or "xx"."""
+    letters = "0xyz" if index[0].isalpha() else "0123"
+    made = "".join(letters[place] for place in sorted(axes))
+    return made * (len(index) if len(axes) == 1 else 1)

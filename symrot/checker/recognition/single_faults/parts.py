@@ -1,0 +1,345 @@
+"""Faults of single parts of a formula: the value that a part should have, and the short change that gives it.
+
+If the right values of a sum and of all its terms but one are known, the right values of this term follow; likewise for
+factors and arguments. So the search goes inward from the whole formula. Its results are not yet proven.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from functools import cached_property, reduce
+from typing import Any, NamedTuple
+
+from symrot.checker.claim.tree import TIME, Node, Path, is_derivative, negated, number, product
+from symrot.checker.repair.dual import minus
+from symrot.checker.repair.edits.faults import COST
+from symrot.checker.repair.edits.trees import scaled
+from symrot.checker.repair.filter import at, matrix_entries
+from symrot.checker.repair.points import Point, UndefinedValue
+from symrot.checker.repair.rows import entries_of, is_matrix, mapped, plus, shape_of, times
+
+__all__ = [
+    "CLOSE",
+    "NEUTRAL",
+    "Change",
+    "Letters",
+    "Part",
+    "PointOfLetters",
+    "Valued",
+    "Values",
+    "is_multiple",
+    "is_superfluous",
+    "multiples",
+    "near",
+    "parts",
+    "rates_of_entries",
+    "rational",
+    "values_of",
+]
+
+CLOSE = 1e-9
+"""The largest relative difference between values that count as equal."""
+NEUTRAL = {"sum": 0.0, "product": 1.0}
+"""Kind of a part -> the value of an argument that could as well be left out."""
+LARGEST = 400
+"""The largest numerator and denominator of a rational number that is recognised by its value."""
+
+HALVES = {Fraction(2): "half_angle", Fraction(1, 2): "double_half_angle"}
+"""Factor that an angle by an inverse function should have -> the fault of a formula without this factor."""
+
+Values = tuple[Any, ...]
+"""One value for each point: numbers, or rows of matrices."""
+
+
+class Part(NamedTuple):
+    """A part of a claim's formula, with its values and the values that it should have at the test points."""
+
+    path: Path
+    node: Node
+    values: Values
+    needed: Values  # the whole formula has its right values with these, if only this part is wrong
+    parent: str  # the kind of the node above, such as "sum"
+
+
+class Change(NamedTuple):
+    """A correction of a part: the tree ``made`` that takes the part's place, and the code and the cost of the fault."""
+
+    made: Node
+    code: str
+    cost: float  # larger for less usual faults
+
+
+@dataclass(frozen=True)
+class Letters:
+    """The symbols and rates of a formula, and the angles in its sines and cosines, with values at test points."""
+
+    atoms: Mapping[Node, Values]
+    angles: Mapping[Node, Values]
+    points: Sequence[Point]
+    aliases: Mapping[Node, Values] = field(default_factory=dict)  # names of formulas, such as c1 for cos(alpha)
+
+    @property
+    def names(self) -> list[str]:
+        return [str(node.value) for node in self.atoms if node.kind == "name"]
+
+
+@dataclass
+class PointOfLetters(Point):
+    """A test point at which a rate such as ``diff(phi(t), t)`` has a random value of its own."""
+
+    rates: Mapping[Node, float] = field(default_factory=dict)
+
+    def _value(self, node: Node) -> Any:
+        if node.kind == "call" and node in self.rates:
+            return self.rates[node]
+        if is_derivative(node) and str(node.args[0].value) in self.definitions:
+            return super()._value(rates_of_entries(self.definitions[str(node.args[0].value)], node.args[1:]))
+        return super()._value(node)
+
+
+def rates_of_entries(tree: Node, variables: tuple[Node, ...]) -> Node:
+    """Return the time derivative of a matrix of functions of time, written out entry by entry."""
+    if tree.kind == "call" and tree.args == (TIME,):
+        return Node("call", "diff", (tree, *variables))
+    return replace(tree, args=tuple(rates_of_entries(child, variables) for child in tree.args))
+
+
+def values_of(node: Node, points: Sequence[Point]) -> Values | None:
+    """Return the values of a tree at the points, or None if the tree has no value at one of them."""
+    try:
+        return tuple(point.value(node) for point in points)
+    except UndefinedValue:
+        return None
+
+
+@dataclass(eq=False)
+class Valued:
+    """A part of a formula with its values at test points, each computed once, however often the search passes it."""
+
+    node: Node
+    points: Sequence[Point]
+    path: Path = ()  # from the whole formula to the part
+    parent: str = ""  # the kind of the node above, such as "sum"
+
+    @cached_property
+    def values(self) -> Values | None:
+        """The values of the part, or None if it has no value at one of the points."""
+        return values_of(self.node, self.points)
+
+    def child(self, path: Path) -> "Valued | None":
+        """Return the part at a path inside this part, or None if there is no such path."""
+        node = at(self.node, path)
+        parent = self.node.kind if len(path) == 1 else "list"
+        return None if node is None else Valued(node, self.points, (*self.path, *path), parent)
+
+    @cached_property
+    def entries(self) -> Mapping[int, "Valued"]:
+        """The entries of a written-out matrix or list by their numbers, counted row by row; empty for other parts."""
+        paths = matrix_entries(self.node) or (
+            {n: (n,) for n in range(len(self.node.args))} if self.node.kind == "list" else {}
+        )
+        return {n: entry for n, path in paths.items() if (entry := self.child(path)) is not None}
+
+    @cached_property
+    def arguments(self) -> Sequence[tuple["Valued", "Inward"]]:
+        """The arguments of the part, each with the function from the part's needed values to the argument's."""
+        inward = _INWARD.get((self.node.kind, self.node.value if self.node.kind == "call" else None))
+        children = [Valued(child, self.points, (*self.path, place), self.node.kind)
+                    for place, child in enumerate(self.node.args)]  # fmt: skip
+        values = [child.values for child in children]
+        if inward is None or any(value is None for value in values):
+            return ()
+        by_point = list(zip(*(value or () for value in values), strict=True))
+        return [(child, _inward(inward, by_point, place)) for place, child in enumerate(children)]
+
+
+Inward = Callable[[Values], Values | None]
+"""The function from the values that a part should have to those that its argument should have, or to None."""
+
+
+def _inward(function: "OfArgument", by_point: Sequence[Sequence[Any]], place: int) -> Inward:
+    """Return the function from the needed values of a part to those of its argument number ``place``.
+
+    ``by_point`` has the values of all arguments, ``function`` is that of the part in ``_INWARD``.
+    """
+    others = [[value for n, value in enumerate(own) if n != place] for own in by_point]
+    if not any(is_matrix(value) for own in by_point for value in own):
+        if function is _of_sum:
+            sums = [math.fsum(own) for own in others]
+            return lambda needed: tuple([value - rest for value, rest in zip(needed, sums, strict=True)])
+        if function is _of_product:
+            divisors = [math.prod(own) for own in others]
+            if not all(divisors):
+                return lambda needed: None
+            return lambda needed: tuple([value / by for value, by in zip(needed, divisors, strict=True)])
+
+    def general(needed: Values) -> Values | None:
+        try:
+            inner = tuple(function(own, place, value) for own, value in zip(by_point, needed, strict=True))
+        except (ArithmeticError, ValueError, TypeError, UndefinedValue, IndexError):
+            return None
+        return None if any(value is None for value in inner) else inner
+
+    return general
+
+
+def parts(whole: Valued, needed: Values) -> Iterator[Part]:
+    """Yield the parts of a formula whose right values follow from ``needed``, those of the whole formula, each with
+    these values.
+    """
+    values = whole.values
+    if values is None or [*map(shape_of, values)] != [*map(shape_of, needed)]:
+        return
+    # in a + b, the right value of a is that of the whole minus b
+    yield Part(whole.path, whole.node, values, needed, whole.parent)
+    if whole.entries:
+        lists = [[*map(entries_of, side)] for side in (values, needed)]
+        wrong = [n for n in whole.entries if not all(near(a[n], b[n]) for a, b in zip(*lists, strict=True))]
+        if len(wrong) == 1:  # the only wrong entry of a matrix
+            yield from parts(whole.entries[wrong[0]], tuple(entries[wrong[0]] for entries in lists[1]))
+        return
+    if whole.node.kind == "product" and is_matrix(needed[0]) and (row := _wrong_row(values, needed)) is not None:
+        for entry, inner in _row_of_matrix(whole, needed, row):
+            yield from parts(entry, inner)
+    for argument, inward in whole.arguments:
+        if (inner_values := inward(needed)) is not None:
+            yield from parts(argument, inner_values)
+
+
+def _wrong_row(values: Values, needed: Values) -> int | None:
+    """Return the index of the only row in which columns ``values`` and ``needed`` differ. None in other cases."""
+    pairs = [(entries_of(value), entries_of(other)) for value, other in zip(values, needed, strict=True)]
+    wrong = [n for n in range(len(pairs[0][0])) if not all(near(a[n], b[n]) for a, b in pairs)]
+    return wrong[0] if len(wrong) == 1 and (shape_of(values[0]) or (0, 0))[1] == 1 else None
+
+
+def _row_of_matrix(whole: Valued, needed: Values, row: int) -> Iterator[tuple[Valued, Values]]:
+    """Yield (entry, needed values) for the matrix entries in a row, where ``whole`` is a matrix times a column."""
+    factors = whole.node.args
+    place, matrix = next(((n, factor) for n, factor in enumerate(factors) if matrix_entries(factor)), (0, whole.node))
+    others = [factor for n, factor in enumerate(factors) if n != place]
+    columns = values_of(product(others), whole.points) if place < len(factors) - 1 else None
+    rows = values_of(matrix, whole.points) if matrix is not whole.node else None
+    if columns is None or rows is None or any(shape_of(column) != (len(row_of[0]), 1)
+                                              for column, row_of in zip(columns, rows, strict=True)):  # fmt: skip
+        return
+    cells = matrix_entries(matrix)
+    for n in range(len(rows[0][0])):
+        by = [column[n][0] for column in columns]
+        cell = cells.get(row * len(rows[0][0]) + n)  # None for a zero beside the diagonal of diag(a, b, c)
+        entry = None if cell is None else whole.child((place, *cell))
+        if entry is not None and all(by):
+            # the values that make the product right, if only this entry changes
+            lacking = [other[row][0] - value[row][0] for value, other in zip(whole.values or (), needed, strict=True)]
+            yield entry, tuple(own[row][n] + less / factor for own, less, factor in zip(rows, lacking, by, strict=True))
+
+
+def _of_sum(arguments: Sequence[Any], place: int, needed: Any) -> Any:
+    others = [mapped(minus, value) for n, value in enumerate(arguments) if n != place]
+    return reduce(plus, others, needed)
+
+
+def _of_product(arguments: Sequence[Any], place: int, needed: Any) -> Any:
+    others = [value for n, value in enumerate(arguments) if n != place]
+    matrices = [value for value in others if is_matrix(value)]
+    own = arguments[place]
+    if not matrices:
+        divisor = math.prod(others)
+        return mapped(lambda entry: entry / divisor, needed)
+    if is_matrix(own):
+        return None
+    return _ratio(needed, reduce(times, others))
+
+
+def _ratio(left: Any, right: Any) -> float | None:
+    """Return the number ``left / right`` for scalars or proportional matrices; None if there is no such number."""
+    if not is_matrix(left):
+        return left / right if right else None
+    pairs = list(zip(entries_of(left), entries_of(right), strict=True))
+    ratio = next((a / b for a, b in pairs if b), None)
+    return ratio if ratio is not None and all(near(a, ratio * b) for a, b in pairs) else None
+
+
+def _of_power(arguments: Sequence[Any], place: int, needed: Any) -> Any:
+    base, exponent = arguments
+    if place or is_matrix(base) or not exponent:
+        return None
+    size = abs(needed) ** (1 / exponent)
+    even = float(exponent).is_integer() and exponent % 2 == 0
+    return None if needed < 0 and even else math.copysign(size, base if even else needed)
+
+
+OfArgument = Callable[[Sequence[Any], int, Any], Any]
+"""A function of the values of all arguments, the number of one of them, and the value that the part should have."""
+
+_INWARD: dict[tuple[str, str | None], OfArgument] = {
+    ("sum", None): _of_sum, ("product", None): _of_product, ("power", None): _of_power,
+    ("neg", None): lambda arguments, place, needed: mapped(minus, needed),
+    ("inv", None): lambda arguments, place, needed: 1 / needed,
+    ("call", "sqrt"): lambda arguments, place, needed: needed**2,
+    ("call", "acos"): lambda arguments, place, needed: math.cos(needed),
+    ("call", "asin"): lambda arguments, place, needed: math.sin(needed),
+    ("call", "atan"): lambda arguments, place, needed: math.tan(needed),
+    ("call", "atan2"): lambda arguments, place, needed: (
+        arguments[0] / math.tan(needed) if place else arguments[1] * math.tan(needed)
+    ),
+    ("call", "abs"): lambda arguments, place, needed: math.copysign(needed, arguments[0]),
+}  # fmt: skip
+"""Kind of a part, and its function -> the value that an argument should have, from that of the part."""
+
+
+def is_superfluous(part: Part) -> bool:
+    """Return whether a part should be left out: a term that should be 0, or a factor that should be 1."""
+    neutral = NEUTRAL.get(part.parent)
+    if neutral is None or any(map(is_matrix, part.needed)) or part.node.kind == "number":
+        return False
+    size = max(map(abs, part.values))
+    return all(abs(value - neutral) <= CLOSE * (size + neutral) for value in part.needed)
+
+
+def is_multiple(part: Part) -> bool:
+    """Return whether a part's needed values are its values times one number other than 1."""
+    first = _ratio(part.needed[0], part.values[0])
+    if first is None or abs(first - 1) <= CLOSE:
+        return False
+    for value, needed in zip(part.values[1:], part.needed[1:], strict=True):
+        ratio = _ratio(needed, value)
+        if ratio is None or not near(ratio, first):
+            return False
+    return True
+
+
+def multiples(part: Part) -> Iterator[Change]:
+    """Yield the change of a part's sign or numeric factor that gives the part its needed values, if there is one."""
+    ratio = rational(tuple(_ratio(b, a) or 0.0 for a, b in zip(part.values, part.needed, strict=True)))
+    if ratio is None or ratio == 1 or (ratio < 0 and ratio != -1) or part.node.kind == "neg":
+        return
+    if part.node.kind == "number":
+        value = ratio * part.node.value
+        if value > 0:
+            size = 0.0 if ratio in (2, Fraction(1, 2)) else COST["per_factor_e"] * abs(math.log(ratio))
+            cost = COST["factor"] + size
+            yield Change(number(value), "factor", cost + COST["no_integer"] * (value.denominator > 1))
+    elif part.parent not in ("product", "power", "inv") or part.node.kind == "sum":  # else the whole term is changed
+        if ratio == -1:
+            yield Change(negated(part.node), "sign_of_term", COST["sign_of_term"])
+        else:
+            cost = COST["solved_factor_2" if ratio in (2, Fraction(1, 2)) else "solved_rational_factor"]
+            is_angle = part.node.value in ("acos", "asin", "atan", "atan2")
+            yield Change(scaled(part.node, ratio), HALVES.get(ratio, "factor") if is_angle else "factor", cost)
+
+
+def rational(values: Sequence[float]) -> Fraction | None:
+    """Return the rational number that all values equal: 1/3 for 0.3333333333. None if there is no simple one."""
+    first = values[0]
+    if not math.isfinite(first) or not 1e-4 < abs(first) < 1e4:
+        return None
+    ratio = Fraction(first).limit_denominator(LARGEST)
+    fits = all(near(value, float(ratio)) for value in values)
+    return ratio if fits and ratio and abs(ratio.numerator) <= LARGEST else None
+
+
+def near(left: float, right: float) -> bool:
+    """Return whether two values agree to about nine digits."""
+    return abs(left - right) <= CLOSE * (abs(left) + abs(right))

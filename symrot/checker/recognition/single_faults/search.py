@@ -1,0 +1,132 @@
+"""Known formulas that differ from a claim by one fault: a numeric search, whose results are not yet proven.
+
+For each formula that symrot derives for the claim's quantity, the search computes the values that the claim's formula
+should have. It then looks for a single part whose change gives these values.
+"""
+
+from collections.abc import Callable, Iterator
+from itertools import chain
+from typing import Any
+
+from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.named_formula import NamedFormula
+from symrot.checker.claim.tree import Node, walk
+from symrot.checker.recognition.known_formulas import Known
+from symrot.checker.recognition.renaming import is_consistent
+from symrot.checker.recognition.single_faults.comparison import Near, Search, compare, search_of
+from symrot.checker.recognition.single_faults.known_values import (
+    formulas_of_quantities,
+    has_angles,
+    is_column,
+    names_of,
+    quantity_node,
+)
+from symrot.checker.recognition.single_faults.letters import letters_of_formula, nodes_of, text_of
+from symrot.checker.recognition.single_faults.parts import values_of
+from symrot.checker.recognition.single_faults.renamings import is_fitting, renaming_of_product, renamings, strangeness
+from symrot.checker.recognition.single_faults.solved_relations import solved_relations
+from symrot.checker.repair.rows import is_matrix
+from symrot.exact.limits.operations import operations_left, spend
+
+__all__ = ["near_formulas"]
+
+MOST_PAIRS = 1500
+"""The most pairs of a known formula and a renaming that are compared."""
+MOST_SEARCHES = 4
+"""The number of searches that are stored."""
+MOST_NODES = 500
+"""The most symbols and operations of a formula that is searched."""
+FEW = 3
+"""The most symbols of a known formula with an angle that a claim without angles may mean."""
+
+
+def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
+    """Return changes of a claim's formula that may turn it into a known formula with ``fits(known)``, the cheapest
+    first. The code "none" means that no change is needed.
+    """
+    search = _search(claim, named)
+    if search is None:
+        return []
+    letters, scale = search.letters, search.values
+    names = [text_of(atom) for atom in letters.atoms]
+    inside = {node for angle in letters.angles for node in nodes_of(angle)}
+    angles = {text_of(atom) for atom in letters.atoms if atom in inside}
+    nearest: dict[tuple[Node, str], Near] = {}
+    fitting: dict[tuple[str, ...], list[dict[str, str | None]]] = {}  # names of a known formula -> their renamings
+    pairs = 0
+    quantity = text_of(quantity_node(named))
+    for mine, known in chain((("", known) for known in formulas_of_quantities() if fits(known)), _relations(quantity)):
+        is_wrong_kind = is_column(known) != is_matrix(scale[0])
+        is_of_body = claim.context.body is not None and claim.context.body.kind.title in known.name
+        has_one_angle = (
+            len(letters.angles) == 1 and len(names_of(known)) == len(letters.atoms) - 1
+        )  # in a factor too many
+        is_other = has_angles(known) != bool(letters.angles) and len(names_of(known)) > FEW and not has_one_angle
+        is_wrong_kind = is_wrong_kind or (is_other and not is_of_body)
+        if is_wrong_kind or abs(len(names_of(known)) - len(letters.atoms)) > 1:
+            continue
+        if names_of(known) not in fitting:
+            fitting[names_of(known)] = renamings(names_of(known), names, angles)
+        of_product = renaming_of_product(names) if "quaternion product" in known.name else None
+        for renaming in [of_product] if of_product else fitting[names_of(known)]:
+            own = [(old, new) for old, new in renaming.items() if new is not None]
+            if mine and not is_consistent([*own, (mine, quantity)]):
+                continue
+            pairs += 1
+            if pairs > MOST_PAIRS:
+                break
+            compared = compare(search, known, renaming)
+            # under the hypotheses the claim's formula equals a known one: no change is needed
+            if compared is None and claim.hypotheses:
+                return []
+            if compared is None and has_root_of_sum(named.formula):
+                texts = tuple((old, new) for old, new in renaming.items() if new is not None)
+                whole = Near(
+                    0.0, "none", named.formula, known, strangeness(renaming), False, False, False, "", 0, texts
+                )
+                return [whole]
+            for candidate in compared or ():
+                key = (candidate.tree, known.name)
+                if key not in nearest or candidate.cost < nearest[key].cost:
+                    nearest[key] = candidate
+    return sorted(nearest.values(), key=lambda candidate: candidate.cost)
+
+
+def _search(claim: Claim, named: NamedFormula) -> Search | None:
+    """Return the search for faults of a claim's formula; None for a formula without values, or one that is too long.
+
+    The latest searches are stored: a claim is searched once for each context that it may have.
+    """
+    equations = claim.define, claim.hypotheses, claim.relation
+    key = equations, claim.symbols, claim.functions, claim.implied, named[:4], named.solve is None
+    if key in _latest:
+        search, operations = _latest[key]
+        spend(operations)  # as at the first time: the budget of a claim does not depend on those before it
+        return search
+    before = operations_left() or 0
+    is_short = sum(1 for _ in walk(named.formula)) <= MOST_NODES
+    letters = letters_of_formula(claim, named) if is_short else None
+    values = None if letters is None else values_of(named.formula, letters.points)
+    search = search_of(claim, named, letters, values) if letters is not None and values is not None else None
+    if len(_latest) == MOST_SEARCHES:
+        del _latest[next(iter(_latest))]
+    _latest[key] = search, before - (operations_left() or 0)
+    return search
+
+
+_latest: dict[Any, tuple[Search | None, int]] = {}
+"""The latest searches by what they depend on in a claim, each with the operations that it took to prepare it."""
+
+
+def has_root_of_sum(formula: Node) -> bool:
+    """Return whether a formula has the root of a sum."""
+    # fingerprints of equal formulas with such roots may differ by a sign
+    roots = (node.args[0] for _, node in walk(formula) if node.kind == "call" and node.value == "sqrt")
+    return any(node.kind == "sum" for root in roots for _, node in walk(root))
+
+
+def _relations(quantity: str) -> Iterator[tuple[str, Known]]:
+    """Yield (symbol, formula) for each known relation, solved for a symbol that the claim may call ``quantity``."""
+    for name, known in solved_relations():
+        if is_fitting(name, quantity, is_angle=False):
+            yield name, known

@@ -1,0 +1,132 @@
+"""Scalar formulas as tapes: lists of operations, each after its arguments, for many evaluations of one formula.
+
+One pass along the tape gives the value of every part of the formula. One pass back, from the whole inward, gives the
+value that each part should have if the whole should have another value, and only this part is wrong.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+from symrot.checker.claim.tree import Node
+from symrot.checker.recognition.single_faults.parts import CLOSE, NEUTRAL
+
+__all__ = ["Tape", "tape_of_tree"]
+
+FUNCTIONS: dict[str, Callable[..., float]] = {
+    "sin": math.sin, "cos": math.cos, "tan": math.tan, "sqrt": math.sqrt, "abs": abs, "acos": math.acos,
+    "asin": math.asin, "atan": math.atan,
+}  # fmt: skip
+INVERSES: dict[str, Callable[[float], float]] = {
+    "sqrt": lambda needed: needed**2, "acos": math.cos, "asin": math.sin, "atan": math.tan,
+}  # fmt: skip
+"""Function -> the function from the value that a call should have to that of its argument."""
+SLACK = 1000.0
+"""How much larger an error may be in the quick search than in the exact one, which follows."""
+
+
+class Operation(NamedTuple):
+    """One node of a formula."""
+
+    kind: str  # as in Node, and "constant" for pi
+    arguments: tuple[int, ...]  # the places of the arguments on the tape
+    value: float | str  # of a number; the name of a symbol or function
+    parent: str  # the kind of the node above
+
+
+class Tape(NamedTuple):
+    """The operations of a scalar formula; the last one gives the value of the whole."""
+
+    operations: tuple[Operation, ...]
+
+    def values(self, symbols: Mapping[str, float]) -> list[float] | None:
+        """Return the values of all operations where the symbols have the given values; None if one has no value."""
+        values: list[float] = []
+        try:
+            for kind, arguments, value, _ in self.operations:
+                values.append(_value(kind, [values[n] for n in arguments], value, symbols))
+        except (ZeroDivisionError, OverflowError, ValueError):
+            return None
+        return None if any(isinstance(value, complex) for value in values) else values
+
+    def may_have_too_much(self, values: Sequence[Sequence[float]], needed: float) -> bool:
+        """Return False if no term should be 0 and no factor 1 for the whole to have the value ``needed``.
+
+        ``values`` are those of all operations at some points, the first of which is the one for ``needed``.
+        """
+        own = values[0]
+        wanted: list[float | None] = [None] * len(own)
+        wanted[-1] = needed
+        for place in range(len(own) - 1, -1, -1):
+            want, operation = wanted[place], self.operations[place]
+            if want is None:
+                continue
+            neutral = NEUTRAL.get(operation.parent)
+            if neutral is not None and operation.kind != "number":
+                size = max(abs(at_point[place]) for at_point in values)
+                if abs(want - neutral) <= SLACK * CLOSE * (size + neutral):
+                    return True
+            for argument in operation.arguments:
+                wanted[argument] = _wanted(operation, own, place, argument, want)
+        return False
+
+
+def _value(kind: str, arguments: list[float], value: float | str, symbols: Mapping[str, float]) -> float:
+    if kind == "name":
+        return symbols[str(value)]
+    if kind in ("number", "constant"):
+        return float(value)
+    if kind == "sum":
+        return sum(arguments)
+    if kind == "product":
+        return math.prod(arguments)
+    if kind == "neg":
+        return -arguments[0]
+    if kind == "inv":
+        return 1.0 / arguments[0]
+    if kind == "power":
+        base, exponent = arguments
+        power: float = base**exponent
+        return power
+    return FUNCTIONS[str(value)](*arguments)
+
+
+def _wanted(operation: Operation, own: Sequence[float], place: int, argument: int, want: float) -> float | None:
+    """Return the value that an argument should have for its operation to have the value ``want``, or None."""
+    try:
+        if operation.kind == "sum":
+            return want - (own[place] - own[argument])
+        if operation.kind == "product":
+            return want * own[argument] / own[place]
+        if operation.kind == "neg":
+            return -want
+        if operation.kind == "inv":
+            return 1.0 / want
+        if operation.kind == "power" and argument == operation.arguments[0]:
+            exponent = own[operation.arguments[1]]
+            size = abs(want) ** (1 / exponent)
+            is_even = exponent.is_integer() and exponent % 2 == 0
+            return None if want < 0 and is_even else math.copysign(size, own[argument] if is_even else want)
+        if operation.value == "abs":
+            return math.copysign(want, own[argument])
+        inverse = INVERSES.get(str(operation.value)) if operation.kind == "call" else None
+        return None if inverse is None else inverse(want)
+    except (ArithmeticError, ValueError):
+        return None
+
+
+def tape_of_tree(tree: Node) -> Tape | None:
+    """Return the tape of a formula; None for a formula with matrices, or with functions that no tape has."""
+    operations: list[Operation] = []
+
+    def place_of(node: Node, parent: str) -> int | None:
+        is_known = node.kind in ("name", "number", "sum", "product", "neg", "inv", "power") or node.value in FUNCTIONS
+        places = [place_of(argument, node.kind) for argument in node.args] if is_known else [None]
+        if None in places:
+            return None
+        value = math.pi if node == Node("name", "pi") else node.value
+        kind = "constant" if value is math.pi else node.kind
+        operations.append(Operation(kind, tuple(n for n in places if n is not None), value, parent))
+        return len(operations) - 1
+
+    return None if place_of(tree, "") is None else Tape(tuple(operations))

@@ -1,0 +1,116 @@
+"""Repairs in the notation in which the claim was typed: ``q p`` for ``qmul(q, p)``, abbreviations, LaTeX."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from symrot.checker.arrays.as_written import as_written, has_arrays, is_odd, with_inverses
+from symrot.checker.claim.claims import Claim, relation_text
+from symrot.checker.claim.notation import Notation
+from symrot.checker.claim.reader import read_relation
+from symrot.checker.claim.tree import Node, exchanged, walk
+from symrot.checker.marks import changed_entry, changed_spans
+from symrot.checker.typed.readings import Relation
+from symrot.checker.verdict import Repair
+from symrot.errors import InputError
+
+__all__ = ["as_inequality", "as_typed", "as_typed_repairs", "in_notation", "relation_of"]
+
+AS_TYPED = ("degrees",)
+"""The codes of repairs that are written in the notation of the input already."""
+
+CALLS_FOR_ARRAYS = ("qmul(", "eye(", "⊗", "\\otimes")
+"""Calls that answers have only if the claim has one of them, and signs for the product of quaternions."""
+
+
+def as_typed_repairs(repairs: Sequence[Repair], claim: Claim, notation: Notation) -> tuple[Repair, ...]:
+    """Return ``repairs`` of a claim in the notation of its text, each text once, without those that people would not
+    write.
+    """
+    typed = [
+        repair if repair.code in AS_TYPED else in_notation(repair, claim, notation)
+        for repair in repairs
+        if not _is_odd(repair) and _keeps(repair, claim.written)
+    ]
+    first: dict[str, Repair] = {}
+    for repair in typed:
+        first.setdefault(repair.text, repair)
+    return tuple(first.values())
+
+
+def in_notation(repair: Repair, claim: Claim, notation: Notation) -> Repair:
+    """Return a repair in the notation of the claim, with the positions at which its text differs from the claim's."""
+    if claim.relation is None:
+        return replace(repair, text=notation.rewritten(repair.text))
+    relation = claim.relation if claim.unsplit is None else claim.unsplit[1]
+    texts: Sequence[str] = [as_typed(source, claim.written) for source in (relation_text(relation), repair.text)]
+    unchanged = [place for place in ("left", "right") if place not in repair.edited] if repair.edited else []
+    if len(unchanged) == 1:
+        texts = [_with_inverse(source, unchanged[0], claim.text) for source in texts]
+    if not any(call in claim.text for call in CALLS_FOR_ARRAYS):
+        texts = list(map(_with_plain_arrays, texts))
+    before, after = map(notation.rewritten, texts)
+    changed, text = changed_spans(before, after), after
+    return replace(repair, text=text, changed=changed, entry=changed_entry(relation, repair.text))
+
+
+def as_inequality(repair: Repair, claim: Claim, sign: str, notation: Notation) -> Repair:
+    """Return a repair of the equation ``claim`` as one of the inequality with ``sign``, in the notation of the text."""
+    relation = relation_of(repair.text)
+    if relation is None or relation[0] != "==" or claim.relation is None:
+        return repair
+    before, after = (notation.relation((sign, *sides)) for sides in (claim.relation[1:], relation[1:]))
+    return replace(repair, text=after, changed=changed_spans(before, after))
+
+
+def as_typed(source: str, written: Sequence[tuple[Node, Node]]) -> str:
+    """Return the text of an equation with the short forms that the claim has for its formulas."""
+    relation = relation_of(source) if written else None
+    if relation is None:
+        return source
+    sign, left, right = relation
+    return relation_text((sign, exchanged(left, dict(written)), exchanged(right, dict(written))))
+
+
+def _keeps(repair: Repair, written: Sequence[tuple[Node, Node]]) -> bool:
+    """Return whether a repair leaves the formulas unchanged for which the claim has short forms."""
+    relation = relation_of(repair.text) if written else None
+    nodes = [node for side in relation[1:] for _, node in walk(side)] if relation else []
+    return not nodes or all(formula in nodes for formula, _ in written)
+
+
+def _with_inverse(source: str, place: str, typed: str) -> str:
+    """Return the equation ``source`` with ``q**(-1)`` for q*/|q|^2 on its side ``place``, if ``typed`` writes a
+    power.
+    """
+    relation = relation_of(source)
+    if relation is None or relation[0] != "==":
+        return source
+    left, right = relation[1:]
+    inverse = with_inverses([left if place == "left" else right], typed)[0]
+    left, right = (inverse, right) if place == "left" else (left, inverse)
+    return source if relation[1:] == (left, right) else relation_text(("==", left, right))
+
+
+def _with_plain_arrays(source: str) -> str:
+    """Return the text of an equation as people write it, with ``q*p`` for the quaternion ``qmul(q, p)``.
+
+    Other texts are returned unchanged.
+    """
+    relation = relation_of(source)
+    if relation is None or not has_arrays(relation[1:]):
+        return source
+    sign, left, right = relation
+    return relation_text((sign, as_written(left), as_written(right)))
+
+
+def relation_of(source: str) -> Relation | None:
+    """Parse the text of a repair as an equation; return None if it is none, such as a repair in words."""
+    try:
+        return read_relation(source)
+    except InputError:
+        return None
+
+
+def _is_odd(repair: Repair) -> bool:
+    relation = relation_of(repair.text)
+    return relation is not None and is_odd(relation[1:])
