@@ -12,7 +12,8 @@ from symrot.checker.claim.size import MOST_NESTED, nesting
 from symrot.checker.claim.source.file import Refusal, read_entries
 from symrot.checker.claim.source.text import functions_of_time, is_latex
 from symrot.checker.claim_verdict import check_claim, check_readings, verdict_of_decision, within_budget
-from symrot.checker.context.context import Context, read_context
+from symrot.checker.context.context import Context
+from symrot.checker.context.statements import read_context
 from symrot.checker.decide.decision import decide_equation
 from symrot.checker.decide.equation import Equation
 from symrot.checker.equivalents.inertia_in_frames import without_brackets

@@ -11,8 +11,8 @@ from sympy import Expr, Poly, Symbol
 from sympy.polys.polyerrors import PolynomialError
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.named_formula import is_name_or_rate, solution
 from symrot.checker.claim.notation import Notation
+from symrot.checker.claim.solving import is_name_or_rate, solution
 from symrot.checker.claim.tree import Node, number, text, walk
 from symrot.checker.verdict import Diagnosis, Verdict
 from symrot.errors import InputError

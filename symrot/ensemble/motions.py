@@ -86,10 +86,8 @@ def follow(problem: Problem, method: str) -> Followed:
         ``auto`` (closed form or Taylor series in SIMD lanes, see :func:`symrot.ensemble.exact.choose`), ``exact``,
         ``taylor``, ``dop853`` or ``scipy:NAME``.
     """
-    if not isinstance(method, str):
-        choose_method(problem.plan, method)  # raises an error
-    name = method.partition(":")[0]
-    if method != "auto" and (name not in METHODS or name == "constant" or (":" in method and name != "scipy")):
+    name, colon, _ = method.partition(":") if isinstance(method, str) else ("", "", "")
+    if method != "auto" and (name not in METHODS or name == "constant" or (colon and name != "scipy")):
         choose_method(problem.plan, method)  # raises an error that lists the methods
     groups = problem.variation.patterns()
     if len(groups) == 1:

@@ -11,7 +11,7 @@ from functools import cached_property
 from sympy import CRootOf, Expr, Rational, Symbol, atan2
 from sympy.polys.rings import PolyElement
 
-from symrot.checker.claim.atoms import atoms_of
+from symrot.checker.claim.interpreter import atoms_of
 from symrot.checker.decide.constraints import Constraints, constraints_of
 from symrot.checker.decide.infeasibility import Infeasibility, infeasibility_proof, vanishes_on
 from symrot.checker.decide.real_points import ATTEMPTS, RealPoint, real_points

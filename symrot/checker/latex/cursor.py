@@ -97,7 +97,19 @@ def is_d(item: tree.Node) -> bool:
 
 
 class Cursor(cursor.Cursor):
-    """A position in a formula, with the functions of time, vectors and ambiguous pieces in the text before it."""
+    """A position in a formula, with the functions of time, vectors and ambiguous pieces in the text before it.
+
+    Parameters
+    ----------
+    source, where : str
+        The text, and its place for error messages.
+    names : Names
+        The names that the claim declares.
+    flips : collection of (str, int), optional
+        The keys of the ambiguous pieces that get their less usual meaning; None refuses an ambiguous text.
+    upper : bool
+        Whether plus-minus signs stand for their upper signs.
+    """
 
     synonyms: ClassVar[Mapping[str, str]] = {
         "\\top": "\\T", "\\intercal": "\\T", "\\lbrace": "\\{", "\\rbrace": "\\}", "\\lbrack": "[", "\\rbrack": "]",

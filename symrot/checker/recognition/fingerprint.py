@@ -12,7 +12,7 @@ from hashlib import sha256
 import sympy
 from sympy import Expr, Mul, Rational, S, cancel
 
-from symrot.checker.claim.atoms import atoms_of
+from symrot.checker.claim.interpreter import atoms_of
 
 __all__ = ["PRIME", "Fingerprint", "NotInField", "Values", "fingerprint", "in_lowest_terms", "values_at"]
 
