@@ -4,7 +4,10 @@ import inspect
 import json
 import re
 import sys
+from contextlib import redirect_stdout
+from functools import cache
 from importlib.util import find_spec
+from io import StringIO
 from pathlib import Path
 
 import pytest
@@ -172,18 +175,19 @@ def test_every_module_that_a_page_runs_is_there(page):
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_every_command_and_option_that_a_page_names_is_there(page, capsys):
+def test_every_command_and_option_that_a_page_names_is_there(page):
     for command, rest in re.findall(r"`symrot ([a-z]+)([^`\n]*)`", PAGES[page]):
         assert command in COMMANDS or command == "COMMAND", command
         for option in re.findall(r"(?<=\s)--?[a-z][a-z-]*", rest):
-            assert option in usage(command, capsys), f"symrot {command} {option}"
+            assert option in usage(command), f"symrot {command} {option}"
 
 
-def usage(command, capsys):
+@cache
+def usage(command):
     """Return the help text of a command."""
-    with pytest.raises(SystemExit):
+    with redirect_stdout(StringIO()) as printed, pytest.raises(SystemExit):
         main([command, "--help"])
-    return capsys.readouterr().out
+    return printed.getvalue()
 
 
 def test_the_rooms_are_in_the_order_of_their_imports():

@@ -21,17 +21,19 @@ from numpy.typing import NDArray
 from sympy import Symbol, lambdify
 
 from symrot.build import cache
+from symrot.codegen.library_kernels import kernel_description, kernel_program
 from symrot.codegen.printing.c_function import DOUBLE, FLOAT, Real
-from symrot.codegen.printing.c_source import MATH_HEADER
+from symrot.codegen.printing.c_source import MATH_HEADER, c_functions, c_header
 from symrot.codegen.printing.math_header import FAR, math_header
+from symrot.kernels.library import definition
 from symrot.kernels.removable import REMOVABLE
-from symrot.workshop.emit import emit
 
 __all__ = ["FUNCTIONS", "Measured", "main", "measured"]
 
 CONTRACTION = {"unfused": ("-ffp-contract=off",), "fused": ("-ffp-contract=fast", cache.NATIVE)}
 FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared")
 DIGITS = {"binary64": (53, -1074), "binary32": (24, -149)}  # bits of the fraction; exponent of the least number
+EXACT = 60  # digits of exact values
 LEAST = {"binary64": 2.0**-1021, "binary32": 2.0**-125}
 REACH = {"binary64": float(np.finfo(np.float64).max), "binary32": float(np.finfo(np.float32).max)}  # for one sample
 
@@ -70,12 +72,16 @@ def _quotient(name: str) -> Callable[[Any], Any]:
     return function
 
 
+@memoised
+def _coefficients(name: str) -> list[Any]:
+    """Return the coefficients of the function ``name`` in powers of x^2, the highest first, for mpmath."""
+    with mpmath.workdps(EXACT):
+        return [mpmath.mpf(a.numerator) / a.denominator for a in reversed(REMOVABLE[name].taylor(26))]
+
+
 def _series(name: str, x: Any) -> Any:
     """Return the exact value at ``x`` of the function ``name`` with a removable singularity, by its series near 0."""
-    which = REMOVABLE[name]
-    if abs(x) > 1:
-        return _quotient(name)(x)
-    return mpmath.fsum(mpmath.mpf(a.numerator) / a.denominator * x ** (2 * k) for k, a in enumerate(which.taylor(26)))
+    return _quotient(name)(x) if abs(x) > 1 else mpmath.polyval(_coefficients(name), x * x)
 
 
 def _sinc(x: Any) -> Any:
@@ -142,18 +148,20 @@ def _directions(real: Real, count: int, kind: Any) -> Floats:
     return np.concatenate([directions * signs, few[:, few[1] >= 0]], axis=1).astype(kind).astype(float)
 
 
-def _text(function: Function) -> str:
-    """Return emitted C that contains a function, with a loop over arrays for each of its forms."""
-    emitted = emit(function.kernel)
-    source = emitted.source.replace(f'#include "{MATH_HEADER}"', "")
-    text = math_header() + source.replace(f'#include "{function.kernel}.h"', emitted.header)
-    for real in (DOUBLE, FLOAT):
+def _text(kernel: str) -> str:
+    """Return the C text of a kernel with a loop over arrays for each form of each function of :data:`FUNCTIONS`."""
+    program, reals = kernel_program(kernel), (DOUBLE, FLOAT)
+    source = c_functions(program, reals, near=True).replace(f'#include "{MATH_HEADER}"', "")
+    header = c_header(program, kernel_description(definition(kernel), "c"), reals)
+    text = math_header() + source.replace(f'#include "{kernel}.h"', header)
+    functions = {function.name: function for function in FUNCTIONS if function.kernel == kernel}
+    for real, (name, function) in product(reals, functions.items()):
+        arguments = ", ".join(f"x[{i}*n + k]" for i in range(2 if name in ("arc_ratio", "atan2") else 1))
         for form, prefix in function.forms:
-            arguments = ", ".join(f"x[{i}*n + k]" for i in range(2 if function.name in ("arc_ratio", "atan2") else 1))
             text += (
-                f"\nvoid {form}{real.suffix}(size_t n, const {real.type} *x, {real.type} *y)\n{{\n"
+                f"\nvoid {form}_{name}{real.suffix}(size_t n, const {real.type} *x, {real.type} *y)\n{{\n"
                 "    for (size_t k = 0; k < n; ++k)\n"
-                f"        y[k] = {prefix}{function.name}{real.suffix}({arguments});\n}}\n"
+                f"        y[k] = {prefix}{name}{real.suffix}({arguments});\n}}\n"
             )
     return text
 
@@ -184,14 +192,14 @@ def measured(points: int = 20_000, contraction: Sequence[str] = tuple(CONTRACTIO
         Among ``"unfused"`` and ``"fused"``: whether the compiler may fuse a product and a sum.
     """
     for function in FUNCTIONS:
-        text = _text(function)
+        text = _text(function.kernel)
         built = {each: cache.build(text, "ulps", (*FLAGS, *CONTRACTION[each])) for each in contraction}
         for real, (form, _) in product((DOUBLE, FLOAT), function.forms):
             arguments = _points(function, real, form, points)
-            with mpmath.workdps(60):
+            with mpmath.workdps(EXACT):
                 exact = [function.exact(*map(mpmath.mpf, each)) for each in arguments.T.tolist()]
                 for each, path in built.items():
-                    values = _called(ctypes.CDLL(str(path)), f"{form}{real.suffix}", arguments, real)
+                    values = _called(ctypes.CDLL(str(path)), f"{form}_{function.name}{real.suffix}", arguments, real)
                     far = arguments[0].tolist() if function.beyond else [0.0] * len(values)
                     errors = [_ulps(value, right, real, x) for value, right, x in zip(values, exact, far, strict=True)]
                     worst = int(np.argmax(errors))

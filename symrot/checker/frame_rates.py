@@ -1,8 +1,8 @@
 r"""Equations with the rates of one vector seen from two frames, ``(dA/dt)_I = (dA/dt)_B + ω × A`` (transport theorem).
 
-The marks at the derivatives define both rates and the angular velocity, so that such an equation is decided: A has any
-components in a frame B that turns in any way, its rate there is the derivative of these components, and its rate in
-the frame I is the derivative of its components there.
+A mark names the frame from which a rate is seen, so such an equation can be decided: A gets arbitrary components in a
+frame B that rotates arbitrarily. Its rate seen from B is the derivative of these components, its rate seen from I the
+derivative of its components in I.
 """
 
 import re
@@ -29,10 +29,10 @@ from symrot.kinematics.rotations import elementary_rotation, vee
 __all__ = ["verdict_on_rates", "without_marks"]
 
 INERTIAL = {"", "I", "N", "s", "S", "i", "O", "E", "in", "fixed", "space", "inertial", "lab", "abs"}
-"""Marks of a frame that does not turn; a derivative without a mark is the one seen from there."""
+"""Marks of a frame that does not rotate; a derivative without a mark is the one seen from such a frame."""
 
 TURNING = {"B", "b", "body", "rot", "rotating", "r"}
-"""Marks of a frame that turns."""
+"""Marks of a rotating frame."""
 
 MARKED = "moving"
 """The frame of ``d'A/dt`` and of a ring over A, which have no name."""
@@ -87,12 +87,12 @@ DIRECTIONS = (
 OPERATOR = re.compile(OPEN + r"\\d?frac\s*\{?\s*" + D + r"\}?\s*" + DT + CLOSE + LABEL.replace("{0}", "l"))
 
 NAMES = "uwshn"
-"""Letters for the two rates, of which those are taken that the text does not have."""
+"""Letters that may stand for the two rates; letters that occur in the text are not used."""
 
 
 @dataclass(frozen=True)
 class _Rate:
-    """The derivative of a vector by time as a text has it: its place, the vector and the mark of the frame."""
+    """The derivative of a vector by time in a text: its start and end there, the vector, and the mark of the frame."""
 
     start: int
     end: int

@@ -7,6 +7,7 @@ an exact point. One such as ``omega > 2`` is a condition, about which nothing is
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import islice, product
+from time import perf_counter
 from typing import Any
 
 from sympy import Expr, Rational, Symbol, pi
@@ -15,7 +16,7 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import TIME, Node, walk
 from symrot.checker.claim_verdict import check_claim, verdict_of_decision, within_budget
-from symrot.checker.decide.decision import decide_equation
+from symrot.checker.decide.decision import decide_equation, for_positive_bases
 from symrot.checker.decide.signs import is_proven_nonnegative, is_proven_positive
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 from symrot.errors import InputError
@@ -64,10 +65,12 @@ def verdict_on_inequality(claim: Claim, sign: str, flipped: str) -> Verdict:
     InputError
         For sides that are not real numbers.
     """
-    return within_budget(lambda: _verdict(claim, sign, flipped), claim.text)
+    start = perf_counter()
+    verdict = within_budget(lambda: _verdict(claim, sign, flipped, start), claim.text)
+    return replace(verdict, seconds=perf_counter() - start)
 
 
-def _verdict(claim: Claim, sign: str, flipped: str) -> Verdict:
+def _verdict(claim: Claim, sign: str, flipped: str, start: float) -> Verdict:
     assert claim.relation is not None
     equation = claim.equation
     for side in (equation.left, equation.right):
@@ -83,7 +86,8 @@ def _verdict(claim: Claim, sign: str, flipped: str) -> Verdict:
             "undecided", reason="it is not known for which values of its letters both sides are real numbers"
         )
     if is_proven_positive(difference) if strict else is_proven_nonnegative(difference):
-        return replace(verdict_of_decision(domain, claim.text, 0.0), verdict="true")
+        decision = for_positive_bases(replace(domain, verdict="true"), equation)
+        return verdict_of_decision(decision, claim.text, start)
     if _is_condition(claim):
         on_spin = _on_least_spin(claim, sign)
         return Verdict("definition", reason=CONDITION) if on_spin is None else on_spin

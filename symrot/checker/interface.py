@@ -7,11 +7,13 @@ from time import perf_counter
 from typing import Any
 
 from symrot.checker.approximation import verdict_on_approximation
+from symrot.checker.claim.reader import check_length
 from symrot.checker.claim.size import MOST_NESTED, nesting
 from symrot.checker.claim.source.file import Refusal, read_entries
 from symrot.checker.claim.source.text import functions_of_time, is_latex
 from symrot.checker.claim_verdict import check_claim, check_readings, verdict_of_decision, within_budget
-from symrot.checker.context.context import Context, read_context
+from symrot.checker.context.context import Context
+from symrot.checker.context.statements import read_context
 from symrot.checker.decide.decision import decide_equation
 from symrot.checker.decide.equation import Equation
 from symrot.checker.equivalents.inertia_in_frames import without_brackets
@@ -132,6 +134,7 @@ def _checked(
         if isinstance(assume, str) or not all(isinstance(hypothesis, str) for hypothesis in assume):
             raise InputError("assume: expected a list of texts like 'a == b', since the claim is a text")
         typed = _without_backticks(left).lstrip()  # places in the text count from its first character
+        check_length(typed)  # before any search in the text, whose time grows with its length
         if not assume and not stated and (of_frames := verdict_on_rates(typed)) is not None:
             return of_frames
         if not assume and not stated and (approximate := verdict_on_approximation(typed)) is not None:

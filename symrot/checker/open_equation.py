@@ -11,8 +11,8 @@ from sympy import Expr, Poly, Symbol
 from sympy.polys.polyerrors import PolynomialError
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.named_formula import is_name_or_rate, solution
 from symrot.checker.claim.notation import Notation
+from symrot.checker.claim.solving import is_name_or_rate, solution
 from symrot.checker.claim.tree import Node, number, text, walk
 from symrot.checker.verdict import Diagnosis, Verdict
 from symrot.errors import InputError
@@ -50,13 +50,9 @@ def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:
         return verdict
     name = notation.formula(letter)
     example = ", for example" if _may_have_others(claim, letter) else ""
-    reason = f"it is an equation for {name}, and no identity: it holds for {_in(notation, values)}{example}"
+    written = notation.condition(values) if "==" in values else values
+    reason = f"it is an equation for {name}, and no identity: it holds for {written}{example}"
     return _open(verdict, reason)
-
-
-def _in(notation: Notation, values: str) -> str:
-    """Return values such as ``x == sqrt(2) and x == 3`` in the notation of the claim; words are returned unchanged."""
-    return notation.condition(values) if "==" in values else values
 
 
 def _open(verdict: Verdict, reason: str) -> Verdict:

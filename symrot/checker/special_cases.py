@@ -6,7 +6,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-from symrot.checker.arrays.complex_parts import NUMBER, substituted, with_parts
+from symrot.checker.arrays.complex_parts import NUMBER, with_numbers, with_parts
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.tree import Node, number, product, sum_of, walk
 from symrot.checker.claim.vectors import Vector, is_components
@@ -37,7 +37,7 @@ def for_complex_numbers(claim: Claim, verdict: Verdict) -> Verdict:
         for name in names
     }
     sign, left, right = claim.relation
-    relation = with_parts((sign, substituted(left, numbers), substituted(right, numbers)), UNIT, claim.text)
+    relation = with_parts((sign, with_numbers(left, numbers), with_numbers(right, numbers)), UNIT, claim.text)
     other = check_claim(replace(claim, relation=relation, alternatives=(), has_parts=True), repair=False)
     if other.verdict != "false":
         return verdict

@@ -341,7 +341,8 @@ def propagate_ensemble(
         Sample times, s, common to all motions, shape (m,), or separate for each motion, shape (n, m); in any order,
         before or after the initial time. Default: the sample times of the scene.
     method : str
-        ``auto``, or one of :data:`symrot.propagation.method.METHODS`, except ``constant``, for all motions.
+        The method for all motions: ``auto``, one of :data:`symrot.propagation.method.METHODS` except ``constant``, or
+        ``scipy:NAME`` for a method of SciPy's solve_ivp.
     tolerance : float, optional
         Tolerance for the error of each trajectory; default: the tolerance of the scene.
     workers : int

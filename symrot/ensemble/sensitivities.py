@@ -110,8 +110,7 @@ def follow_sensitivities(problem: Problem, keys: Sequence[str]) -> tuple[Sensiti
             rotation[block, ..., some] = turned.reshape(*slopes.shape[:2], 3, slopes.shape[3])
             for row, reason in zip(rows.tolist(), reasons, strict=True):
                 messages[row] = messages[row] or (reason and f"sensitivities: {reason}")
-    names, units = tuple(variable.name for variable in variables), tuple(variable.unit for variable in variables)
-    return Sensitivities(names, units, groups_of(variables), omega, quaternion, rotation), tuple(messages)
+    return _labelled(variables, omega, quaternion, rotation), tuple(messages)
 
 
 def _follow_switched(problem: Problem, keys: Sequence[str]) -> tuple[Sensitivities, tuple[str, ...]]:
@@ -135,8 +134,13 @@ def _follow_switched(problem: Problem, keys: Sequence[str]) -> tuple[Sensitiviti
             continue
         omega[i], quaternion[i] = slopes[:, :RATES], slopes[:, RATES:]
         rotation[i] = small_rotation(states[:, RATES:], slopes[:, RATES:])
+    return _labelled(variables, omega, quaternion, rotation), tuple(messages)
+
+
+def _labelled(variables: Sequence[Variable], omega: Floats, quaternion: Floats, rotation: Floats) -> Sensitivities:
+    """Return arrays of derivatives by ``variables`` with the names and the units of the variables."""
     names, units = tuple(variable.name for variable in variables), tuple(variable.unit for variable in variables)
-    return Sensitivities(names, units, groups_of(variables), omega, quaternion, rotation), tuple(messages)
+    return Sensitivities(names, units, groups_of(variables), omega, quaternion, rotation)
 
 
 def read_columns(scene: Scene, keys: Sequence[str], varying: Collection[str]) -> tuple[list[Variable], list[Column]]:

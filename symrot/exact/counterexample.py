@@ -49,6 +49,9 @@ _INVERSE = (asin, acos, atan, atan2)
 _TRIANGLES = [Rational(n, d) for n, d in ((3, 5), (-4, 5), (3, 4), (-4, 3), (1, 1), (-1, 1), (2, 1), (-2, 1), (1, 2))]
 """Values at which sines and cosines of most inverse functions are rational."""
 
+_CIRCLE = tuple(tuple(map(Fraction, point.split())) for point in ("0 1", "1 0", "0 -1", "-1 0", "3/5 4/5", "4/5 3/5"))
+"""Pairs (sine, cosine): the quarter turns, and the acute angles of the triangle with the sides 3, 4 and 5."""
+
 _TURNS = [Rational(n, d) * pi for n, d in ((1, 1), (-1, 1), (2, 1), (1, 2), (-1, 2), (3, 1), (1, 3), (3, 2), (-2, 3))]
 """Values of angles at which sines and cosines are simple."""
 
@@ -290,7 +293,7 @@ def _coordinates(ring: FormulaRing) -> tuple[list[FreeChoice], list[tuple[int, P
             fixed.add(linear[0])
     for atom, place in ring.sines.items():
         pair = (place, ring.cosines[atom])
-        coordinates.append(FreeChoice(pair, _simple_circle(), _random_sphere(2)))
+        coordinates.append(FreeChoice(pair, _CIRCLE, _random_sphere(2)))
     for leaf, number in ring.symbols.items():
         if number not in fixed:
             simple = tuple((Fraction(v),) for v in (0, 1, -1, 2, 3) if fits_assumptions(leaf, Fraction(v)))
@@ -311,13 +314,6 @@ def _sphere(poly: PolyElement) -> tuple[int, ...] | None:
             return None
         places.append(mono.index(2))
     return tuple(sorted(places)) if constant and len(places) > 1 else None
-
-
-def _simple_circle() -> tuple[tuple[Fraction, ...], ...]:
-    """Return the pairs (sine, cosine) that the search for a counterexample tries first for an angle."""
-    # the quarter turns, and the acute angles of the triangle with the sides 3, 4 and 5
-    points = ("0 1", "1 0", "0 -1", "-1 0", "3/5 4/5", "4/5 3/5")
-    return tuple(tuple(map(Fraction, point.split())) for point in points)
 
 
 def _simple_sphere(size: int) -> tuple[tuple[Fraction, ...], ...]:

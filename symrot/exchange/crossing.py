@@ -18,23 +18,23 @@ __all__ = ["interior_points", "require_boundary"]
 Floats = NDArray[np.float64]
 
 MOST_TESTS = 50_000_000
-"""Number of tests of a triangle against a line; it limits the number of lines."""
+"""Largest number of tests of a triangle against a line; it limits the number of lines."""
 
 MOST_PAIRS = 5_000_000
-"""Number of pairs of triangles, overlapping along one axis, up to which all pairs are searched for crossings."""
+"""Largest number of pairs of triangles, overlapping along one axis, that are searched for crossings."""
 
 MOST_SEARCHED = 200_000
-"""Number of triangles up to which a search of pairs is tried."""
+"""Largest number of triangles for which a search of pairs is tried."""
 
 MOST_ANGLES = 5_000_000
-"""Number of solid angles of triangles; it limits the number of contacts that are tested."""
+"""Largest number of solid angles that are computed; it limits the number of contacts that are tested."""
 
-DIRECTIONS = 64  # of the points that are tested around a contact
-DISTANCE = 1e-3  # of these points from it, relative to the size of the mesh
+DIRECTIONS = 64  # number of points that are tested around a contact
+DISTANCE = 1e-3  # distance of these points from the contact, relative to the size of the mesh
 MOST_SHELLS = 1000
 NEAR = 1e-12  # distance, relative to the size of the mesh, below which two crossings of a line count as one place
 THIN = 1e-14  # area, relative to the size squared, below which a line may pass through an edge
-PLACES = ((0.36, 0.33), (0.21, 0.43), (0.55, 0.17))  # of a line within its triangle, tried in turn
+PLACES = ((0.36, 0.33), (0.21, 0.43), (0.55, 0.17))  # where a line may pass through its triangle, tried in turn
 AXES = ((1, 2, 0), (2, 0, 1), (0, 1, 2))  # depth last
 
 
@@ -52,11 +52,11 @@ class _Boxes(NamedTuple):
 
 
 def require_boundary(surface: Surface, where: str) -> str:
-    """Return a sentence about the tests that a closed surface passed.
+    """Test that a closed surface is the boundary of a body; return a sentence about the tests that it passed.
 
-    Raise InputError if a test shows that the surface crosses itself, or if it has more than 1000 shells.
+    Several shells are allowed: separate parts, and cavities, whose normals point into the cavity. Raise InputError if a
+    test shows that the surface crosses itself or is inside out, or if it has more than 1000 shells.
     """
-    # several shells are allowed: separate parts, and cavities, whose normals point into the cavity
     numbers = shells(surface)
     count = int(numbers.max()) + 1
     if count > MOST_SHELLS:
@@ -124,12 +124,11 @@ def _passes(corners: Floats, boxes: _Boxes, triangle: int, where: str, surface: 
 def _profile(
     corners: Floats, boxes: _Boxes, target: Floats, axes: tuple[int, int, int]
 ) -> tuple[Floats, NDArray[np.int64]] | None:
-    """Return the coordinates along ``axes[2]`` where a line through ``target`` crosses the surface, and the winding
-    number after each.
+    """Return where a line crosses the surface, as coordinates along the line, and the winding number after each place.
 
-    The line is parallel to ``axes[2]``. None if it passes near an edge of a triangle.
+    The line passes through ``target`` and is parallel to the last of the three ``axes``. None if it passes near an edge
+    of a triangle.
     """
-    # the line is parallel to the last of the axes; a depth is the coordinate along it
     u, v, depth = axes
     near = np.flatnonzero(boxes.around(u, target[u]))
     near = near[_Boxes(boxes.low[:, near], boxes.high[:, near]).around(v, target[v])]
@@ -205,8 +204,10 @@ def _search_pairs(surface: Surface, boxes: _Boxes, where: str) -> Floats | None:
 def _pierces(
     surface: Surface, edges_of: NDArray[np.int64], through: NDArray[np.int64], k: int
 ) -> tuple[int | None, Floats]:
-    """Return the first triangle in ``edges_of`` whose edge ``k`` passes through the interior of the triangle at the
-    same index of ``through``, or None; and the points where such edges pass through the boundary of a triangle.
+    """Test whether edge ``k`` of each triangle in ``edges_of`` passes through the triangle in ``through``.
+
+    Return the first triangle of ``edges_of`` whose edge passes through the interior of the other triangle, or None; and
+    the points where edges pass through the boundary of the other triangle.
     """
     corners = surface.triangles
     a, b, c = (corners[through, n] for n in range(3))
@@ -264,7 +265,7 @@ def _windings(corners: Floats, points: Floats) -> Floats:
 
 
 def interior_points(surface: Surface) -> Floats:
-    """Return some points inside a surface; none if it has too many triangles."""
+    """Return points of a lattice that are inside a surface, shape (n, 3); fewer for a surface of more triangles."""
     lowest, size = surface.vertices.min(axis=0), np.ptp(surface.vertices, axis=0)
     lattice = np.stack(np.meshgrid(*[np.linspace(0, 1, 9)[1:-1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     count = min(len(lattice), MOST_ANGLES // len(surface.triangles))
@@ -275,9 +276,7 @@ def interior_points(surface: Surface) -> Floats:
 
 
 def _sides(surface: Surface, a: Any, b: Any, c: Any, d: Any) -> NDArray[np.int64]:
-    """Return on which side of the plane (a, b, c) each vertex d lies: 1, -1, or 0 if rounding errors could change the
-    side.
-    """
+    """Return the side of the plane (a, b, c) on which each vertex d lies, 1 or -1; 0 if rounding could change it."""
     p, q, r, s = (surface.vertices[index] for index in (a, b, c, d))
     u, v, w = p - s, q - s, r - s
     products = np.stack([u[:, i] * (v[:, j] * w[:, k]) for i, j, k in _PERMUTATIONS])

@@ -63,11 +63,11 @@ def _lower(powers: Exponents, axis: int) -> Exponents:
 
 
 def _coefficients(corners: tuple[Corner, Corner, Corner], degree: int, one: Any) -> dict[Exponents, Any]:
-    """Return a map from (l, m, n) to the coefficient of s^l t^m u^n in 1/((1 - a.v)(1 - b.v)(1 - c.v)), up to a
-    degree.
+    """Return the coefficient of s^l t^m u^n in 1/((1 - a.v)(1 - b.v)(1 - c.v)) for each (l, m, n) up to a degree.
+
+    The corners a, b, c are three arrays each, with an entry for each triangle. There is one recurrence for each factor.
     """
     before: dict[Exponents, Any] = {}
-    # a, b, c: three arrays each, with an entry for each triangle; one recurrence for each factor
     for corner in corners:
         now: dict[Exponents, Any] = {(0, 0, 0): one}
         for powers in exponents(degree)[1:]:
@@ -90,8 +90,10 @@ def _columns(points: NDArray[Any]) -> Corner:
 
 
 def _cross(left: Corner, right: Corner, sign: int = -1) -> Corner:
-    """Return the cross products of arrays of vectors; with ``sign`` = 1 their terms are added instead of subtracted."""
-    # added magnitudes bound the rounding errors
+    """Return the cross products of arrays of vectors.
+
+    With ``sign`` = 1 their terms are added instead of subtracted: sums of magnitudes bound the rounding errors.
+    """
     x, y, z = (left[j] * right[k] + sign * (left[k] * right[j]) for j, k in ((1, 2), (2, 0), (0, 1)))
     return x, y, z
 
@@ -115,8 +117,10 @@ def _integers(vertices: NDArray[np.float64]) -> tuple[NDArray[Any], int]:
 
 
 def exact_moments(surface: Surface, degree: int) -> VolumeMoments:
-    """Return the exact integrals up to a degree over the polyhedron that a closed surface bounds."""
-    # Vertices are doubles, so the integrals are rational; integers take about 10 us for each triangle.
+    """Return the exact integrals up to a degree over the polyhedron that a closed surface bounds.
+
+    The vertices are doubles, so that the integrals are rational; they take about 10 us for each triangle.
+    """
     points, unit = _integers(surface.vertices)
     middle = [(min(column) + max(column)) // 2 for column in points.T.tolist()]
     points = points - np.array(middle, dtype=object)

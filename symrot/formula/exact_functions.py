@@ -21,6 +21,8 @@ MOST_BITS = 1 << 20  # largest size of an argument or a result; an exponential o
 def _transcendental(name: str, *arguments: Fraction) -> Fraction:
     """Return the value of the named function at exact arguments, computed by mpmath with a relative error below 2^-300.
 
+    An exponential far below every double is returned as 2^-1048576.
+
     Raises
     ------
     ValueError

@@ -302,16 +302,11 @@ def _from_decimal(value: Decimal) -> Angle:
     return _exactly(Fraction(value))
 
 
-def _from_float(value: float) -> Angle:
+def _from_float(value: SupportsFloat) -> Angle:
+    value = float(value)
     if not isfinite(value):
         raise ValueError("not finite")
     return _exactly(Fraction(value))
-
-
-def _from_scalar(value: SupportsFloat) -> Angle:
-    """Return the double nearest to a NumPy scalar or SymPy number, as an :class:`Angle` without a multiple of pi."""
-    # an Angle, like the result of every reader, since a number in a scene may be an angle in degrees
-    return _from_float(float(value))
 
 
 _READERS: dict[type, Callable[..., Angle]] = {
@@ -337,7 +332,7 @@ def _read(value: object, where: str, expect: str) -> Angle:
     if not isinstance(value, bool):
         reader = _READERS.get(kind) or next((r for k, r in _READERS.items() if isinstance(value, k)), None)
         if reader is None and hasattr(value, "__float__"):
-            reader = _from_scalar
+            reader = _from_float  # of a scalar of NumPy, or a number of SymPy
         if reader is not None:
             try:
                 angle = reader(value)

@@ -9,30 +9,8 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
-from symrot.inertia.hulls import (
-    AXES,
-    PARALLEL,
-    Dimensions,
-    Ellipsoid,
-    Piece,
-    Pose,
-    Solid3,
-    Vec,
-    Z,
-    center,
-    directions,
-    enclosing_disk,
-    extent,
-    height,
-    largest_distance,
-    opposite,
-    plus,
-    point_disks,
-    polygon_around,
-    size,
-    triangle,
-    unit_vector,
-)
+from symrot.inertia import hulls
+from symrot.inertia.hulls import AXES, PARALLEL, Dimensions, Piece, Solid3, Vec, Z, opposite, plus, unit_vector
 from symrot.inertia.tensor import cross, dot
 
 __all__ = ["are_apart", "excess", "is_convex", "outside"]
@@ -44,7 +22,7 @@ Wall = Callable[[list[Piece]], float]
 
 
 def _plane(normal: Vec, limit: float) -> Wall:
-    return lambda pieces: max(extent(piece, normal) for piece in pieces) - limit
+    return lambda pieces: max(hulls.extent(piece, normal) for piece in pieces) - limit
 
 
 def _tube_wall(radius: float, slope: float) -> Wall:
@@ -52,17 +30,19 @@ def _tube_wall(radius: float, slope: float) -> Wall:
     steep = math.hypot(1.0, slope)
 
     def reach(piece: Piece) -> float:
-        disk = enclosing_disk(piece)
+        disk = hulls.enclosing_disk(piece)
         if abs(disk.normal[0]) + abs(disk.normal[1]) < PARALLEL or not disk.radius:
             x, y, z = disk.center
             return math.hypot(x, y) + disk.radius + slope * z + disk.ball * steep
-        return max(math.hypot(x, y) + slope * z for x, y, z in polygon_around(disk)) + disk.ball * steep
+        return max(math.hypot(x, y) + slope * z for x, y, z in hulls.polygon_around(disk)) + disk.ball * steep
 
     return lambda pieces: (max(map(reach, pieces)) - radius) / steep
 
 
 def _ball_wall(radius: float) -> Wall:
-    return lambda pieces: max(largest_distance(enclosing_disk(piece), (0.0, 0.0, 0.0)) for piece in pieces) - radius
+    return lambda pieces: (
+        max(hulls.largest_distance(hulls.enclosing_disk(piece), (0.0, 0.0, 0.0)) for piece in pieces) - radius
+    )
 
 
 def _ellipsoid_wall(a: float, b: float, c: float) -> Wall:
@@ -72,14 +52,14 @@ def _ellipsoid_wall(a: float, b: float, c: float) -> Wall:
         return v[0] / a, v[1] / b, v[2] / c
 
     def reach(piece: Piece) -> float:
-        if isinstance(piece, Ellipsoid):
+        if isinstance(piece, hulls.Ellipsoid):
             axes = [scaled(axis) for axis in piece.axes]
             crossed = max(abs(dot(axes[i], axes[j])) for i, j in ((0, 1), (0, 2), (1, 2)))
             lengths = [math.hypot(*axis) for axis in axes]
             spread = max(lengths) if crossed < PARALLEL else math.hypot(*lengths)
             return math.hypot(*scaled(piece.center)) + spread
-        disk = enclosing_disk(piece)
-        return max(math.hypot(*scaled(point)) for point in polygon_around(disk)) + disk.ball / least
+        disk = hulls.enclosing_disk(piece)
+        return max(math.hypot(*scaled(point)) for point in hulls.polygon_around(disk)) + disk.ball / least
 
     return lambda pieces: (max(map(reach, pieces)) - 1) * least
 
@@ -94,7 +74,7 @@ def _slabs(*limits: tuple[int, float]) -> list[Wall]:
 
 
 def _sides(d: Dimensions) -> list[Wall]:
-    corners = triangle(d)
+    corners = hulls.triangle(d)
     walls = []
     for (x1, y1), (x2, y2) in zip(corners, [*corners[1:], corners[0]], strict=True):
         normal = unit_vector((y2 - y1, x1 - x2, 0.0))  # outwards, as the corners are counterclockwise
@@ -140,11 +120,11 @@ _WALLS: dict[str, Callable[[Dimensions], list[Wall]]] = {
 }
 
 
-def _relative(inner: Solid3, outer: Solid3) -> Pose:
+def _relative(inner: Solid3, outer: Solid3) -> hulls.Pose:
     """Return the position and rotation of the shape ``inner`` in the axes of the shape ``outer``."""
     columns = [outer.pose.rotate_back(inner.pose.rotate(axis)) for axis in AXES]
     first, second, third = ((columns[0][i], columns[1][i], columns[2][i]) for i in range(3))
-    return Pose(outer.pose.from_body(inner.pose.at), (first, second, third))
+    return hulls.Pose(outer.pose.from_body(inner.pose.at), (first, second, third))
 
 
 def outside(inner: Solid3, outer: Solid3) -> float:
@@ -180,9 +160,9 @@ def _into_bore(own: Solid3, radius: float, is_cylinder: bool) -> float:
             offset = math.hypot(x, y) if is_cylinder else math.hypot(x, y, z)
             if offset < own.dimensions["inner"]:
                 return float(radius - own.dimensions["inner"] + offset)
-    middle = center(own)
+    middle = hulls.center(own)
     toward = unit_vector((middle[0], middle[1], 0.0) if is_cylinder else middle)
-    return radius + height(own, opposite(toward))
+    return radius + hulls.height(own, opposite(toward))
 
 
 def _out_of_torus(own: Solid3, pieces: list[Piece], d: Dimensions) -> float:
@@ -190,21 +170,21 @@ def _out_of_torus(own: Solid3, pieces: list[Piece], d: Dimensions) -> float:
     normal = own.pose.rotate(Z)
     if own.shape == "torus" and abs(normal[0]) + abs(normal[1]) < PARALLEL and math.hypot(x, y) == 0:
         return float(math.hypot(own.dimensions["ring"] - d["ring"], z) + own.dimensions["tube"] - d["tube"])
-    x, y, z = center(own)
-    return float(math.hypot(math.hypot(x, y) - d["ring"], z) + size(own) - d["tube"])
+    x, y, z = hulls.center(own)
+    return float(math.hypot(math.hypot(x, y) - d["ring"], z) + hulls.size(own) - d["tube"])
 
 
 def are_apart(first: Solid3, second: Solid3, rounding: float) -> bool:
     """Return whether a plane separates the hulls of two shapes, which may overlap by the length ``rounding``, m."""
-    offset = plus(center(second), center(first), -1.0)
+    offset = plus(hulls.center(second), hulls.center(first), -1.0)
     axes = [solid.pose.rotate(Z) for solid in (first, second)]
     across = [unit_vector(plus(offset, axis, -dot(offset, axis))) for axis in axes]
     # tried in turn: the line of the centres, lines across the axes, normals of faces
-    for normal in (unit_vector(offset), *across, *directions(first), *directions(second)):
+    for normal in (unit_vector(offset), *across, *hulls.directions(first), *hulls.directions(second)):
         back = opposite(normal)
-        if height(first, normal) + height(second, back) <= rounding:
+        if hulls.height(first, normal) + hulls.height(second, back) <= rounding:
             return True
-        if height(second, normal) + height(first, back) <= rounding:
+        if hulls.height(second, normal) + hulls.height(first, back) <= rounding:
             return True
     return False
 
@@ -240,4 +220,4 @@ def excess(solid: Solid3, point: Vec) -> float:
     p, d = solid.pose.from_body(point), solid.dimensions
     if solid.shape in _EXCESS:
         return _EXCESS[solid.shape](d, p)
-    return max(wall(point_disks(p)) for wall in _WALLS[solid.shape](d))
+    return max(wall(hulls.point_disks(p)) for wall in _WALLS[solid.shape](d))

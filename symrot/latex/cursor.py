@@ -26,6 +26,8 @@ class Cursor:
         The whole formula, and the name of its place (such as a file) for error messages.
     synonyms : mapping
         A map from the text of a token to the text under which the interpreter knows the token.
+    open_bars : tuple of str
+        The bars, ``|`` or ``\|``, that are open at the cursor: the next one of the same text closes them.
     after_space : set of int
         Positions of the items that follow a LaTeX command for space.
     """
@@ -52,6 +54,7 @@ class Cursor:
         self.items.append(Token("end", "", node.end if isinstance(node, Row) else node.start))
 
     def flatten(self, nodes: Iterable[Node]) -> None:
+        """Append nodes to the items of the cursor, without spaces, and with indices and powers after their symbols."""
         space = False
         for node in nodes:
             # an index or a power is an item after its symbol
@@ -109,13 +112,16 @@ class Cursor:
         return value
 
     def peek(self, ahead: int = 0) -> Node:
+        """Return the next item, or the one that is ``ahead`` items after it, and stay; past the end, return the end."""
         place = self.index + ahead
         return self.items[place] if place < len(self.items) else self.items[-1]
 
     def at(self, *texts: str) -> bool:
+        """Return whether the text of the next item is one of ``texts``."""
         return self.items[self.index].text in texts
 
     def next(self) -> Node:
+        """Return the next item and move past it, unless it is the end."""
         item = self.items[self.index]
         self.index += item.kind != "end"
         return item
@@ -127,6 +133,7 @@ class Cursor:
         return is_next
 
     def expect(self, text: str) -> None:
+        """Skip the next item; raise InputError if its text is not ``text``."""
         if not self.take(text):
             raise self.fail(f"'{text}'")
 

@@ -15,7 +15,9 @@ AFTER = frozenset(["script", "prime", "space"])
 
 
 def read(source: str, where: str = "", pieces: Sequence[Token] = ()) -> Row:
-    """Return the tree of a LaTeX formula. If ``pieces`` are passed, these tokens are parsed instead of ``source``.
+    """Return the tree of a LaTeX formula.
+
+    If ``pieces`` are passed, these tokens are parsed; ``source`` is then only quoted in messages.
 
     Raises
     ------
@@ -27,6 +29,8 @@ def read(source: str, where: str = "", pieces: Sequence[Token] = ()) -> Row:
 
 
 class _Reader:
+    """A position in the tokens of one formula, with a method for each kind of item that is more than a token."""
+
     def __init__(self, source: str, where: str, pieces: Sequence[Token]) -> None:
         self.source, self.where, self.tokens = source, where, pieces
         self.place = self.depth = 0

@@ -62,7 +62,7 @@ class Scripts:
 
 @dataclass(frozen=True)
 class Fraction:
-    """A fraction, written with ``\\frac``, ``\\tfrac``, ``\\dfrac`` or ``\\cfrac``."""
+    """A fraction, written with ``\\frac``, ``\\tfrac``, ``\\dfrac``, ``\\cfrac`` or ``\\over``."""
 
     command: str
     above: "Node"

@@ -32,6 +32,7 @@ from symrot.propagation.motions.motion import Motion
 from symrot.propagation.motions.setup import Setup
 from symrot.propagation.propagator import Propagator
 from symrot.propagation.steppers import dop853, taylor
+from symrot.propagation.steppers.rounding import RoundingSum
 from symrot.propagation.steppers.segments import split_at
 from symrot.propagation.steppers.smoothness import non_smooth_torque
 from symrot.propagation.steppers.stats import Stats
@@ -120,6 +121,7 @@ class EulerMotion(Motion):
         self.sequence, self.switching = sequence, switching
         self._kernels: dict[str, _Kernel] = {}
         self._count = [0, 0, 0, 0]  # steps accepted and rejected, evaluations, changes of sequence
+        self._sums: list[RoundingSum] = []  # one for each side of the start
         for each in (sequence, partner(sequence)) if switching else (sequence,):
             self._kernel_of(each)
 
@@ -150,9 +152,9 @@ class EulerMotion(Motion):
             sizes = count + 3, len(kernel.rate_parameters)
             bounds = dop853.NO_ENCLOSURE
             if has_formulas(plan):
-                from symrot.codegen.enclosure.source import enclosure_source
+                from symrot.codegen.enclosure.source import enclosure_source, rounding_source
 
-                bounds = enclosure_source(kernel.rates, dop853.DENSE_ORDER, edges)
+                bounds = enclosure_source(kernel.rates, dop853.DENSE_ORDER, edges) + rounding_source(kernel.rates)
             text = dop853.translation_unit(kernel.source, "symrot_rates", *sizes, edges, scales, bounds)
         return library.build(text, "angles")
 
@@ -180,6 +182,8 @@ class EulerMotion(Motion):
         """Compute the motion from its start to ``end``, s, and yield intervals that each use one Euler sequence."""
         count, t, sequence = self._moving, self.start, self.sequence
         whole = np.array(self.plan.initial_state)
+        rounding = RoundingSum(self.tolerance)
+        self._sums.append(rounding)
         while t != end:
             angles = angles_of(whole[count:], sequence)
             if self.switching and regularity(sequence, angles) < SWITCH:
@@ -188,6 +192,7 @@ class EulerMotion(Motion):
                 self._count[3] += 1
                 angles = angles_of(whole[count:], sequence)
             integration = self._integration(sequence, t, np.concatenate([whole[:count], angles]))
+            integration.rounding = rounding
             for first, last, rows in self._steps(integration, sequence, end):
                 block = _Block(first, last, self._states_of(integration, sequence, rows))
                 yield block
@@ -240,7 +245,7 @@ class EulerMotion(Motion):
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats, Stats]:
         """Return the states at ``times``, s, shape (n, N), and the cost (steps, evaluations, seconds)."""
         began = perf_counter()
-        self._count = [0, 0, 0, 0]
+        self._count, self._sums = [0, 0, 0, 0], []
         states = np.empty((len(times), len(self.plan.states)))
         states[times == self.start] = self.plan.initial_state
         # sorts the times, so that in_order is not used
@@ -252,7 +257,9 @@ class EulerMotion(Motion):
                 if len(inside):
                     states[inside] = block.states(times[inside])
         accepted, rejected, evaluations, switches = self._count
-        return states, Stats(accepted, rejected, evaluations, perf_counter() - began, switches)
+        rounded = tuple([each.beyond for each in self._sums if each.beyond is not None])
+        seconds = perf_counter() - began
+        return states, Stats(accepted, rejected, evaluations, seconds, switches, rounded_beyond=rounded)
 
     def dense(self, span: tuple[float, float]) -> Callable[[Floats], Floats]:
         """Return a function from n times, s, within ``span`` to the states, shape (n, N)."""

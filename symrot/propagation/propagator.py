@@ -24,7 +24,6 @@ from symrot.propagation.motions.methods import ClosedFormMotion
 from symrot.propagation.motions.motion import Motion, RestartableMotion
 from symrot.propagation.real_array import real_array
 from symrot.propagation.steppers.integration_stopped import Samples
-from symrot.propagation.steppers.stats import Stats
 from symrot.propagation.steppers.stepping import is_sorted
 from symrot.propagation.trajectory import Trajectory
 from symrot.scene.attitude import Attitude, read_attitude, refuse_two
@@ -176,7 +175,7 @@ class Propagator:
             Other values of constants, by the names of :meth:`symrot.Scene.with_`, such as ``{"weight": 2}``. Use
             :func:`symrot.propagate_ensemble` for many values at once.
         events : sequence, optional
-            Formulas whose zeros are located, each as text, as a :class:`symrot.propagation.events.events.Event`, or as
+            Formulas whose zeros are located, each as text, as a :class:`symrot.Event`, or as
             a mapping with the fields of an Event. The times are ``t_events`` of the trajectory; at a terminal event the
             trajectory ends.
 
@@ -231,8 +230,8 @@ class Propagator:
         return other
 
     def _with_events(self, motion: Motion, times: Floats, events: Any) -> Trajectory:
+        from symrot.propagation.events.event import read_events
         from symrot.propagation.events.event_result import integrate_with_events
-        from symrot.propagation.events.events import read_events
 
         requested = read_events(events)
         if self.sensitivities is not None:
@@ -265,7 +264,7 @@ class Propagator:
             ended = PropagationError(f"{self.scene.name}: {error}")
         if samples is not None:
             numbers = np.argsort(samples.numbers)  # in the order of the requested times
-            states, stats = samples.states[numbers], Stats(*samples.cost, perf_counter() - began)
+            states, stats = samples.states[numbers], samples.stats._replace(seconds=perf_counter() - began)
             reached = times[samples.numbers[numbers]]
             part = Trajectory(motion, reached, states, motion.choice.method, stats, "", propagator=self)
         if part is not None:

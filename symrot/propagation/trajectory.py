@@ -102,8 +102,8 @@ class Trajectory(MotionSamples):
         As in solve_ivp: status is 1 if a terminal event ended the motion, else 0. If a motion cannot be followed, a
         PropagationError is raised; its ``trajectory`` holds the samples before, with status -1 and ``success`` false.
     warnings : tuple of str
-        Sentences about what cannot be guaranteed: the accuracy under a torque without a formula, or an event whose
-        formula comes so close to zero that the error of the motion matters.
+        Sentences about what cannot be guaranteed: the accuracy under a torque without a formula, or under a torque of
+        the time far from t = 0, or an event whose formula comes so close to zero that the error of the motion matters.
     t_events, y_events : list of arrays or None
         For each requested event: its times, s, shape (k,), and the states at these times, shape (k, N).
     events : tuple of Event, or None
@@ -135,7 +135,9 @@ class Trajectory(MotionSamples):
         self._motion, self._parts, self._propagator = motion, states, propagator
         self.plan, self.tolerance, self.has_external_torque = motion.plan, motion.tolerance, motion.has_external_torque
         self.t, self.method, self.stats, self.message = t, method, stats, message
-        self.status, self.warnings = 0, (*motion.plan.scene.warnings, *motion.setup.warnings)
+        self.status = 0
+        own = (*motion.setup.warnings, *map(motion.rounding_warning, stats.rounded_beyond))
+        self.warnings = (*motion.plan.scene.warnings, *own)
         self.t_events, self.y_events, self.event_kinds, self.events = None, None, None, None
         self.sensitivities: Sensitivities | None = None
         if events is not None:

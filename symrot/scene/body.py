@@ -126,7 +126,7 @@ def read_body(value: Any, where: str, folders: Folders | None = None) -> Body:
             fail(where, EXPECTED_SOURCE, entries, _nearest_source(entries) or "none of them is given")
         fail(where, EXPECTED_SOURCE, entries, f"{' and '.join(sources)} are given")
     body = _READERS[sources[0]](entries, where, folders or Folders())
-    _require_turnable(body, entries.get(sources[0]), f"{where}.{sources[0]}")
+    _require_propagable(body, entries.get(sources[0]), f"{where}.{sources[0]}")
     return body
 
 
@@ -142,7 +142,8 @@ def _settled(inertia: Matrix) -> Matrix:
     return first, second, third  # type: ignore[return-value]
 
 
-def _require_turnable(body: Body, value: object, where: str) -> None:
+def _require_propagable(body: Body, value: object, where: str) -> None:
+    """Raise InputError unless a body can have the inertia, and Euler's equations determine its rates in doubles."""
     require_admissible(body.principal, where)
     reason = why_not_propagable(body.principal)
     if reason:

@@ -71,7 +71,7 @@ class Initial(NamedTuple):
 
 
 def with_other_attitude(initial: Initial, attitude: Attitude) -> Initial:
-    """Return an initial state with another attitude and the same components of omega, body or space, as the scene's."""
+    """Return an initial state with another attitude; the components of omega that the scene gives stay the same."""
     omega_b = initial.omega_b if initial.omega_s is None else to_body(attitude.dcm, initial.omega_s)
     return initial._replace(omega_b=omega_b, quaternion=attitude.quaternion)
 

@@ -7,8 +7,8 @@ import pytest
 
 import symrot
 from symrot.checker.context.bodies import BODIES, bodies_of_formula, body_of_words
-from symrot.checker.context.context import read_context
 from symrot.checker.context.quantities import QUANTITIES
+from symrot.checker.context.statements import read_context
 from symrot.checker.recognition.known_formulas import by_fingerprint
 from symrot.errors import InputError
 from symrot.inertia.shapes import SHAPES

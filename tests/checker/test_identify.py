@@ -2,6 +2,7 @@
 
 import json
 import tomllib
+from itertools import islice
 
 import pytest
 from sympy import Matrix, Rational, Symbol, cos, pi, sin, symbols
@@ -54,12 +55,16 @@ def test_what_has_no_value_is_outside():
 
 
 def test_the_file_is_as_printed(monkeypatch):
-    """The formulas of the file are those that symrot derives, in this order: here without those that take longer."""
+    """The formulas of the file are those that symrot derives, in this order: here without those that take longer, and
+    with two of the 24 sequences of Euler angles.
+    """
     for group in ("solids", "tops", "_solved", "bodies"):
         monkeypatch.setattr(known_formulas, group, lambda: iter(()))
+    sequences = known_formulas.sequences
+    monkeypatch.setattr(known_formulas, "sequences", lambda: islice(sequences(), 20))
     printed = known_formulas.page(known_formulas.stated()).rstrip().split("\n\n")
     in_the_file = iter(known_formulas.FILE.read_text(encoding="utf-8").split("\n\n"))
-    assert len(printed) > 300 and all(formula in in_the_file for formula in printed)
+    assert len(printed) > 250 and all(formula in in_the_file for formula in printed)
 
 
 @pytest.mark.campaign

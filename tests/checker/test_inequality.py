@@ -96,3 +96,16 @@ def test_random_inequalities_agree_with_their_values():
 def test_the_command_line_takes_an_inequality_for_a_claim_and_not_for_a_file(claim, capsys):
     assert main(["check", claim]) == 0
     assert capsys.readouterr().out.startswith("true")
+
+
+def test_a_power_with_a_letter_in_its_exponent_has_a_sign_for_a_positive_base_only():
+    """(-2)^3 is negative."""
+    verdict = symrot.check("x^y >= 0")
+    assert (verdict.verdict, verdict.requires) == ("conditional", ("x > 0",))
+    verdict = symrot.check("2^x > 0")
+    assert verdict.verdict == "true" and 0 < verdict.seconds < 60
+
+
+@pytest.mark.parametrize("text", ["atan(x) < 2", "asin(x) + acos(y) < 5"])
+def test_the_range_of_an_inverse_function_proves_an_inequality(text):
+    assert symrot.check(text).verdict == "true"

@@ -1,6 +1,7 @@
 """A part of the campaign that tests diagnoses, and for every code of a diagnosis a formula that a book might print."""
 
 from dataclasses import replace
+from functools import cache
 from random import Random
 
 import pytest
@@ -56,6 +57,9 @@ ELSEWHERE = {"none", "domain", "dimension", "exponent"}
 """No diagnosis, those that come without an edit, and those of formulas that only name a quantity."""
 
 
+checked = cache(symrot.check)  # two tests inspect the verdicts on conditional claims
+
+
 def same_text(first, second):
     """Return whether two claims are the same up to the order of terms and scalar factors."""
     sides = [
@@ -69,7 +73,7 @@ def same_text(first, second):
 @pytest.mark.parametrize("code", PRINTED)
 def test_a_printed_formula_gets_its_code_and_its_right_form(code):
     printed, right = PRINTED[code]
-    verdict = symrot.check(printed)
+    verdict = checked(printed)
     assert verdict.diagnosis.code == code
     assert verdict.verdict == ("conditional" if right is None else "false")
     if right is not None:
@@ -83,7 +87,7 @@ def test_every_code_of_the_table_has_its_formula():
 
 @pytest.mark.parametrize("claim", [claim for claim, right in PRINTED.values() if right is None])
 def test_a_conditional_claim_is_not_repaired_by_adding_the_difference(claim):
-    assert not any(repair.code == "missing_term" for repair in symrot.check(claim).repairs)
+    assert not any(repair.code == "missing_term" for repair in checked(claim).repairs)
 
 
 # -- the campaign -----------------------------------------------------------------------------------------------------

@@ -294,7 +294,7 @@ def rewritten(node, source, wrong):
     return source.choice(kinds[wrong and source.random() < 0.7])(*node.args) if kinds else node
 
 
-@pytest.mark.thinned(2)
+@pytest.mark.thinned(3)
 @pytest.mark.parametrize("seed", range(6))
 def test_no_random_claim_gets_a_wrong_verdict(seed):
     source = Random(seed)

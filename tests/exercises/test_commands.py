@@ -33,10 +33,10 @@ def test_one_exercise_is_graded_by_its_name_and_seed(capsys):
 
 
 def test_topics_share_a_sheet_in_the_order_of_the_command_line(capsys):
-    code, text, _ = run(capsys, "exercise", "gears", "rolling", "--count", "5", "--format", "json")
+    code, text, _ = run(capsys, "exercise", "gears", "rolling", "--count", "3", "--format", "json")
     sheet = json.loads(text)["exercises"]
-    assert code == 0 and [each["topic"] for each in sheet] == ["gears"] * 3 + ["rolling"] * 2
-    assert len({each["template"] for each in sheet}) == 5
+    assert code == 0 and [each["topic"] for each in sheet] == ["gears"] * 2 + ["rolling"]
+    assert len({each["template"] for each in sheet}) == 3
 
 
 @pytest.mark.parametrize("form", ["markdown", "latex", "html"])

@@ -26,12 +26,12 @@ NODE = shutil.which("node")
 
 @pytest.fixture(scope="module")
 def sheet():
-    return symrot.exercise("", seed=1, count=6)
+    return symrot.exercise("", seed=1, count=4)
 
 
 def test_markdown_has_exercises_hints_and_solutions_in_this_order(sheet):
     text = sheet.markdown()
-    assert text.index("## 6. ") < text.index("# Hints") < text.index("# Solutions") < text.index("## Solution of 6")
+    assert text.index("## 4. ") < text.index("# Hints") < text.index("# Solutions") < text.index("## Solution of 4")
     assert all(exercise.solution[-1].latex in text for exercise in sheet)
 
 

@@ -56,11 +56,11 @@ def test_a_formula_has_the_unit_of_its_number(name):
 
 
 def test_the_same_seed_gives_the_same_bytes_in_another_process():
-    code = "import symrot; print(symrot.exercise('', seed=5, count=3).json(), end='')"
+    code = "import symrot; print(symrot.exercise('', seed=5, count=2).json(), end='')"
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, env=os.environ | {"PYTHONHASHSEED": "77"}, check=True
     )
-    here = symrot.exercise("", seed=5, count=3).json().encode()
+    here = symrot.exercise("", seed=5, count=2).json().encode()
     assert hashlib.sha256(done.stdout).digest() == hashlib.sha256(here).digest()
     assert symrot.exercise("rod_about_end", seed=1).json() != symrot.exercise("rod_about_end", seed=2).json()
 

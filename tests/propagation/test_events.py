@@ -10,7 +10,7 @@ import pytest
 
 import symrot
 from symrot.errors import InputError, PropagationError
-from symrot.propagation.events.events import read_events
+from symrot.propagation.events.event import read_events
 from symrot.scene.scene import Scene
 from tests.needs import needs_compiler
 
@@ -282,6 +282,18 @@ def test_a_singularity_beyond_a_terminal_event_does_no_harm():
 def test_scipy_finds_the_same():
     found = run(scene(stop=8), ["omega_2"], "scipy", 1e-12).t_events[0]
     assert abs(found - [t for t in zeros_of_sn() if t < 8]).max() < 1e-11
+
+
+@pytest.mark.parametrize("method", ["taylor", "dop853", "exact", "scipy", "scipy:LSODA"])
+def test_a_level_that_is_reached_exactly_at_the_end_is_listed(method):
+    """SciPy's steps, fitted by polynomials, ended one rounding error before the level."""
+    for stop in (8, 2.7, -3.1):
+        times = [0.0, stop]
+        levels = run(scene(), [], method, 1e-9, t=times).y[:3, -1]
+        events = [f"omega_{i + 1} == {level!r}" for i, level in enumerate(levels.tolist())]
+        found = run(scene(), events, method, 1e-9, t=times)
+        assert [times[0 if stop < 0 else -1] for times in found.t_events] == pytest.approx([stop] * 3, abs=1e-14)
+        assert len(run(scene(), ["t == 7", *events], method, 1e-9, t=times).t_events[0]) == (stop == 8)
 
 
 # ------------------------------------------------------------------------------------------------ refusals

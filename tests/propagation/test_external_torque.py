@@ -2,6 +2,7 @@
 
 import ctypes
 import math
+import re
 import subprocess
 
 import numpy as np
@@ -86,6 +87,27 @@ def test_a_table_is_interpolated_and_may_jump():
     stepped = symrot.propagator(scene(), torque=jump, switching_times=[1.25])()
     assert stepped.omega[-1, 2] == pytest.approx(1.25 - 1.75 / 2, abs=1e-15)
     assert stepped.stats.rejected == 0
+
+
+@pytest.mark.parametrize(("start", "times"), [(0, (0, 20)), (1e6, (1e6, 1e6 + 20)), (-1e6, (-1e6 - 20, -1e6))])
+def test_a_function_far_from_zero_carries_a_warning(start, times):
+    """omega_3 = cos(start) - cos(t). Doubles at 1e6 s lie 1e-10 s apart: the motion was off by 225 tolerances.
+
+    A torque that does not depend on time is not affected.
+    """
+    made = scene(span={"t": [start, start + 20]})
+    waves = symrot.propagator(made, torque=lambda t, w, q: (0, 0, math.sin(t)), tolerance=1e-12, max_step=1)
+    moved = waves(np.linspace(*times, 9))
+    off = abs(moved.omega[:, 2] - (math.cos(start) - np.cos(moved.t))).max() / 2e-12
+    warnings = [
+        text for text in moved.warnings if re.search(r"beyond t = -?1\d+\.\d* s the rounding of the times", text)
+    ]
+    assert len(warnings) == (start != 0) and (off > 1) == (start != 0)
+    assert moved.at(times[1]).warnings == moved.warnings == waves(np.array(times), events=["omega_3 - 9"]).warnings
+    damped = symrot.propagator(made, torque=lambda t, w, q: (0, 0, 1 - w[2] / 10), tolerance=1e-12, max_step=1)
+    moved = damped(np.linspace(*times, 9))
+    exact = -10 * np.expm1((start - moved.t) / 10)
+    assert moved.warnings == () and abs(moved.omega[:, 2] - exact).max() < 1e-12 * abs(exact).max()
 
 
 @pytest.mark.parametrize("formulas", [["3/10", "1/10", "-1/5"], ["3/10 - t/10", "t/5", "0"]], ids=["constant", "line"])

@@ -108,6 +108,43 @@ def test_a_pulse_is_followed_as_exactly_as_its_phase_is_rounded(phase, method):
         symrot.propagate(made.with_({"w": "1e-10"}), method=method)
 
 
+def fresnel(t):
+    """Return the integral of sin(t^2)."""
+    return float(mpmath.sqrt(mpmath.pi / 2) * mpmath.fresnels(mpmath.sqrt(2 / mpmath.pi) * mpmath.mpf(t)))
+
+
+@pytest.mark.parametrize(
+    ("method", "stop", "follow"),
+    [("taylor", 20, "alone"), ("dop853", 20, "alone"), ("scipy:DOP853", 9, "alone"), ("taylor", 20, "in angles"),
+     ("taylor", -20, "switched"), ("scipy:DOP853", 9, "switched")],
+)  # fmt: skip
+def test_where_the_rounding_of_a_phase_exceeds_the_tolerance_a_warning_says_so(method, stop, follow):
+    """sin(t^2): t^2 is rounded by up to 1e-16 t^2 rad. Motions were off by up to 100 tolerances in silence.
+
+    At 100 times the tolerance, no warning appears.
+    """
+    switch = " + step(t)/1000 - step(t)/1000" if follow == "switched" else ""
+    made = scene(f"sin(t**2){switch}", stop=abs(stop), moments=(1, 1, 1))
+    more = {"state": "zyx"} if follow == "in angles" else {}
+    propagator = symrot.propagator(made, method, 1e-15, **more)
+    moved = propagator(np.linspace(0, stop, 41))
+    truth = np.array([fresnel(t) for t in moved.t.tolist()])
+    off = abs(moved.omega[:, 2] - truth) > 6e-15 * abs(truth).max()
+    assert off.any() and len(moved.stats.rounded_beyond) == 1
+    (beyond,) = moved.stats.rounded_beyond
+    assert (abs(moved.t[off]) > abs(beyond)).all()
+    assert f"beyond t = {beyond!r} s the rounding of the torque, a formula of the time" in moved.warnings[-1]
+    if not more:
+        assert propagator(moved.t, events=["omega_3 - 9"]).warnings == moved.warnings
+    assert symrot.propagator(made, method, 1e-13, **more)(moved.t).warnings == ()
+
+
+def test_the_samples_before_a_stop_carry_the_warning_too():
+    with pytest.raises(PropagationError, match="when the formula is rounded") as stopped:
+        symrot.propagator(scene("sin(t**2)", stop=60, moments=(1, 1, 1)), "taylor", 1e-15)(np.linspace(0, 60, 61))
+    assert stopped.value.trajectory.warnings[-1].startswith("beyond t = ")
+
+
 @pytest.mark.parametrize("torque", ["log(1 + t**2)*cos(t)", "tanh(100*(sin(t) - 1/2))", "1/(1 + (t**2 - 4)**2)"])
 def test_rounding_of_a_phase_refuses_no_smooth_torque(torque):
     """The motion from rest is followed at the least tolerance, although its first rates are near zero."""

@@ -165,6 +165,25 @@ def test_a_motion_does_not_slide_where_others_lead_away(torque, frame, omega, en
     assert abs(at - end) < 1e-6
 
 
+RELEASED = [  # torque, and omega_1 at 4 s; another switch ends the sliding of omega_1 = 0 at 2 s
+    ("where(t < 2, 1/5 - sign(omega_1)/2, 1)", 2.0),
+    ("where(t < 2, 1/5 - sign(omega_1)/2, 0)", 0.0),
+    ("(1/5 - sign(omega_1)/2)*step(2 - t)", 0.0),
+    ("-sign(omega_1)*step(2 - t) - step(t - 2)", -2.0),
+    ("-sign(omega_1)*where(t < 2, 1, -1) + 2*step(t - 2)", 6.0),  # on both sides it now moves to omega_1 > 0
+    ("-sign(omega_1)*where(t < 2, 1, -1) - 2*step(t - 2)", -6.0),
+]
+
+
+@pytest.mark.thinned(3)
+@pytest.mark.parametrize("method", ["auto", "dop853", "scipy:DOP853"])
+@pytest.mark.parametrize(("torque", "omega"), RELEASED)
+def test_another_switch_may_end_a_slide(torque, omega, method):
+    """Taylor steps were refused for another reason; DOP853 and SciPy kept omega_1 at zero, in silence."""
+    trajectory = symrot.propagator(scene(torque, stop=4), method, 1e-10)([0, 2, 4])
+    assert trajectory.omega[:, 0] == pytest.approx([0, 0, omega], abs=1e-9)
+
+
 def test_hurwitz_determinants_tell_whether_all_eigenvalues_are_left():
     chance = np.random.default_rng(5)
     verdicts = set()

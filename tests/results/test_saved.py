@@ -50,8 +50,7 @@ def test_events_are_loaded_with_their_states(trajectory, path):
     assert [event["formula"] for event in saved.metadata["events"]] == ["omega_3 == 0", "omega_1 - 100"]
 
 
-def test_quantities_that_follow_from_omega_and_attitude_are_computed(tmp_path):
-    trajectory = symrot.propagator("heavy_top_loops")([0.0, 1.0])
+def test_quantities_that_follow_from_omega_and_attitude_are_computed(trajectory, tmp_path):
     trajectory.save(tmp_path / "motion.npz", ["omega", "quaternion"])
     saved = symrot.load(tmp_path / "motion.npz")
     assert saved.dcm.tolist() == trajectory.dcm.tolist()

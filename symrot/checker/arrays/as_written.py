@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from symrot.checker.arrays.pauli import eye
-from symrot.checker.claim.tree import Node, negated, number, product, walk
+from symrot.checker.claim.tree import Node, negated, nodes_of, number, product
 
 __all__ = ["as_written", "has_arrays", "inverse_of", "is_odd", "with_inverses"]
 
@@ -16,13 +16,13 @@ IMAGINARY = Node("name", "i")
 def has_arrays(sides: Sequence[Node]) -> bool:
     """Return whether formulas call a function for quaternions, such as ``qmul``, or contain ``eye(4)``."""
     # Pauli's matrices are computed as real 4 x 4 matrices
-    nodes = [node for side in sides for _, node in walk(side)]
+    nodes = nodes_of(*sides)
     return UNIT in nodes or any(node.kind == "call" and node.value in QUATERNION for node in nodes)
 
 
 def is_odd(sides: Sequence[Node]) -> bool:
     """Return whether the two sides of a repair contain a term that no author writes, such as ``i^T``."""
-    nodes = [node for side in sides for _, node in walk(as_written(side))]
+    nodes = [node for side in sides for node in nodes_of(as_written(side))]
     # the trace of a complex M is stored as two terms; an edit of one term alone leaves a ``trace(-i M)`` that cannot be
     # written as ``trace(M)`` again
     return Node("transpose", None, (IMAGINARY,)) in nodes or any(map(_is_imaginary_trace, nodes))

@@ -5,15 +5,25 @@ Two complex formulas are equal exactly if their real parts are equal and their i
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from functools import reduce
 from itertools import permutations, repeat
 from typing import ClassVar
 
-from symrot.checker.claim.tree import Node, negated, number, product, sum_of, walk
+from symrot.checker.claim.tree import (
+    Node,
+    column_vector,
+    factors_of,
+    negated,
+    nodes_of,
+    number,
+    product,
+    substituted,
+    sum_of,
+    without_sign,
+)
 from symrot.errors import InputError, complaint
 
-__all__ = ["BAR", "imaginary_unit", "is_complex", "open_numbers", "substituted", "with_parts"]
+__all__ = ["BAR", "imaginary_unit", "is_complex", "open_numbers", "with_numbers", "with_parts"]
 
 Parts = tuple[Node, Node]
 ZERO, ONE = number(0), number(1)
@@ -40,7 +50,7 @@ MOST_FACTORS = 16
 
 def imaginary_unit(trees: Sequence[Node]) -> Node | None:
     """Return the node of a letter i, j or I that is the imaginary unit, as in ``e^(i x)``; None if there is none."""
-    nodes = [node for tree in trees for _, node in walk(tree)]
+    nodes = nodes_of(*trees)
     has_matrices = any(node.kind == "transpose" or node.value in OF_MATRICES for node in nodes)
     below = [part for node in nodes if node.kind == "inv" for part in node.args]
     for letter in LETTERS[: 2 if has_matrices else None]:  # cos(x)*I + (1 - cos(x))*n*n.T has the unit matrix
@@ -60,7 +70,7 @@ def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node 
     """Return the node of a letter i or j that must be the imaginary unit, as i in ``|x + i*y|``; None if it need
     not.
     """
-    own = next((node for node in nodes if (node.kind, node.value) == ("name", letter)), None)
+    own = next((node for node in nodes if node == Node("name", letter)), None)
     if own is None:
         return None
     has_e = any(_exponent(node) is not None for node in nodes)
@@ -97,7 +107,7 @@ def _evident(trees: Sequence[Node], nodes: Sequence[Node], letter: str) -> Node 
 
 def _pair(node: Node, letter: str) -> frozenset[str]:
     """Return the names {x, y} if a sum is ``x + i*y`` or ``x - i*y``, i being the ``letter``; else an empty set."""
-    first, *rest = map(_without_sign, node.args)
+    first, *rest = map(without_sign, node.args)
     if len(rest) != 1 or first.kind != "name" or rest[0].kind != "product" or len(rest[0].args) != 2:
         return frozenset()
     names = [str(factor.value) for factor in rest[0].args if factor.kind == "name"]
@@ -106,12 +116,7 @@ def _pair(node: Node, letter: str) -> frozenset[str]:
 
 def _has_factor(node: Node, letter: str) -> bool:
     """Return whether a sum has a term with the factor ``letter`` and a term without it, as ``x + i*y`` has for i."""
-    factors = [term.args if term.kind == "product" else (term,) for term in map(_without_sign, node.args)]
-    return len({any((f.kind, f.value) == ("name", letter) for f in own) for own in factors}) == 2
-
-
-def _without_sign(term: Node) -> Node:
-    return term.args[0] if term.kind == "neg" else term
+    return len({Node("name", letter) in factors_of(term) for term in node.args}) == 2
 
 
 def _is_of_complex(node: Node, letter: str) -> bool:
@@ -126,23 +131,17 @@ def _is_of_complex(node: Node, letter: str) -> bool:
     return argument is not None and (argument.kind == "name" or _letter_in(argument, letter) is not None)
 
 
-def substituted(tree: Node, numbers: Mapping[str, Node]) -> Node:
-    """Return a tree with the formulas ``numbers`` in place of names: ``x + i*y`` for z.
-
-    ``z_bar`` becomes the conjugate of the formula.
-    """
-    if tree.kind == "name" and tree.value in numbers:
-        return numbers[str(tree.value)]
-    if tree.kind == "name" and (name := str(tree.value).removesuffix(BAR)) in numbers:
-        return Node("call", "conjugate", (numbers[name],), tree.span)
-    return replace(tree, args=tuple(substituted(child, numbers) for child in tree.args))
+def with_numbers(tree: Node, numbers: Mapping[str, Node]) -> Node:
+    """Return a tree in which the formulas ``numbers`` replace names: ``x + i*y`` for z, and its conjugate for z_bar."""
+    conjugates = {f"{name}{BAR}": Node("call", "conjugate", (formula,)) for name, formula in numbers.items()}
+    return substituted(tree, {**conjugates, **numbers})
 
 
 def open_numbers(formulas: Sequence[Node], letter: str = "i") -> dict[str, Node]:
     """Return ``Re_z + i*Im_z`` for each complex number z that nothing defines, as in ``|z|^2 = z z_bar``; {} if z may
     be real. ``letter`` is the imaginary unit.
     """
-    nodes = [node for tree in formulas for _, node in walk(tree)]
+    nodes = nodes_of(*formulas)
     names = [str(node.value) for node in nodes if node.kind == "name"]
     calls = [node for node in nodes if node.kind == "call"]
     # only z, w and zeta, with or without a number as in w_1, can be complex numbers
@@ -151,7 +150,7 @@ def open_numbers(formulas: Sequence[Node], letter: str = "i") -> dict[str, Node]
     # with another barred name, z_bar is a coordinate of a centre of mass
     if not barred <= own or any(node.value in ("integrate", "integral_over_body", "qmul", "Matrix") for node in calls):
         return {}
-    inside = {node.value: {str(n.value) for _, n in walk(node.args[0])} for node in calls if node.value in OF_COMPLEX}
+    inside = {node.value: {str(n.value) for n in nodes_of(node.args[0])} for node in calls if node.value in OF_COMPLEX}
     parts = set().union(*(names for call, names in inside.items() if call != "abs"))
     # conjugate, Re or Im is applied to one of them, or one is barred and such a function or an absolute value occurs
     is_evident = bool(own & parts) or (bool(barred) and bool(inside))
@@ -178,11 +177,11 @@ def _exponent(node: Node) -> Node | None:
 
 
 def _letter_in(tree: Node, letter: str) -> Node | None:
-    return next((node for _, node in walk(tree) if (node.kind, node.value) == ("name", letter)), None)
+    return next((node for node in nodes_of(tree) if node == Node("name", letter)), None)
 
 
 def _factor_of_sines(node: Node, letter: str) -> Node | None:
-    own = [factor for factor in node.args if (factor.kind, factor.value) == ("name", letter)]
+    own = [factor for factor in node.args if factor == Node("name", letter)]
     others = [factor for factor in node.args if factor not in own and factor.kind != "number"]
     sines = all(factor.kind == "call" and factor.value in ("sin", "cos") for factor in others)
     return own[0] if own and others and sines else None
@@ -191,7 +190,7 @@ def _factor_of_sines(node: Node, letter: str) -> Node | None:
 def is_complex(sides: Sequence[Node], letter: str) -> bool:
     """Return whether the sides of an equation contain complex numbers: the imaginary unit ``letter``, or Re(z)."""
     return any(
-        _letter_in(side, letter) or any(_is_of_complex(node, letter) for _, node in walk(side)) for side in sides
+        _letter_in(side, letter) or any(_is_of_complex(node, letter) for node in nodes_of(side)) for side in sides
     )
 
 
@@ -213,19 +212,11 @@ def with_parts(relation: tuple[str, Node, Node], letter: str, source: str) -> tu
         left, right = (side if side.kind == "name" else _real_or_column(split.parts(side)) for side in sides)
         return sign, left, right
     left_parts, right_parts = (split.parts(side) for side in sides)
-    return sign, _column(left_parts), _column(right_parts)
-
-
-def _column(parts: Parts) -> Node:
-    return Node("call", "Matrix", (Node("list", ("[", "]"), parts),))
+    return sign, column_vector(left_parts), column_vector(right_parts)
 
 
 def _real_or_column(parts: Parts) -> Node:
-    return parts[0] if _is_zero(parts[1]) else _column(parts)
-
-
-def _is_zero(tree: Node) -> bool:
-    return tree == ZERO
+    return parts[0] if parts[1] == ZERO else column_vector(parts)
 
 
 def _times(left: Parts, right: Parts) -> Parts:
@@ -234,18 +225,18 @@ def _times(left: Parts, right: Parts) -> Parts:
 
 
 def _of(a: Node, b: Node) -> Node:
-    if _is_zero(a) or _is_zero(b):
+    if a == ZERO or b == ZERO:
         return ZERO
     return product([factor for factor in (a, b) if factor != ONE] or [ONE])
 
 
 def _plus(*terms: Node) -> Node:
-    rest = [term for term in terms if not _is_zero(term.args[0] if term.kind == "neg" else term)]
+    rest = [term for term in terms if without_sign(term) != ZERO]
     return sum_of(rest) if rest else ZERO
 
 
 def _square(a: Node) -> Node:
-    return ZERO if _is_zero(a) else Node("power", None, (a, number(2)))
+    return ZERO if a == ZERO else Node("power", None, (a, number(2)))
 
 
 class _Splitter:
@@ -263,8 +254,8 @@ class _Splitter:
         if (exponent := _exponent(node)) is not None:
             a, b = self.parts(exponent)
             size = Node("call", "exp", (a,))
-            return (size, ZERO) if _is_zero(b) else (_of(ONE if _is_zero(a) else size, _call("cos", b)),
-                                                     _of(ONE if _is_zero(a) else size, _call("sin", b)))  # fmt: skip
+            return (size, ZERO) if b == ZERO else (_of(ONE if a == ZERO else size, _call("cos", b)),
+                                                     _of(ONE if a == ZERO else size, _call("sin", b)))  # fmt: skip
         if _letter_in(node, self.letter) is None:
             return node, ZERO
         inner = [self.parts(child) for child in node.args]
@@ -285,7 +276,7 @@ class _Splitter:
 
     def inverse(self, node: Node, inner: Sequence[Parts]) -> Parts:
         ((a, b),) = inner
-        if _is_zero(a):
+        if a == ZERO:
             return ZERO, negated(Node("inv", None, (b,)))
         below = Node("inv", None, (_plus(_square(a), _square(b)),))
         return _of(a, below), negated(_of(b, below))
@@ -295,7 +286,7 @@ class _Splitter:
         negative = exponent.kind == "neg"
         value = exponent.args[0] if negative else exponent
         whole = value.kind == "number" and value.value.denominator == 1 and 0 < value.value <= MOST_FACTORS
-        if not whole or not _is_zero(imaginary):
+        if not whole or imaginary != ZERO:
             raise self.fail(node, f"a whole number up to {MOST_FACTORS} as the power of a complex number")
         raised = reduce(_times, [base] * int(value.value))
         return self.inverse(node, [raised]) if negative else raised
@@ -317,7 +308,7 @@ class _Splitter:
         return a, negated(b)
 
     def angle(self, node: Node, inner: Sequence[Parts]) -> Parts:
-        if any(not _is_zero(b) for _, b in inner):
+        if any(b != ZERO for _, b in inner):
             raise self.fail(node, "real numbers in atan2")
         return Node("call", "atan2", tuple(a for a, _ in inner)), ZERO
 

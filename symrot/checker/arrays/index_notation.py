@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import product as combinations
 
-from symrot.checker.claim.tree import Node, negated, number, product, sum_of, walk
+from symrot.checker.claim.tree import Node, factors_of, matrix_of_rows, negated, nodes_of, number, product, sum_of
 from symrot.checker.claim.vectors import MARK
 from symrot.errors import InputError
 
@@ -39,7 +39,7 @@ def written_out(relation: Relation) -> tuple[Relation, str]:
         For an index that occurs more than twice in a term, and for terms with different free indices.
     """
     sign, left, right = relation
-    nodes = [node for side in (left, right) for _, node in walk(side)]
+    nodes = nodes_of(left, right)
     # a condition such as R_ik R_jk = delta_ij stays as it is too
     if not any(_symbol(node) for node in nodes) or _is_condition(left, right):
         return relation, ""
@@ -59,7 +59,12 @@ def written_out(relation: Relation) -> tuple[Relation, str]:
     if name is not None and len(indices) < 3:
         width, stem = (1, 3)[len(indices) - 1], Node("name", str(name.value).rpartition("_")[0])
         lefts, rights = ([stem], rights) if name is left else (lefts, [stem])
-    first, second = (entries[0] if len(entries) == 1 else _matrix(entries, width) for entries in (lefts, rights))
+    first, second = (
+        entries[0]
+        if len(entries) == 1
+        else matrix_of_rows([entries[n : n + width] for n in range(0, len(entries), width)])
+        for entries in (lefts, rights)
+    )
     take = "takes" if len(indices) == 1 else "take"
     free_words = f"; {', '.join(indices)} {take} every value" if indices else ""
     return (sign, first, second), f"indices run from 1 to 3, and one that occurs twice in a term is summed{free_words}"
@@ -83,7 +88,7 @@ def component_of_cross(pair: Sequence[Node], index: str, used: str) -> Node | No
 def has_index_symbols(relation: Relation) -> bool:
     """Return whether an equation contains a symbol delta_ij or epsilon_ijk."""
     # written_out leaves them in an equation such as R_ik R_jk = delta_ij, which says that R is orthogonal
-    return any(_symbol(node) for side in relation[1:] for _, node in walk(side))
+    return any(_symbol(node) for node in nodes_of(*relation[1:]))
 
 
 def _symbol(node: Node) -> str:
@@ -122,7 +127,7 @@ def _is_component(side: Node, other: Node) -> bool:
 
 def _quantities(side: Node) -> Iterator[str]:
     """Yield the names of the quantities on a side, without indices: R for R_ij. Delta and epsilon are left out."""
-    for _, node in walk(side):
+    for node in nodes_of(side):
         if node.kind == "name" and not _symbol(node) and node.value != "pi":
             yield str(node.value).rpartition("_")[0] if _indices(node) else str(node.value)
 
@@ -141,8 +146,7 @@ def _terms(side: Node) -> Iterator[Node]:
 
 
 def _flat(factors: Sequence[Node]) -> Node:
-    bare = [factor.args[0] if factor.kind == "neg" else factor for factor in factors]
-    return product([part for factor in bare for part in (factor.args if factor.kind == "product" else (factor,))])
+    return product([part for factor in factors for part in factors_of(factor)])
 
 
 def _counts(term: Node) -> Counter[str]:
@@ -235,12 +239,3 @@ def _delta(digits: str) -> int:
 def _epsilon(digits: str) -> int:
     i, j, k = map(int, digits)
     return (j - i) * (k - j) * (k - i) // 2
-
-
-def _matrix(entries: Sequence[Node], width: int) -> Node:
-    rows = [entries[n : n + width] for n in range(0, len(entries), width)]
-    return Node("call", "Matrix", (_list([_list(row) for row in rows]),))
-
-
-def _list(members: Sequence[Node]) -> Node:
-    return Node("list", ("[", "]"), tuple(members))

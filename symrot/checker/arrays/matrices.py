@@ -9,8 +9,19 @@ from dataclasses import replace
 from itertools import pairwise
 
 from symrot.checker.claim.shapes import Shape, shape_of
-from symrot.checker.claim.tree import TIME, Node, is_derivative, number, walk
-from symrot.checker.claim.vectors import is_tensor
+from symrot.checker.claim.tree import (
+    TIME,
+    Node,
+    factors_of,
+    is_derivative,
+    is_inverse,
+    matrix_of_rows,
+    nodes_of,
+    number,
+    untimed,
+    without_sign,
+)
+from symrot.checker.claim.vectors import is_tensor, length
 
 __all__ = [
     "as_rotations", "bold_matrices", "bold_unit_matrices", "matrices_of_entries", "matrix_of_entries", "rate_matrices",
@@ -29,7 +40,7 @@ def matrix_of_entries(name: str, timed: bool = False) -> Node:
     """Return the tree of a 3 x 3 matrix of the symbols A_11, A_12 and so on, or functions A_11(t) if ``timed``."""
     kind, args = ("call", (TIME,)) if timed else ("name", ())
     rows = [[Node(kind, f"{name}_{i}{j}", args) for j in "123"] for i in "123"]
-    return Node("call", "Matrix", (_list([_list(row) for row in rows]),))
+    return matrix_of_rows(rows)
 
 
 def matrices_of_entries(definitions: Sequence[tuple[str, Node]]) -> list[str]:
@@ -60,15 +71,11 @@ def _rotation(name: str, timed: bool) -> Node:
     return Node("product", None, tuple(turns))
 
 
-def _list(members: Sequence[Node]) -> Node:
-    return Node("list", ("[", "]"), tuple(members))
-
-
 def used_matrices(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ...]:
     """Return the capital letters that a claim uses as matrices, as A and B in ``det(A B)``, except ``known`` ones."""
     names = dict.fromkeys(name for name in _inverted_in_order(sides) if name not in (*known, *UNIT_NAMES))
     for side in sides:
-        for _, node in walk(side):
+        for node in nodes_of(side):
             inside = _of_matrix(node)
             alone = [part for part in inside if part.kind == "name" and node.kind == "call"]
             for part in inside:
@@ -85,8 +92,8 @@ def _inverted_in_order(sides: Sequence[Node]) -> list[str]:
     equations.
     """
     for side, other in (sides, sides[::-1]):
-        base = side.args[0] if _is_inverse(side) else side
-        if base is side or base.kind != "product" or other.kind != "product" or not all(map(_is_inverse, other.args)):
+        base = side.args[0] if is_inverse(side) else side
+        if base is side or base.kind != "product" or other.kind != "product" or not all(map(is_inverse, other.args)):
             continue
         names, inverted = ([_name_of_array(factor) for factor in part.args] for part in (base, other))
         # (A B)^-1 = B^-1 A^-1 is true for numbers too; only the wrong order shows that matrices are meant
@@ -97,7 +104,7 @@ def _inverted_in_order(sides: Sequence[Node]) -> list[str]:
 
 def bold_unit_matrices(sides: Sequence[Node]) -> set[str]:
     """Return {"I"} if a bold I is the unit matrix and no tensor of inertia; an empty set otherwise."""
-    nodes = [node for side in sides for _, node in walk(side)]
+    nodes = nodes_of(*sides)
     names = {str(node.value) for node in nodes if node.kind in ("name", "call")}
     has_transpose = any(node.kind == "transpose" for node in nodes)
     # one side is I alone, and the other has a transpose
@@ -107,26 +114,17 @@ def bold_unit_matrices(sides: Sequence[Node]) -> set[str]:
         second.kind == "transpose" and second.args[0] == first
         for node in nodes if node.kind == "product" for first, second in pairwise(node.args)
     )  # fmt: skip
-    in_sum = any(node.kind == "sum" and any("I" in map(_name_of_array, _factors_of_term(term)) for term in node.args)
+    in_sum = any(node.kind == "sum" and any("I" in map(_name_of_array, factors_of(term)) for term in node.args)
                  for node in nodes)  # fmt: skip
     # with an angular velocity, I is a tensor of inertia
     is_of_motion = any(name.startswith(("omega", "Omega", "alpha")) for name in names)
     return {"I"} if (is_alone or (has_square and in_sum)) and not is_of_motion else set()
 
 
-def _factors_of_term(term: Node) -> Sequence[Node]:
-    bare = term.args[0] if term.kind == "neg" else term
-    return bare.args if bare.kind == "product" else (bare,)
-
-
-def _is_inverse(node: Node) -> bool:
-    return node.kind == "power" and node.args[1] in (number(-1), Node("neg", None, (number(1),)))
-
-
 def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, bool]:
     """Return the bold capital letters that are matrices, not vectors, each with True if it depends on time."""
     matrices: dict[str, bool] = {}
-    nodes = [node for side in sides for _, node in walk(side)]
+    nodes = nodes_of(*sides)
     for node in nodes:
         # the argument of a determinant or trace
         name = str(node.args[0].value) if node.kind == "call" and node.value in ("det", "trace") else ""
@@ -153,12 +151,12 @@ def rate_matrices(relation: tuple[str, Node, Node]) -> dict[str, bool]:
         name = str(side.args[0].value) if is_rate else str(side.value).removesuffix("_dot")
         if not name[:1].isupper() or (not is_rate and name == side.value):
             continue
-        for _, node in walk(other):
+        for node in nodes_of(other):
             for pair in pairwise(node.args if node.kind == "product" else ()):
                 kinds = {factor.value for factor in pair if factor.kind == "call"}
                 if name in [_bare(factor).value for factor in pair] and "skew" in kinds:
                     matrices[name] = is_rate
-    for node in (node for side in relation[1:] for _, node in walk(side) if node.kind == "product"):
+    for node in (node for node in nodes_of(*relation[1:]) if node.kind == "product"):
         for pair in pairwise(node.args):  # R' R^T and R^T R'
             rates = [part.args[0] for part in pair if is_derivative(part) and len(part.args) == 2]
             transposes = [part.args[0] for part in pair if part.kind == "transpose"]
@@ -176,8 +174,7 @@ def without_time(node: Node, names: Collection[str]) -> Node:
 
 def _bare(node: Node) -> Node:
     """Return the node of the name R for R(t), and for a transpose of R; return any other node unchanged."""
-    node = node.args[0] if node.kind == "transpose" else node
-    return Node("name", node.value) if node.kind == "call" and node.args == (TIME,) else node
+    return untimed(node.args[0] if node.kind == "transpose" else node)
 
 
 def _name_of_array(node: Node) -> str:
@@ -194,7 +191,7 @@ def used_columns(sides: Sequence[Node], known: Collection[str]) -> tuple[str, ..
     """Return the small letters that a claim uses as columns, as r and v in ``r^T r`` and ``(R v)^T``."""
     names: dict[str, None] = {}
     for side in sides:
-        for _, node in walk(side):
+        for node in nodes_of(side):
             # names in known are defined in the claim
             if node.kind == "transpose":
                 names |= {leaf: None for leaf in _factors(node.args[0]) if leaf[0].islower() and leaf not in known}
@@ -215,8 +212,8 @@ def _of_matrix(node: Node) -> Sequence[Node]:
             return forms
         first, *between, last = factors
         for matrix, inverse in ((first, last), (last, first)):
-            is_inverse = inverse.kind in ("transpose", "power") or inverse.value in OF_MATRICES
-            if is_inverse and inverse.args[0] == matrix and matrix.kind == "name" and matrix.value[0].isupper():
+            is_inverted = inverse.kind in ("transpose", "power") or inverse.value in OF_MATRICES
+            if is_inverted and inverse.args[0] == matrix and matrix.kind == "name" and matrix.value[0].isupper():
                 return matrix, *(factor for factor in between if factor.kind == "name")
     return ()
 
@@ -282,7 +279,7 @@ class _Lengths:
         """Return a tree in which ``sqrt(dot(v, v))`` replaces each vector v that is a factor."""
         if node.kind == "name" and self.shapes.get(str(node.value)) == COLUMN:
             self.names.append(str(node.value))
-            return Node("call", "sqrt", (Node("call", "dot", (node, node), node.span),), node.span)
+            return replace(length(node), span=node.span)
         if node.kind in ("product", "neg", "inv") or (node.kind == "power" and node.args[1].kind == "number"):
             return replace(node, args=tuple(self.scalar(child) for child in node.args))
         return node
@@ -291,5 +288,4 @@ class _Lengths:
 def _has_added_name(node: Node) -> bool:
     """Return whether a term of a sum is a single name, as a and b in ``a + b``."""
     # such a name may be a vector too, so the other terms need not be scalars
-    bare = [term.args[0] if term.kind == "neg" else term for term in node.args]
-    return any(term.kind == "name" and not is_tensor(str(term.value)) for term in bare)
+    return any(term.kind == "name" and not is_tensor(str(term.value)) for term in map(without_sign, node.args))

@@ -12,8 +12,21 @@ from typing import NamedTuple
 
 from symrot import symbols
 from symrot.checker.claim.reader import read_expression
-from symrot.checker.claim.tree import TIME, Node, is_derivative, negated, number, product, text, walk
-from symrot.checker.claim.vectors import Vector
+from symrot.checker.claim.tree import (
+    Node,
+    factors_of,
+    is_derivative,
+    names_in,
+    negated,
+    nodes_of,
+    number,
+    product,
+    quotient,
+    substituted,
+    text,
+    untimed,
+)
+from symrot.checker.claim.vectors import Vector, length
 from symrot.exact.printing import as_text
 from symrot.kinematics.rotation_vector import dcm_of_axis_angle
 
@@ -63,11 +76,11 @@ def with_matrices_of_vectors(
     is_rotation = any(
         (side.kind == "name" and ROTATION.fullmatch(str(side.value))) or _exponent(side) is not None for side in sides
     )
-    sums = [node for side in sides for _, node in walk(side) if is_rotation and node.kind == "sum"]
+    sums = [node for node in nodes_of(*sides) if is_rotation and node.kind == "sum"]
     letters = dict.fromkeys(name for node in sums for name in _skew_letters(node, hats, known))
     letters |= dict.fromkeys(_in_exponents(sides, hats, known))
-    used = {str(node.value) for side in sides for _, node in walk(side) if node.kind == "name"}
-    of_axes = {name for name in used for node in sums for term in node.args if _is_outer(_factors(term), name)}
+    used = names_in(*sides)
+    of_axes = {name for name in used for node in sums for term in node.args if _is_outer(factors_of(term), name)}
     axes = {name: name if name in hats else _axis_name(name, used - of_axes) for name in letters}
     made = [_rewritten(side, axes) for side in sides]
     if made == sides:
@@ -86,11 +99,11 @@ def _axis_name(letter: str, used: Collection[str]) -> str:
 
 def _skew_letters(node: Node, hats: Collection[str], known: Collection[str]) -> Iterator[str]:
     """Yield K for a sum such as ``I + sin(theta)*K + (1 - cos(theta))*K^2``; nothing for other sums."""
-    terms = [_factors(term) for term in node.args]
+    terms = [factors_of(term) for term in node.args]
     has_unit = any(factor.value in UNITS or factor == number(1) for term in terms for factor in term)
     by_name: dict[str, list[set[str]]] = {}
     for term in terms:
-        functions = {f"{part.value}({part.args[0]})" for factor in term for _, part in walk(factor)
+        functions = {f"{part.value}({part.args[0]})" for part in nodes_of(*term)
                      if part.kind == "call" and part.value in ("sin", "cos")}  # fmt: skip
         for factor in term:
             name = _name_of(factor)
@@ -102,11 +115,6 @@ def _skew_letters(node: Node, hats: Collection[str], known: Collection[str]) -> 
         outer = any(_is_outer(term, name.lower()) for term in terms)
         if has_unit and ((len(functions_of_terms) > 1 and kinds == {"sin", "cos"}) or (outer and kinds == {"sin"})):
             yield name
-
-
-def _factors(term: Node) -> Sequence[Node]:
-    bare = term.args[0] if term.kind == "neg" else term
-    return bare.args if bare.kind == "product" else (bare,)
 
 
 def _name_of(factor: Node) -> str:
@@ -136,9 +144,9 @@ def _in_exponents(sides: Sequence[Node], hats: Collection[str], known: Collectio
     """Yield the letters of skew matrices in exponents: those with a hat, and K in ``R = e^(theta K)``."""
     for side, other in (sides, sides[::-1]):
         names_rotation = other.kind == "name" and ROTATION.fullmatch(str(other.value)) is not None
-        for _, node in walk(side):
+        for node in nodes_of(side):
             exponent = _exponent(node)
-            factors = _factors(exponent) if exponent is not None else ()
+            factors = factors_of(exponent) if exponent is not None else ()
             if len(factors) == 2 and any(ANGLES.fullmatch(str(factor.value)) for factor in factors):
                 for name in map(_name_of, factors):
                     is_letter = names_rotation and node is side and SKEW_LETTER.fullmatch(name) is not None
@@ -160,7 +168,7 @@ def _rewritten(tree: Node, axes: Mapping[str, str]) -> Node:
     if tree.kind == "call" and tree.value == "skew" and tree.args[0].kind == "name":
         return tree
     made = replace(tree, args=tuple(_rewritten(child, axes) for child in tree.args))
-    is_sum = made.kind == "sum" and any(node.value == "skew" for _, node in walk(made))
+    is_sum = made.kind == "sum" and any(node.value == "skew" for node in nodes_of(made))
     return _with_unit(made) if is_sum else made
 
 
@@ -169,12 +177,11 @@ def _rotation_of_exponential(tree: Node, axes: Mapping[str, str]) -> Node | None
     exponent = _exponent(tree)
     if exponent is None:
         return None
-    factors = _factors(exponent)
+    factors = factors_of(exponent)
     signed = negated if exponent.kind == "neg" else (lambda angle: angle)
     if len(factors) == 1 and factors[0].value == "skew" and factors[0].args[0].kind == "name":
         (vector,) = factors[0].args
-        length = Node("call", "sqrt", (Node("call", "dot", (vector, vector)),))
-        return _rotation(vector, signed(length), length)
+        return _rotation(vector, signed(length(vector)), length(vector))
     for matrix, angle in (factors, factors[::-1]) if len(factors) == 2 else ():
         axis = axes.get(_name_of(matrix))
         vector = Node("name", axis) if axis else matrix.args[0] if matrix.value == "skew" else number(0)
@@ -185,7 +192,7 @@ def _rotation_of_exponential(tree: Node, axes: Mapping[str, str]) -> Node | None
 
 def _exponentials(tree: Node, axes: Mapping[str, str]) -> Iterator[tuple[Node, Node]]:
     """Yield (rotation matrix, exponential) for each exponential of a skew matrix in a tree."""
-    for _, node in walk(tree):
+    for node in nodes_of(tree):
         if (rotation := _rotation_of_exponential(node, axes)) is not None:
             yield read_expression(text(rotation)), node
 
@@ -202,22 +209,16 @@ def _derived_rotation() -> Node:
     return read_expression(as_text(dcm_of_axis_angle()))
 
 
-def _rotation(axis: Node, angle: Node, length: Node | None = None) -> Node:
+def _rotation(axis: Node, angle: Node, size: Node | None = None) -> Node:
     """Return the tree of the rotation matrix about ``axis``, the exponential of angle times skew matrix.
 
-    ``length`` is the length of ``axis``, by default 1.
+    ``size`` is the length of ``axis``, by default 1.
     """
     components = [Node("index", None, (axis, number(n))) for n in range(3)]
-    if length is not None:
-        components = [product([component, Node("inv", None, (length,))]) for component in components]
+    if size is not None:
+        components = [quotient(component, size) for component in components]
     places = {symbol.name: component for symbol, component in zip(symbols.axis, components, strict=True)}
-    return _substituted(_derived_rotation(), {**places, symbols.alpha.name: angle})
-
-
-def _substituted(tree: Node, nodes: Mapping[str, Node]) -> Node:
-    if tree.kind == "name":
-        return nodes.get(str(tree.value), tree)
-    return replace(tree, args=tuple(_substituted(child, nodes) for child in tree.args))
+    return substituted(_derived_rotation(), {**places, symbols.alpha.name: angle})
 
 
 def _with_rate_matrix(relation: tuple[str, Node, Node], known: Collection[str]) -> tuple[str, Node, Node] | None:
@@ -230,7 +231,7 @@ def _with_rate_matrix(relation: tuple[str, Node, Node], known: Collection[str]) 
     factors = right.args if right.kind == "product" else (right,)
     for place in range(len(factors)):
         omega, rest = _argument(factors, place)
-        if omega is None or len(rest) != 1 or _bare(rest[0]) != Node("name", name):
+        if omega is None or len(rest) != 1 or untimed(rest[0]) != Node("name", name):
             continue
         pair = Node("list", ("(", ")"), (number(0), omega))
         return sign, left, product([*factors[:place], Node("call", "qmul", (rest[0], pair))])
@@ -245,7 +246,3 @@ def _argument(factors: Sequence[Node], place: int) -> tuple[Node | None, Sequenc
     if factor == Node("name", "Omega") and after and after[0].kind == "name" and after[0].value in OMEGA:
         return after[0], after[1:]
     return None, ()
-
-
-def _bare(node: Node) -> Node:
-    return Node("name", node.value) if node.kind == "call" and node.args == (TIME,) else node

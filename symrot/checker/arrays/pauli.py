@@ -9,7 +9,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from symrot.checker.claim.shapes import shape_of
-from symrot.checker.claim.tree import Node, negated, number, product, sum_of, walk
+from symrot.checker.claim.tree import Node, matrix_of_rows, names_in, negated, nodes_of, number, product, sum_of
 from symrot.errors import InputError
 
 __all__ = ["commutator", "eye", "with_pauli_matrices"]
@@ -45,7 +45,7 @@ def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Rel
         For a matrix that is both inside and outside of an exponent.
     """
     sign, left, right = relation[0], *map(_with_commutators, relation[1:])
-    nodes = [node for side in (left, right) for _, node in walk(side)]
+    nodes = nodes_of(left, right)
     used = {str(node.value) for node in nodes if node.kind == "name"}
     matrices = sorted(used & {*NAMES})
     if (name := _in_exponent(nodes, matrices)) and IMAGINARY in used:
@@ -56,7 +56,7 @@ def with_pauli_matrices(relation: Relation, known: Collection[str]) -> tuple[Rel
     # a product or power without other names: sigma_x^2 = 1
     multiplied = any(_is_product_of_matrices(node) for node in nodes) and used <= {*NAMES, UNIT_MATRIX}
     # trace or determinant: det(sigma_x) = -1
-    of_matrix = any(node.value in OF_MATRICES and _names_in(node) & {*NAMES} for node in nodes if node.kind == "call")
+    of_matrix = any(node.value in OF_MATRICES and names_in(node) & {*NAMES} for node in nodes if node.kind == "call")
     # in other equations sigma_x is a number, such as a stress
     is_evident = (IMAGINARY in used and len(sigmas) > 1) or multiplied or of_matrix or _is_square(left, right)
     # the claim itself defines one of the names
@@ -79,23 +79,19 @@ def _is_product_of_matrices(node: Node) -> bool:
 def _is_square(left: Node, right: Node) -> bool:
     """Return whether an equation gives the square of a sum of Pauli matrices: ``(a sigma_x + sigma_y)^2 = a^2 + 1``."""
     for side, other in ((left, right), (right, left)):
-        bases = [node.args[0] for _, node in walk(side) if node.kind == "power" and node.args[1] == number(2)]
-        squared = any(len(_names_in(base) & {*NAMES}) > 1 for base in bases)
+        bases = [node.args[0] for node in nodes_of(side) if node.kind == "power" and node.args[1] == number(2)]
+        squared = any(len(names_in(base) & {*NAMES}) > 1 for base in bases)
         # the other side has no Pauli matrix and no new letter: for numbers sigma_x and sigma_y, both sides would
         # contain them
-        if squared and not _names_in(other) & {*NAMES} and _names_in(other) <= {*_names_in(side), UNIT_MATRIX}:
+        if squared and not names_in(other) & {*NAMES} and names_in(other) <= {*names_in(side), UNIT_MATRIX}:
             return True
     return False
-
-
-def _names_in(tree: Node) -> set[str]:
-    return {str(node.value) for _, node in walk(tree) if node.kind == "name"}
 
 
 def commutator(first: Node, second: Node, sign: str = "-") -> Node | None:
     """Return the tree of A B - B A, or A B + B A for ``sign`` "+"; None unless A and B contain Pauli matrices."""
     # otherwise [A, B] is a list of two components
-    if not all(any(STEM.match(str(node.value)) for _, node in walk(part)) for part in (first, second)):
+    if not all(any(STEM.match(str(node.value)) for node in nodes_of(part)) for part in (first, second)):
         return None
     backwards = product([second, first])
     return sum_of([product([first, second]), backwards if sign == "+" else negated(backwards)])
@@ -139,11 +135,7 @@ def _real(matrix: Complex) -> Node:
         parts = [(complex(entry).real, complex(entry).imag) for entry in row]
         rows.append([int(part) for real, imaginary in parts for part in (real, -imaginary)])
         rows.append([int(part) for real, imaginary in parts for part in (imaginary, real)])
-    return Node("call", "Matrix", (_list([_list(list(map(number, row))) for row in rows]),))
-
-
-def _list(members: Sequence[Node]) -> Node:
-    return Node("list", ("[", "]"), tuple(members))
+    return matrix_of_rows([list(map(number, row)) for row in rows])
 
 
 def _in_exponent(nodes: Sequence[Node], matrices: Collection[str]) -> str:
@@ -152,7 +144,7 @@ def _in_exponent(nodes: Sequence[Node], matrices: Collection[str]) -> str:
         node.args[-1] for node in nodes if node.kind == "power" or (node.kind == "call" and node.value == "exp")
     ]
     names = [str(node.value) for node in nodes if node.kind == "name"]
-    inside = [str(part.value) for tree in exponents for _, part in walk(tree) if part.kind == "name"]
+    inside = [str(part.value) for part in nodes_of(*exponents) if part.kind == "name"]
     return next((name for name in matrices if name in inside and names.count(name) > inside.count(name)), "")
 
 
@@ -165,7 +157,7 @@ def _as_matrix(side: Node, shapes: dict[str, tuple[int, int]]) -> Node:
         (rows,) = side.args
         # each scalar entry of a written-out matrix becomes such a matrix
         return replace(
-            side, args=(_list([_list([_as_matrix(entry, shapes) for entry in row.args]) for row in rows.args]),)
+            matrix_of_rows([[_as_matrix(entry, shapes) for entry in row.args] for row in rows.args]), span=side.span
         )
     side = _with_units(side, shapes)
     return side if shape_of(side, shapes) is not None else _times_unit(side)

@@ -10,7 +10,21 @@ from dataclasses import dataclass, replace
 
 from symrot.checker.arrays.rotated_vectors import as_matrix_of_map
 from symrot.checker.claim.shapes import Shape, shape_of
-from symrot.checker.claim.tree import TIME, Node, is_derivative, negated, number, product, sum_of, walk
+from symrot.checker.claim.tree import (
+    TIME,
+    Node,
+    column_vector,
+    is_derivative,
+    is_inverse,
+    names_in,
+    negated,
+    nodes_of,
+    number,
+    product,
+    sum_of,
+    untimed,
+)
+from symrot.checker.claim.vectors import length
 
 __all__ = ["CONJUGATE", "Quaternions", "quaternion_product", "used_quaternions"]
 
@@ -65,15 +79,14 @@ def used_quaternions(
         return by_components
     bold = {
         node.args[0].value
-        for side in sides
-        for _, node in walk(side)
+        for node in nodes_of(*sides)
         if node.kind == "call" and node.value == CONJUGATE and node.args[0].kind == "name"
     }
-    factors = {part.value for side in sides for _, node in walk(side) if node.value == "qmul" for part in node.args}
-    bold |= {node.args[0].value for side in sides for _, node in walk(side) if is_derivative(node)} & factors
+    factors = {part.value for node in nodes_of(*sides) if node.value == "qmul" for part in node.args}
+    bold |= {node.args[0].value for node in nodes_of(*sides) if is_derivative(node)} & factors
     vectors = [name for name in vectors if name not in bold]  # a bold letter with a conjugate is a quaternion
     names = _quaternion_names(sides, vectors, shapes, known)
-    if not names and not any(node.value == CONJUGATE for side in sides for _, node in walk(side)):
+    if not names and not any(node.value == CONJUGATE for node in nodes_of(*sides)):
         return Quaternions(relation)
     reader = _Products(names, {*vectors})
     sides = [reader.read(side) for side in sides]
@@ -81,10 +94,10 @@ def used_quaternions(
         reader.pure |= {str(part.value): None for side in sides for part in _vector_of_pair(side)}
     left, right = _of_one_shape(sides, reader.shapes(shapes))
     (sign, left, right), on_matrix = as_matrix_of_map((sign, left, right), {*vectors, *reader.pure}, known)
-    used = {str(node.value) for side in (left, right) for _, node in walk(side) if node.kind == "name"}
+    used = names_in(left, right)
     if on_matrix:
         reader.pure = {name: None for name in reader.pure if name in used}
-    moving = any(is_derivative(node) for side in sides for _, node in walk(side))
+    moving = any(is_derivative(node) for node in nodes_of(*sides))
     definitions = [part for name in names for part in _definitions(name, used, moving)]
     lefts, rights = (_with_time(side, names, moving) for side in (left, right))
     first = names[0] if names else ""
@@ -96,7 +109,7 @@ def used_quaternions(
 
 def _has_units(sides: Sequence[Node], others: Collection[str]) -> bool:
     """Return whether i, j and k are the only names of a claim and mean units of quaternions, as in ``i² = j² = -1``."""
-    nodes = [node for side in sides for _, node in walk(side)]
+    nodes = nodes_of(*sides)
     names = {str(node.value) for node in nodes if node.kind == "name"}
     squares = any(node.kind == "power" for node in nodes)
     plain = {node.kind for node in nodes} <= {"name", "number", "neg", "product", "power", "sum"}
@@ -109,9 +122,9 @@ def _of_units(relation: tuple[str, Node, Node]) -> Quaternions:
     reader = _Products(tuple(UNITS), set())
     sides = [reader.read(_without_squares(side)) for side in (left, right)]
     first, second = _of_one_shape(sides, reader.shapes({}))
-    used = {str(node.value) for side in (first, second) for _, node in walk(side) if node.kind == "name"}
+    used = names_in(first, second)
     # i is the column [0, 1, 0, 0]
-    definitions = [(name, _column([number(int(n == place)) for n in range(4)])) for name, place in UNITS.items()]
+    definitions = [(name, column_vector([number(int(n == place)) for n in range(4)])) for name, place in UNITS.items()]
     note = "i, j and k are the units of quaternions, with i j = k"
     return Quaternions((sign, first, second), tuple(d for d in definitions if d[0] in used), (), (note,))
 
@@ -125,8 +138,8 @@ def _by_components(relation: tuple[str, Node, Node], known: Collection[str]) -> 
     # a scalar part and all three units, which may be bold, are required
     if parts is None or not all(parts):
         return None
-    column = _column([sum_of(part) for part in parts])
-    return Quaternions((sign, left, column), (), (), ("i, j and k are the units of quaternions",))
+    made = column_vector([sum_of(part) for part in parts])
+    return Quaternions((sign, left, made), (), (), ("i, j and k are the units of quaternions",))
 
 
 def _components(node: Node) -> tuple[list[Node], ...] | None:
@@ -134,7 +147,7 @@ def _components(node: Node) -> tuple[list[Node], ...] | None:
 
     None if the formula is not linear in i, j and k.
     """
-    if not {str(part.value) for _, part in walk(node) if part.kind == "name"} & {*UNITS}:
+    if not names_in(node) & {*UNITS}:
         return [node], [], [], []
     if node.kind == "name":
         return tuple([number(1)] if UNITS[str(node.value)] == place else [] for place in range(4))
@@ -180,11 +193,6 @@ def quaternion_product(left: Node, right: Node) -> Node:
     return product([*scalars, Node("call", PRODUCT, (first, right))])
 
 
-def _bare(node: Node) -> Node:
-    """Return the node of the name q for q(t); return any other node unchanged."""
-    return Node("name", node.value, (), node.span) if node.kind == "call" and node.args == (TIME,) else node
-
-
 def _quaternion_names(
     sides: Sequence[Node], vectors: Collection[str], shapes: Mapping[str, Shape], known: Collection[str]
 ) -> tuple[str, ...]:
@@ -192,11 +200,11 @@ def _quaternion_names(
     names: dict[str, None] = {}
 
     def add(node: Node) -> None:
-        bare = _bare(node)
+        bare = untimed(node)
         if bare.kind == "name" and bare.value not in (*vectors, *known, "t") and bare.value not in names:
             names[str(bare.value)] = None
 
-    everything = [node for side in sides for _, node in walk(side)]
+    everything = nodes_of(*sides)
     in_text = {str(node.value) for node in everything if node.kind == "name"}
     for node in everything:
         if node.kind == "call" and node.value == PRODUCT:
@@ -210,7 +218,7 @@ def _quaternion_names(
     used = {str(node.value) for node in everything if node.kind == "name"}
     for node in everything:
         if node.kind == "call" and node.value == "sqrt" and node.args[0].kind == "call" and node.args[0].value == "dot":
-            inner = _bare(node.args[0].args[0])  # the norm of q, of which the text has the conjugate
+            inner = untimed(node.args[0].args[0])  # the norm of q, of which the text has the conjugate
             if f"{inner.value}_bar" in used:
                 add(inner)
         elif node.kind == "call" and node.value == "abs":  # |q|, of which the text has the conjugate
@@ -231,11 +239,11 @@ def _quaternion_names(
 def _turning_quaternion(sides: Sequence[Node]) -> Sequence[Node]:
     """Return [q] for an equation of a quaternion q such as ``q' = 1/2 omega q``; () for other equations."""
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
-        factors = [_bare(factor) for factor in other.args if factor.kind != "number" and factor.kind != "inv"]
+        factors = [untimed(factor) for factor in other.args if factor.kind != "number" and factor.kind != "inv"]
         if other.kind != "product" or not all(factor.kind == "name" for factor in factors):
             continue
         names = [str(factor.value) for factor in factors]
-        rate = _bare(side.args[0]) if is_derivative(side) else side
+        rate = untimed(side.args[0]) if is_derivative(side) else side
         moved = {str(rate.value), str(rate.value).removesuffix("_prime")} if rate.kind == "name" else set()
         # for a number q, nobody would write q^2 v as q v q; probably the star of the last q was lost in copying
         is_sandwich = len(names) == 3 and names[0] == names[2] != names[1] and names[1] in moved
@@ -256,8 +264,8 @@ def _rotating(side: Node, other: Node) -> Node | None:
         return None
     # numbers commute: nobody would write such a product of numbers
     for first, vector, last in (side.args, side.args[::-1]):
-        is_inverse = last.value == f"{first.value}_bar" or (_is_inverse(last) and last.args[0] == first)
-        if first.kind != "name" or str(first.value)[0] not in LETTERS or vector.kind != "name" or not is_inverse:
+        inverted = last.value == f"{first.value}_bar" or (is_inverse(last) and last.args[0] == first)
+        if first.kind != "name" or str(first.value)[0] not in LETTERS or vector.kind != "name" or not inverted:
             continue
         rotated = other.kind == "name" and other != vector and str(other.value)[0] == str(vector.value)[0]
         factors = other.args if other.kind == "product" else ()
@@ -266,10 +274,6 @@ def _rotating(side: Node, other: Node) -> Node | None:
         if rotated or mapped:
             return first
     return None
-
-
-def _is_inverse(node: Node) -> bool:
-    return node.kind == "power" and node.args[1] in (number(-1), Node("neg", None, (number(1),)))
 
 
 def _vector_of_pair(node: Node) -> Sequence[Node]:
@@ -295,7 +299,7 @@ class _Products:
         return {**others, **dict.fromkeys((*self.vectors, *self.pure), (3, 1)), **dict.fromkeys(self.names, (4, 1))}
 
     def is_quaternion(self, node: Node) -> bool:
-        bare = _bare(node)
+        bare = untimed(node)
         if bare.kind == "name":
             return bare.value in self.names
         if bare.kind == "power":
@@ -304,12 +308,12 @@ class _Products:
         return bare.kind == "call" and (bare.value in (PRODUCT, CONJUGATE) or any(map(self.is_quaternion, inner)))
 
     def read(self, node: Node) -> Node:
-        node = _bare(node)
+        node = untimed(node)
         if node.kind == "name" and str(node.value).removesuffix("_bar") in self.names:
             name = str(node.value).removesuffix("_bar")
             own = Node("name", name, (), node.span)
             return own if name == node.value else Node("call", CONJUGATE, (own,), node.span)
-        if _is_inverse(node):
+        if is_inverse(node):
             base = self.read(node.args[0])
             if self.is_quaternion(base):
                 norm = Node("call", "dot", (base, base))
@@ -321,7 +325,7 @@ class _Products:
             self.pure |= {str(part.value): None for factor in args for part in _vector_of_pair(factor)}
             self.pure |= {str(factor.value): None for factor in args if self.is_rate(factor)}
         if node.kind == "call" and node.value == "abs" and self.is_quaternion(args[0]):
-            return Node("call", "sqrt", (Node("call", "dot", (args[0], args[0])),), node.span)
+            return replace(length(args[0]), span=node.span)
         return self.multiplied(node) if node.kind == "product" else node
 
     def is_rate(self, factor: Node) -> bool:
@@ -365,7 +369,7 @@ def _of_one_shape(sides: Sequence[Node], shapes: Mapping[str, Shape]) -> tuple[N
     for side, other in ((sides[0], sides[1]), (sides[1], sides[0])):
         own, opposite = shape_of(side, shapes), shape_of(other, shapes)
         if opposite == (4, 1) and own is None and not _is_list(side) and side.kind != "name":
-            side = Node("call", "Matrix", (Node("list", ("[", "]"), (side, *[number(0)] * 3)),), side.span)
+            side = replace(column_vector([side, *[number(0)] * 3]), span=side.span)
         elif own == (4, 1) and opposite in ((3, 1), None) and (opposite or other.kind == "name"):
             # the other side is a vector or a name
             side = Node("call", "vector_part", (side,), side.span)
@@ -382,14 +386,10 @@ def _definitions(name: str, used: Collection[str], moving: bool) -> list[tuple[s
     parts = [
         Node("call", f"{name}{style}{n}", (TIME,)) if moving else Node("name", f"{name}{style}{n}") for n in range(4)
     ]
-    own = [(name, _column(parts))]
+    own = [(name, column_vector(parts))]
     # a name for the vector part, as q_v, is defined first
     vector = next((f"{name}{ending}" for ending in ENDINGS if f"{name}{ending}" in used), "")
-    return [(vector, _column(parts[1:])), *own] if vector else own
-
-
-def _column(parts: Sequence[Node]) -> Node:
-    return Node("call", "Matrix", (Node("list", ("[", "]"), tuple(parts)),))
+    return [(vector, column_vector(parts[1:])), *own] if vector else own
 
 
 def _with_time(node: Node, names: Sequence[str], moving: bool) -> Node:

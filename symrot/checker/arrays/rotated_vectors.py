@@ -4,9 +4,8 @@ The equation holds for every vector v. So R is the matrix of the map from v to t
 """
 
 from collections.abc import Collection
-from dataclasses import replace
 
-from symrot.checker.claim.tree import Node, number, walk
+from symrot.checker.claim.tree import Node, column_vector, matrix_of_rows, nodes_of, number, substituted
 
 __all__ = ["as_matrix_of_map"]
 
@@ -33,7 +32,7 @@ def as_matrix_of_map(relation: Relation, vectors: Collection[str], known: Collec
         matrix, vector = factors
         name = matrix.args[0] if matrix.kind == "transpose" else matrix
         is_matrix = name.kind == "name" and str(name.value)[0].isupper() and name.value not in known
-        if not is_matrix or not _is_image(image, vector) or name in _nodes(image):
+        if not is_matrix or not _is_image(image, vector) or name in nodes_of(image):
             continue
         rows = _matrix_of(image, vector)
         written = f"{name.value}^T" if matrix.kind == "transpose" else str(name.value)
@@ -48,11 +47,11 @@ def _is_image(image: Node, vector: Node) -> bool:
     a sum in which each term contains v once, and one in a cross or dot product.
     """
     # such a product or sum is a linear map of the vector
-    nodes = _nodes(image)
+    nodes = nodes_of(image)
     if image.kind == "call" and image.value == "vector_part":
         return nodes.count(vector) == 1
     products = [node for node in nodes if node.kind == "call" and node.value in ("cross", "dot")]
-    return _is_linear(image, vector) and any(vector in part for part in map(_nodes, products))
+    return _is_linear(image, vector) and any(vector in part for part in map(nodes_of, products))
 
 
 def _is_linear(tree: Node, vector: Node) -> bool:
@@ -62,12 +61,8 @@ def _is_linear(tree: Node, vector: Node) -> bool:
     if tree.kind in ("sum", "neg"):
         return all(_is_linear(term, vector) for term in tree.args)
     is_product = tree.kind == "product" or (tree.kind == "call" and tree.value in ("cross", "dot"))
-    factors = [factor for factor in tree.args if vector in _nodes(factor)]
+    factors = [factor for factor in tree.args if vector in nodes_of(factor)]
     return is_product and len(factors) == 1 and _is_linear(factors[0], vector)
-
-
-def _nodes(tree: Node) -> list[Node]:
-    return [node for _, node in walk(tree)]
 
 
 def _matrix_of(image: Node, vector: Node) -> Node:
@@ -75,18 +70,7 @@ def _matrix_of(image: Node, vector: Node) -> Node:
 
     Its columns are the images of the unit vectors.
     """
-    columns = [_with(image, vector, _column(place)) for place in range(3)]
-    rows = [[Node("index", None, (column, number(row), number(0))) for column in columns] for row in range(3)]
-    return Node("call", "Matrix", (_list([_list(row) for row in rows]),))
-
-
-def _with(tree: Node, name: Node, value: Node) -> Node:
-    return value if tree == name else replace(tree, args=tuple(_with(child, name, value) for child in tree.args))
-
-
-def _column(place: int) -> Node:
-    return Node("call", "Matrix", (_list([number(int(place == n)) for n in range(3)]),))
-
-
-def _list(members: list[Node]) -> Node:
-    return Node("list", ("[", "]"), tuple(members))
+    units = [column_vector([number(int(place == n)) for n in range(3)]) for place in range(3)]
+    columns = [substituted(image, {str(vector.value): unit}) for unit in units]
+    rows = [[Node("index", None, (own, number(row), number(0))) for own in columns] for row in range(3)]
+    return matrix_of_rows(rows)

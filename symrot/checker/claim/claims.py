@@ -13,10 +13,8 @@ from sympy import Expr, Symbol
 
 from symrot.checker.claim.interpreter import Interpreter, time
 from symrot.checker.claim.scope import Divisor
-from symrot.checker.claim.shapes import (
-    shape_of,
-)
-from symrot.checker.claim.tree import Node, text, walk
+from symrot.checker.claim.shapes import shape_of
+from symrot.checker.claim.tree import Node, nodes_of, number, substituted, text
 from symrot.checker.context.context import NO_CONTEXT, Context
 from symrot.checker.decide.equation import Equation
 from symrot.checker.typed.readings import Relation
@@ -130,7 +128,7 @@ class Claim:
         """The scalar formulas by which hypotheses define names: {"c1": cos(alpha)} for ``c1 == cos(alpha)``."""
         definitions: dict[str, Node] = {}
         for sign, left, right in self.hypotheses:
-            inside = {str(node.value) for _, node in walk(right) if node.kind in ("name", "call")}
+            inside = {str(node.value) for node in nodes_of(right) if node.kind in ("name", "call")}
             if sign == "==" and left.kind == "name" and left.value not in inside and shape_of(right, {}) is None:
                 definitions.setdefault(str(left.value), right)
         return definitions
@@ -156,7 +154,7 @@ class Claim:
             hypothesis for hypothesis in self.hypotheses if definitions.get(str(hypothesis[1].value)) != hypothesis[2]
         )
         sign, left, right = self.relation
-        relation = sign, _substituted(left, definitions), _substituted(right, definitions)
+        relation = sign, substituted(left, definitions), substituted(right, definitions)
         return replace(self, relation=relation, hypotheses=rest, alternatives=())
 
     @property
@@ -212,9 +210,9 @@ class Claim:
                 values[name] = Symbol(name, nonnegative=True)
             else:
                 values[name] = time if name == "t" else Symbol(name, real=True)
-        for number, (name, node) in enumerate(self.define):
-            source, place = self.sources.get(f"define.{number}", ""), self.label(f"define {name}")
-            values[name] = interpreter.read(node, source, place)
+        for index, (name, node) in enumerate(self.define):
+            source = self.sources.get(f"define.{index}", "")
+            values[name] = interpreter.read(node, source, self.label(f"define {name}"))
         return Definitions(
             values, frozenset(interpreter.functions), tuple(interpreter.divisors), tuple(interpreter.radicands),
             tuple(interpreter.bases),
@@ -240,9 +238,8 @@ class Claim:
         assert self.relation is not None
         interpreter = self.interpreter()
         hypotheses, nonzero = [], []
-        for number, relation in enumerate(self.hypotheses):
-            sign, left, right = relation
-            source = self.sources.get(f"given.{number}", "")
+        for index, (sign, left, right) in enumerate(self.hypotheses):
+            source = self.sources.get(f"given.{index}", "")
             lhs, rhs = (interpreter.read(side, source, self.label("given")) for side in (left, right))
             if sign == "==":
                 hypotheses.extend(_differences(lhs, rhs, self.label("given")))
@@ -257,13 +254,6 @@ class Claim:
         same = text(left) == text(right)  # equal sides are equal for all bases
         bases = () if same else interpreter.assumed_bases
         return Equation(lhs, rhs, tuple(hypotheses), divisors, tuple(nonzero), radicands, bases)
-
-
-def _substituted(tree: Node, definitions: Mapping[str, Node]) -> Node:
-    """Return a tree in which the formulas in ``definitions`` replace the names that they define."""
-    if tree.kind == "name" and tree.value in definitions:
-        return definitions[tree.value]
-    return replace(tree, args=tuple(_substituted(child, definitions) for child in tree.args))
 
 
 def relation_text(relation: Relation) -> str:
@@ -284,11 +274,10 @@ def _differences(left: Any, right: Any, where: str) -> list[Expr]:
 def assumed_names(hypotheses: Sequence[Relation], sign: str) -> set[str]:
     """Return the names x of hypotheses ``x > 0``, or of ``x >= 0`` for the ``sign`` ">="."""
     mirrored = {">": "<", ">=": "<="}[sign]
-    zero = ("number", 0)
     names = set()
     for mark, left, right in hypotheses:
         if mark == mirrored:
             left, right = right, left
-        if mark in (sign, mirrored) and left.kind == "name" and (right.kind, right.value) == zero:
+        if mark in (sign, mirrored) and left.kind == "name" and right == number(0):
             names.add(left.value)
     return names

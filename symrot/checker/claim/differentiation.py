@@ -12,7 +12,7 @@ from sympy.core.function import AppliedUndef
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import with_time
-from symrot.checker.claim.tree import TIME, Node, is_derivative, walk, with_names
+from symrot.checker.claim.tree import TIME, Node, is_derivative, nodes_of, with_names
 from symrot.exact import normal_form
 from symrot.exact.decision import flatten
 from symrot.exact.ring.ratio import TooLarge
@@ -27,7 +27,7 @@ def as_functions(claim: Claim) -> Claim | None:
     """
     assert claim.relation is not None
     sign, *sides = claim.relation
-    nodes = [node for side in sides for _, node in walk(side)]
+    nodes = nodes_of(*sides)
     derivatives = [node for node in nodes if is_derivative(node)]
     variables = {argument for node in derivatives for argument in node.args[1:] if argument.kind != "number"}
     names = {str(node.args[0].value) for node in derivatives if node.args[0].kind == "name"}
@@ -53,7 +53,7 @@ def as_functions(claim: Claim) -> Claim | None:
 
 def _letters(tree: Node) -> set[str]:
     """Return the names in a tree: those of symbols (x), and those of functions of time (f if ``f(t)`` occurs)."""
-    return {str(node.value) for _, node in walk(tree) if node.kind == "name" or node.args == (TIME,)}
+    return {str(node.value) for node in nodes_of(tree) if node.kind == "name" or node.args == (TIME,)}
 
 
 def _on_letters(
@@ -63,7 +63,7 @@ def _on_letters(
     constants.
     """
     yield f"{' and '.join(sorted(names))} {'is a function' if len(names) == 1 else 'are functions'} of {variable} here"
-    letters = {str(node.value) for tree in derivatives for _, node in walk(tree.args[0]) if node.kind == "name"}
+    letters = {str(node.value) for tree in derivatives for node in nodes_of(tree.args[0]) if node.kind == "name"}
     if constants := sorted(letters - {*names, *defined, variable, "t", "pi"}):
         yield f"{' and '.join(constants)} {'is a constant' if len(constants) == 1 else 'are constants'} here"
 
@@ -73,7 +73,7 @@ def is_rule(claim: Claim) -> bool:
     t)``.
     """
     assert claim.relation is not None
-    nodes = [[node for _, node in walk(side)] for side in claim.relation[1:]]
+    nodes = [nodes_of(side) for side in claim.relation[1:]]
     derivatives = [[node for node in side if is_derivative(node)] for side in nodes]
     sides = (claim.equation.left, claim.equation.right)
     values = [[_plain(value) for value in flatten(side)[0]] for side in sides]
@@ -97,4 +97,4 @@ def _is_of_formula(derivative: Node) -> bool:
     inside.
     """
     inner = derivative.args[0]
-    return inner.kind in ("sum", "product", "power") and not any(is_derivative(node) for _, node in walk(inner))
+    return inner.kind in ("sum", "product", "power") and not any(is_derivative(node) for node in nodes_of(inner))

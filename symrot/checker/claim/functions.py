@@ -119,6 +119,7 @@ def _rotation(axis: str) -> Any:
 
 
 def _components(scope: Scope, node: Node, size: int) -> list[Expr]:
+    """Return the components in a call such as ``skew(a, b, c)``: its ``size`` arguments, or the entries of a column."""
     if len(node.args) == size:
         return [scope.scalar(argument, f"as a component in {node.value}") for argument in node.args]
     if len(node.args) != 1:
@@ -152,6 +153,7 @@ def _dot(scope: Scope, node: Node) -> Expr:
 
 
 def _square(scope: Scope, node: Node) -> ImmutableMatrix:
+    """Return the matrix in a call such as ``det(A)``; raise InputError unless it is square and not too large."""
     matrix = scope.matrix(node.args[0], f"as the argument of {node.value}")
     if matrix.rows != matrix.cols or matrix.rows > LARGEST_MATRIX:
         raise scope.fail(node.args[0], f"a square matrix of at most {LARGEST_MATRIX} x {LARGEST_MATRIX} entries")
@@ -163,6 +165,7 @@ def _det(scope: Scope, node: Node) -> Expr:
 
 
 def _determinant(scope: Scope, matrix: ImmutableMatrix, node: Node, most_products: int) -> Expr:
+    """Return a determinant; raise InputError if its expansion has more than ``most_products`` products."""
     products = products_of_determinant(matrix)
     if products > most_products:
         raise scope.fail(node, f"a determinant of at most {most_products} products instead of {products}")
@@ -184,6 +187,7 @@ def _inverse_of(scope: Scope, node: Node) -> ImmutableMatrix:
 
 
 def inverted(scope: Scope, matrix: ImmutableMatrix, node: Node) -> ImmutableMatrix:
+    """Return the inverse of a matrix, and record its determinant as a divisor; raise InputError if that is zero."""
     determinant = _determinant(scope, matrix, node, LARGEST_INVERSE)
     from symrot.exact import normal_form
 
@@ -288,9 +292,8 @@ def _vector_part(scope: Scope, node: Node) -> ImmutableMatrix:
 
 def _dcm_of(scope: Scope, node: Node) -> ImmutableMatrix:
     components = dict(zip(symbols.quaternion, _components(scope, node, 4), strict=True))
-    return quaternion_to_dcm(form="homogeneous").xreplace(
-        components
-    )  # nothing is multiplied out: components may be long
+    # nothing is multiplied out: components may be long
+    return quaternion_to_dcm(form="homogeneous").xreplace(components)
 
 
 def _diff(scope: Scope, node: Node) -> Any:
@@ -315,7 +318,10 @@ def _is_rate(value: Expr) -> bool:
 
 
 def _integrate(scope: Scope, node: Node) -> Any:
-    """Return an integral; a vector or matrix is integrated entry by entry."""
+    """Return an integral; a vector or matrix is integrated entry by entry.
+
+    The divisors of the integral are recorded. Divisors and radicands that contain the variable are refused.
+    """
     integrand, *ranges = node.args
     limits = []
     for place in ranges:

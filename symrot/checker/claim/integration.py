@@ -74,6 +74,7 @@ def _products(formula: Expr) -> int:
 
 
 def _antiderivative(term: Expr, variable: Symbol, divisors: list[Expr]) -> Expr:
+    """Return an antiderivative of ``c*x^n*exp(i(k x + a))``, and append k to ``divisors`` if it may be zero."""
     constants, power, exponent = [], 0, Integer(0)
     for factor in Mul.make_args(term):
         base, degree = factor.as_base_exp()

@@ -1,12 +1,13 @@
 """The interpreter of claims turns syntax trees into SymPy formulas, by a table with one function per kind of node."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import Any
 
 import sympy
 from sympy import Expr, Function, ImmutableMatrix, Integer, Rational, Symbol
+from sympy.core.function import AppliedUndef
 
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS, inverted
 from symrot.checker.claim.scope import Scope, described, is_matrix
@@ -15,7 +16,7 @@ from symrot.checker.decide.unordered import is_unordered
 from symrot.checker.typed.defined_functions import DISPUTED_NAMES, instead
 from symrot.exact.limits.operations import spend
 
-__all__ = ["CONSTANTS", "Interpreter", "time"]
+__all__ = ["CONSTANTS", "Interpreter", "atoms_of", "time"]
 
 LARGEST_EXPONENT = 64
 """The largest exponent of a matrix or under a root."""
@@ -65,6 +66,22 @@ class Interpreter(Scope):
             raise
 
 
+def atoms_of(formulas: Iterable[Expr]) -> set[Expr]:
+    """Return the symbols, functions of time ``f(t)``, and derivatives in formulas: x and ``diff(f(t), t)`` for
+    ``x*diff(f(t), t)``.
+    """
+    atoms: set[Expr] = set()
+    stack = list(formulas)
+    while stack:
+        node = stack.pop()
+        if node.is_Symbol or isinstance(node, AppliedUndef) or node.is_Derivative:
+            # the f(t) inside a derivative is no atom of its own
+            atoms.add(node)
+        else:
+            stack.extend(node.args)
+    return atoms
+
+
 # -- the kinds of node ------------------------------------------------------------------------------------------------
 
 
@@ -96,10 +113,11 @@ def _name(interpreter: Interpreter, node: Node) -> Any:
 
 
 def _nearest(name: str, interpreter: Interpreter) -> str:
+    """Return words for an error message on an undeclared name: the known name nearest to it, or the declared names."""
     known = [*interpreter.values, *interpreter.functions, *CONSTANTS, *BUILT_IN]
     close = get_close_matches(name, known, 1, 0.6)
-    declared = ", ".join([*interpreter.values, *interpreter.functions]) or "none is"
-    return f"did you mean {close[0]!r}?" if close else f"declared: {declared[:80]}"
+    declared = ", ".join([*interpreter.values, *interpreter.functions])
+    return f"did you mean {close[0]!r}?" if close else f"declared: {declared[:80]}" if declared else "none is declared"
 
 
 def _sum(interpreter: Interpreter, node: Node) -> Any:
@@ -215,7 +233,7 @@ def _call(interpreter: Interpreter, node: Node) -> Any:
     if name in BUILT_IN:
         least, most, function = BUILT_IN[name]
         if not least <= len(arguments) <= most:
-            count = str(least) if least == most else f"{least} to {most}" if most < 99 else f"at least {least}"
+            count = str(least) if least == most else f"{least} to {most}"
             raise interpreter.fail(node, f"{count} argument(s) of {name} instead of {len(arguments)}")
         return function(interpreter, node)
     if name in interpreter.values:

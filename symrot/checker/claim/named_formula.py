@@ -3,15 +3,33 @@
 Such a claim is no identity: whether it holds depends on what its letters mean.
 """
 
-from collections.abc import Callable, Collection, Iterator, Sequence
-from fractions import Fraction
-from functools import partial, reduce
+from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple
 
-from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.claim.claims import Claim
+from symrot.checker.claim.interpreter import atoms_of
 from symrot.checker.claim.scope import is_matrix
-from symrot.checker.claim.tree import Node, is_derivative, negated, number, product, sum_of, text, walk
+from symrot.checker.claim.solving import (
+    Solve,
+    quantities_in,
+    solution,
+    terms_of,
+    with_highest_rate,
+    without_common_factors,
+)
+from symrot.checker.claim.tree import (
+    Node,
+    is_derivative,
+    is_name,
+    is_rate,
+    negated,
+    nodes_of,
+    number,
+    quotient,
+    sum_of,
+    text,
+    without_sign,
+)
 from symrot.checker.claim.vectors import is_components
 from symrot.errors import InputError
 from symrot.exact import normal_form
@@ -19,16 +37,11 @@ from symrot.exact.decision import flatten
 from symrot.exact.ring.ratio import TooLarge
 
 __all__ = [
-    "NamedFormula", "Solve", "claims_identity", "is_name_or_rate", "named_formula", "open_formula", "related_formula",
-    "solution",
+    "NamedFormula", "claims_identity", "named_formula", "open_formula", "related_formula",
 ]  # fmt: skip
 
-Solve = Callable[[Node], Node]
 MARKED = ("_prime", "_dot", "_star")
 """Endings of names such as ``theta'`` and ``z*``, whose marks say that they depend on theta and z."""
-
-INVERSES = {"sin": "asin", "cos": "acos", "tan": "atan", "exp": "log", "log": "exp"}
-"""Maps a function to its inverse, which solves for its argument."""
 
 
 class NamedFormula(NamedTuple):
@@ -65,13 +78,13 @@ def named_formula(claim: Claim) -> NamedFormula | None:
     known, defined = _known(claim), dict(claim.define)
     # the quantity may be a symbol, a function of time or its derivative, and must occur nowhere else
     for side, formula in ((left, right), (right, left)):
-        inner = side.args[0] if _is_rate(side) else side
+        inner = side.args[0] if is_rate(side) else side
         is_wrong_shape = inner.value in defined and formula.kind == "number" and formula.value
-        is_bare = _is_name(formula) and not str(inner.value).endswith(MARKED)
-        if _is_name(inner) and inner.value not in known and not is_bare and not is_wrong_shape:
-            elsewhere = [node for tree in (formula, *others) for _, node in walk(tree)]
+        is_bare = is_name(formula) and not str(inner.value).endswith(MARKED)
+        if is_name(inner) and inner.value not in known and not is_bare and not is_wrong_shape:
+            elsewhere = nodes_of(formula, *others)
             if side not in elsewhere and not (inner is side and inner.value in [n.value for n in elsewhere]):
-                return NamedFormula(str(inner.value), side, formula, _is_rate(side))
+                return NamedFormula(str(inner.value), side, formula, is_rate(side))
     return None
 
 
@@ -86,7 +99,7 @@ def open_formula(claim: Claim) -> NamedFormula | None:
     known = {"pi", "t", *dict(claim.define)}
     # it fails for most functions L: it restricts L and is no identity, so its sides must not be compared
     for side in (left, right):
-        for _, node in walk(side):
+        for node in nodes_of(side):
             if is_derivative(node):
                 names, others = ({*_letters_of(part)} for part in (node.args[:1], node.args[1:]))
                 if names and not names & {*known, *others} and not _depends_on_time(node):
@@ -96,13 +109,13 @@ def open_formula(claim: Claim) -> NamedFormula | None:
 
 def _is_open_rate(side: Node, other: Node) -> bool:
     """Return whether ``side`` has a time derivative whose value only a law of motion can give, as ``(I w)' = 0``."""
-    derivatives = (node for _, node in walk(side) if is_derivative(node))
-    has_rate = any(not _is_name(node.args[0]) and {v.value for v in node.args[1:]} == {"t"} for node in derivatives)
+    derivatives = (node for node in nodes_of(side) if is_derivative(node))
+    has_rate = any(not is_name(node.args[0]) and {v.value for v in node.args[1:]} == {"t"} for node in derivatives)
     others = {*_letters_of([other])}
-    if any(is_derivative(node) for _, node in walk(other)):
+    if any(is_derivative(node) for node in nodes_of(other)):
         return False  # both sides are derivatives: nothing is given by a letter
     # C w_3' = 0
-    if other == number(0) and side.kind == "product" and any(map(_is_rate, side.args)):
+    if other == number(0) and side.kind == "product" and any(map(is_rate, side.args)):
         return True
     # in (I w^2/2)' = I w alpha, the letter alpha does not follow from the derivative
     return has_rate and (other == number(0) or bool(others - {*_letters_of([side])} - {"pi", "t"}))
@@ -111,23 +124,23 @@ def _is_open_rate(side: Node, other: Node) -> bool:
 def _letters_of(trees: Sequence[Node]) -> Iterator[str]:
     """Yield the names of the symbols and of the functions of time in several trees."""
     for tree in trees:
-        yield from (str(node.value) for _, node in walk(tree) if node.kind == "name" or _is_name(node))
+        yield from (str(node.value) for node in nodes_of(tree) if node.kind == "name" or is_name(node))
 
 
 def _depends_on_time(derivative: Node) -> bool:
     """Return whether a derivative is by the time t and contains a function of time, as ``diff(x(t)**2, t)``."""
     inner, *variables = derivative.args
     return any(v.value == "t" for v in variables) and any(
-        node.kind == "call" and node.value != "diff" and _is_name(node) for _, node in walk(inner)
+        node.kind == "call" and node.value != "diff" and is_name(node) for node in nodes_of(inner)
     )
 
 
 def related_formula(claim: Claim) -> NamedFormula | None:
     """Return an equation such as ``k^2 = I/m``, true only if its letters mean certain quantities; otherwise None."""
     assert claim.relation is not None
-    left, right = _without_common_factors(*claim.relation[1:])
+    left, right = without_common_factors(*claim.relation[1:])
     known = _known(claim)
-    letters = [_quantities(side) for side in (left, right)]
+    letters = [quantities_in(side) for side in (left, right)]
     generic = {name for name, tree in claim.define if is_components(name, tree)}
     is_condition = _is_condition_on_vectors(left, right, unit=bool(claim.hypotheses))
     is_condition = is_condition or _is_condition_on_matrix(left, right, generic)
@@ -138,7 +151,7 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     is_open_rate = _is_open_rate(left, right) or _is_open_rate(right, left)
     if not claim.hypotheses and not defined and is_open_rate and not _has_hidden_zero(claim, left, right):
         return NamedFormula(text(left), left, right, solve=None)
-    is_moving = any(is_derivative(node) for side in (left, right) for _, node in walk(side))
+    is_moving = any(is_derivative(node) for node in nodes_of(left, right))
     if not claim.hypotheses and left.kind == "name" and _has_own_letters(_letters_by_definition(claim, left, right)):
         return NamedFormula(text(left), left, right, solve=None)
     if claim.hypotheses or any(
@@ -147,7 +160,7 @@ def related_formula(claim: Claim) -> NamedFormula | None:
         for name, _ in quantities
     ):
         return None
-    if all(_is_name(side) or _is_rate(side) for side in (left, right)):
+    if all(is_name(side) or is_rate(side) for side in (left, right)):
         return None
     apart = all(letters) and not letters[0] & letters[1] and _says_something(claim, left, right)
     if any(is_matrix(side) and side.shape != (1, 1) for side in (claim.equation.left, claim.equation.right)):
@@ -162,9 +175,9 @@ def related_formula(claim: Claim) -> NamedFormula | None:
     if apart:
         for side, formula in ((left, right), (right, left)):
             if (inverted := solution(side)) is not None:
-                (name, is_rate), solve = inverted
+                (name, of_rate), solve = inverted
                 # k^2 = I/m gives k
-                return NamedFormula(name, side, formula, is_rate, solve)
+                return NamedFormula(name, side, formula, of_rate, solve)
         return NamedFormula(text(left), left, right, solve=None)
     if (equation := _equation_of_motion(left, right)) is not None:
         return equation
@@ -187,28 +200,28 @@ def claims_identity(claim: Claim) -> bool:
     if _compares_rates(*sides):
         return True
     for side, other in (sides, sides[::-1]):
-        own = _quantities(side)
+        own = quantities_in(side)
         # 2*k**2 and cos(theta) name k and theta; m*a names nothing
-        if len(own) == 1 and not own & _quantities(other) and solution(side) is not None:
+        if len(own) == 1 and not own & quantities_in(other) and solution(side) is not None:
             return False
         if _is_list_of_names(side):
             return False
         if other == number(0) and _is_open_rate(side, other):
             return False  # diff(x**2, t) == 0 says that x is constant
-    nodes = [node for side in sides for _, node in walk(side)]
+    nodes = nodes_of(*sides)
     # diff(H, t) is the rate of an unknown quantity H
     if any(is_derivative(node) and node.args[0].kind == "name" for node in nodes):
         return False
-    motion = _with_highest_rate(*sides)
-    return motion is None or any(node.kind == "call" for _, node in walk(motion[1]))
+    motion = with_highest_rate(*sides)
+    return motion is None or any(node.kind == "call" for node in nodes_of(motion[1]))
 
 
 def _compares_rates(left: Node, right: Node) -> bool:
     """Return whether x and a formula with x are differentiated by t, as in ``diff(2*x, t) == diff(x, t)``."""
-    derivatives = [node for side in (left, right) for _, node in walk(side) if is_derivative(node)]
+    derivatives = [node for node in nodes_of(left, right) if is_derivative(node)]
     arguments = [node.args[0] for node in derivatives if all(each.value == "t" for each in node.args[1:])]
     quantities = {each.value for each in arguments if each.kind == "name"}
-    return any(node.value in quantities for each in arguments if each.kind != "name" for _, node in walk(each))
+    return any(node.value in quantities for each in arguments if each.kind != "name" for node in nodes_of(each))
 
 
 def _has_hidden_zero(claim: Claim, left: Node, right: Node) -> bool:
@@ -236,11 +249,11 @@ def _says_something(claim: Claim, left: Node, right: Node) -> bool:
 
 def _solved_for_vector(claim: Claim, left: Node, right: Node) -> NamedFormula | None:
     """Return a vector of an equation and its formula: v and ``u + w x r`` for ``v - u = w x r``; or None."""
-    terms = [*_terms(left), *map(negated, _terms(right))]
+    terms = [*terms_of(left), *map(negated, terms_of(right))]
     generic = {name for name, tree in claim.define if is_components(name, tree)}
-    everywhere = [node.value for term in terms for _, node in walk(term) if node.kind == "name"]
+    everywhere = [node.value for node in nodes_of(*terms) if node.kind == "name"]
     for term in terms:
-        bare = term.args[0] if term.kind == "neg" else term
+        bare = without_sign(term)
         # the vector must be a whole term and occur once
         if bare.kind == "name" and bare.value in generic and everywhere.count(bare.value) == 1:
             rest = sum_of([other for other in terms if other is not term])
@@ -251,14 +264,14 @@ def _solved_for_vector(claim: Claim, left: Node, right: Node) -> NamedFormula | 
 def _is_constraint(left: Node, right: Node, letters: Sequence[set[tuple[str, bool]]]) -> bool:
     """Return whether an equation restricts letters by a number, as ``x^2 + y^2 = 1`` and ``T/U = 2`` do."""
     polynomial, constant = (left, right) if letters[0] else (right, left)
-    if polynomial.kind == "product" and not _quantities(constant) and constant != number(0):
+    if polynomial.kind == "product" and not quantities_in(constant) and constant != number(0):
         factors = [factor.args[0] if factor.kind == "inv" else factor for factor in polynomial.args]
-        names = [str(factor.value) for factor in factors if _is_name(factor)]
-        return len({*names}) > 1 and all(factor.kind == "number" or _is_name(factor) for factor in factors)
+        names = [str(factor.value) for factor in factors if is_name(factor)]
+        return len({*names}) > 1 and all(factor.kind == "number" or is_name(factor) for factor in factors)
     if polynomial.kind != "sum" or constant.kind != "number":
         return False
-    powers = [node for _, node in walk(polynomial) if node.kind == "power"]
-    outside = {name for factor in _factors(polynomial) if _is_name(factor) for name, _ in _quantities(factor)}
+    powers = [node for node in nodes_of(polynomial) if node.kind == "power"]
+    outside = {name for factor in _factors(polynomial) if is_name(factor) for name, _ in quantities_in(factor)}
     return len(outside) > 1 and all(power.args[1].kind == "number" for power in powers)
 
 
@@ -269,11 +282,11 @@ def _letters_by_definition(claim: Claim, left: Node, right: Node) -> list[set[tu
         return [set(), set()]
     sides = []
     for side in (left, right):
-        letters, open_names = set[tuple[str, bool]](), _quantities(side)
+        letters, open_names = set[tuple[str, bool]](), quantities_in(side)
         for _ in range(len(defined) + 1):
             inner = {name for name, _ in open_names if name in defined}
             letters |= {quantity for quantity in open_names if quantity[0] not in inner and quantity[0] != "t"}
-            open_names = {quantity for name in inner for quantity in _quantities(defined[name])}
+            open_names = {quantity for name in inner for quantity in quantities_in(defined[name])}
         sides.append(letters)
     return sides
 
@@ -319,7 +332,7 @@ def _is_condition_on_matrix(left: Node, right: Node, generic: Collection[str]) -
     """Return whether an equation is a condition on one undefined matrix, such as ``R.T*R == eye(3)`` or
     ``det(R) == 1``.
     """
-    nodes = [node for side in (left, right) for _, node in walk(side)]
+    nodes = nodes_of(left, right)
     names = {str(node.value) for node in nodes if node.kind == "name"}
     kinds = {node.kind if node.kind != "call" else str(node.value) for node in nodes}
     of_product = kinds <= {"name", "number", "neg", "product", "power", "transpose", "inverse", "eye"}
@@ -330,7 +343,7 @@ def _is_condition_on_matrix(left: Node, right: Node, generic: Collection[str]) -
 
 def _has_own_angle(left: Node, right: Node, generic: Collection[str]) -> bool:
     """Return whether an equation defines the angle between two vectors, as ``a . b = |a| |b| cos(theta)`` does."""
-    nodes = [node for side in (left, right) for _, node in walk(side)]
+    nodes = nodes_of(left, right)
     scalars = [node for node in nodes if node.kind == "name" and node.value not in generic and node.value != "pi"]
     angles = [
         node for node in nodes if node.kind == "call" and node.value in ("sin", "cos") and node.args[0] in scalars
@@ -346,7 +359,7 @@ def _has_open_derivative(left: Node, right: Node, known: Collection[str]) -> boo
     """
     # its value is unknown, so the equation is no identity; time derivatives are treated elsewhere
     for side in (left, right):
-        for _, node in walk(side):
+        for node in nodes_of(side):
             if is_derivative(node) and node.args[0].kind == "name":
                 name, *variables = node.args
                 if name.value not in known and name not in variables and any(v.value != "t" for v in variables):
@@ -358,8 +371,8 @@ def _is_list_of_names(tree: Node) -> bool:
     """Return whether a tree is a vector or matrix whose entries are names or rates, such as ``[a, b, c']``."""
     is_list = tree.kind == "list" or (tree.kind == "call" and tree.value == "Matrix")
     if tree.kind == "list" and len(tree.args) == 2 and tree.args[0] == number(0):
-        return _is_name(tree.args[1])  # the quaternion (0, v)
-    return is_list and all(_is_name(part) or _is_rate(part) or _is_list_of_names(part) for part in tree.args)
+        return is_name(tree.args[1])  # the quaternion (0, v)
+    return is_list and all(is_name(part) or is_rate(part) or _is_list_of_names(part) for part in tree.args)
 
 
 def _factors(tree: Node) -> list[Node]:
@@ -375,134 +388,9 @@ def _known(claim: Claim) -> set[str]:
     return {"pi", "t", *(name for name, tree in claim.define if not is_components(name, tree))}
 
 
-def _is_name(tree: Node) -> bool:
-    return tree.kind == "name" or (tree.kind == "call" and [a.value for a in tree.args] == ["t"])
-
-
-def _is_rate(tree: Node) -> bool:
-    """Return whether a tree is a time derivative of a name or of a function of time, such as ``diff(x(t), t)``."""
-    times = [argument.value for argument in tree.args[1:]]
-    return is_derivative(tree) and _is_name(tree.args[0]) and {*times} == {"t"}
-
-
-def is_name_or_rate(tree: Node) -> bool:
-    """Return whether a tree is a name, a function of time such as ``theta(t)``, or a time derivative of one."""
-    return _is_name(tree) or _is_rate(tree)
-
-
-def _quantities(tree: Node) -> set[tuple[str, bool]]:
-    """Return the names in a tree as pairs (name, whether its rate is meant); x and dx/dt are two quantities."""
-    if _is_rate(tree):
-        return {(str(tree.args[0].value), True)}
-    if _is_name(tree):
-        return set() if tree.value == "pi" else {(str(tree.value), False)}
-    return {quantity for part in tree.args for quantity in _quantities(part)}
-
-
-def solution(side: Node) -> tuple[tuple[str, bool], Solve] | None:
-    """Return the only quantity or the only rate of a side, k in ``2*k^2``, and a function from the other side to a
-    formula for it; else None.
-    """
-    steps: list[Solve] = []
-    while not (_is_name(side) or _is_rate(side)):
-        if side.kind == "neg":
-            steps.append(negated)
-            side = side.args[0]
-        elif side.kind == "product":
-            factors = [factor for factor in side.args if _quantities(factor)]
-            rates = [factor for factor in factors if any(is_rate for _, is_rate in _quantities(factor))]
-            own = rates if len(rates) == 1 else factors
-            if len(own) != 1:
-                return None
-            rest = product([factor for factor in side.args if factor is not own[0]])
-            steps.append(partial(_over, rest))
-            side = own[0]
-        elif side.kind == "power" and side.args[1].kind == "number" and side.args[1].value:
-            steps.append(partial(_to_power, 1 / side.args[1].value))
-            side = side.args[0]
-        elif side.kind == "inv":
-            steps.append(partial(_to_power, Fraction(-1)))
-            side = side.args[0]
-        elif side.kind == "call" and side.value == "sqrt":
-            steps.append(partial(_to_power, Fraction(2)))
-            side = side.args[0]
-        elif side.kind == "call" and side.value in INVERSES and len(side.args) == 1:
-            steps.append(partial(_called, INVERSES[side.value]))
-            side = side.args[0]
-        else:
-            return None
-    # for 2*k^2 the function turns the other side of the equation, I, into (I/2)^(1/2)
-    (quantity,) = _quantities(side)
-    return quantity, partial(_after, steps)
-
-
-def _over(divisor: Node, tree: Node) -> Node:
-    return product([tree, Node("inv", None, (divisor,))])
-
-
-def _to_power(exponent: Fraction, tree: Node) -> Node:
-    return Node("power", None, (tree, number(exponent)))
-
-
-def _called(function: str, tree: Node) -> Node:
-    return Node("call", function, (tree,))
-
-
-def _after(steps: Sequence[Solve], tree: Node) -> Node:
-    """Return the result of applying ``steps`` to a tree, one after the other; each step returns a changed tree."""
-    return reduce(lambda made, step: step(made), steps, tree)
-
-
-def _without_common_factors(left: Node, right: Node) -> tuple[Node, Node]:
-    """Return both sides without the letters that are factors of both sides, as m in ``m*v**2/2 == m*g*h``."""
-    factors = [list(side.args) if side.kind == "product" else [side] for side in (left, right)]
-    for factor in [*factors[0]]:
-        if factor in factors[1] and _is_name(factor) and _quantities(factor):
-            factors[0].remove(factor)
-            factors[1].remove(factor)
-    return product(factors[0]), product(factors[1])
-
-
 def _equation_of_motion(left: Node, right: Node) -> NamedFormula | None:
     """Return x'' and its formula ``-k*x/m`` for a linear differential equation ``m*x'' + k*x = 0``; or None."""
-    if (parts := _with_highest_rate(left, right)) is None:
+    if (parts := with_highest_rate(left, right)) is None:
         return None
     rate, coefficient, rest = parts
-    formula = product([rest, Node("inv", None, (coefficient,))])
-    return NamedFormula(str(rate.args[0].value), rate, formula, True)
-
-
-def _with_highest_rate(left: Node, right: Node) -> tuple[Node, Node, Node] | None:
-    """Return (x'', m, -k*x) for ``m*x'' + k*x = 0``: the highest derivative, its coefficient and the rest; or None."""
-    terms = [*_terms(left), *map(negated, _terms(right))]
-    derivatives = {node for term in terms for _, node in walk(term) if is_derivative(node)}
-    order = max((len(node.args) for node in derivatives), default=0)
-    highest = [node for node in derivatives if len(node.args) == order]
-    # the derivative of a product, sum or function may belong to a rule of differentiation
-    if len(highest) != 1 or not all(map(_is_rate, derivatives)):
-        return None
-    (rate,) = highest
-    coefficients: list[Node] = []
-    rest: list[Node] = []
-    for term in terms:
-        bare = term.args[0] if term.kind == "neg" else term
-        factors = list(bare.args) if bare.kind == "product" else [bare]
-        if rate not in [node for _, node in walk(term)]:
-            rest.append(negated(term))
-        elif factors.count(rate) == 1:
-            factors.remove(rate)
-            if rate in [node for factor in factors for _, node in walk(factor)]:
-                return None
-            coefficient = product(factors)
-            coefficients.append(negated(coefficient) if term.kind == "neg" else coefficient)
-        else:
-            return None
-    if not any(_quantities(term) for term in rest):
-        return None
-    return rate, sum_of(coefficients), sum_of(rest)
-
-
-def _terms(tree: Node) -> list[Node]:
-    if tree.kind == "sum":
-        return list(tree.args)
-    return [] if tree.kind == "number" and not tree.value else [tree]
+    return NamedFormula(str(rate.args[0].value), rate, quotient(rest, coefficient), True)

@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Protocol
 
 from symrot.checker.claim.reader import read_expression, read_relation
-from symrot.checker.claim.tree import Node, is_derivative, text
+from symrot.checker.claim.tree import Node, is_derivative, is_rate, text
 from symrot.checker.typed.readings import Reading, Relation
 from symrot.errors import InputError
 
@@ -66,8 +66,8 @@ class TypedNotation:
         """
         if is_derivative(node):
             name = str(node.args[0].value)
-            is_rate = _is_rate(node) or (name in self.timed and _is_rate_of_name(node))
-            if not self.timed or not is_rate:
+            has_prime = is_rate(node) and (node.args[0].kind == "call" or name in self.timed)
+            if not self.timed or not has_prime:
                 return replace(node, args=tuple(self._in_full(child) for child in node.args))
             return Node("name", self.spelling.get(name, name) + "'" * (len(node.args) - 1))
         if node.kind == "call" and node.value in self.timed:
@@ -161,18 +161,3 @@ def _is_number_power(node: Node) -> bool:
 
 def _is_over_digit(node: Node) -> bool:
     return node.kind == "inv" and str(node.args[0].value).isdigit()
-
-
-def _is_rate_of_name(node: Node) -> bool:
-    """Return whether a derivative is the time derivative of a single name, ``diff(q, t)``."""
-    # it is printed q'
-    return node.args[0].kind == "name" and all((a.kind, a.value) == ("name", "t") for a in node.args[1:])
-
-
-def _is_rate(node: Node) -> bool:
-    inside = node.args[0]
-    return (
-        inside.kind == "call"
-        and [a.value for a in inside.args] == ["t"]
-        and all((a.kind, a.value) == ("name", "t") for a in node.args[1:])
-    )

@@ -5,7 +5,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from symrot.checker.claim.functions import BUILT_IN
-from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim.tree import Node, nodes_of
 
 __all__ = [
     "OTHER_MEANINGS", "has_natural_base", "letters_of_quantities", "with_natural_base",
@@ -26,7 +26,7 @@ def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
     """Return those of the letters I and E that name a moment of inertia or an energy in ``trees``, not the numbers i
     and e.
     """
-    nodes = [node for tree in trees for _, node in walk(tree)]
+    nodes = nodes_of(*trees)
     names = {
         str(node.value) for node in nodes if node.kind == "name" or (node.kind == "call" and node.value not in BUILT_IN)
     }
@@ -43,14 +43,14 @@ def letters_of_quantities(trees: Sequence[Node]) -> tuple[str, ...]:
     below = [part for node in nodes if node.kind == "inv" for part in node.args]
     for letter in OTHER_MEANINGS:
         # a number: inside exp, log or sin, in a product with sines only, or as the base of E^(a t)
-        used = [node for node in nodes if (node.kind, node.value) == ("name", letter)]
+        used = [node for node in nodes if node == Node("name", letter)]
         calls = [node for node in nodes if node.kind == "call" and node.value in OF_NUMBERS]
-        inside = [node for call in calls for _, node in walk(call)]
+        inside = nodes_of(*calls)
         waves = [node for node in nodes if _is_exponential(node, letter)]
         waves += [
             node for node in nodes if node.kind == "product" and node not in below and _is_imaginary(node, letter)
         ]
-        if used and not waves and not any((node.kind, node.value) == ("name", letter) for node in inside):
+        if used and not waves and not any(node == Node("name", letter) for node in inside):
             letters.append(letter)
     return tuple(letters)
 
@@ -68,7 +68,7 @@ def _is_imaginary(product: Node, letter: str) -> bool:
 
 def has_natural_base(trees: Sequence[Node]) -> bool:
     """Return whether e is the base of the exponential function, as in ``e^x`` or ``log(e)``."""
-    nodes = [node for tree in trees for _, node in walk(tree)]
+    nodes = nodes_of(*trees)
     logarithms = (node.args[0] for node in nodes if node.kind == "call" and node.value == "log")
     of_e = any(e.value == "e" for argument in logarithms for e in (argument, *argument.args[:1]) if e.kind == "name")
     # in e^2 and e*x, e may be an eccentricity
@@ -78,13 +78,13 @@ def has_natural_base(trees: Sequence[Node]) -> bool:
 def _is_exponential(node: Node, base: str) -> bool:
     if node.kind != "power" or (node.args[0].kind, node.args[0].value) != ("name", base):
         return False
-    return any(part.kind in ("name", "call") for _, part in walk(node.args[1]))
+    return any(part.kind in ("name", "call") for part in nodes_of(node.args[1]))
 
 
 def with_natural_base(node: Node) -> Node:
     """Return a tree in which e is the base of the exponential function: exp(x) for e**x, exp(1) for e alone."""
     if node.kind == "power" and (node.args[0].kind, node.args[0].value) == ("name", "e"):
         return Node("call", "exp", (with_natural_base(node.args[1]),), node.span)
-    if (node.kind, node.value) == ("name", "e"):
+    if node == Node("name", "e"):
         return Node("call", "exp", (Node("number", Fraction(1)),), node.span)
     return replace(node, args=tuple(map(with_natural_base, node.args)))

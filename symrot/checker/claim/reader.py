@@ -21,10 +21,16 @@ from symrot.checker.typed.tokens import Token, tokens_of, without_dots
 from symrot.checker.typed.vector_names import crossed, dotted, marked, names_alone
 from symrot.errors import InputError, complaint
 
-__all__ = ["LONGEST_TEXT", "MOST_PIECES", "read_expression", "read_relation", "readings_of", "with_time"]
+__all__ = ["MOST_PIECES", "check_length", "read_expression", "read_relation", "readings_of", "with_time"]
 
 LONGEST_TEXT = 20_000
 MOST_PIECES = 5_000
+
+
+def check_length(source: str, place: str = "") -> None:
+    """Raise InputError for a text of more than LONGEST_TEXT characters; ``place`` is the beginning of the message."""
+    if len(source) > LONGEST_TEXT:
+        raise InputError(f"{place}expected a formula of at most {LONGEST_TEXT} characters, got {len(source)}")
 
 
 class _Text:
@@ -37,8 +43,7 @@ class _Text:
             raise InputError(f"{prefix}expected the text of a formula, got {type(source).__name__}")
         if not source.strip():
             raise InputError(f"{prefix}expected a formula, got empty text")
-        if len(source) > LONGEST_TEXT:
-            raise InputError(f"{prefix}expected a formula of at most {LONGEST_TEXT} characters, got {len(source)}")
+        check_length(source, prefix)
         self.copied = without_surroundings(source, numbers)
         tokens = list(tokens_of(self.copied.text, where))
         if (place := self.copied.where) >= 0:  # a clause after "where" defines names of the formula before it

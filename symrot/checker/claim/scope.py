@@ -33,6 +33,7 @@ def is_matrix(value: Any) -> bool:
 
 
 def described(value: Any) -> str:
+    """Return words for the kind of a value: "a 3 x 1 matrix" or "a scalar"."""
     return f"a {value.rows} x {value.cols} matrix" if is_matrix(value) else "a scalar"
 
 
@@ -83,6 +84,10 @@ class Scope(ABC):
         """Return the value of a tree: Expr, ImmutableMatrix or a tuple of such values."""
 
     def scalar(self, node: Node, role: str) -> Expr:
+        """Return the value of ``node``; raise InputError if it is a matrix or a list.
+
+        ``role`` is for the message, such as "as an exponent".
+        """
         value = self.evaluate(node)
         if is_matrix(value) or isinstance(value, tuple):
             actual = "a list" if isinstance(value, tuple) else described(value)
@@ -104,6 +109,10 @@ class Scope(ABC):
             raise self.fail(node, f"at most {MOST_NESTED} functions and roots inside each other")
 
     def matrix(self, node: Node, role: str, shape: tuple[int | None, int | None] = (None, None)) -> ImmutableMatrix:
+        """Return the value of ``node``; raise InputError if it is no matrix with this number of rows and columns.
+
+        None in ``shape`` stands for any number. A list of scalars is a column.
+        """
         value = self.evaluate(node)
         rows, columns = shape
         if isinstance(value, tuple) and all(not isinstance(part, tuple) and not is_matrix(part) for part in value):

@@ -9,7 +9,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 from symrot.checker.claim.functions import ROTATIONS
-from symrot.checker.claim.tree import Node, number, walk
+from symrot.checker.claim.tree import Node, factors_of, nodes_of, number
 
 __all__ = ["Shape", "added_names", "multiplied_names", "operand_names", "shape_of", "with_unit_matrices"]
 
@@ -63,6 +63,8 @@ def _shape_of_call(node: Node, inner: list[Shape], shapes: Mapping[str, Shape]) 
         return (int(count), int(count)) if name == "diag" or node.args[0].kind == "number" else None
     if name in ("diff", "inverse", "adjugate", "integrate", "integral_over_body"):
         return inner[0]
+    if name == "hstack" and (parts := [shape for shape in inner if shape is not None]):
+        return parts[0][0], sum(columns for _, columns in parts)
     if name == "transpose":
         return inner[0] and (inner[0][1], inner[0][0])
     return FIXED.get(name)
@@ -85,7 +87,7 @@ def with_unit_matrices(relation: tuple[str, Node, Node], shapes: Mapping[str, Sh
 def _is_name_of(name: Node, matrix: Node) -> bool:
     """Return whether an equation defines a matrix named I, as ``I = [[a, b], [c, d]]`` does."""
     is_literal = matrix.kind == "list" or (matrix.kind == "call" and matrix.value == "Matrix")
-    letters = [node for _, node in walk(matrix) if node.kind == "name"]
+    letters = [node for node in nodes_of(matrix) if node.kind == "name"]
     return name.kind == "name" and name.value in UNIT_MATRICES and is_literal and bool(letters)
 
 
@@ -95,11 +97,10 @@ def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -
     """
     added: dict[str, Shape] = {}
     for side in relation[1:]:
-        for _, node in walk(side):
+        for node in nodes_of(side):
             own = shape_of(node, shapes) if node.kind == "sum" else None
             for term in node.args if own is not None else ():
-                bare = term.args[0] if term.kind == "neg" else term
-                factors = [f for f in (bare.args if bare.kind == "product" else (bare,)) if f.kind != "number"]
+                factors = [factor for factor in factors_of(term) if factor.kind != "number"]
                 if len(factors) == 1 and factors[0].kind == "name" and shape_of(factors[0], shapes) is None:
                     added[str(factors[0].value)] = own
     return added
@@ -107,7 +108,7 @@ def added_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -
 
 def operand_names(relation: tuple[str, Node, Node], shapes: Mapping[str, Shape]) -> dict[str, Shape]:
     """Return the names that must be vectors as arguments of cross, dot or skew, each with the shape (3, 1)."""
-    calls = [node for side in relation[1:] for _, node in walk(side) if node.value in ("cross", "dot", "skew")]
+    calls = [node for node in nodes_of(*relation[1:]) if node.value in ("cross", "dot", "skew")]
     arguments = [argument for call in calls if call.kind == "call" and len(call.args) < 3 for argument in call.args]
     # in cross(r, m*v), these are r and v: a mass before a name is skipped
     names = [name for name in map(_without_mass, arguments) if name.kind == "name"]

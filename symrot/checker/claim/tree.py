@@ -24,19 +24,34 @@ from fractions import Fraction
 from typing import Any
 
 __all__ = [
+    "MOST_DERIVATIVES",
     "TIME",
     "Node",
+    "column_vector",
     "derivative",
+    "differentiated",
     "exchanged",
+    "factors_of",
     "is_derivative",
+    "is_inverse",
+    "is_name",
+    "is_rate",
+    "listed",
+    "matrix_of_rows",
+    "names_in",
     "negated",
+    "nodes_of",
     "number",
     "product",
+    "quotient",
     "replaced",
+    "substituted",
     "sum_of",
     "text",
+    "untimed",
     "walk",
     "with_names",
+    "without_sign",
 ]
 
 Path = tuple[int, ...]
@@ -53,6 +68,8 @@ class Node:
 
 
 MOST_DERIVATIVES = 8
+"""The highest order of a derivative."""
+
 TIME = Node("name", "t")
 """The name t, by which the derivatives ``diff(omega_1, t)`` are taken."""
 
@@ -75,6 +92,12 @@ def derivative(args: Sequence[Node], span: tuple[int, int] = (0, 0)) -> Node:
             else:
                 variables.append(argument)
     return Node("call", "diff", (inner, *variables), span)
+
+
+def differentiated(formula: Node, variable: Node, order: int = 1) -> Node:
+    """Return the derivative of a formula by a variable; for ``diff(x, t)`` and t, return ``diff(x, t, t)``."""
+    is_rate_of_time = is_derivative(formula) and formula.args[-1] == variable == TIME
+    return Node("call", "diff", (*(formula.args if is_rate_of_time else (formula,)), *[variable] * order))
 
 
 def number(value: int | Fraction) -> Node:
@@ -108,6 +131,57 @@ def product(factors: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
     return Node("neg", None, (made,), span) if negative else made
 
 
+def listed(members: Sequence[Node]) -> Node:
+    """Return the list ``[a, b]`` of trees a and b."""
+    return Node("list", ("[", "]"), tuple(members))
+
+
+def column_vector(entries: Sequence[Node]) -> Node:
+    """Return the column vector ``Matrix([a, b])`` with the entries a and b."""
+    return Node("call", "Matrix", (listed(entries),))
+
+
+def matrix_of_rows(rows: Sequence[Sequence[Node]]) -> Node:
+    """Return the matrix ``Matrix([[a, b], [c, d]])`` with the given rows."""
+    return column_vector([listed(row) for row in rows])
+
+
+def quotient(above: Node, below: Node) -> Node:
+    """Return ``above/below``."""
+    return product([above, Node("inv", None, (below,), below.span)], below.span)
+
+
+def without_sign(term: Node) -> Node:
+    """Return x for ``-x``, and any other tree unchanged."""
+    return term.args[0] if term.kind == "neg" else term
+
+
+def factors_of(term: Node) -> tuple[Node, ...]:
+    """Return the factors of a term without its sign: a and b for ``-a*b``, and (x,) for x."""
+    bare = without_sign(term)
+    return bare.args if bare.kind == "product" else (bare,)
+
+
+def untimed(node: Node) -> Node:
+    """Return the name x for ``x(t)``, and any other tree unchanged."""
+    return Node("name", node.value, (), node.span) if node.kind == "call" and node.args == (TIME,) else node
+
+
+def is_name(node: Node) -> bool:
+    """Return whether a tree is a name, or a function of time such as ``theta(t)``."""
+    return untimed(node).kind == "name"
+
+
+def is_rate(node: Node) -> bool:
+    """Return whether a tree is a time derivative, of any order, of a name or of a function of time."""
+    return is_derivative(node) and is_name(node.args[0]) and {*node.args[1:]} == {TIME}
+
+
+def is_inverse(node: Node) -> bool:
+    """Return whether a tree is a power with the exponent -1, such as ``R**(-1)``."""
+    return node.kind == "power" and node.args[1] == number(-1)
+
+
 def negated(node: Node) -> Node:
     """Return -node; for a node that is ``-x``, return x."""
     return node.args[0] if node.kind == "neg" else Node("neg", None, (node,), node.span)
@@ -118,6 +192,21 @@ def walk(node: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
     yield path, node
     for place, child in enumerate(node.args):
         yield from walk(child, (*path, place))
+
+
+def nodes_of(*trees: Node) -> list[Node]:
+    """Return all nodes of one or more trees, parents before children, left to right."""
+    nodes, rest = list[Node](), [*reversed(trees)]
+    while rest:
+        node = rest.pop()
+        nodes.append(node)
+        rest.extend(reversed(node.args))
+    return nodes
+
+
+def names_in(*trees: Node) -> set[str]:
+    """Return the names of the symbols in one or more trees: x and y for ``x + f(y)``."""
+    return {str(node.value) for node in nodes_of(*trees) if node.kind == "name"}
 
 
 def replaced(node: Node, path: Path, made: Node) -> Node:
@@ -190,6 +279,13 @@ _WRITE: dict[str, Callable[[Node], str]] = {
     "index": lambda node: text(node.args[0], ATOM) + f"[{', '.join(map(text, node.args[1:]))}]",
     "list": _list,
 }
+
+
+def substituted(tree: Node, formulas: Mapping[str, Node]) -> Node:
+    """Return a tree in which ``formulas`` replace names: ``cos(x)*y`` for ``c*y`` with {"c": cos(x)}."""
+    if tree.kind == "name" and tree.value in formulas:
+        return formulas[tree.value]
+    return replace(tree, args=tuple(substituted(child, formulas) for child in tree.args)) if tree.args else tree
 
 
 def with_names(node: Node, names: Mapping[str, str]) -> Node:

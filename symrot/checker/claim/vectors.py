@@ -8,7 +8,18 @@ import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from symrot.checker.claim.tree import TIME, Node, is_derivative, number, product, walk
+from symrot.checker.claim.tree import (
+    TIME,
+    Node,
+    column_vector,
+    factors_of,
+    is_derivative,
+    matrix_of_rows,
+    nodes_of,
+    number,
+    product,
+    quotient,
+)
 
 __all__ = [
     "MARK",
@@ -66,18 +77,18 @@ class Vector:
         """The components as a tree: ``Matrix([a_x, a_y, a_z])``, or 0 and 1 for a coordinate axis."""
         if self.is_axis:
             place = "xyz".index(self.name) if self.place is None else self.place
-            return _matrix([number(int(place == other)) for other in range(3)])
+            return column_vector([number(int(place == other)) for other in range(3)])
         if is_tensor(self.name):
-            rows = [[f"{self.name}_{''.join(sorted(i + j))}" for j in self.axes] for i in self.axes]
-            return _matrix([_list([self._entry(name) for name in row]) for row in rows])
-        return _matrix([self._entry(f"{self.name}_{axis}") for axis in self.axes])
+            return matrix_of_rows([[self._entry("".join(sorted(i + j))) for j in self.axes] for i in self.axes])
+        return column_vector([self._entry(axis) for axis in self.axes])
 
     @property
     def is_axis(self) -> bool:
         """Whether the vector is a coordinate axis: x, y or z with a hat, or i, j or k of a basis."""
         return self.place is not None or (self.unit and self.name in ("x", "y", "z"))
 
-    def _entry(self, name: str) -> Node:
+    def _entry(self, axes: str) -> Node:
+        name = f"{self.name}_{axes}"
         return Node("call", name, (TIME,)) if self.timed else Node("name", name)
 
     @property
@@ -85,14 +96,6 @@ class Vector:
         """The hypothesis that the length of this unit vector is one."""
         own = Node("name", self.name)
         return "==", Node("call", "dot", (own, own)), number(1)
-
-
-def _matrix(members: Sequence[Node]) -> Node:
-    return Node("call", "Matrix", (_list(members),))
-
-
-def _list(members: Sequence[Node]) -> Node:
-    return Node("list", ("[", "]"), tuple(members))
 
 
 def is_tensor(name: str) -> bool:
@@ -105,7 +108,7 @@ def is_components(name: str, tree: Node) -> bool:
     if any(tree == Vector(name, timed, axes=axes).components for timed in (False, True) for axes in AXES):
         return True
     base = name.partition("_")[0]
-    leaves = [node for _, node in walk(tree) if node.kind != "list" and node != TIME]
+    leaves = [node for node in nodes_of(tree) if node.kind != "list" and node != TIME]
     return tree.kind == "call" and tree.value == "Matrix" and all(
         node.kind in ("name", "call") and re.fullmatch(rf"{base}_?[0-9]+", str(node.value)) for node in leaves[1:]
     )  # fmt: skip
@@ -120,7 +123,7 @@ def without_marks(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[lis
     names : mapping of str to bool
         The names with a mark (bold type, an arrow or a hat); True for one with a hat.
     """
-    plain = {node.value for side in sides for _, node in walk(side) if node.kind == "name"}
+    plain = {node.value for node in nodes_of(*sides) if node.kind == "name"}
     spelled = {name: f"{name}_tensor" if is_tensor(name) and name in plain else name for name in names}
     parts = {name for name in names if {name, f"{name}_0"} <= plain}  # of a quaternion, whose name has no mark
     spelled |= {name: f"{name}_vec" for name in parts}
@@ -133,10 +136,10 @@ def without_marks(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[lis
 
 def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vector, ...]:
     """Return the vectors that a claim needs by components: r and p for ``L = r x p``, but not L."""
-    trees = [node for side in sides for _, node in walk(side)]
+    trees = nodes_of(*sides)
     used = {str(node.value) for node in trees if node.kind == "name"}
     rates = [node for node in trees if is_derivative(node) and node.args[-1] == TIME]
-    moving = {node.value for rate in rates for _, node in walk(rate.args[0])}
+    moving = {node.value for rate in rates for node in nodes_of(rate.args[0])}
     places = {
         name: place
         for basis in BASES
@@ -179,7 +182,7 @@ def _without_marks(node: Node, spelled: Mapping[str, str], vectors: Sequence[Nod
 
 def direction(vector: Node) -> Node:
     """Return ``v/sqrt(dot(v, v))``, what v with a hat means in a text that has v without a hat too."""
-    return Node("product", None, (vector, Node("inv", None, (length(vector),))), vector.span)
+    return replace(quotient(vector, length(vector)), span=vector.span)
 
 
 def beside_directions(factors: Sequence[Node]) -> list[Node]:
@@ -206,15 +209,14 @@ def length(vector: Node) -> Node:
 def gyroscopic_tensors(sides: Sequence[Node]) -> Iterator[str]:
     """Yield the names of inertia tensors: J in ``cross(w, J*w + h)``, ``skew(w)*J*w`` and ``w.T*J*w``."""
     for side in sides:
-        for _, node in walk(side):
+        for node in nodes_of(side):
             factors: Sequence[Node] = ()
             if node.kind == "call" and node.value == "cross":
                 first, second = node.args
                 vector = first.args[-1] if first.kind == "product" else first
-                terms = [term.args[0] if term.kind == "neg" else term
-                         for term in (second.args if second.kind == "sum" else (second,))]  # fmt: skip
-                products = [term for term in terms if term.kind == "product" and vector in term.args]
-                factors = (vector, *products[0].args) if products else ()
+                terms = map(factors_of, second.args if second.kind == "sum" else (second,))
+                products = [own for own in terms if len(own) > 1 and vector in own]
+                factors = (vector, *products[0]) if products else ()
             elif node.kind == "product":
                 wrapped = [f.kind == "transpose" or (f.kind == "call" and f.value == "skew") for f in node.args]
                 factors = [f.args[0] if inside else f for f, inside in zip(node.args, wrapped, strict=True)]
@@ -226,7 +228,7 @@ def gyroscopic_tensors(sides: Sequence[Node]) -> Iterator[str]:
 
 def _lone_names(sides: Sequence[Node]) -> set[str]:
     """Return the names that are a whole side of a claim and occur nowhere else in it, as L in ``L = r x p``."""
-    everywhere = [node.value for side in sides for _, node in walk(side) if node.kind == "name"]
+    everywhere = [node.value for node in nodes_of(*sides) if node.kind == "name"]
     is_number = any(side.kind == "number" and side.value for side in sides)
     # a side such as 3 asks for the components: then no name is lone
     alone = [side for side in sides if side.kind == "name" and not is_number]

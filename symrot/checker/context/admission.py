@@ -84,7 +84,7 @@ def admits_name(context: Context, name: str, quantity: str) -> bool:
 
 def is_usual_for_body(context: Context, sequence: str) -> bool:
     """Return whether books use an Euler sequence for the context's body: ZXZ or ZYZ for a top, any for other bodies."""
-    is_top = context.body is not None and context.body.kind.title in TOPS
+    is_top = context.body is not None and context.body.kind.title in TITLES_OF_TOPS
     # the second angle of ZXZ and ZYZ tilts the axis of the top; a stated sequence is always accepted
     return bool(context.sequence) or not is_top or sequence.upper() in ("ZXZ", "ZYZ")
 
@@ -133,7 +133,7 @@ def misfits(context: Context, name: str, quantity: str) -> Iterator[str]:
         yield "for another quantity"
 
 
-TOPS = ("symmetric top", "heavy top", "fast top", "sleeping top")
+TITLES_OF_TOPS = ("symmetric top", "heavy top", "fast top", "sleeping top")
 GYRATION = "radius of gyration"
 DIRECTIONS = {"axial moment of inertia": "z", "transverse moment of inertia": "xy"}
 """Maps the title of a moment of inertia to the axes of a round body about which it may be."""

@@ -11,7 +11,10 @@ from itertools import permutations
 
 from symrot.checker.context.context import Context
 
-__all__ = ["AXIS_OF_ANGLE", "Order", "are_roll_pitch_yaw", "has_order", "letter_of_angle", "orders", "place_by_words"]
+__all__ = [
+    "AXIS_OF_ANGLE", "USUAL_SEQUENCES", "Order", "are_roll_pitch_yaw", "has_order", "letter_of_angle", "orders",
+    "place_by_words",
+]  # fmt: skip
 
 FAMILIES: tuple[tuple[str, str, str], ...] = (
     ("phi", "theta", "psi"), ("alpha", "beta", "gamma"), ("yaw", "pitch", "roll"),
@@ -24,6 +27,9 @@ SPELLINGS = {"varphi": "phi", "vartheta": "theta", "Phi": "phi", "Theta": "theta
 """Maps another name of an angle to its usual letter."""
 
 AXIS_OF_ANGLE = {"yaw": "Z", "pitch": "Y", "roll": "X"}
+USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
+"""The sequences that books use most, in this order."""
+
 PLACE_OF_ANGLE = {
     "precession angle": 0, "precession rate": 0, "angle of the axis": 1, "nutation rate": 1, "spin angle": 2,
 }  # fmt: skip

@@ -201,14 +201,20 @@ def _against_repair(claim: Claim, named: NamedFormula, verdict: Verdict) -> Deci
     return decision if decision.verdict == "false" else None
 
 
+def _value(claim: Claim, named: NamedFormula) -> Any:
+    """Return the value that a claim gives to its quantity, as an Expr or a matrix; None if its formula has no value."""
+    try:
+        formula = named.formula if named.solve is None else named.solve(named.formula)
+        return claim.with_definitions(claim.interpreter().read(formula))
+    except InputError:
+        return None
+
+
 def _by_meant_formulas(
     claim: Claim, named: NamedFormula, verdict: Verdict, quantity: str, stated: str
 ) -> Verdict | None:
     """Return the verdict by comparison with all known formulas that a claim's context can mean; None if undecided."""
-    try:
-        formula = named.formula if named.solve is None else named.solve(named.formula)
-        value = claim.with_definitions(claim.interpreter().read(formula))
-    except InputError:
+    if (value := _value(claim, named)) is None:
         return None
     words = None if claim.context.meaning_of(quantity) else words_of(named)
     meant = [other for other in meant_by(claim.context, value, quantity, stated) if has_word(other.known.name, words)]
@@ -251,10 +257,7 @@ def _on_lacking_letters(claim: Claim, named: NamedFormula, quantity: str, stated
     own_meaning = context.meaning_of(quantity)
     if context.body is None and (own_meaning is None or own_meaning.body is None):
         return None
-    try:
-        formula = named.formula if named.solve is None else named.solve(named.formula)
-        value = claim.with_definitions(claim.interpreter().read(formula))
-    except InputError:
+    if (value := _value(claim, named)) is None:
         return None
     stated_formulas = (
         (known, with_letters(context, known_value(known.text)))

@@ -16,7 +16,8 @@ from symrot import symbols
 from symrot.checker.arrays.matrices import matrices_of_entries
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.scope import is_matrix
-from symrot.checker.claim.tree import Node, text, walk
+from symrot.checker.claim.tree import Node, names_in, text
+from symrot.checker.context.angle_orders import USUAL_SEQUENCES
 from symrot.checker.repair.edits.faults import FAULT_DESCRIPTIONS
 from symrot.checker.repair.edits.single import single_edits
 from symrot.checker.repair.filter import NumericFilter
@@ -41,9 +42,6 @@ SECOND_ANGLE = re.compile(r"(var)?theta(_?[2yn])?|Theta|beta|pitch|(q|alpha|phi|
 MOST_REPAIRS, MOST_SEQUENCES = 3, 4
 """The most repairs of a claim, and the most sequences that are named for one formula."""
 
-USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
-"""The sequences that books use most, in this order; they are named first."""
-
 
 @cache
 def determinants() -> dict[str, Expr]:
@@ -64,7 +62,7 @@ def verdict_on_determinant(claim: Claim, repair: bool) -> Verdict | None:
     assert claim.relation is not None
     generic = {*matrices_of_entries(claim.define)}
     for own, formula in (claim.relation[1:], claim.relation[:0:-1]):
-        names = {str(node.value) for _, node in walk(formula) if node.kind == "name"} - {"pi"}
+        names = names_in(formula) - {"pi"}
         letter = next(iter(names)) if len(names) == 1 else ""
         if not _is_determinant(own, generic) or not SECOND_ANGLE.fullmatch(letter):
             continue

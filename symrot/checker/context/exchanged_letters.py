@@ -6,7 +6,7 @@ from itertools import combinations, islice
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
-from symrot.checker.claim.tree import Node, text, walk, with_names
+from symrot.checker.claim.tree import names_in, text, with_names
 from symrot.checker.repair.edits.faults import COST
 from symrot.checker.verdict import Diagnosis, Repair, Verdict
 
@@ -26,7 +26,7 @@ def by_exchanged_letters(
     if verdict.verdict != "definition" or not claim.context.meanings or claim.relation is None:
         return verdict
     # only letters with a meaning in the context and the same unit: others may mean anything
-    units = {name: unit for name in _names(named.formula) if (unit := _unit(claim, name))}
+    units = {name: unit for name in names_in(named.formula) if (unit := _unit(claim, name))}
     pairs = (pair for pair in combinations(sorted(units), 2) if units[pair[0]] == units[pair[1]])
     for first, second in islice(pairs, MOST_PAIRS):
         tree = with_names(named.formula, {first: second, second: first})
@@ -43,10 +43,6 @@ def by_exchanged_letters(
                 diagnosis=Diagnosis(code, f"the letters {first} and {second} are exchanged"),
             )  # fmt: skip
     return verdict
-
-
-def _names(formula: Node) -> set[str]:
-    return {str(node.value) for _, node in walk(formula) if node.kind == "name"}
 
 
 def _unit(claim: Claim, name: str) -> str:

@@ -10,8 +10,7 @@ from typing import Any
 
 from sympy import Expr, Symbol, cancel
 
-from symrot.checker.claim.atoms import atoms_of
-from symrot.checker.claim.interpreter import time
+from symrot.checker.claim.interpreter import atoms_of, time
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import text

@@ -9,8 +9,7 @@ from typing import Any
 from sympy import Dummy, Expr, Function, Rational, Symbol, sqrt
 
 from symrot import symbols
-from symrot.checker.claim.atoms import atoms_of
-from symrot.checker.claim.interpreter import time
+from symrot.checker.claim.interpreter import atoms_of, time
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.context.admission import admits_letters, admits_name, guesses, is_component, is_place, plain
 from symrot.checker.context.angle_orders import has_order

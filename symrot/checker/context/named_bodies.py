@@ -10,7 +10,8 @@ from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.tree import Node, number, product
 from symrot.checker.context.admission import admits_name
 from symrot.checker.context.bodies import BODIES
-from symrot.checker.context.context import Context, read_context
+from symrot.checker.context.context import Context
+from symrot.checker.context.statements import read_context
 from symrot.checker.verdict import Verdict
 
 __all__ = ["of_named_body"]

@@ -11,7 +11,7 @@ from typing import Any
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.named_formula import NamedFormula
-from symrot.checker.claim.tree import Node, number, product, walk
+from symrot.checker.claim.tree import Node, nodes_of, number, product
 from symrot.checker.recognition.naming.fit import MOMENT
 from symrot.checker.verdict import Verdict
 
@@ -62,7 +62,7 @@ def by_other_sizes(claim: Claim, named: NamedFormula, verdict: Verdict, judge: J
     if verdict.verdict not in TRIED or not MOMENT.fullmatch(named.name) or (body is not None and body.letters):
         # words about the body may say what its letters are: then nothing else is tried
         return verdict
-    own: set[Any] = {node.value for _, node in walk(named.formula) if node.kind == "name"}
+    own: set[Any] = {node.value for node in nodes_of(named.formula) if node.kind == "name"}
     for size in SIZES:
         clash = ({*size.letters.values()} - {*size.letters}) & own
         if (

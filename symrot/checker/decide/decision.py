@@ -55,7 +55,9 @@ def decide_equation(equation: Equation) -> Decision:
                 decision = _with_positive_symbols(equation, decision)
             if decision.verdict == "undecided":
                 decision = _with_letters_for_sums(equation, decision)
-        return _without_needless(decision, equation) if decision.verdict == "conditional" else decision
+        if decision.verdict != "conditional":
+            return decision
+        return replace(decision, conditions=tuple(_without_divisor(each, equation) for each in decision.conditions))
     except RecursionError:
         return Decision("undecided", reason="the formulas are nested too deeply to be read")
     except (TypeError, AttributeError) as reason:
@@ -107,14 +109,9 @@ def _with_positive_symbols(equation: Equation, decision: Decision) -> Decision:
     return replace(signed, conditions=tuple(dict.fromkeys([*decision.conditions, *conditions])))
 
 
-def _without_needless(decision: Decision, equation: Equation) -> Decision:
-    """Return ``decision`` with conditions that do not divide by y, if the equation is true for ``y = 0`` too."""
-    # the proof of sqrt(x**2*y**2) == x*y gives the condition x/abs(y) >= 0, which becomes x >= 0
-    return replace(decision, conditions=tuple(_without_divisor(each, equation) for each in decision.conditions))
-
-
 def _without_divisor(condition: Any, equation: Equation) -> Any:
     """Return x for a ``condition`` on ``x/abs(y)`` if the equation is true for y = 0; otherwise ``condition``."""
+    # the proof of sqrt(x**2*y**2) == x*y gives the condition x/abs(y) >= 0, which becomes x >= 0
     if not isinstance(condition, Requirement) or condition.strict or equation.hypotheses:
         return condition
     signs = []

@@ -11,7 +11,7 @@ from functools import cached_property
 from sympy import CRootOf, Expr, Rational, Symbol, atan2
 from sympy.polys.rings import PolyElement
 
-from symrot.checker.claim.atoms import atoms_of
+from symrot.checker.claim.interpreter import atoms_of
 from symrot.checker.decide.constraints import Constraints, constraints_of
 from symrot.checker.decide.infeasibility import Infeasibility, infeasibility_proof, vanishes_on
 from symrot.checker.decide.real_points import ATTEMPTS, RealPoint, real_points
@@ -212,8 +212,8 @@ class Hypotheses:
         raise InputError(f"the hypotheses hold at no real point{divisors}: {reason}")
 
     def entails(self, numerators: Iterable[PolyElement]) -> bool:
-        """Return whether hypotheses provably make the ``numerators`` of left - right zero; False if there are no
-        hypotheses.
+        """Return whether hypotheses and assumed signs provably make the ``numerators`` of left - right zero; False
+        without any.
         """
         target = self.constraints.ring
         return self.present and all(vanishes_on(self.constraints, poly.set_ring(target)) for poly in numerators)

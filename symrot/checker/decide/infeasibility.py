@@ -84,6 +84,8 @@ def _lifted(poly: PolyElement, ring: PolyRing) -> PolyElement:
 
 
 class _Prover:
+    """A proof by cases that polynomials cannot all vanish, within a budget of cases and of products of terms."""
+
     def __init__(self, ring: PolyRing, constraints: Constraints) -> None:
         self.ring, self.constraints, self.cases, self.spent = ring, constraints, 0, [0]
         self.nonnegative = constraints.positive | constraints.nonnegative
@@ -102,7 +104,7 @@ class _Prover:
         for number, poly in enumerate(zeros):
             factors = self.factors(poly)
             if not factors and poly:
-                return Infeasibility(*self.why(poly))
+                return _never_zero(poly)
             if len(factors) > 1:
                 rest = [*simple, *zeros[number + 1 :]]
                 cases = [self.impossible([factor, *rest], rounds) for factor in factors]
@@ -111,19 +113,16 @@ class _Prover:
             simple.extend(self.parts(factors[0]) if factors else ())
         for poly in simple:
             if self.keeps_its_sign(poly, simple):
-                return Infeasibility(*self.why(poly))
+                return _never_zero(poly)
         basis = groebner_basis(simple, self.ring, MOST_PRODUCTS, self.spent)
         if any(poly.is_ground for poly in basis):
             return Infeasibility("they contradict each other")
         for poly in basis:
             if self.keeps_its_sign(poly, simple):
-                return Infeasibility(*self.why(poly))
+                return _never_zero(poly)
         if {poly.monic() for poly in simple} == set(basis) and all(self.parts(p) == [p] for p in basis):
             raise _Undecided
         return self.impossible(basis, rounds - 1)
-
-    def why(self, poly: PolyElement) -> tuple[str, PolyElement]:
-        return "a polynomial that would have to vanish keeps its sign", poly
 
     def factors(self, poly: PolyElement) -> list[PolyElement]:
         """Return the different factors of a polynomial that may be zero somewhere: x - y for
@@ -247,6 +246,10 @@ class _Prover:
         for place in self.constraints.negative:
             bounds[place] = (bounds.get(place, (-inf, 0))[0], Fraction(0))
         return bounds
+
+
+def _never_zero(poly: PolyElement) -> Infeasibility:
+    return Infeasibility("a polynomial that would have to vanish keeps its sign", poly)
 
 
 def _fraction(value: Any) -> Fraction:

@@ -1,6 +1,6 @@
 """Proofs that a real formula is never negative: by ranges, as a sum of squares, or by factors."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import sympy
 from sympy import Abs, Add, Expr, Mul, Poly, Pow, Rational, S
@@ -161,11 +161,7 @@ def _by_squares(formula: Expr, strict: bool) -> bool:
         return False
     if not all(gen.is_extended_real is not False for gen in poly.gens):
         return False
-    return _is_definite(_gram(poly), strict, lambda place: _sign(poly.gens[place]))
-
-
-def _sign(unknown: Expr) -> int:
-    return 1 if surely_nonnegative(unknown) else 0
+    return _is_definite(_gram(poly), strict, list(map(surely_nonnegative, poly.gens)))
 
 
 def _gram(poly: Poly) -> list[list[Rational]]:
@@ -180,12 +176,15 @@ def _gram(poly: Poly) -> list[list[Rational]]:
     return gram
 
 
-def _is_definite(gram: Sequence[Sequence[Rational]], strict: bool, sign: Callable[[int], int]) -> bool:
-    """Return whether a quadratic form with the matrix ``gram`` is never negative, and never zero if ``strict``."""
+def _is_definite(gram: Sequence[Sequence[Rational]], strict: bool, nonnegative: Sequence[bool]) -> bool:
+    """Return whether a quadratic form with the matrix ``gram`` is never negative, and never zero if ``strict``.
+
+    ``nonnegative`` says for each unknown whether it is never negative.
+    """
     rows = [list(row) for row in gram]
     for place in range(1, len(rows)):
         # a linear term with a coefficient >= 0 in a nonnegative unknown only increases the value
-        if rows[0][place] > 0 and sign(place - 1) > 0:
+        if rows[0][place] > 0 and nonnegative[place - 1]:
             rows[0][place] = rows[place][0] = S.Zero
     for place in reversed(range(1, len(rows))):
         pivot = rows[place][place]

@@ -3,9 +3,9 @@
 from dataclasses import replace
 from itertools import takewhile
 
-from symrot.checker.claim.tree import TIME, Node, negated, number, product, walk
+from symrot.checker.claim.tree import TIME, Node, differentiated, negated, nodes_of, number, product, quotient
 from symrot.checker.latex.cursor import CLOSING, is_d, is_letter
-from symrot.checker.latex.names import NamesPart, appended
+from symrot.checker.latex.names import NamesPart
 from symrot.checker.latex.sums import FUNCTIONS
 from symrot.checker.typed.defined_functions import DEFINED, DISPUTED, INVERSES, instead
 from symrot.checker.typed.densities import over_mass
@@ -61,7 +61,7 @@ class CalculusPart(NamesPart):
             # \sin\theta^2 as (sin theta)^2
             factors, power = [factors[0].args[0]], factors[0].args[1]
         only_number = factors[0].kind == "number" or (factors[0].kind == "product" and not any(
-            piece.kind in ("name", "call") for _, piece in walk(factors[0])))  # fmt: skip
+            piece.kind in ("name", "call") for piece in nodes_of(factors[0])))  # fmt: skip
         if power is None and not (only_number and not self.starts_factor()):
             factors += self.further_factors(function, expected, only_number)
         argument = product(factors)
@@ -113,16 +113,15 @@ class CalculusPart(NamesPart):
         inner = self.argument(root.inside)
         if index is None:
             return Node("call", "sqrt", (inner,))
-        return Node("power", None, (inner, product([number(1), Node("inv", None, (index,))])))
+        return Node("power", None, (inner, quotient(number(1), index)))
 
     def fraction(self, fraction: tree.Fraction) -> Node:
         sides = above, below = fraction.above, fraction.below
         if all(isinstance(side, tree.Row) and side.items and is_d(side.items[0]) for side in sides):
             return self.derivative_fraction(fraction)
         if above.kind == below.kind == "number" and above.start + 1 == below.start and not self.is_cut(below):
-            digits = number(int(above.text)), Node("inv", None, (number(int(below.text)),))  # \frac12
-            return product([*digits])
-        return product([self.argument(above), Node("inv", None, (self.argument(below),))])
+            return quotient(number(int(above.text)), number(int(below.text)))  # \frac12
+        return quotient(self.argument(above), self.argument(below))
 
     def leibniz(self) -> Node | None:
         r"""Parse and return a time derivative with a slash, such as ``d\mathbf L/dt``; return None if there is none."""
@@ -155,7 +154,7 @@ class CalculusPart(NamesPart):
                 raise self.fail("brackets around the formula to differentiate")
         for variable in variables:
             in_time = variable == TIME
-            operand = self.derivative(operand, 1, fraction) if in_time else appended(operand, variable)
+            operand = self.derivative(operand, 1, fraction) if in_time else differentiated(operand, variable)
         return operand
 
     def differentiated(self) -> tuple[int, Node | None]:

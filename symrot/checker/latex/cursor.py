@@ -8,7 +8,7 @@ from string import whitespace
 from typing import ClassVar
 
 from symrot.checker.claim.functions import ROTATIONS
-from symrot.checker.claim.reader import LONGEST_TEXT, MOST_PIECES
+from symrot.checker.claim.reader import MOST_PIECES, check_length
 from symrot.checker.claim.tree import Node
 from symrot.checker.latex.macros import expanded, with_spelled_functions
 from symrot.checker.latex.shorthand import shorthands
@@ -97,7 +97,19 @@ def is_d(item: tree.Node) -> bool:
 
 
 class Cursor(cursor.Cursor):
-    """A position in a formula, with the functions of time, vectors and ambiguous pieces in the text before it."""
+    """A position in a formula, with the functions of time, vectors and ambiguous pieces in the text before it.
+
+    Parameters
+    ----------
+    source, where : str
+        The text, and its place for error messages.
+    names : Names
+        The names that the claim declares.
+    flips : collection of (str, int), optional
+        The keys of the ambiguous pieces that get their less usual meaning; None refuses an ambiguous text.
+    upper : bool
+        Whether plus-minus signs stand for their upper signs.
+    """
 
     synonyms: ClassVar[Mapping[str, str]] = {
         "\\top": "\\T", "\\intercal": "\\T", "\\lbrace": "\\{", "\\rbrace": "\\}", "\\lbrack": "[", "\\rbrack": "]",
@@ -114,8 +126,7 @@ class Cursor(cursor.Cursor):
         place = f"{where}: " if where else ""
         if not isinstance(source, str) or not source.strip():
             raise InputError(f"{place}expected LaTeX of an equation, got empty text")
-        if len(source) > LONGEST_TEXT:
-            raise InputError(f"{place}expected a formula of at most {LONGEST_TEXT} characters, got {len(source)}")
+        check_length(source, place)
         self.source, self.where, self.names, self.flips = source, where, names, flips
         self.doubts: list[Doubt] = []
         self.timed = set(names.functions)

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 from symrot.checker.arrays.quaternions import CONJUGATE
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
-from symrot.checker.claim.tree import TIME, Node, is_derivative, negated, number, sum_of
+from symrot.checker.claim.tree import TIME, Node, column_vector, differentiated, negated, number, sum_of
 from symrot.checker.claim.vectors import MARK, direction, is_tensor
 from symrot.checker.latex.cursor import CLOSING, UPRIGHT, is_letter
 from symrot.checker.latex.sums import SumsPart
 from symrot.latex import tree
 
-__all__ = ["NAME_MARKS", "OPERATORS", "VECTOR_MARKS", "NamesPart", "appended"]
+__all__ = ["NAME_MARKS", "OPERATORS", "VECTOR_MARKS", "NamesPart"]
 
 OPERATORS = {
     "\\max": "max", "\\min": "min",
@@ -45,6 +45,7 @@ class NamesPart(SumsPart):
     """The methods of the LaTeX reader that parse names, and functions that are called by name."""
 
     def letter(self, item: tree.Node) -> Node:
+        """Parse what follows a letter; return the node of the name, or of a cosine or sine in short form."""
         if item.start in self.short:
             return self.cosine_or_sine(item)
         return self.named(item.text.removeprefix("\\"), item)
@@ -84,8 +85,7 @@ class NamesPart(SumsPart):
             else:
                 subscript = self.subscript(mark)
         if subscript == PART:
-            entries = tuple(Node("name", self.resolved(name, digit)) for digit in "123")
-            return Node("call", "Matrix", (Node("list", ("[", "]"), entries),))
+            return column_vector([Node("name", self.resolved(name, digit)) for digit in "123"])
         known = self.resolved(name, subscript)
         if known.partition("_prime")[0] in ROTATIONS and self.at("(") and known not in self.names:
             known = known.partition("_prime")[0]  # R_{y'} rotates about an axis that the rotations before it have moved
@@ -188,16 +188,14 @@ class NamesPart(SumsPart):
             name = str(node.value)
             forms = ["d" * times + name, name + "dot", name + "d" * times]
             # the claim may declare a symbol such as dx for the derivative of x
-            declared = [form for form in forms if form in self.names.symbols] if times == 1 else forms[:0]
+            declared = [form for form in forms if form in self.names.symbols] if times == 1 else []
             if declared:
                 return Node("name", declared[0])
             if not self.names.implied:
                 raise self.fail(f"{name} to be declared as a function of t (it is differentiated)", item)
             # an undeclared name becomes a function of time
             self.timed.add(name)
-        for _ in range(times):
-            node = appended(node, TIME)
-        return node
+        return differentiated(node, TIME, times)
 
     def take_time_call(self, name: str) -> None:
         """Skip ``(t)`` after the function of time ``name``; raise InputError for brackets with another argument."""
@@ -333,10 +331,3 @@ class NamesPart(SumsPart):
             return Node("call", name, (self.factor(),))
         self.next()
         return Node("call", name, tuple(self.listed(self.expression, CLOSING[opening.text])))
-
-
-def appended(node: Node, variable: Node) -> Node:
-    """Return the derivative of a formula by a variable; for ``diff(x, t)`` and t return ``diff(x, t, t)``."""
-    if is_derivative(node) and node.args[-1] == variable == TIME:
-        return Node("call", "diff", (*node.args, variable))
-    return Node("call", "diff", (node, variable))

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, ClassVar
 
-from symrot.checker.claim.reader import read_expression, read_relation
-from symrot.checker.claim.tree import TIME, Node, is_derivative, sum_of, text, walk
+from symrot.checker.claim.reader import read_expression, read_relation, with_time
+from symrot.checker.claim.tree import TIME, Node, is_derivative, nodes_of, sum_of, text
 from symrot.checker.claim.vectors import Vector, may_be_mixed, on_direction, used_vectors, without_marks
 from symrot.checker.latex.calculus import DOTS, CalculusPart
 from symrot.checker.latex.cursor import JOINTS, UPRIGHT, Names, is_letter
 from symrot.checker.latex.names import NAME_MARKS, OPERATORS, VECTOR_MARKS
-from symrot.checker.latex.sums import FUNCTIONS, SIGNS
+from symrot.checker.latex.sums import FUNCTIONS, SEVERAL_LINES, SIGNS
 from symrot.checker.typed.readings import Chain, Reading, Relation, distinct_readings, each_reading
 from symrot.errors import InputError
 from symrot.latex import tree
@@ -25,8 +25,7 @@ __all__ = ["Equation", "Names", "latex_readings", "read_latex", "read_latex_form
 Line = tuple[list[str], list[Node]]
 """The signs of a chain, and its sides."""
 
-ALIGNED = ("align", "aligned", "alignat", "gather", "gathered", "eqnarray", "split", "cases", "dcases", "flalign",
-           "multline", "array")  # fmt: skip
+ALIGNED = (*SEVERAL_LINES, "array")
 """Environments whose lines hold equations."""
 
 AROUND = ("equation", "subequations", "displaymath", "math")
@@ -69,7 +68,7 @@ def read_latex(source: str, where: str = "", names: Names | None = None) -> Equa
     'diff(theta(t), t, t) == -g/l*sin(theta(t))'
     """
     ((_, sides),), reader = _read(source, where, names or Names(), _Interpreter.equation)
-    sides, vectors = without_marks([_timed(side, reader.timed) for side in sides], reader.vectors)
+    sides, vectors = without_marks([with_time(side, reader.timed) for side in sides], reader.vectors)
     claim = " == ".join(map(text, sides))
     return Equation(read_relation(claim, where), claim, used_vectors(sides, vectors))
 
@@ -77,8 +76,8 @@ def read_latex(source: str, where: str = "", names: Names | None = None) -> Equa
 def latex_readings(source: str, names: Names | None = None) -> list[Reading]:
     r"""Return the readings (interpretations) of a LaTeX text, the usual one first.
 
-    In each further one, of at most six, an ambiguous part such as ``\cos^{-1} x``, or all of one kind, has its less
-    usual meaning.
+    There are at most six. In each but the first, an ambiguous part such as ``\cos^{-1} x``, or all parts of one kind,
+    have their less usual meaning.
 
     Raises
     ------
@@ -104,7 +103,7 @@ def _reading(source: str, names: Names, flips: Collection[tuple[str, int]]) -> R
     lines, reader = _read(source, "", names, _Interpreter.equations, flips)
     if reader.both_signs:
         lines += _read(source, "", names, _Interpreter.equations, flips, upper=False)[0]
-    timed = [_timed(side, reader.timed) for _, sides in lines for side in sides]
+    timed = [with_time(side, reader.timed) for _, sides in lines for side in sides]
     sides, vectors = without_marks(timed, reader.vectors)
     remaining = iter([read_expression(text(side)) for side in sides])
     return Reading(
@@ -137,7 +136,7 @@ def _read(
             if reader.crossed == crossed:
                 raise
         else:
-            names_in_lines = {node.value for _, sides in lines for side in sides for _, node in walk(side)}
+            names_in_lines = {node.value for _, sides in lines for node in nodes_of(*sides)}
             both = frozenset(filter(may_be_mixed, reader.hatted & ({*+reader.bare} | names_in_lines)))
             if reader.crossed == crossed and both == mixed:
                 reader.notes += map(on_direction, sorted(mixed))
@@ -148,9 +147,9 @@ def _read(
 
 def _on_constants(sides: Sequence[Node], vectors: Collection[str]) -> tuple[str, ...]:
     """Return (note,) on the symbols that time derivatives in ``sides`` treat as constants; () without such symbols."""
-    nodes = [node for side in sides for _, node in walk(side)]
+    nodes = nodes_of(*sides)
     rates = [node.args[0] for node in nodes if is_derivative(node) and node.args[-1] == TIME]
-    parts = (part for rate in rates if rate.kind != "call" for _, part in walk(rate))
+    parts = (part for rate in rates if rate.kind != "call" for part in nodes_of(rate))
     inner = {argument for node in nodes if node.kind == "call" for argument in node.args if argument == TIME}
     names = sorted({str(part.value) for part in parts if part.kind == "name" and part not in inner} - {"pi", *vectors})
     if not names:
@@ -168,17 +167,8 @@ def read_latex_formula(source: str, where: str = "") -> tuple[str, tuple[Vector,
         As :func:`read_latex`.
     """
     ((_, (formula,)),), reader = _read(source, where, Names(), _Interpreter.formula)
-    (formula,), vectors = without_marks([_timed(formula, reader.timed)], reader.vectors)
+    (formula,), vectors = without_marks([with_time(formula, reader.timed)], reader.vectors)
     return text(formula), used_vectors([formula], vectors)
-
-
-def _timed(node: Node, names: Collection[str]) -> Node:
-    """Return a tree with ``f(t)`` for each name f in ``names``."""
-    if node.kind == "name" and node.value in names:
-        return Node("call", node.value, (TIME,))
-    if node.kind == "call" and node.value in names:
-        return node
-    return Node(node.kind, node.value, tuple(_timed(child, names) for child in node.args), node.span)
 
 
 class _Interpreter(CalculusPart):

@@ -10,8 +10,8 @@ from symrot.checker.arrays.index_notation import component_of_cross
 from symrot.checker.arrays.pauli import commutator
 from symrot.checker.arrays.quaternions import CONJUGATE, quaternion_product
 from symrot.checker.claim.functions import BUILT_IN
-from symrot.checker.claim.tree import Node, is_derivative, negated, number, product, sum_of
-from symrot.checker.claim.vectors import MARK
+from symrot.checker.claim.tree import Node, is_derivative, matrix_of_rows, negated, number, product, quotient, sum_of
+from symrot.checker.claim.vectors import MARK, length
 from symrot.checker.latex.cursor import CLOSING, UPRIGHT, Cursor, is_d, is_letter
 from symrot.checker.latex.macros import INSTEAD
 from symrot.checker.typed.cursor import DEEPEST_NESTING, SHARED, is_usual_vector
@@ -19,7 +19,7 @@ from symrot.checker.typed.defined_functions import DEFINED
 from symrot.checker.typed.words import ALIASES
 from symrot.latex import tree
 
-__all__ = ["FUNCTIONS", "SIGNS", "SumsPart"]
+__all__ = ["FUNCTIONS", "SEVERAL_LINES", "SIGNS", "SumsPart"]
 
 FUNCTIONS = {
     f"\\{command}": ALIASES.get(command, command)
@@ -34,8 +34,8 @@ LONGEST_MATRIX_NAME = 2
 """The most letters of the name of a matrix in brackets: ``[C]`` and ``[FB]``."""
 
 MATRICES = {"matrix": "", "pmatrix": "", "bmatrix": "", "Bmatrix": "", "smallmatrix": "", "array": "", "vmatrix": "det"}
-SEVERAL_LINES = ("align", "aligned", "alignat", "gather", "gathered", "eqnarray", "split", "multline", "cases",
-                 "flalign")  # fmt: skip
+SEVERAL_LINES = ("align", "aligned", "alignat", "gather", "gathered", "eqnarray", "split", "cases", "dcases", "flalign",
+                 "multline")  # fmt: skip
 SIGNS = {
     "=": "==", "\\ge": ">=", "\\geq": ">=", "\\geqslant": ">=", ">": ">", "\\gt": ">", "\\le": "<=", "\\leq": "<=",
     "\\leqslant": "<=", "<": "<", "\\lt": "<",
@@ -266,7 +266,7 @@ class SumsPart(Cursor):
         if mark.text in ("*", "\\ast", "\\star"):
             return self.starred(node)
         if mark.text == "\\circ":
-            return product([node, Node("name", "pi"), Node("inv", None, (number(180),))])  # degrees
+            return quotient(product([node, Node("name", "pi")]), number(180))  # degrees
         if mark.text in ("\\times", "×"):
             self.note_vector(node)
             return Node("call", "skew", (node,))
@@ -394,7 +394,7 @@ class SumsPart(Cursor):
     def bars(self, bar: tree.Node) -> Node:
         inner = self.barred(self.expression, bar.text)
         if bar.text == "\\|" or self.names.is_column(inner):
-            return Node("call", "sqrt", (Node("call", "dot", (inner, inner)),))
+            return length(inner)
         return Node("call", "det" if self.names.is_matrix(inner) else "abs", (inner,))
 
     def environment(self, table: tree.Table) -> Node:
@@ -407,12 +407,8 @@ class SumsPart(Cursor):
         rows = [[self.inside(cell, self.expression, between) for cell in line] for line in table.lines]
         if len({len(row) for row in rows}) > 1:
             raise self.fail("rows of equal length in a matrix", table)
-        made = Node("call", "Matrix", (_listed([_listed(row) for row in rows]),))
+        made = matrix_of_rows(rows)
         return Node("call", MATRICES[name], (made,)) if MATRICES[name] else made
-
-
-def _listed(members: list[Node]) -> Node:
-    return Node("list", ("[", "]"), tuple(members))
 
 
 def last_factor(node: Node) -> Node:

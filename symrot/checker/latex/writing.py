@@ -9,7 +9,7 @@ from typing import ClassVar
 from symrot.checker.claim.functions import ROTATIONS
 from symrot.checker.claim.notation import with_formulas
 from symrot.checker.claim.reader import read_relation, with_time
-from symrot.checker.claim.tree import Node, number, text, walk
+from symrot.checker.claim.tree import TIME, Node, is_rate, nodes_of, number, text, untimed
 from symrot.checker.latex.reader import Names, read_latex
 from symrot.checker.typed.readings import Relation
 from symrot.errors import InputError
@@ -85,12 +85,13 @@ def latex_of(
     """
     if relation[0] != "==":
         return None
-    nodes = [node for side in relation[1:] for _, node in walk(side)]
+    nodes = nodes_of(*relation[1:])
     moving = {str(n.args[0].value) for n in nodes if n.value == "diff" and n.args[0].kind == "name"} - {*vectors}
     if moving:  # the rate of a quaternion is diff(q, t), since its components are the functions of time
         sign, left, right = relation
         relation = sign, with_time(left, moving), with_time(right, moving)
-    timed = {str(n.args[0].value) for side in relation[1:] for _, n in walk(side) if _is_rate(n)} | {*functions}
+    rates = (node for node in nodes_of(*relation[1:]) if _is_dotted(node))
+    timed = {str(rate.args[0].value) for rate in rates if rate.args[0].kind == "call"} | {*functions}
     try:
         written = " = ".join(Writer(timed, vectors).formula(side) for side in relation[1:])
         same = read_latex(written, names=Names(functions=functions)).text
@@ -112,17 +113,9 @@ def latex_of_text(source: str, functions: Collection[str] = (), vectors: Mapping
     return source if written is None else written + joint + rest
 
 
-def _is_rate(node: Node) -> bool:
-    if node.kind != "call" or node.value != "diff" or len(node.args) > 4:
-        return False
-    inside, *variables = node.args
-    is_function = inside.kind == "call" and [a.value for a in inside.args] == ["t"]
-    return is_function and all((v.kind, v.value) == ("name", "t") for v in variables)
-
-
-def _by_time_alone(node: Node) -> bool:
-    """Return whether a derivative is by time alone and of a low order, so that dots over a letter can stand for it."""
-    return len(node.args) - 1 in DOTS and all((v.kind, v.value) == ("name", "t") for v in node.args[1:])
+def _is_dotted(node: Node) -> bool:
+    """Return whether a tree is a time derivative of such a low order that dots over a letter can stand for it."""
+    return is_rate(node) and len(node.args) - 1 in DOTS
 
 
 def _is_square(node: Node) -> bool:
@@ -239,16 +232,12 @@ class Writer:
         name = str(node.value)
         if name in VECTOR_SIGNS:
             return f" {VECTOR_SIGNS[name]} ".join(self.formula(argument, ATOM) for argument in node.args)
-        if name == "diff" and node.args[0].value in self.vectors and _by_time_alone(node):
-            base, subscript, rest = self.name(node.args[0]).partition("_")
-            return f"{DOTS[len(node.args) - 1]}{{{base}}}{subscript}{rest}"
-        if _is_rate(node):
-            inner = Node("name", node.args[0].value)
-            base, subscript, rest = self.name(inner).partition("_")
+        if _is_dotted(node) and (node.args[0].kind == "call" or node.args[0].value in self.vectors):
+            base, subscript, rest = self.name(untimed(node.args[0])).partition("_")
             return f"{DOTS[len(node.args) - 1]}{{{base}}}{subscript}{rest}"
         if name in self.timed:
             return self.name(Node("name", name))
-        if name == "diff" and [(v.kind, v.value) for v in node.args[1:]] == [("name", "t")]:
+        if name == "diff" and node.args[1:] == (TIME,):
             return f"\\frac{{d}}{{dt}}({self.formula(node.args[0])})"
         if name == "conjugate":
             return f"{self.formula(node.args[0], ATOM)}^*"
@@ -266,7 +255,7 @@ class Writer:
             rows = [row.args if row.kind == "list" else (row,) for row in node.args[0].args]
             lines = " \\\\ ".join(" & ".join(map(self.formula, row)) for row in rows)
             return f"\\begin{{bmatrix}} {lines} \\end{{bmatrix}}"
-        if [a.value for a in node.args] == ["t"] and name not in COMMANDS:
+        if node.args == (TIME,) and name not in COMMANDS:
             return f"{self.name(Node('name', name))}(t)"
         if name in ROTATIONS:
             return self.name(Node("name", name)) + self.argument(node)

@@ -12,7 +12,7 @@ from hashlib import sha256
 import sympy
 from sympy import Expr, Mul, Rational, S, cancel
 
-from symrot.checker.claim.atoms import atoms_of
+from symrot.checker.claim.interpreter import atoms_of
 
 __all__ = ["PRIME", "Fingerprint", "NotInField", "Values", "fingerprint", "in_lowest_terms", "values_at"]
 
@@ -21,7 +21,9 @@ PRIME = 2**61 - 1  # different functions agree at a random point with a probabil
 DRAWS = tuple((pow(3, 101 + 2 * n, PRIME), pow(3, 102 + 2 * n, PRIME)) for n in range(48))
 """(value of one symbol, value of all others), tried in turn until the formula is defined."""
 MOST_UNDEFINED = 3
-"""The most of these points at which a formula is tried; one without a value there has none where letters are equal."""
+"""How many of these pairs are tried: a formula without a value at any of them, such as 1/(x - y), has no value where
+two symbols are equal.
+"""
 PARTS = 4
 """Angles are multiples of a quarter of the symbol, so that halves and quarters of an angle can be read."""
 MOST_CANCELLED = 10
@@ -192,7 +194,8 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
 
 def in_lowest_terms(formula: Expr) -> bool:
     """Return whether a product has no divisor that divides its other factors, as a - b divides those of
-    ``(a**2 - b**2)/(a - b)``. False if a divisor is linear in no atom.
+    ``(a**2 - b**2)/(a - b)``. False also if this test cannot tell: for a divisor that is linear in no atom, and for a
+    formula without a value modulo ``PRIME``.
     """
     # quicker than cancel: a divisor that is linear in x divides the rest only if the rest is 0 at its root
     atoms = sorted(atoms_of([formula]), key=str)

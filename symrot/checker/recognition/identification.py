@@ -22,7 +22,7 @@ from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.source.text import claim_of_text
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.context.admission import admits_letters, admits_name
-from symrot.checker.context.context import read_context
+from symrot.checker.context.statements import read_context
 from symrot.checker.latex.reader import read_latex_formula
 from symrot.checker.recognition.fingerprint import PRIME, Fingerprint, NotInField, fingerprint, values_at
 from symrot.checker.recognition.formulas.attitudes import CROSS_PRODUCT

@@ -200,13 +200,10 @@ def page(*groups: Iterator[Named]) -> str:
                 continue
             texts.add(known.text)
             lines += ["", "[[formula]]", f'key = "{key}"']
-            lines += [f"{field} = {_quoted(getattr(known, field))}" for field in ("name", "source", "text")]
+            for field in ("name", "source", "text"):
+                lines.append(f"{field} = {json.dumps(getattr(known, field), ensure_ascii=False)}")
             lines += [f"{flag} = true" for flag in ("scaled", "only_named", "is_relation") if getattr(known, flag)]
     return "\n".join(lines) + "\n"
-
-
-def _quoted(text: str) -> str:
-    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
 @cache

@@ -10,6 +10,7 @@ from symrot.checker.units.units import conventional_unit
 __all__ = ["LETTERS", "UNIT_OF_NAME", "agree_in_unit", "has_usual_letter", "plain_name", "unit_of"]
 
 UNIT_OF_NAME = {symbol.name: unit for symbol, unit in (symbols.UNIT | OTHERS).items()}
+"""Name of a symbol in known formulas -> its unit."""
 
 LETTERS = {
     "kg m^2": r"[ABCIJ]\w*|lambda_?[1-3]", "kg": r"[mM]\w*", "N": r"[WPFG]\w*",
@@ -26,6 +27,7 @@ LETTERS = {
 
 
 def has_usual_letter(known: str, own: str) -> bool:
+    """Return whether books use the letter ``own`` with the unit of ``known``, a symbol of a known formula."""
     pattern = LETTERS.get(UNIT_OF_NAME.get(known, ""))
     return pattern is None or re.fullmatch(pattern, plain_name(own)) is not None
 

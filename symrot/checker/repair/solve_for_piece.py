@@ -29,11 +29,10 @@ HOLE = Node("name", "?")
 
 CLOSE = 1e-8
 """The largest relative difference between values that are taken to be equal."""
-MOST_ATOMS = 24
-MOST_PRODUCTS = 4000
-MOST_SUMS = 24
-MOST_MATRICES = 40
-MOST_COLUMNS = 5
+MOST_ATOMS, MOST_SUMS, MOST_PRODUCTS = 24, 24, 4000
+"""The most symbols and functions, and the most brackets, from which products are made, and the most products."""
+MOST_MATRICES, MOST_COLUMNS = 40, 5
+"""The most matrices of which a multiple is added to another one, and the most vectors in dot products."""
 LARGEST_RATIO = 60
 LARGEST_OF_SIDE = 1000
 """The largest denominator of a rational factor of a piece, and of a whole term of a side."""
@@ -191,7 +190,7 @@ def solutions(numeric: NumericFilter) -> list[Candidate]:
             needed = values and _needed(numeric, place, path, HOLE, values)
             outer = place in SIDES and len(path) <= 1
             if values and needed:
-                for made, edit in _readings(numeric, vocabulary, piece, values, needed, term, outer):
+                for made, edit in _corrections(numeric, vocabulary, piece, values, needed, term, outer):
                     candidates.append(_candidate(numeric, place, path, made, edit))
     ordered = sorted(candidates, key=lambda candidate: candidate.cost)
     return [candidate for candidate in ordered if _is_meaningful(numeric, candidate.changes[0])]
@@ -287,11 +286,11 @@ def _root(numeric: NumericFilter, point: Point, change: Sequence[Change], start:
     return None
 
 
-Reading = tuple[Node, tuple[str, float]]
-"""The new piece, and the code and cost of the edit."""
+Correction = tuple[Node, tuple[str, float]]
+"""A new formula for a part, and the code and the cost of the fault that it corrects."""
 
 
-def _readings(
+def _corrections(
     numeric: NumericFilter,
     vocabulary: Vocabulary,
     piece: Node,
@@ -299,7 +298,7 @@ def _readings(
     needed: Values,
     is_term: bool,
     is_outer: bool,
-) -> Iterator[Reading]:
+) -> Iterator[Correction]:
     """Yield (formula, (code, cost) of the fault) for formulas with the values ``needed`` that may replace ``piece``."""
     # values: of piece as it is; is_term: piece is a term of a sum; is_outer: it is a side, or directly below a side
     if all(abs(b) <= CLOSE * abs(a) for a, b in zip(values, needed, strict=True)):

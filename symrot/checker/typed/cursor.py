@@ -108,6 +108,7 @@ class Cursor(ABC):
         return complaint(self.source, self.where, self.start() if position is None else position, expected)
 
     def token(self, ahead: int = 0) -> Token:
+        """Return the token at the cursor, or the one ``ahead`` tokens after it; past the end, return the end token."""
         return self.tokens[min(self.index + ahead, len(self.tokens) - 1)]
 
     def peek(self) -> str:
@@ -116,6 +117,7 @@ class Cursor(ABC):
         return token.text if token.kind == "mark" else ""
 
     def next(self) -> Token:
+        """Return the token at the cursor and move past it, unless it is the end token."""
         token = self.token()
         self.index += token.kind != "end"
         return token
@@ -127,6 +129,7 @@ class Cursor(ABC):
         return is_next
 
     def expect(self, mark: str) -> None:
+        """Skip the next token; raise InputError if it is not the operator or bracket ``mark``."""
         if not self.take(mark):
             raise self.fail(f"'{mark}'")
 
@@ -134,9 +137,11 @@ class Cursor(ABC):
         return self.token().start
 
     def span(self, start: int) -> tuple[int, int]:
+        """Return the positions in the text from ``start`` to the end of the token before the cursor."""
         return start, self.tokens[self.index - 1].end
 
     def deeper(self) -> None:
+        """Count one more nested level; raise InputError if there are too many. The caller counts it off again."""
         self.depth += 1
         if self.depth > DEEPEST_NESTING:
             raise self.fail(f"at most {DEEPEST_NESTING} nested levels of brackets and arguments")
@@ -153,6 +158,7 @@ class Cursor(ABC):
         return doubt.key in self.flips
 
     def note(self, sentence: str) -> None:
+        """Append a sentence for the user to the notes, unless they have it."""
         if sentence not in self.notes:
             self.notes.append(sentence)
 
@@ -169,12 +175,14 @@ class Cursor(ABC):
         """Parse a number, name, call or bracket, with its exponents, and return its tree."""
 
     def row(self) -> list[Node]:
+        """Parse formulas with commas between them, and return their trees."""
         entries = [self.expression()]
         while self.take(","):
             entries.append(self.expression())
         return entries
 
     def members(self, closing: str) -> list[Node]:
+        """Parse formulas with commas between them, up to the bracket ``closing``, which is skipped."""
         bars, self.bars = self.bars, 0
         members = self.row()
         self.expect(closing)
@@ -192,6 +200,7 @@ class Cursor(ABC):
         return Node("call", function, tuple(arguments), self.span(token.start))
 
     def numeral(self, token: Token) -> Node:
+        """Return the node of the number ``token``; raise InputError if it is too long or has too large an exponent."""
         exponent = re.split("[eE]", token.text)[1:]
         if len(token.text) > LONGEST_NUMBER:
             raise self.fail(f"a number of at most {LONGEST_NUMBER} characters", token.start)

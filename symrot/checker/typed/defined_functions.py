@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 
-from symrot.checker.claim.tree import Node, negated, number, product, sum_of
+from symrot.checker.claim.tree import Node, negated, number, quotient, sum_of
 
 __all__ = ["DEFINED", "DISPUTED", "DISPUTED_NAMES", "INVERSES", "instead"]
 
@@ -15,29 +15,25 @@ _sinh, _cosh, _log, _root = map(_call, ("sinh", "cosh", "log", "sqrt"))
 ONE = number(1)
 
 
-def _over(above: Node, below: Node) -> Node:
-    return product([above, Node("inv", None, (below,), below.span)], below.span)
-
-
 def _square(x: Node) -> Node:
     return Node("power", None, (x, number(2)), x.span)
 
 
 def _half_log(above: Node, below: Node) -> Node:
-    return _over(_log(_over(above, below)), number(2))
+    return quotient(_log(quotient(above, below)), number(2))
 
 
 DEFINED: Mapping[str, Callable[[Node], Node]] = {
-    "coth": lambda x: _over(_cosh(x), _sinh(x)),
-    "sech": lambda x: _over(ONE, _cosh(x)),
-    "csch": lambda x: _over(ONE, _sinh(x)),
+    "coth": lambda x: quotient(_cosh(x), _sinh(x)),
+    "sech": lambda x: quotient(ONE, _cosh(x)),
+    "csch": lambda x: quotient(ONE, _sinh(x)),
     "asinh": lambda x: _log(sum_of([x, _root(sum_of([_square(x), ONE]))], x.span)),
     "acosh": lambda x: _log(sum_of([x, _root(sum_of([_square(x), negated(ONE)]))], x.span)),
     "atanh": lambda x: _half_log(sum_of([ONE, x]), sum_of([ONE, negated(x)])),
     "acoth": lambda x: _half_log(sum_of([x, ONE]), sum_of([x, negated(ONE)])),
-    "asech": lambda x: _log(_over(sum_of([ONE, _root(sum_of([ONE, negated(_square(x))]))]), x)),
+    "asech": lambda x: _log(quotient(sum_of([ONE, _root(sum_of([ONE, negated(_square(x))]))]), x)),
     "arg": lambda x: Node("call", "atan2", (Node("call", "imaginary_part", (x,)), Node("call", "real_part", (x,)))),
-    "acsch": lambda x: _log(sum_of([_over(ONE, x), _root(sum_of([_over(ONE, _square(x)), ONE]))])),
+    "acsch": lambda x: _log(sum_of([quotient(ONE, x), _root(sum_of([quotient(ONE, _square(x)), ONE]))])),
 }
 """Function of one scalar -> the formula that it is, with the principal values of the inverses."""
 

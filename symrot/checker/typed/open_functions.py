@@ -4,14 +4,28 @@ A ``place`` counts tokens from the cursor.
 """
 
 import re
+from dataclasses import replace
 
-from symrot.checker.claim.tree import TIME, Node, negated, number, product, walk
+from symrot.checker.claim.tree import (
+    MOST_DERIVATIVES,
+    TIME,
+    Node,
+    differentiated,
+    negated,
+    nodes_of,
+    number,
+    product,
+    untimed,
+)
 from symrot.checker.typed.cursor import ADDING, FACTOR_MARKS, Cursor
 from symrot.checker.typed.defined_functions import DEFINED, DISPUTED, INVERSES, instead
 from symrot.checker.typed.tokens import Token
 from symrot.checker.typed.words import SINGLE_ARGUMENT
 
 __all__ = ["OpenFunctionsPart"]
+
+LONGEST_ORDER = 4
+"""The number of digits from which the order of a derivative is not computed: it is refused."""
 
 
 class OpenFunctionsPart(Cursor):
@@ -116,7 +130,7 @@ class OpenFunctionsPart(Cursor):
             return False  # sin x cos y
         if token.tight and token.kind == "name":
             return True  # sin ωt
-        only_numbers = not any(node.kind in ("name", "call") for factor in factors for _, node in walk(factor))
+        only_numbers = not any(node.kind in ("name", "call") for node in nodes_of(*factors))
         if self.token(1).kind in ("prime", "dots") and not only_numbers:
             return False  # sin θ φ'
         usual = only_numbers or (token.text == "t" and TIME not in factors)
@@ -157,71 +171,94 @@ class OpenFunctionsPart(Cursor):
         return Node("call", "sqrt", (product(inside, self.span(first.start)),), self.span(token.start))
 
     def leibniz(self, token: Token) -> Node | None:
-        """Parse and return ``dx/dt``, ``d²x/dt²``, ``d/dt x`` or ``d/dx (..)``; return None for any other text."""
-        texts = [self.token(n).text for n in range(8)]
-        word = token.text
-        if word.startswith("d") and texts[:2] == ["/", "dt"] and not self.is_power_base(1):
-            if word == "d":
-                return self.derivative_of_next(token)
-            return self.quotient_rate(token, word[1:], 1, 2)
-        if word == "d" and self.token().kind == "name" and self.token().tight and texts[1:3] == ["/", "dt"]:
-            return self.quotient_rate(token, texts[0], 1, 3)
-        if word == "d" and texts[0] == "^" and texts[1].isdigit() and texts[3:7] == ["/", "dt", "^", texts[1]]:
-            return self.quotient_rate(token, texts[2], int(texts[1]), 7)
-        if word == "d" and self.token().kind == "power" and texts[2:5] == ["/", "dt", texts[0]] and texts[0].isdigit():
-            return self.quotient_rate(token, texts[1], int(texts[0]), 5)
-        return self.derivative_by(token)
+        """Parse a derivative that starts with ``token``, as d, dx or dy, and return it; None for any other text.
 
-    def is_power_base(self, ahead: int) -> bool:
-        """Return whether a power, as ``^2`` in ``x^2``, follows the token that is ``ahead`` tokens after the cursor."""
-        after = self.token(ahead + 1)
-        return after.text in ("^", "**") or after.kind == "power"
-
-    def quotient_rate(self, token: Token, name: str, order: int, length: int) -> Node | None:
-        if name in ("t", "pi") or name in self.vocabulary.symbols or token.text in self.vocabulary.symbols:
+        The forms are ``dx/dt``, ``d²x/dt²``, ``d/dt x``, ``dy/dx``, ``d/dx (..)`` and ``d(..)/dx``.
+        """
+        if not token.text.startswith("d") or token.text in self.vocabulary.symbols:
             return None
-        if self.as_sympy and order == 1 and token.text != "d":
-            return None  # a quotient of two names
-        self.plain = True
-        self.index += length
-        self.timed.add(name)
-        return Node("call", "diff", (Node("call", name, (TIME,)), *[TIME] * order), self.span(token.start))
-
-    def derivative_by(self, token: Token) -> Node | None:
-        """Parse ``dy/dx``, ``d/dx (..)`` or ``d(..)/dx`` and return the derivative by x; None for any other text."""
-        if self.as_sympy or token.text in self.vocabulary.symbols or not token.text.startswith("d"):
-            return None
-        if token.text == "d" and self.peek() == "(" and (end := self.end_of_bracket()) is not None:
+        if (
+            token.text == "d"
+            and self.peek() == "("
+            and not self.as_sympy
+            and (end := self.end_of_bracket()) is not None
+        ):
             return self.derivative_of_bracket(token, end)
-        place, name = 0, token.text[1:]
-        order, place = self.order_at(place)
-        if not name and self.token(place).text != "/":
-            name, place = self.tight_name(place)
+        name, order, place = self.differentiated_name(token)
         slash, (variable, place) = self.token(place).text, self.differential(place + 1)
+        if slash != "/" or not variable or name == variable:
+            return None
+        if variable == "t":
+            below, place = self.order_at(place)
+            return self.derivative_by_time(token, name, order, place) if order == below else None
         mark = self.token(place)
         order_of_rate = int(mark.text) if mark.kind == "dots" else len(mark.text) if mark.kind == "prime" else 0
-        place += bool(order_of_rate)  # ∂T/∂θ'
-        below, place = self.order_at(place)
-        if slash != "/" or not variable or variable == "t" or order != below or name == variable:
+        below, place = self.order_at(place + bool(order_of_rate))
+        if order != below or self.as_sympy:
             return None
-        after = self.token(place)
+        by = Node("name", variable)
+        if order_of_rate:  # ∂T/∂θ'
+            by = self.derived(token, Node("call", variable, (TIME,)), TIME, order_of_rate)
+        return self.derivative_by(token, name, by, order, place)
+
+    def differentiated_name(self, token: Token) -> tuple[str, int, int]:
+        """Return (name, order, next place): x and 1 for the token dx, x and 2 for ``d²x``, "" and 2 for ``d²/``."""
+        order, place = self.order_at(0)
+        if token.text != "d":
+            if order > 1 and self.token(place).text == "/" and self.differential(place + 1)[0]:
+                raise self.fail(f"d²{token.text[1:]}/.. for a second derivative, or brackets for a square, (..)²")
+            return token.text[1:], 1, 0
+        own = self.token(place)
+        is_differentiated = own.kind == "name" and (own.tight or order != 1)
+        return (own.text, order, place + 1) if is_differentiated else ("", order, place)
+
+    def derived(self, token: Token, operand: Node, variable: Node, order: int) -> Node:
+        """Return the derivative, which the text starts with ``token``, of ``operand`` by ``variable``."""
+        if not 1 <= order <= MOST_DERIVATIVES:
+            raise self.fail(f"a derivative of order 1 to {MOST_DERIVATIVES}", token.start)
+        self.plain = True
+        return replace(differentiated(operand, variable, order), span=self.span(token.start))
+
+    def derivative_by_time(self, token: Token, name: str, order: int, length: int) -> Node | None:
+        """Return ``diff(x(t), t)`` for the name x, or the derivative of the next factor for an empty name.
+
+        None for a quotient of two names, such as ``dx/dt`` in SymPy syntax. ``length`` is the number of tokens of the
+        derivative after ``token``.
+        """
+        is_quotient = self.as_sympy and (token.text != "d" if name else order > 1)
+        if is_quotient or name in ("t", "pi") or name in self.vocabulary.symbols:
+            return None
+        self.index += length
+        if name:
+            self.timed.add(name)
+            return self.derived(token, Node("call", name, (TIME,)), TIME, order)
+        operand = self.operand_after("t")
+        self.varies(operand)
+        return self.derived(token, operand, TIME, order)
+
+    def derivative_by(self, token: Token, name: str, variable: Node, order: int, length: int) -> Node | None:
+        """Return the derivative of a name, or of the next factor for an empty name, by ``variable``, x or x'.
+
+        None if no factor follows. ``length`` is the number of tokens of the derivative after ``token``.
+        """
+        after = self.token(length)
         if not name and not (after.text in ("(", "|", "√") or after.kind == "name"):
             return None
+        self.index += length
+        letter = str(untimed(variable.args[0] if variable.args else variable).value)
+        if variable.args:
+            self.timed.add(letter)
+        return self.derived(token, Node("name", name) if name else self.operand_after(letter), variable, order)
+
+    def operand_after(self, variable: str) -> Node:
+        """Parse the factor after ``d/dx`` and return it; ``variable`` is x."""
         self.plain = True
-        self.index += place
-        by = Node("name", variable)
-        if order_of_rate:
-            self.timed.add(variable)
-            by = Node("call", "diff", (Node("call", variable, (TIME,)), *[TIME] * order_of_rate))
-        variables = [by] * order
-        if name:
-            return Node("call", "diff", (Node("name", name), *variables), self.span(token.start))
         self.deeper()
         operand = self.factor()
         self.depth -= 1
         if self.peek() == "" and self.starts_factor():
             raise self.fail(f"brackets around the formula after d/d{variable}, as in d/d{variable} (a*b)")
-        return Node("call", "diff", (operand, *variables), self.span(token.start))
+        return operand
 
     def end_of_bracket(self) -> int | None:
         """Return the number of tokens of the bracket at the cursor if ``/dx`` follows it, as in ``(x^2)/dx``; otherwise
@@ -241,22 +278,21 @@ class OpenFunctionsPart(Cursor):
         ``end`` is the number of tokens in the bracket.
         """
         variable, after = self.differential(end + 1)
-        length = after - end
-        self.plain = True
         self.deeper()
         operand = self.factor()
         self.depth -= 1
-        self.index += length
+        self.index += after - end
         if variable == "t":
             self.varies(operand)
-        return Node("call", "diff", (operand, Node("name", variable)), self.span(token.start))
+        return self.derived(token, operand, Node("name", variable), 1)
 
     def order_at(self, place: int) -> tuple[int, int]:
         """Return (order, next place) of a derivative: order 2 if ``^2`` or ² is at ``place``, otherwise 1."""
-        token, after = self.token(place), self.token(place + 1)
-        if token.text in ("^", "**") and after.text.isdigit():
-            return int(after.text), place + 2
-        return (int(token.text), place + 1) if token.kind == "power" and token.text.isdigit() else (1, place)
+        length = 2 if self.token(place).text in ("^", "**") else 1 if self.token(place).kind == "power" else 0
+        digits = self.token(place + length - 1).text
+        if not length or not digits.isdigit():
+            return 1, place
+        return (int(digits) if len(digits) < LONGEST_ORDER else MOST_DERIVATIVES + 1), place + length
 
     def tight_name(self, place: int) -> tuple[str, int]:
         """Return (name, next place) for the name at ``place``; the name is empty if a blank is before it."""
@@ -270,20 +306,9 @@ class OpenFunctionsPart(Cursor):
             return "", place
         return (token.text[1:], place + 1) if token.text != "d" else self.tight_name(place + 1)
 
-    def derivative_of_next(self, token: Token) -> Node:
-        self.plain = True
-        self.index += 2
-        self.deeper()
-        operand = self.factor()
-        self.depth -= 1
-        self.varies(operand)
-        if self.peek() == "" and self.starts_factor():
-            raise self.fail("brackets around the formula after d/dt, as in d/dt (a*b)")
-        return Node("call", "diff", (operand, TIME), self.span(token.start))
-
     def varies(self, operand: Node) -> None:
         """Record that the names in ``operand``, a formula after d/dt, may be functions of time."""
-        for _, node in walk(operand):
+        for node in nodes_of(operand):
             is_open = node.kind == "name" and node.value not in ("t", "pi", *self.vocabulary.symbols)
             if is_open or (node.kind == "call" and node.args == (TIME,)):
                 self.differentiated.add(str(node.value))

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any, ClassVar
@@ -9,8 +10,18 @@ from typing import Any, ClassVar
 from symrot.checker.arrays.index_notation import component_of_cross
 from symrot.checker.arrays.quaternions import CONJUGATE
 from symrot.checker.claim.functions import BUILT_IN
-from symrot.checker.claim.tree import TIME, Node, derivative, is_derivative, number, product
-from symrot.checker.claim.vectors import direction
+from symrot.checker.claim.tree import (
+    TIME,
+    Node,
+    derivative,
+    differentiated,
+    factors_of,
+    listed,
+    number,
+    product,
+    quotient,
+)
+from symrot.checker.claim.vectors import direction, length
 from symrot.checker.typed.cursor import ADDING, DEEPEST_NESTING, MASS
 from symrot.checker.typed.densities import over_mass
 from symrot.checker.typed.open_functions import OpenFunctionsPart
@@ -79,8 +90,7 @@ class PiecesPart(OpenFunctionsPart):
                     raise self.fail("a single degree sign")
                 self.plain = True
                 self.next()
-                degrees = [node, Node("name", "pi"), Node("inv", None, (number(180),))]
-                node = product(degrees, self.span(start))
+                node = replace(quotient(product([node, Node("name", "pi")]), number(180)), span=self.span(start))
             else:
                 return node
 
@@ -154,8 +164,7 @@ class PiecesPart(OpenFunctionsPart):
         if len(arguments) > most or (most and not arguments):
             raise self.fail(f"{'one argument' if most else 'no arguments'} of .{token.text}", token.start)
         if name == "norm":
-            squares = Node("call", "dot", (node, node), self.span(start))
-            return Node("call", "sqrt", (squares,), self.span(start))
+            return replace(length(node), span=self.span(start))
         if name == "transpose":
             return Node("transpose", None, (node,), self.span(start))
         if name == "diff":
@@ -186,9 +195,7 @@ class PiecesPart(OpenFunctionsPart):
                 self.index += 3
             self.timed.add(name)
             node = Node("call", name, (TIME,), node.span)
-        elif is_derivative(node) and node.args[-1] == TIME:
-            return Node("call", "diff", (*node.args, *[TIME] * order), self.span(start))
-        return Node("call", "diff", (node, *[TIME] * order), self.span(start))
+        return replace(differentiated(node, TIME, order), span=self.span(start))
 
     def atom(self) -> Node:
         token = self.next()
@@ -200,8 +207,7 @@ class PiecesPart(OpenFunctionsPart):
     def fraction(self, token: Token) -> Node:
         self.plain = True
         value = Fraction(token.text)
-        below = Node("inv", None, (number(value.denominator),), self.span(token.start))
-        return product([number(value.numerator), below], self.span(token.start))
+        return replace(quotient(*map(number, value.as_integer_ratio())), span=self.span(token.start))
 
     def name(self, token: Token) -> Node:
         word = token.text
@@ -234,7 +240,7 @@ class PiecesPart(OpenFunctionsPart):
         if len(call.args) != 2:
             raise self.fail("two numbers in Rational(..)", token.start)
         above, below = call.args
-        return product([above, Node("inv", None, (below,), below.span)], call.span)
+        return replace(quotient(above, below), span=call.span)
 
     def symbol(self, token: Token) -> Node:
         """Parse a name that is not built in; return a symbol, or the call of a function with its arguments."""
@@ -294,7 +300,7 @@ class PiecesPart(OpenFunctionsPart):
             inner = self.expression()
             self.expect("]")
             self.bars = bars
-            return Node("list", ("[", "]"), (inner,), self.span(token.start))
+            return replace(listed([inner]), span=self.span(token.start))
         rows = [self.row()]
         if len(rows[0]) == 1 and self.token().text in ("x", "×") and self.token(1).text == "]":  # [n×], a skew matrix
             self.plain = True
@@ -309,9 +315,8 @@ class PiecesPart(OpenFunctionsPart):
         span = self.span(token.start)
         if all(len(row) == 1 for row in rows) and all(self.has_blanks(row[0]) for row in rows):
             raise self.fail("[a, b] with commas between the entries of a matrix (or [a*b] for a product)", token.start)
-        if len(rows) == 1:
-            return Node("list", ("[", "]"), tuple(rows[0]), span)
-        return Node("list", ("[", "]"), tuple(Node("list", ("[", "]"), tuple(row), span) for row in rows), span)
+        members = rows[0] if len(rows) == 1 else [replace(listed(row), span=span) for row in rows]
+        return replace(listed(members), span=span)
 
     def holds_skew_vector(self) -> bool:
         """Return whether the square bracket before the cursor is the skew matrix of a vector, ``[R ω]×``."""
@@ -322,8 +327,7 @@ class PiecesPart(OpenFunctionsPart):
 
     def has_blanks(self, entry: Node) -> bool:
         """Return whether a matrix entry has names with only blanks between them: ``[a b]`` may have two entries."""
-        inner = entry.args[0] if entry.kind == "neg" else entry
-        pairs = pairwise(inner.args if inner.kind == "product" else ())
+        pairs = pairwise(factors_of(entry))
         gaps = [self.source[a.span[1] : b.span[0]] for a, b in pairs if a.kind in ("name", "call", "number")]
         return bool(gaps) and all(gap.isspace() for gap in gaps)
 
@@ -334,7 +338,7 @@ class PiecesPart(OpenFunctionsPart):
         self.expect(token.text)
         self.bars -= 1
         if self.is_vector(inner) or token.text == "‖":
-            return Node("call", "sqrt", (Node("call", "dot", (inner, inner), self.span(token.start)),))
+            return replace(length(inner), span=self.span(token.start))
         return Node("call", "abs", (inner,), self.span(token.start))
 
     def integral(self, token: Token) -> Node:

@@ -212,7 +212,7 @@ def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
     elif name := _NAME.match(text, at):
         yield from _name(text, at, name)
     elif mark := _MARK.match(text, at):
-        yield "mark", {":=": "=", "·": "·"}.get(mark[0], mark[0]), mark.end()
+        yield "mark", "=" if mark[0] == ":=" else mark[0], mark.end()
     elif character == "'":
         stop = at + 1
         while text[stop : stop + 1] == "'":

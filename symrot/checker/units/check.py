@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from symrot.checker.claim.reader import read_expression
-from symrot.checker.claim.tree import Node, walk
+from symrot.checker.claim.tree import Node, nodes_of
 from symrot.checker.units.functions import CALLS
 from symrot.checker.units.inference import UnitInference, Unreadable, angles_of
 from symrot.checker.units.units import read_unit
@@ -51,7 +51,7 @@ def check_dimensions(
         For an unknown unit.
     """
     trees = [*sides, *(tree for _, tree in define), *(side for pair in hypotheses for side in pair)]
-    names = {str(node.value) for tree in trees for _, node in walk(tree) if node.kind in ("name", "call")}
+    names = {str(node.value) for node in nodes_of(*trees) if node.kind in ("name", "call")}
     own = {name: read_unit(unit, f"units: {name}") for name, unit in (units or {}).items()}
     inference = UnitInference(own, CALLS, names, {name for tree in trees for name in angles_of(tree)})
     try:

@@ -38,6 +38,7 @@ def _rotation(axis: int) -> Callable[[UnitInference, Node], Value]:
 
 
 def _components(inference: UnitInference, node: Node) -> list[Any]:
+    """Return the dimensions of the arguments of a call, or of the entries of its only argument, a column."""
     if len(node.args) == 1:
         return [row[0] for row in inference.matrix(node.args[0])]
     return [inference.scalar(argument) for argument in node.args]
@@ -60,6 +61,7 @@ def _dot(inference: UnitInference, node: Node) -> Value:
 
 
 def _vee(inference: UnitInference, node: Node) -> Value:
+    """Return the dimensions of the vector of a skew matrix; require that opposite entries have the same one."""
     rows = inference.matrix(node.args[0])
     if shape_of(rows) != (3, 3):
         raise Unreadable
@@ -112,6 +114,7 @@ def _qmul(inference: UnitInference, p: list[Any], q: list[Any]) -> list[Any]:
 
 
 def _dcm_of(inference: UnitInference, node: Node) -> Value:
+    """Return the dimensions of a rotation matrix by the squares of the components of a quaternion."""
     q = _components(inference, node)
     if len(q) != 4:
         raise Unreadable
@@ -158,7 +161,7 @@ def _inverse_of(inference: UnitInference, node: Node) -> Value:
 
 CALLS: dict[str, Callable[[UnitInference, Node], Any]] = {
     **dict.fromkeys(("sin", "cos", "tan", "cot", "sec", "csc", "asin", "acos", "atan", "acot", "exp", "log", "sinh",
-                     "cosh", "tanh", "asinh", "acosh", "atanh", "sinc", "factorial"), _of_number),
+                     "cosh", "tanh", "sinc", "factorial"), _of_number),
     "atan2": _alike, **{name: _rotation("XYZ".index(axis)) for name, axis in ROTATIONS.items()},
     "sqrt": lambda inference, node: inference.power(inference.scalar(node.args[0]), Fraction(1, 2)),
     "abs": lambda inference, node: inference.scalar(node.args[0]),
@@ -168,5 +171,5 @@ CALLS: dict[str, Callable[[UnitInference, Node], Any]] = {
     "det": lambda inference, node: inference.determinant(inference.matrix(node.args[0])), "inverse": _inverse_of,
     "cross": _cross, "dot": _dot, "vee": _vee, "Matrix": _matrix, "diag": _diagonal, "eye": _eye, "hstack": _hstack,
     "qmul": _product_of_quaternions, "dcm_of": _dcm_of, "trace": _trace, "diff": _derivative,
-    **dict.fromkeys(("integrate", "Integral"), _integral),
+    "integrate": _integral,
 }  # fmt: skip

@@ -10,7 +10,7 @@ from functools import reduce
 from typing import Any
 
 from symrot.checker.claim.functions import ROTATIONS
-from symrot.checker.claim.tree import Node, text, walk
+from symrot.checker.claim.tree import Node, nodes_of, text
 from symrot.checker.units.units import (
     NOTHING,
     Dimension,
@@ -126,6 +126,7 @@ class UnitInference:
     # -- units of names ---------------------------------------------------------------------------------------------
 
     def unknown(self) -> Dimension:
+        """Return a new unknown unit, which equations may determine later."""
         self.fresh += 1
         return {f"?{self.fresh}": Fraction(1)}
 
@@ -174,10 +175,12 @@ class UnitInference:
         return first
 
     def in_words(self, dimension: Dimension) -> str:
+        """Return a dimension as text, with the units that the equations so far determine."""
         unit = unit_text(self.system.reduced(dimension))
         return "dimensionless" if unit == "1" else unit
 
     def same_matrices(self, first: Value, second: Value, words: str) -> Value:
+        """Return the dimensions of two matrices, entry by entry as :meth:`same`; zero may be a matrix of zeros."""
         shapes = [shape_of(value) for value in (first, second)]
         if None in shapes:
             zero = first if shapes[0] is None else second
@@ -209,12 +212,14 @@ class UnitInference:
         return _VALUE[node.kind](self, node)
 
     def scalar(self, node: Node) -> Dimension | None:
+        """Return the dimension of a scalar formula, None for zero; raise Unreadable for a matrix."""
         value: Value = self.value(node)
         if isinstance(value, tuple):
             raise Unreadable
         return value  # type: ignore[no-any-return]
 
     def matrix(self, node: Node) -> Rows:
+        """Return the dimensions of the entries of a matrix; raise Unreadable for any other formula."""
         value = self.value(node)
         if node.kind == "list" and isinstance(value, list):
             value = tuple((entry,) for entry in value)
@@ -230,6 +235,7 @@ class UnitInference:
         return dimension
 
     def times(self, first: Value, second: Value) -> Value:
+        """Return the dimension of a product of scalars or matrices; a scalar may be on either side of a matrix."""
         if not isinstance(first, tuple) and not isinstance(second, tuple):
             return ZERO if first is ZERO or second is ZERO else times(first, second)
         if not isinstance(second, tuple):
@@ -278,11 +284,11 @@ class UnitInference:
 
 def angles_of(tree: Node) -> Iterator[str]:
     """Yield the single letters that must be angles: ``g`` in ``sin(2*g)``, but not ``t`` in ``sin(w*t)``."""
-    for _, node in walk(tree):
+    for node in nodes_of(tree):
         if node.kind == "call" and node.value in ANGLE_FUNCTIONS:
             for argument in node.args:
                 for term in argument.args if argument.kind == "sum" else (argument,):
-                    named = [piece for _, piece in walk(term) if piece.kind in ("name", "call")]
+                    named = [piece for piece in nodes_of(term) if piece.kind in ("name", "call")]
                     if named and (len(named) == 1 or named[0].args == tuple(named[1:])):
                         yield from (named[0].value,) if len(named[0].value) == 1 else ()
 
@@ -301,18 +307,19 @@ def _minor(rows: Rows, row: int, column: int) -> Rows:
 
 def _bare(tree: Node) -> bool:
     """Return whether a tree has only numbers, as ``Matrix([1, 2*pi])`` has, and no symbols."""
-    loose = (node for _, node in walk(tree) if node.kind in ("name", "call"))
+    loose = (node for node in nodes_of(tree) if node.kind in ("name", "call"))
     return all(node.value in ("pi", "Matrix", "sqrt", "diag", "transpose") for node in loose)
 
 
 def _is_unit(tree: Node) -> bool:
     """Return whether a tree has only the numbers 0 and 1, and no names, as ``Matrix([0, 0, 1])`` has."""
-    return all(node.value in (0, 1) for _, node in walk(tree) if node.kind == "number") and not any(
-        node.kind == "name" for _, node in walk(tree)
+    return all(node.value in (0, 1) for node in nodes_of(tree) if node.kind == "number") and not any(
+        node.kind == "name" for node in nodes_of(tree)
     )
 
 
 def piece_text(node: Node) -> str:
+    """Return the text of a formula for a message, cut after LONGEST_EXCERPT characters."""
     whole = text(node)
     return whole if len(whole) <= LONGEST_EXCERPT else whole[: LONGEST_EXCERPT - 2] + ".."
 

@@ -14,6 +14,7 @@ from mpmath import mp, mpf
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import (
     DIGITS,
+    SWITCH,
     TERMS,
     Phase,
     hyperbolic,
@@ -29,7 +30,6 @@ from symrot.kinematics.hamilton import conjugate, hamilton
 
 __all__ = ["PortableFreeBody"]
 
-SWITCH = 0.7  # above this modulus, theta functions are summed by their imaginary transforms
 NEGLIGIBLE = mpf(10) ** -150  # size, relative to the largest component of omega, that counts as zero
 
 

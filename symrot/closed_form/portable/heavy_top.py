@@ -13,6 +13,7 @@ from mpmath import mp, mpc, mpf
 from symrot.closed_form.build import Floats
 from symrot.closed_form.portable.phases import (
     DIGITS,
+    SWITCH,
     TERMS,
     Phase,
     hyperbolic,
@@ -27,7 +28,6 @@ from symrot.kinematics.hamilton import conjugate, hamilton
 
 __all__ = ["PortableHeavyTop"]
 
-SWITCH = 0.7  # above this modulus, theta functions are summed by their imaginary transforms
 EQUAL = mpf(10) ** -45  # closer roots count as equal: inputs have 31 digits, distances of roots half as many
 NOTHING = mpf(10) ** -31  # size, relative to alpha or beta, that counts as zero
 

@@ -12,12 +12,13 @@ from symrot.closed_form.arithmetic.double_double import two_product, two_sum
 from symrot.closed_form.build import Floats
 
 __all__ = [
-    "DIGITS", "TERMS", "Phase", "hyperbolic", "multiples", "number", "power_of_two", "quarter_periods", "turned_by",
-    "vector",
+    "DIGITS", "SWITCH", "TERMS", "Phase", "hyperbolic", "multiples", "number", "power_of_two", "quarter_periods",
+    "turned_by", "vector",
 ]  # fmt: skip
 
 DIGITS = 120  # digits of the constants, enough to remain accurate after any cancellation
 TERMS = 8  # terms of a series
+SWITCH = 0.7  # above this parameter m, theta functions are summed by their imaginary transforms
 LARGEST = 80.0  # argument of a hyperbolic function above which the results are constant to rounding
 MOST_REVOLUTIONS = 2.0**56  # as in circular.h: pairs of doubles give a phase to 1e-13 revolutions within this number
 

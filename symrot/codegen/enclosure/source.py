@@ -86,12 +86,15 @@ def enclosure_definitions(enclosure: Enclosure | None, order: int, edges: Sequen
 
 
 def rounding_source(program: Program) -> str:
-    """Return C code that bounds the rounding errors of a program's rates in formulas of t, for the Taylor stepper.
+    """Return C code that bounds the rounding errors of a program's rates in formulas of t.
 
     The code defines ``SYMROT_ROUNDS`` 1 and the function ``symrot_roundings`` if such errors may be large: the narrow
     pulse ``w/((t**2 - 25)**2 + w**2)`` is deformed by the rounding of its phase ``t**2 - 25``.
     """
-    whole = enclosure(recurrences(program))
+    try:
+        whole = enclosure(recurrences(program))
+    except InputError:  # rates without a Taylor series, such as rates with abs
+        whole = None
     rounded = None if whole is None else rounded_terms(whole)
     if rounded is None:
         return "#define SYMROT_ROUNDS 0\n"

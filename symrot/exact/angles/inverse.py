@@ -15,29 +15,12 @@ HALF = Rational(1, 2)
 Pair = tuple[Expr, Expr]
 
 
-def _asin(u: Expr) -> Pair:
-    return sqrt(1 - u**2), u
-
-
-def _acos(u: Expr) -> Pair:
-    return u, sqrt(1 - u**2)
-
-
-def _atan(u: Expr) -> Pair:
-    return 1 / sqrt(1 + u**2), u / sqrt(1 + u**2)
-
-
-def _atan2(y: Expr, x: Expr) -> Pair:
-    return x / sqrt(x**2 + y**2), y / sqrt(x**2 + y**2)
-
-
-def _half(cosine: Expr, sine: Expr) -> Pair:
-    """Return the cosine and sine of a/2, given those of an angle a between -pi and pi, where cos(a/2) >= 0."""
-    below = sqrt(HALF + cosine / 2)
-    return below, sine / (2 * below)
-
-
-INVERSE: dict[type, Callable[..., Pair]] = {asin: _asin, acos: _acos, atan: _atan, atan2: _atan2}
+INVERSE: dict[type, Callable[..., Pair]] = {
+    asin: lambda u: (sqrt(1 - u**2), u),
+    acos: lambda u: (u, sqrt(1 - u**2)),
+    atan: lambda u: (1 / sqrt(1 + u**2), u / sqrt(1 + u**2)),
+    atan2: lambda y, x: (x / sqrt(x**2 + y**2), y / sqrt(x**2 + y**2)),
+}
 """Function -> (cosine, sine) of its value."""
 
 
@@ -46,14 +29,15 @@ def cosine_sine(angle: Expr, halvings: int) -> Pair:
 
     For ``asin(u)`` and 0 halvings they are sqrt(1 - u^2) and u.
     """
-    pair = INVERSE[type(angle)](*angle.args)
+    cosine, sine = INVERSE[type(angle)](*angle.args)
     if halvings and isinstance(angle, acos):  # the range of acos ends at pi, half of which is included too
         (u,) = angle.args
-        pair = sqrt(HALF + u / 2), sqrt(HALF - u / 2)
+        cosine, sine = sqrt(HALF + u / 2), sqrt(HALF - u / 2)
         halvings -= 1
-    for _ in range(halvings):
-        pair = _half(*pair)
-    return pair
+    for _ in range(halvings):  # the angle is between -pi and pi, so the cosine of its half is not negative
+        half = sqrt(HALF + cosine / 2)
+        cosine, sine = half, sine / (2 * half)
+    return cosine, sine
 
 
 Range = tuple[Fraction, Fraction, bool, bool]

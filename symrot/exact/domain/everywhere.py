@@ -167,17 +167,17 @@ def _between(low: Bound, high: Bound) -> Callable[..., Range]:
     return lambda *arguments: (low, high)
 
 
-ZERO, ONE, TWO, FOUR = map(Fraction, (0, 1, 2, 4))
+ZERO, ONE, PI = Fraction(0), Fraction(1), Fraction(22, 7)  # above pi
 
 _OF: dict[type, Callable[..., Range]] = {
     sympy.sin: _between(-ONE, ONE),
     sympy.cos: _between(-ONE, ONE),
     sympy.tanh: _between(-ONE, ONE),
     sympy.sign: _between(-ONE, ONE),
-    sympy.asin: _between(-TWO, TWO),
-    sympy.atan: _between(-TWO, TWO),
-    sympy.acos: _between(ZERO, FOUR),
-    sympy.atan2: _between(-FOUR, FOUR),
+    sympy.asin: _between(-PI / 2, PI / 2),
+    sympy.atan: _between(-PI / 2, PI / 2),
+    sympy.acos: _between(ZERO, PI),
+    sympy.atan2: _between(-PI, PI),
     sympy.exp: _monotone(sympy.exp, ZERO, inf),
     sympy.log: _monotone(sympy.log, -inf, inf),
     sympy.cosh: _between(ONE, inf),

@@ -157,6 +157,7 @@ class _Search:
         return total
 
     def jumped(self, point: Point) -> Point:
+        """Return a point at which fewer conditions are violated: symbols get other simple values, one at a time."""
         broken = self.broken(point)
         while broken and self.looks < MOST_LOOKS:
             trials = (

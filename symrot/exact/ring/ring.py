@@ -407,14 +407,8 @@ class FormulaRing:
 
     def expression(self, value: Ratio) -> Expr:
         """Return a fraction in lowest terms as a SymPy expression; exactly 0 if its numerator reduces to zero."""
-        constant, above, below = self.lowest_terms(value)
-        return constant * above / below
-
-    def lowest_terms(self, value: Ratio) -> tuple[Rational, Expr, Expr]:
-        """Return (c, P, Q) with value = c*P/Q in lowest terms, as expressions; c is a rational number >= 0."""
-        # the coefficients of P, and those of Q, are integers without a common divisor
         constant, above, below = self.lowest_polynomials(value)
-        return constant, above.as_expr(*self.generators), below.as_expr(*self.generators)
+        return constant * above.as_expr(*self.generators) / below.as_expr(*self.generators)
 
     def lowest_polynomials(self, value: Ratio) -> tuple[Rational, PolyElement, PolyElement]:
         """Return (c, P, Q) with value = c*P/Q in lowest terms; c is a rational number >= 0, P and Q are polynomials."""

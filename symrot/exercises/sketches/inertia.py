@@ -70,7 +70,7 @@ def rod_about_end() -> str:
 def rod_beside_centre() -> str:
     """Return an SVG drawing of a rod that rotates about an axle between its centre and its end."""
     return drawing(
-        "A rod that rotates about an axle beside its centre",
+        "A rod that rotates about an axle away from its centre",
         dashed(90, 15, 90, 105), turn(90, 24, 18, 6, 150, -150), rod(30, 65, 220, 65), dot(90, 65), dot(125, 65),
         span(30, 88, 220, 88), letter(78, 58, "O"), letter(131, 54, "C"), letter(125, 108, "L"),
     )  # fmt: skip

@@ -37,7 +37,7 @@ __all__ = [
 def struck_rod() -> str:
     """Return an SVG drawing of a free rod that is struck at a distance from its centre."""
     return drawing(
-        "A free rod that is struck beside its centre",
+        "A free rod that is struck away from its centre",
         rod(30, 70, 240, 70), dot(135, 70), arrow(195, 138, 195, 78), span(135, 94, 195, 94),
         span(30, 44, 240, 44),
         letter(135, 62, "C"), letter(165, 112, "d"), letter(135, 38, "L"), letter(210, 132, "J"),

@@ -9,7 +9,15 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from symrot.codegen.enclosure.terms import LOW_ORDER, REACHES, Enclosure, value_operands
+from symrot.codegen.enclosure.terms import (
+    LOW_ORDER,
+    REACHES,
+    Enclosure,
+    functions_of_time,
+    rounded_terms,
+    value_operands,
+)
+from symrot.codegen.taylor.recurrences import Series
 from symrot.formula.float_functions import float_value
 
 __all__ = ["Deviations", "Disc", "longest_followed"]
@@ -21,6 +29,7 @@ LARGEST_EXPONENT = 700.0  # exponent of e, well within the range of doubles
 LEAST_EXPONENT = -745.0  # exponent of e below which exp underflows to zero
 UNDERFLOW_UNIT = 1e-323  # above the error of a number that underflows: exp(-746) is 0 as a double, 1e-324 in truth
 SHRINK = 0.3  # smallest factor by which a step is multiplied at once
+HALF_ULP = 2.0**-53  # relative error of one rounded operation
 
 
 class Disc(NamedTuple):
@@ -178,13 +187,17 @@ class Deviations:
         The terms of the rates that need bounds, with the rules by which they are evaluated over discs.
     parameters : mapping of str to number
         Values of the parameters of the rates, by name.
+    rounded : bool
+        Whether the bounds include the rounding errors of formulas of the time, as for :meth:`rounding_errors`.
     """
 
     # complex, because such a bound also limits the coefficients of a Taylor series
-    def __init__(self, enclosure: Enclosure, parameters: Mapping[str, float]) -> None:
+    def __init__(self, enclosure: Enclosure, parameters: Mapping[str, float], rounded: bool = False) -> None:
         self.likely = 0  # index of the reach (radius in time) that proved the last step
         self.spent = 0  # evaluations so far
-
+        self._linear = functions_of_time(enclosure) if rounded else {}
+        terms = None if rounded else rounded_terms(enclosure)
+        self._rounding = None if terms is None else Deviations(terms, parameters, rounded=True)
         self._rules = [
             (i, each, value_operands(each), [0.0 if w is None else float_value(w, parameters) for w in each.weights])
             for i, each in ((i, enclosure.system.series[i]) for i in enclosure.series)
@@ -207,6 +220,13 @@ class Deviations:
         except (OverflowError, ValueError, ZeroDivisionError):
             return [math.inf if own else 0.0 for own in self._terms]
         return [_or_infinite(bound) for bound in bounds]
+
+    def rounding_errors(self, t: float, y: Sequence[float]) -> list[float]:
+        """Return a bound of the error of each rate from the rounding of formulas such as ``t**2 - 25``; empty if none.
+
+        The same bounds in C: :func:`symrot.codegen.enclosure.source.rounding_source`.
+        """
+        return [] if self._rounding is None else self._rounding(t, 0.0, 1.0, y, [0.0] * len(y))
 
     def _discs(
         self, t: float, radius: float, whole: float, y: Sequence[float], radii: Sequence[float]
@@ -238,7 +258,20 @@ class Deviations:
                     own = [Disc(rate * t + offset, abs(rate) * radius)]
                 further = (whole,) if series.function == "sqrt" else ()
                 discs[i] = FUNCTIONS[series.function](*own, *further)
+            if i in self._linear:
+                discs[i] = self._rounded(series, self._linear[i], discs[i], [discs[k][0] for k in operands], weights)
         return discs
+
+    @staticmethod
+    def _rounded(series: Series, linear: bool, disc: Parts, operands: list[float], weights: list[float]) -> Parts:
+        """Return a disc around the computed value of a function of the time that contains its exact value."""
+        centre, radius, log_size = disc
+        if linear:  # the time itself, or a phase: its operands have no other errors that count
+            return centre, HALF_ULP * abs(centre), None
+        size = 0.0
+        if series.rule == "sum":
+            size = sum(abs(w * x) for w, x in zip(weights, operands, strict=False)) + abs(weights[-1])
+        return centre, radius + HALF_ULP * (abs(centre) + size), log_size
 
 
 def longest_followed(

@@ -16,24 +16,15 @@ from symrot.build import cache as library
 from symrot.errors import InputError, PropagationError
 from symrot.planning.scene_kernel import bind
 from symrot.propagation.compiled_models import error_blocks
-from symrot.propagation.events.events import (
-    Event,
-    EventZero,
-    SearchResult,
-    ZerosNotSeparated,
-    event_library_source,
-    search,
-    stepped,
-    timed,
-    uses_attitude,
-)
-from symrot.propagation.events.polynomials import HEAD, Piece, fitted, fitted_pieces
+from symrot.propagation.events.event import Event, timed, uses_attitude
+from symrot.propagation.events.library import event_library_source
+from symrot.propagation.events.polynomials import HEAD, Piece, fitted, fitted_pieces, stepped
+from symrot.propagation.events.search import EventZero, SearchResult, ZerosNotSeparated, search
 from symrot.propagation.motions.methods import ClosedFormMotion, SciPyMotion
 from symrot.propagation.motions.motion import Motion, MotionInParts, SteppedInC, on_clock
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.segments import split_at
 from symrot.propagation.steppers.stats import Stats, Switching, stats_of
-from symrot.propagation.steppers.stepping import Integration
 
 __all__ = ["EventResult", "integrate_with_events"]
 
@@ -88,8 +79,7 @@ class _Side(NamedTuple):
     states: Callable[[Floats], Floats]
     # the error that ended the motion early in this direction, if any
     broken: list[PropagationError]
-    cost: Callable[[], tuple[int, int, int]]
-    switchings: tuple[Switching, ...] = ()
+    stats: Callable[[], Stats]
 
 
 def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]) -> EventResult:
@@ -129,7 +119,7 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
     zeros: list[tuple[EventZero, Floats]] = []
     counts, ended, switchings = np.zeros(3, dtype=int), False, list[Switching]()
     doubts, errors = list[tuple[int, float]](), list[PropagationError]()
-    flat = list[tuple[int, float, float]]()
+    flat, rounded = list[tuple[int, float, float]](), list[float]()
     accuracy = EXACT_ERROR if isinstance(motion, ClosedFormMotion) else TOLERANCES * motion.tolerance
     for part in split_at(times, motion.start):
         end = float(times[part[-1]])
@@ -155,14 +145,16 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
         doubts += [(event, t + zero) for event, t in result.doubts]
         flat += [(event, first + zero, last + zero) for event, first, last in result.flat]
         side.pieces.close()
-        counts += side.cost()
-        switchings += [each for each in side.switchings if abs(each.t - motion.start) <= reached]
+        stats = side.stats()
+        counts += stats[:3]
+        switchings += [each for each in stats.switchings if abs(each.t - motion.start) <= reached]
+        rounded += [t for t in stats.later(zero).rounded_beyond if abs(t - zero - motion.start) <= reached]
     zeros.sort(key=lambda each: each[0].t)
     own = [[each for each in zeros if each[0].event == number] for number in range(len(events))]
     return EventResult(
         sample_times[known],
         states[known],
-        stats_of(counts, perf_counter() - began, switchings),
+        stats_of(counts, perf_counter() - began, switchings, rounded),
         [np.array([each.t + zero for each, _ in group]) for group in own],
         [np.array([row for _, row in group]).reshape(-1, len(plan.states)) for group in own],
         [[each.kind for each, _ in group] for group in own],
@@ -180,8 +172,14 @@ def _searched(
     # a side is the interval before or after the start
     if end == start:
         return SearchResult([], None, []), None
+
+    def state_at(t: float) -> list[float]:
+        values: list[float] = side.states(np.array([t]))[0].tolist()
+        return values
+
     try:
-        result = search(path, events, p, side.pieces, start, accuracy, side.states(np.array([start]))[0].tolist())
+        at_end = lambda: None if side.broken else state_at(end)  # noqa: E731
+        result = search(path, events, p, side.pieces, start, accuracy, state_at(start), at_end)
     except ZerosNotSeparated as early:
         return SearchResult(early.zeros, None, []), early
     if not side.broken or result.stop is not None:
@@ -240,7 +238,7 @@ def _side(motion: Motion, end: float) -> _Side:
     if isinstance(motion, MotionInParts):
         pieces, path = motion.parts(end, broken)
         clean = _without_residues(pieces, error_blocks(plan)[0])
-        return _Side(clean, path, broken, lambda: path.stats[:3], path.stats.switchings)
+        return _Side(clean, path, broken, lambda: path.stats)
     if isinstance(motion, SteppedInC):
         integration = motion.stepping.restarted()
         rows: list[Floats] = []
@@ -251,7 +249,7 @@ def _side(motion: Motion, end: float) -> _Side:
             values[times == start] = y0
             return values
 
-        return _Side(stepped(integration, end, broken, rows), states, broken, lambda: _cost(integration))
+        return _Side(stepped(integration, end, broken, rows), states, broken, integration.stats)
     blocks = error_blocks(plan)
     if isinstance(motion, SciPyMotion):
         from symrot.propagation.steppers import fallback
@@ -270,14 +268,15 @@ def _side(motion: Motion, end: float) -> _Side:
             for edges in recording.edges(start, end):
                 yield fitted(recording, edges, *blocks)
 
-        return _Side(steps(), recording, broken, lambda: recording.stats[:3])
+        return _Side(steps(), recording, broken, lambda: recording.stats)
 
     def anywhere(times: Floats) -> Floats:
         return motion.integrate(times)[0]
 
     rates = anywhere(np.linspace(start, end, SAMPLES_OF_RATE))[:, : blocks[0][1]]
     longest = min(TURN_PER_PIECE / max(float(np.abs(rates).max()), 1e-300), abs(end - start))
-    return _Side(fitted_pieces(anywhere, start, end, longest, *blocks), anywhere, broken, lambda: (0, 0, 0))
+    followed = fitted_pieces(anywhere, start, end, longest, *blocks)
+    return _Side(followed, anywhere, broken, lambda: Stats(0, 0, 0, 0.0))
 
 
 def _without_residues(pieces: Sequence[Piece], blocks: Sequence[int]) -> Generator[Piece, None, None]:
@@ -296,7 +295,3 @@ def _without_residues(pieces: Sequence[Piece], blocks: Sequence[int]) -> Generat
         coefficients *= (sizes.sum(axis=1) > RESIDUE * largest)[:, None, :]
         rows[:, HEAD:] = coefficients.reshape(len(rows), -1)
         yield Piece(piece.edges, rows)
-
-
-def _cost(integration: Integration) -> tuple[int, int, int]:
-    return integration.accepted, integration.rejected, integration.evaluations

@@ -1,5 +1,6 @@
 """The motion of a scene from one initial state: what motions by every method have in common."""
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from functools import cached_property
@@ -72,6 +73,19 @@ class Motion(ABC):
     def warnings(self) -> tuple[str, ...]:
         """Sentences about accuracy that cannot be guaranteed for this motion; empty if there are none."""
         return self.setup.warnings
+
+    def rounding_warning(self, t: float) -> str:
+        """Return a sentence that warns of errors beyond the time t, s, a time of ``Stats.rounded_beyond``."""
+        if self.has_external_torque:
+            return (
+                f"beyond t = {t!r} s the rounding of the times at which the torque is evaluated, to doubles that lie "
+                f"{math.ulp(t):.1e} s apart, may change the motion by more than the tolerance; choose t = 0 nearer to "
+                "the motion, or a larger tolerance"
+            )
+        return (
+            f"beyond t = {t!r} s the rounding of the torque, a formula of the time, may change the motion by more than "
+            "the tolerance; choose a larger tolerance"
+        )
 
     @cached_property
     def rate_parameters(self) -> list[float]:
@@ -205,7 +219,8 @@ class ShiftableMotion(RestartableMotion):
         # all times lie near a late start, and keep more digits if counted from the start
         motion = self.on_own_clock
         try:
-            return motion.steps(times - motion.epoch, in_order)
+            states, stats = motion.steps(times - motion.epoch, in_order)
+            return states, stats.later(motion.epoch)
         except IntegrationStopped as error:
             raise error.later(motion.epoch) from None
 

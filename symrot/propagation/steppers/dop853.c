@@ -10,6 +10,7 @@
  *                         otherwise to this number (an attitude of unit norm: 1)
  *     SYMROT_DEFECT       if defined, limit of the defect of the dense output inside a step, in allowed errors
  *     SYMROT_ENCLOSED     whether some terms of the rates may hide a feature: then enclosure.h is inserted here
+ *     SYMROT_ROUNDS       whether rounding errors of the rates are bounded, by symrot_roundings
  * and included dop853_tableau.h. C99 that is also valid C++; no malloc, no globals, no input or output, reentrant.
  *
  * States are padded to a multiple of 4 so that every sum over stages is a few full vectors. The sum for a stage has two
@@ -50,6 +51,10 @@ typedef struct {
     double variation;    /* sum of the changes of all steps, relative to the sizes of the blocks */
     double epoch;        /* time from which the kernel counts its time */
     double far;          /* pause if the epoch is so many steps away, so that it can be moved; 0: never */
+    double rounded;      /* sum of the squares of the first block's errors from rounded times and formulas of time */
+    double rounded_from; /* time from which these errors exceed the tolerance; NAN: nowhere so far */
+    double turned;       /* error of the attitude from them, rad */
+    double largest;      /* largest size of the first block so far */
     int64_t reach;       /* number of the disc with the best bound in the last step */
     int64_t next;        /* first sample not yet written */
     int64_t accepted, rejected, evaluations, recorded;
@@ -100,6 +105,14 @@ static const double SYMROT_REGAIN = 1.5;  /* largest growth of a step after an e
 static const double SYMROT_LARGE = 1e80;  /* limit of squares of errors: products of two are finite */
 static const double SYMROT_ROUND_OFF = 2.0*DBL_EPSILON;  /* smallest error that a step can have */
 static const double SYMROT_RATE_FLOOR = 1e-3;  /* rad: errors of rates are relative to at least this per long step */
+#if defined(SYMROT_DEFECT)
+/* Return 2.2 units in the last place of the later one of two times. */
+static inline double symrot_unit(double t, double t1)
+{
+    const double far = fmax(fabs(t), fabs(t1));
+    return 2.2*(nextafter(far, INFINITY) - far);
+}
+#endif
 
 /* Return x^(-1/16) to 4 %, which is enough for a step size: the bits of a number are nearly its logarithm. */
 static inline double symrot_inverse_root_16(double x)
@@ -234,7 +247,55 @@ static void symrot_radii(symrot_path term, double part, double *radius)
 /* ENCLOSURE */
 #endif
 
+#if SYMROT_ROUNDS
+/* Bound the rounding errors of formulas of time so far, and note the time from which they may exceed the tolerance. */
+static SYMROT_APART void symrot_add_formulas(symrot_run *run, double t, double h, double size, const double *y,
+    const double *p)
+{
+    const double at = t - run->epoch, tolerance = run->tolerance/SYMROT_STEP_SHARE;
+    double error[SYMROT_STATES], worst = 0.0;
+    symrot_roundings(at, 0.5*DBL_EPSILON*fabs(at), y, p, error);
+    for (int i = symrot_edges[0]; i < symrot_edges[1]; ++i) worst = fmax(worst, error[i]);
+    run->largest = fmax(run->largest, size);
+    run->rounded += h*worst*h*worst;  /* errors of different steps are independent */
+    const int exceeds = !(sqrt(run->rounded) <= tolerance*run->largest);
+    if (run->rounded_from != run->rounded_from && exceeds) run->rounded_from = t;
+}
+#endif
+
 #if defined(SYMROT_DEFECT)
+/*
+ * Return the likely error of the first block in a step because the times of its stages are rounded by up to half a unit
+ * in the last place: the derivative of the rates by time, from two times at one state, times 2.2 units. That is the root
+ * of the sum of the squared weights of the stages over root 12.
+ */
+static SYMROT_APART double symrot_rounding(const symrot_run *run, double t, double h, const double *y, const double *dy,
+    const double *p)
+{
+    double later[SYMROT_STATES];
+    symrot_rate(t + h - run->epoch, y, p, later);
+    EACH_STATE(i) later[i] -= dy[i];
+    return symrot_unit(t, t + h)*symrot_length(later, 0);
+}
+
+/*
+ * Estimate the errors from rounded times in the steps so far, and note the time from which they exceed the tolerance:
+ * errors of different steps are independent, and they rotate the body further. Return the number of evaluations.
+ */
+static SYMROT_APART int symrot_add_rounding(symrot_run *run, double t, double h, double size, const double *y,
+    const double *dy, const double *p)
+{
+    const double unit = symrot_unit(t, t + h), tolerance = run->tolerance/SYMROT_STEP_SHARE;
+    run->largest = fmax(run->largest, size);
+    run->turned += fabs(h)*sqrt(run->rounded);
+    if (unit < 0.01*tolerance*fabs(h)) return 0;  /* a step changes the rates by about size */
+    const double error = symrot_rounding(run, t, h, y, dy, p);
+    run->rounded += error*error;
+    const int exceeds = sqrt(run->rounded) > tolerance*run->largest || run->turned > tolerance;
+    if (run->rounded_from != run->rounded_from && exceeds) run->rounded_from = t;
+    return 1;
+}
+
 /* Return the defect of the dense output inside a step: its error in the equations, per step and relative to blocks. */
 static SYMROT_APART double symrot_defect(double at, double h, double pace, const double *y, const double *y1,
     const double *p, double (*term)[SYMROT_WIDTH])
@@ -385,6 +446,17 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
             const double error = e5*e5/((e5 + 0.01*e3)*size + DBL_MIN)*weight;
             if (worst == worst && !(error <= worst)) worst = error;  /* NaN remains NaN for any other block */
         }
+#if defined(SYMROT_DEFECT)
+        if (worst > 1.0) {  /* far from t = 0, rounded times look like an error that a shorter step does not reduce */
+            const double own = symrot_rounding(run, t, h, y, k[1], p);
+            const double noise = own/sqrt(symrot_scale_squared(y, y1, h, pace, 0));
+            ++proofs;
+            if (noise > allowed) {
+                worst *= allowed/noise*(allowed/noise);
+                allowed = noise;
+            }
+        }
+#endif
         const double factor = SYMROT_SAFETY*symrot_inverse_root_16(worst);
 
 #if SYMROT_ENCLOSED
@@ -432,6 +504,12 @@ SYMROT_EXPORT int symrot_dop853(symrot_run *run, const double *p, const double *
             growth = 1.0;
             continue;
         }
+#if SYMROT_ROUNDS
+        symrot_add_formulas(run, t, h, sqrt(symrot_scale_squared(y, y1, h, pace, 0)), y, p);
+#endif
+#if defined(SYMROT_DEFECT)
+        proofs += symrot_add_rounding(run, t, h, sqrt(symrot_scale_squared(y, y1, h, pace, 0)), y, k[1], p);
+#endif
         ++accepted;
 #if SYMROT_ENCLOSED
         run->variation += change;

@@ -36,7 +36,7 @@ __all__ = ["DENSE_ORDER", "MAX_STEPS", "NO_ENCLOSURE", "Clock", "integration", "
 STEP_SHARE, NATURAL_TIMES = 0.14, 0.16  # fractions of the tolerance and of the span, see step_tolerance
 TERMS = 8  # coefficients of the dense output
 DENSE_ORDER = 7  # order of the error of the dense output
-NO_ENCLOSURE = "#define SYMROT_ENCLOSED 0\n#define SYMROT_DEPENDS 0\n"
+NO_ENCLOSURE = "#define SYMROT_ENCLOSED 0\n#define SYMROT_DEPENDS 0\n#define SYMROT_ROUNDS 0\n"
 ENCLOSURE = "/* ENCLOSURE */\n"  # line of dop853.c that is replaced by enclosure.h
 ROUGH = "#define SYMROT_ROUGH\n"  # the error control handles corners, such as a root at zero: see disc.h
 MIDDLE_REACH = 3  # index of the first disc to try in symrot.codegen.enclosure.terms.REACHES
@@ -89,7 +89,8 @@ def translation_unit(
         angle in rad). 0 means the norm of the block itself (angular velocity).
     enclosure : str
         Output of :func:`symrot.codegen.enclosure.source.enclosure_source` for the kernel and order
-        :data:`DENSE_ORDER`: C code for bounds of the rates, which limit the steps.
+        :data:`DENSE_ORDER`, and of ``rounding_source``: C code for bounds of the rates, which limit the steps, and of
+        their rounding errors.
     """
     edges = list(blocks)
     if edges[:1] != [0] or edges[-1] != states or edges != sorted(set(edges)) or len(scales) != len(edges) - 1:
@@ -104,6 +105,7 @@ def translation_unit(
             kernel,
             f"#define SYMROT_STATES {states}",
             f"#define SYMROT_PARAMETERS {parameters}",
+            f"#define SYMROT_STEP_SHARE {STEP_SHARE!r}",
             f"#define SYMROT_RHS {name}",
             f"#define SYMROT_BLOCKS {{{', '.join(map(str, edges))}}}",
             f"#define SYMROT_SCALES {{{', '.join(map(repr, map(float, scales)))}}}",
@@ -201,6 +203,10 @@ class _Stepper(Stepper):
         "variation",
         "epoch",
         "far",
+        "rounded",
+        "rounded_from",
+        "turned",
+        "largest",
     )
     integers = ("reach", "next", "accepted", "rejected", "evaluations", "recorded")
     vectors = ("y", "carry", "dy")

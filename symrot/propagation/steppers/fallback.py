@@ -21,9 +21,15 @@ from symrot.propagation import progress
 from symrot.propagation.enclosures.step_limit import Deviations, longest_followed
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped, add_samples, why_hopeless, why_stuck
 from symrot.propagation.steppers.recording import Recording
+from symrot.propagation.steppers.rounding import RoundingSum
 from symrot.propagation.steppers.segments import Segment, segments, split_at
-from symrot.propagation.steppers.stats import Stats
-from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Floats, check_longest_step, check_tolerance
+from symrot.propagation.steppers.stats import Stats, stats_of
+from symrot.propagation.steppers.stepping import (
+    NOT_FINITE_SENTENCE,
+    Floats,
+    check_longest_step,
+    check_tolerance,
+)
 
 __all__ = ["METHODS", "FallbackRecording", "Options", "WholeMotion", "integrate", "method_name", "record"]
 
@@ -34,12 +40,22 @@ Piece = tuple[float, float, Any]  # first time, last time, SciPy's solution betw
 
 
 class WholeMotion(NamedTuple):
-    """Start and end, s, of a motion that SciPy computes in parts; ``spent`` counts evaluations in earlier parts."""
+    """The whole motion, of which SciPy computes a part: its limits hold for all parts together.
+
+    Attributes
+    ----------
+    start, end : float
+        Its start and end, s.
+    spent : int
+        Evaluations in earlier parts.
+    rounding : RoundingSum
+        The rounding errors in earlier parts, to which those of this part are added.
+    """
 
     start: float
     end: float
-    # the limit of evaluations holds for the whole motion
     spent: int
+    rounding: RoundingSum
 
 
 # Words used here: the right-hand side is the function of the rates, dy/dt. A segment is the time between two switching
@@ -146,8 +162,8 @@ def integrate(
             states[part] = motion.follow(times[part])
         except (IntegrationStopped, KeyboardInterrupt) as error:
             inside, own = motion.partial(times[part])
-            add_samples(error, part[inside], own, motion.stats()[:3])
-            add_samples(error, done, states[done])
+            add_samples(error, part[inside], own, motion.stats())
+            add_samples(error, done, states[done], motion.stats())
             raise
         done = np.concatenate([done, part])
     return states, motion.stats()
@@ -244,6 +260,8 @@ class _Integration:
         self.steps = self.evaluations = self.broken = 0
         self.pieces: list[Piece] = []  # pieces of the pass that is running, or that stopped early
         self.final = False  # whether this is the final pass, not the coarse one
+        # rounding errors, one sum for each side of t0
+        self.sums = [options.whole.rounding] if options.whole else []
         self.mark = (0, self.t0)  # work and time at the last check of the pace
         self.whole, self.before = options.whole, self.deviations.spent if self.deviations else 0
         with np.errstate(all="ignore"):  # the error below reports it
@@ -257,7 +275,8 @@ class _Integration:
         return self.evaluations + (self.deviations.spent - self.before if self.deviations else 0)
 
     def stats(self) -> Stats:
-        return Stats(self.steps, 0, self.evaluations, perf_counter() - self.began)
+        rounded = [each.beyond for each in self.sums if each.beyond is not None]
+        return stats_of((self.steps, 0, self.evaluations), perf_counter() - self.began, (), rounded)
 
     def follow(self, times: Floats) -> Floats:
         """Return the states, shape (n, N), at times on one side of t0, sorted by distance from t0."""
@@ -308,6 +327,9 @@ class _Integration:
             bars.append(SLACK * share * max(size, slowest))
             # SciPy averages squared errors over all states; here they are summed over a block
             allowed[block] = share * max(size, slowest) / math.sqrt(len(self.y0))
+        if self.whole is None:
+            self.sums.append(RoundingSum(self.tolerance))
+        self.size = bars[0] / (SLACK * share)  # of the first block, to which its errors are relative
         self.final = True
         try:
             pieces = self._segments(end, SMALLEST_RTOL, allowed, bars)
@@ -402,6 +424,9 @@ class _Integration:
                 longest = abs(proven)
                 solver = begin(now, y, longest)
                 continue
+            if self.final and self.deviations:
+                errors = self.deviations.rounding_errors(before, y.tolist())
+                self.sums[-1].add(before, abs(step) * max(errors[self.blocks[0][0]], default=0.0), self.size)
             self.steps += 1
             if after != before:
                 times.append(after)

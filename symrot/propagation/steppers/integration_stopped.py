@@ -1,13 +1,13 @@
 """Motions that stop early: the exception, its reason as a sentence, and the samples computed before it was raised."""
 
 import math
-from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from symrot.errors import PropagationError
+from symrot.propagation.steppers.stats import Stats
 
 __all__ = ["IntegrationStopped", "Samples", "add_samples", "why_hopeless", "why_stuck"]
 
@@ -34,7 +34,8 @@ class IntegrationStopped(PropagationError):
     def later(self, epoch: float) -> "IntegrationStopped":
         """Return the error with its times converted to scene times, by adding ``epoch``, s."""
         later = IntegrationStopped(self.t + epoch, self.reason, None if self.stop is None else self.stop + epoch)
-        later.samples = self.samples
+        if self.samples is not None:
+            later.samples = self.samples._replace(stats=self.samples.stats.later(epoch))
         return later
 
 
@@ -47,32 +48,33 @@ class Samples(NamedTuple):
         Indices of the samples among all requested samples.
     states : array, shape (k, N)
         States of the samples.
-    cost : (int, int, int)
-        Numbers of accepted steps, rejected steps and evaluations before the motion stopped.
+    stats : Stats
+        The cost of the motion before it stopped.
     """
 
     numbers: NDArray[np.intp]
     states: Floats
-    cost: tuple[int, int, int] = (0, 0, 0)
+    stats: Stats
 
 
-def add_samples(
-    error: BaseException, numbers: NDArray[np.intp], states: Floats, cost: Iterable[int] | None = None
-) -> None:
-    """Store the samples computed before an error, with their indices and cost, as ``samples`` of the exception."""
-    # they are put before samples that the exception already has; cost None keeps its cost
+def add_samples(error: BaseException, numbers: NDArray[np.intp], states: Floats, stats: Stats) -> None:
+    """Store the samples computed before an error, with their indices and cost, as ``samples`` of the exception.
+
+    They are put before samples that the exception already has; ``stats`` replaces the cost of these.
+    """
     before: Samples | None = getattr(error, "samples", None)
     if before is not None:  # samples on the other side of the start were finished before
         numbers, states = np.concatenate([numbers, before.numbers]), np.concatenate([states, before.states])
-        cost = before.cost if cost is None else cost
-    accepted, rejected, evaluations = map(int, (0, 0, 0) if cost is None else cost)
-    error.samples = Samples(numbers, states, (accepted, rejected, evaluations))  # type: ignore[attr-defined]
+    error.samples = Samples(numbers, states, stats)  # type: ignore[attr-defined]
 
 
 def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
-    """Return why a stepper is stuck at the time t: adjacent doubles lie too far apart there, or else ``reason``."""
+    """Return why a stepper is stuck at the time t of a motion from ``t0`` to ``stop``, s.
+
+    Adjacent doubles lie too far apart there, if less than a million of them lie between the ends of the motion; else it
+    is stuck for the given ``reason``.
+    """
     apart = math.ulp(t)
-    # too coarse: less than a million doubles between the ends of the motion
     if abs(stop - t0) > MANY_TICKS * apart:
         return reason
     advice = "choose t = 0 nearer to the motion"

@@ -7,12 +7,21 @@ __all__ = ["Stats", "Switching", "stats_of"]
 
 
 class Switching(NamedTuple):
-    """The time t, s, at which a function in a torque, such as ``sign(omega_3)``, switches."""
+    """The time at which a function in a torque, such as ``sign(omega_3)``, switches.
+
+    Attributes
+    ----------
+    t : float
+        The time, s.
+    function : str
+        The function as the scene writes it.
+    how : str
+        ``"passed"``: the argument changes its sign. ``"held"``: it stays at zero from then on, as omega_3 of a wheel
+        that dry friction holds at rest. ``"released"``: it leaves zero after it was held there.
+    """
 
     t: float
     function: str
-    # "passed": the argument changes its sign; "held": it stays at zero from then on (dry friction holds a wheel at
-    # rest); "released": it leaves zero after being held there
     how: str
 
 
@@ -33,6 +42,9 @@ class Stats(NamedTuple):
         Times, s, without repetition, at which functions such as sign switch in the torques.
     switchings : tuple of Switching
         The functions that switch, with their times.
+    rounded_beyond : tuple of float
+        Times, s, beyond which the rounding of the time in a torque may move the motion by more than the tolerance: at
+        most one time on each side of the start. Empty if the rounding does not matter.
 
     Examples
     --------
@@ -48,11 +60,16 @@ class Stats(NamedTuple):
     switches: int = 0
     switching_times: tuple[float, ...] = ()
     switchings: tuple[Switching, ...] = ()
+    rounded_beyond: tuple[float, ...] = ()
+
+    def later(self, epoch: float) -> "Stats":
+        """Return the statistics of an integration with its times converted to scene times, by adding ``epoch``, s."""
+        return self._replace(rounded_beyond=tuple([t + epoch for t in self.rounded_beyond]))
 
 
-def stats_of(cost: Any, seconds: float, switchings: Iterable[Switching]) -> Stats:
+def stats_of(cost: Any, seconds: float, switchings: Iterable[Switching], rounded_beyond: Iterable[float] = ()) -> Stats:
     """Return the statistics of a motion from ``cost``: accepted steps, rejected steps and evaluations."""
     accepted, rejected, evaluations = map(int, cost)
     listed = tuple(sorted(switchings))
     times = tuple(sorted({change.t for change in listed}))  # coinciding switches count once
-    return Stats(accepted, rejected, evaluations, seconds, len(times), times, listed)
+    return Stats(accepted, rejected, evaluations, seconds, len(times), times, listed, tuple(rounded_beyond))

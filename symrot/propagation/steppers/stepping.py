@@ -20,10 +20,17 @@ from numpy.typing import ArrayLike, NDArray
 from symrot.build.address import address
 from symrot.errors import CompilerError, InputError
 from symrot.propagation import progress
-from symrot.propagation.steppers.integration_stopped import IntegrationStopped, add_samples, why_hopeless, why_stuck
+from symrot.propagation.steppers.integration_stopped import (
+    IntegrationStopped,
+    Samples,
+    add_samples,
+    why_hopeless,
+    why_stuck,
+)
 from symrot.propagation.steppers.recording import Recording
+from symrot.propagation.steppers.rounding import RoundingSum
 from symrot.propagation.steppers.segments import Segment, segments, split_at
-from symrot.propagation.steppers.stats import Stats
+from symrot.propagation.steppers.stats import Stats, stats_of
 
 __all__ = [
     "DONE", "MAX_STEPS", "NOT_FINITE", "NOT_FINITE_SENTENCE", "PAUSED", "ROUNDED", "UNDERFLOW", "Floats",
@@ -106,6 +113,7 @@ class Run(ctypes.Structure):
     proven: float
     epoch: float
     far: float
+    rounded_from: float  # see Stats.rounded_beyond; NaN: nowhere
     next: int
     accepted: int
     rejected: int
@@ -200,6 +208,14 @@ class Stepper(ABC):
         return states
 
 
+def _rounded_beyond(run: Run) -> tuple[float, ...]:
+    return () if math.isnan(run.rounded_from) else (run.rounded_from,)
+
+
+def _stats_of(run: Run, stepper: Stepper, began: float) -> Stats:
+    return Stats(*stepper.cost(run), perf_counter() - began, rounded_beyond=_rounded_beyond(run))
+
+
 def _no_stepper(path: str, error: Exception) -> CompilerError:
     return CompilerError(f"the compiled kernel {path} cannot be loaded: {error}")
 
@@ -243,10 +259,12 @@ class Integration:
         check_longest_step(self.max_step)
         self.allowed, self.pace = stepper.allowance(tolerance)
         self.accepted = self.rejected = self.evaluations = 0
+        self.rounded_beyond: tuple[float, ...] = ()  # times of Stats.rounded_beyond, of all runs so far
         self.mark = (0, self.t0)  # steps and time at the last check of the pace
         self.goal = t0  # end of the motion, beyond all switching times
         self.way = 0.0  # length of the whole motion of which this is a part, s; 0: this is the whole
         self.fields: dict[str, int] = {}  # more fields of the run in C, which a method sets
+        self.rounding: RoundingSum | None = None  # of the whole motion of which this is a part
 
     def restarted(self) -> "Integration":
         """Return a copy with all counts at zero, for a new motion whose cost is counted alone."""
@@ -255,6 +273,7 @@ class Integration:
         other.__dict__.update(self.__dict__)
         other.began = perf_counter()
         other.accepted = other.rejected = other.evaluations = 0
+        other.rounded_beyond = ()
         other.mark = (0, self.t0)
         return other
 
@@ -271,7 +290,8 @@ class Integration:
 
     def stats(self) -> Stats:
         """Return the total cost of all calls so far, as :class:`Stats` with the time since the integration was made."""
-        return Stats(self.accepted, self.rejected, self.evaluations, perf_counter() - self.began)
+        counts = self.accepted, self.rejected, self.evaluations
+        return stats_of(counts, perf_counter() - self.began, (), self.rounded_beyond)
 
     def sample(self, times: ArrayLike) -> tuple[Floats, Stats]:
         """Return the states at sample times, s, in any order, shape (n, N), and the cost of the motion.
@@ -305,10 +325,10 @@ class Integration:
             try:
                 self.follow(times[part], rows)
             except (IntegrationStopped, KeyboardInterrupt) as error:
-                own = getattr(error, "samples", None)
+                own: Samples | None = getattr(error, "samples", None)
                 if own is not None:
                     error.samples = own._replace(numbers=part[own.numbers])  # type: ignore[union-attr]
-                add_samples(error, done, states[done])
+                add_samples(error, done, states[done], self.stats() if own is None else own.stats)
                 raise
             states[part] = rows
             done = np.concatenate([done, part])
@@ -333,14 +353,14 @@ class Integration:
             while self.advance(run, first, count, out, None, 0) != DONE:
                 pass
         except (IntegrationStopped, KeyboardInterrupt) as error:
-            add_samples(error, np.arange(run.next), states[: run.next], stepper.cost(run))
+            add_samples(error, np.arange(run.next), states[: run.next], _stats_of(run, stepper, began))
             raise
-        return states, Stats(*stepper.cost(run), perf_counter() - began)
+        return states, _stats_of(run, stepper, began)
 
     @cached_property
     def _ready(self) -> Run:
         """The C struct of the motion at its start; each new run begins with a copy of it, which is fast."""
-        run = self.stepper.new_run(t=self.t0, max_step=self.max_step, **self.fields)
+        run = self.stepper.new_run(t=self.t0, max_step=self.max_step, rounded_from=math.nan, **self.fields)
         run.y[:] = self.y0
         return run
 
@@ -365,15 +385,15 @@ class Integration:
                     pass
             except (IntegrationStopped, KeyboardInterrupt) as error:
                 done += run.next
-                add_samples(error, np.arange(done), states[:done], self._cost(run))
+                add_samples(error, np.arange(done), states[:done], self._stats_with(run, self.began))
                 raise
             done += run.next
 
-    def _cost(self, run: Run) -> tuple[int, int, int]:
-        """Return the accepted steps, rejected steps and evaluations of all earlier runs and of the present one."""
-        # the present run has not been added to the counts yet
+    def _stats_with(self, run: Run, began: float) -> Stats:
+        """Return the cost of all earlier runs and of ``run``, which has not been added to the counts yet."""
         accepted, rejected, evaluations = self.stepper.cost(run)
-        return self.accepted + accepted, self.rejected + rejected, self.evaluations + evaluations
+        counts = self.accepted + accepted, self.rejected + rejected, self.evaluations + evaluations
+        return stats_of(counts, perf_counter() - began, (), (*self.rounded_beyond, *_rounded_beyond(run)))
 
     def record_steps(self, end: float) -> list[Floats]:
         """Return all steps from t0 to ``end``, s, as a list of arrays with one row per step.
@@ -396,7 +416,8 @@ class Integration:
         """Yield the run once per segment between switching times, for the caller to :meth:`advance` to its end."""
         stepper, self.goal = self.stepper, end
         pace = (self.way or abs(end - self.t0)) * self.pace
-        run = stepper.new_run(t=self.t0, pace=pace, max_step=self.max_step, **self.fields)
+        fields = self.fields if self.rounding is None else {**self.fields, **self.rounding.fields()}
+        run = stepper.new_run(t=self.t0, pace=pace, max_step=self.max_step, rounded_from=math.nan, **fields)
         run.y[:] = self.y0
         try:
             for segment in segments(self.t0, end, self.breaks):
@@ -408,6 +429,9 @@ class Integration:
             self.accepted += accepted
             self.rejected += rejected
             self.evaluations += evaluations
+            self.rounded_beyond += _rounded_beyond(run)
+            if self.rounding is not None:
+                self.rounding.read(run)
 
     def step_function(self, run: Run) -> tuple[Callable[..., Any], Any, int]:
         """Return the C function that continues a run, the parameters of its kernel, and the most steps per call."""

@@ -37,6 +37,7 @@ typedef struct {
     double max_step;     /* positive */
     double proven;       /* the last step, if the enclosure held it back, or 0 */
     double rounded;      /* sum of the squares of the first block's rounding errors, from formulas of time */
+    double rounded_from; /* time from which their bound may exceed the tolerance; NAN: nowhere so far */
     double largest;      /* largest size of that block so far */
     double longest;      /* longest step so far */
     int64_t next;        /* first sample not yet written */
@@ -72,6 +73,7 @@ static const double SYMROT_GROWTH = 1.5;         /* largest growth of a step aft
 #endif
 #if SYMROT_ROUNDS
 static const double SYMROT_ROUNDED_LIMIT = 100.0;  /* tolerances: true errors are about a fifth of the bound or less */
+static const double SYMROT_ROUNDED_WARNED = 1.0;   /* tolerances: from here on the error may exceed the tolerance */
 enum { SYMROT_FIRST_STEPS = 8 };                 /* steps from rest, too short to show how large the rates become */
 enum { SYMROT_SEVERAL = 8 };                     /* long steps per bound of the rounding errors, which saves time */
 #endif
@@ -171,11 +173,11 @@ static inline double symrot_allowed(const symrot_run *run, double unit)
 
 #if SYMROT_ROUNDS
 /*
- * Return whether the rounding errors of the first block, from formulas of time, remain small enough up to the end of a
- * step of s units, which stands for that many `steps`. Rounded, a formula such as t^2 - 25 moves a narrow pulse by
- * another amount in each step.
+ * Return a bound of the rounding errors of the first block, from formulas of time, in tolerances, up to the end of a step
+ * of s units, which stands for that many `steps`. Rounded, a formula such as t^2 - 25 moves a narrow pulse by another
+ * amount in each step.
  */
-static SYMROT_APART int symrot_steady(symrot_run *run, symrot_v4 (*x)[SYMROT_ORDER + 1], double s, double unit,
+static SYMROT_APART double symrot_rounding(symrot_run *run, symrot_v4 (*x)[SYMROT_ORDER + 1], double s, double unit,
     double t, double t_low, double steps, const double *y, const double *p)
 {
     double error[SYMROT_STATES], worst = 0.0, size = 0.0;
@@ -184,13 +186,13 @@ static SYMROT_APART int symrot_steady(symrot_run *run, symrot_v4 (*x)[SYMROT_ORD
         if (!(error[i] <= worst)) worst = error[i] == error[i] ? error[i] : INFINITY;
     worst *= s*unit;
     run->rounded += steps*worst*worst;  /* errors of different steps are independent */
-    run->largest = symrot_larger(run->largest, symrot_size(x, 0, 0));
-    const double fixed = symrot_scales[0], limit = SYMROT_ROUNDED_LIMIT*run->tail;
-    const double least = limit*(fixed > 0.0 ? fixed : symrot_larger(run->largest, SYMROT_RATE_FLOOR/run->pace));
-    if (run->rounded <= least*least) return 1;
+    const double fixed = symrot_scales[0], own = symrot_larger(symrot_size(x, 0, 0), SYMROT_RATE_FLOOR/run->pace);
+    const double bound = sqrt(run->rounded)/run->tail;
+    run->largest = fixed > 0.0 ? fixed : symrot_larger(run->largest, own);
+    if (fixed > 0.0 || bound <= SYMROT_ROUNDED_WARNED*run->largest) return bound/run->largest;
     for (int n = SYMROT_ORDER; n >= 0; --n) size = size*fabs(s) + symrot_size(x, n, 0);  /* in this step */
     run->largest = symrot_larger(run->largest, size);
-    return fixed == 0.0 && sqrt(run->rounded) <= limit*run->largest;
+    return bound/run->largest;
 }
 #endif
 
@@ -452,10 +454,13 @@ SYMROT_EXPORT int symrot_taylor(symrot_run *run, const double *p, const double *
         run->longest = symrot_larger(run->longest, fabs(h));
         const int alone = at_stop || run->proven > 0.0 || fabs(h) < 0.25*run->longest;
         if (alone || before%SYMROT_SEVERAL == 0) {
-            const int steady = symrot_steady(run, x, s, unit, t, t_low, alone ? 1.0 : SYMROT_SEVERAL, y, p);
-            if (!steady && (at_stop || before >= SYMROT_FIRST_STEPS)) {
-                status = SYMROT_ROUNDED;
-                break;
+            const double bound = symrot_rounding(run, x, s, unit, t, t_low, alone ? 1.0 : SYMROT_SEVERAL, y, p);
+            if (at_stop || before >= SYMROT_FIRST_STEPS) {
+                if (bound > SYMROT_ROUNDED_WARNED && run->rounded_from != run->rounded_from) run->rounded_from = t;
+                if (bound > SYMROT_ROUNDED_LIMIT) {
+                    status = SYMROT_ROUNDED;
+                    break;
+                }
             }
         }
 #endif

@@ -176,7 +176,20 @@ class _Stepper(Stepper):
     """A loaded library that computes Taylor coefficients (a jet) and steps, built from :func:`translation_unit`."""
 
     name = "taylor"
-    reals = ("t", "t_low", "unit", "stop", "tail", "pace", "max_step", "proven", "rounded", "largest", "longest")
+    reals = (
+        "t",
+        "t_low",
+        "unit",
+        "stop",
+        "tail",
+        "pace",
+        "max_step",
+        "proven",
+        "rounded",
+        "rounded_from",
+        "largest",
+        "longest",
+    )
     integers = ("next", "accepted", "jets", "recorded", "reach", "every", "since", "projected")
     vectors = ("y", "carry")
     tail = ("kept",)

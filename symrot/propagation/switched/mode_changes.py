@@ -1,21 +1,22 @@
 """The changes of modes where a guard is zero: a function switches, is held at zero, or comes to rest there."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from symrot.formula.float_functions import float_value
 from symrot.formula.switches import CHANGING, hold
 from symrot.formula.tree import names, parse
-from symrot.propagation.events.events import signs_at_ends
 from symrot.propagation.events.polynomials import Piece
+from symrot.propagation.events.search import signs_at_ends
 from symrot.propagation.motions.motion import Motion
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import Floats
 from symrot.propagation.switched.guards import ERRORS, MOST_ULPS, Guards
 from symrot.propagation.switched.regimes import Guard, Modes, Regime
 from symrot.propagation.switched.run_state import CHATTER
+from symrot.propagation.switched.smooth_pieces import smooth_pieces
 from symrot.propagation.switched.system import SwitchedSystem, is_continuous
 
 __all__ = ["ModeChanges"]
@@ -39,11 +40,11 @@ class ModeChanges(Guards):
         self.released: set[str] = set()  # modes held until this time: their guards leave zero slowly
         self.order: list[str] = []  # the modes that changed at the present time, in the order of the changes
         self.rested: set[str] = set()  # modes that were held at the present time though no torque was needed for it
-        self.left: set[tuple[str, int]] = set()  # the values of all modes before the changes at the present time
+        self.left: set[tuple[str, int]] = set()  # pairs (mode, value): the values from which modes changed now
         self.visited: dict[SwitchState, int] = {}  # states at the present time, with the number of changes before each
-        # Held modes, and the attraction when they were first held.
+        # the held modes, and Regime.attraction when they were first held
         self.attraction: tuple[frozenset[str], list[float]] = frozenset(), []
-        self.settled = 0
+        self.settled = 0  # how often functions were set to their value at zero
 
     def _count(self) -> None:
         self.switches += 1
@@ -77,14 +78,32 @@ class ModeChanges(Guards):
 
     def _switch(self, regime: Regime, guard: Guard) -> None:
         """Change the value of the function (sign, floor, ..) whose guard has become zero, or hold its guard at zero."""
-        mode, kind = guard.mode, self.by_name[guard.mode].kind
-        if mode in self.held and (guard.change == 0 or not self._still_attracts(regime)):
-            raise IntegrationStopped(
-                self.t,
-                f"the motion slides along the jump of {self._names_of_held()}, but from this time on nearby motions "
-                "lead away from it: its continuation is not unique; end the motion here",
-                self.end,
-            )
+        mode, change = guard.mode, guard.change
+        if mode in self.held:
+            released = self._released_by_another()
+            if released is None and (change == 0 or not self._still_attracts(regime)):
+                raise self._not_unique()
+            mode, change = released or (mode, change)
+        self._change(mode, change)
+
+    def _not_unique(self) -> IntegrationStopped:
+        return IntegrationStopped(
+            self.t,
+            f"the motion slides along the jump of {self._names_of_held()}, but from this time on nearby motions lead "
+            "away from it: its continuation is not unique; end the motion here",
+            self.end,
+        )
+
+    def _no_longer_held(self) -> None:
+        """Release a guard that the equations no longer keep at zero since another function switched."""
+        released = self._released_by_another(solvable=False)
+        if released is None:
+            raise self._not_unique()
+        self._change(*released)
+
+    def _change(self, mode: str, change: int) -> None:
+        """Change a mode as :attr:`Guard.change` says, or hold its guard at zero."""
+        kind = self.by_name[mode].kind
         self.left.add((mode, self.modes[mode]))
         self.visited.setdefault(self._state(), len(self.order))
         again = self.flipped.get(mode, 0)
@@ -107,16 +126,16 @@ class ModeChanges(Guards):
         asleep = self._asleep()
         if mode in self.held:
             self.held -= {mode}
-            self.modes |= {twin: guard.change * sign for twin, sign in self.system.twins[mode]}
+            self.modes |= _signed(self.system.twins[mode], change)
             self.released.update(twin for twin, _ in self.system.twins[mode])
         elif slides:
-            self._hold(regime, mode)
+            self._hold(mode)
         elif kind == "sign":
             self.modes[mode] = -self.modes[mode]
         else:
             above = math.floor(self._guard_value(mode))
             far = abs(above) > 1  # the guard jumped over whole numbers
-            self.modes[mode] += above if far else guard.change
+            self.modes[mode] += above if far else change
             if (mode, self.modes[mode]) in self.left:
                 raise IntegrationStopped(
                     self.t,
@@ -127,9 +146,40 @@ class ModeChanges(Guards):
         for other in asleep - self._asleep():
             self._wake(other)
 
+    def _leaves(self, mode: str, held: frozenset[str], modes: Modes) -> bool:
+        """Return whether the guard of ``mode``, now zero, leaves zero to the side where its function has this mode.
+
+        The other functions have the values in ``modes``, and the guards ``held`` stay at zero.
+        """
+        regime = self.system.regime(held, modes)
+        rates, values = regime.bound(modes, self.zero)
+        piece, _ = next(smooth_pieces(self, regime, rates).pieces())
+        signs, _ = signs_at_ends(regime.path, [guard.formula for guard in regime.guards], values, piece)
+        return all(sign > 0 for sign, guard in zip(signs, regime.guards, strict=True) if guard.mode == mode)
+
+    def _released_by_another(self, solvable: bool = True) -> tuple[str, int] | None:
+        """Return a held mode that another function's switch now releases, with its new value; None if there is none.
+
+        ``solvable``: for some values of the held modes, all held guards stay at zero.
+        """
+        # without the other switch, the value of the mode that keeps the guard at zero says when the sliding ends
+        for mode in sorted(self.held):
+            twins = self.system.twins[mode]
+            if set(self.order) <= {twin for twin, _ in twins}:
+                continue
+            held = self.held - {mode}
+            sides = [sign for sign in (1, -1) if self._leaves(mode, held, self.modes | _signed(twins, sign))]
+            if len(sides) == 1:
+                return mode, sides[0]
+            if not sides and not solvable:
+                return mode, 1  # the guard stays at zero by itself
+        return None
+
     def _returns(self, mode: str) -> bool:
-        """Return whether ``mode`` must be held at its jump, because its switch would only restore earlier modes."""
-        # all modes would be as they were before at this time: the same switches would repeat without end
+        """Return whether ``mode`` must be held at its jump, because its switch would restore earlier modes.
+
+        All modes would be as they were before at this time, and the same switches would repeat without end.
+        """
         first = self.visited.get(self._state(flip=mode))
         if first is None:
             return False
@@ -139,9 +189,7 @@ class ModeChanges(Guards):
 
     def _state(self, flip: str = "", hold: str = "") -> SwitchState:
         """Return all modes, and which are held, after the mode ``flip`` changes its sign or ``hold`` becomes held."""
-        # after flip has changed its sign
         modes = {**self.modes, flip: -self.modes[flip]} if flip else self.modes
-        # after hold becomes held: its argument stays at zero
         held = self.held | {self.system.twins[hold][0][0]} if hold else self.held
         return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
 
@@ -184,7 +232,7 @@ class ModeChanges(Guards):
         elif guard:
             self.modes[mode] = 1 if guard > 0.0 else -1
 
-    def _hold(self, regime: Regime, mode: str) -> None:
+    def _hold(self, mode: str) -> None:
         if self.side < 0.0:
             raise IntegrationStopped(
                 self.t,
@@ -195,8 +243,9 @@ class ModeChanges(Guards):
         self.held |= {mode}
         self.changes[self.now, self._name(mode)] = "held"
         guard = self.by_name[mode].guard
-        if guard[0] == "symbol" and guard[1] in regime.plan.states:
-            self.y[regime.plan.states.index(guard[1])] = 0.0  # exactly zero, where the guard is a state
+        states = self.system.plan.states
+        if guard[0] == "symbol" and guard[1] in states:
+            self.y[states.index(guard[1])] = 0.0  # exactly zero, where the guard is a state
         self._regime(self.modes)
 
     def _comes_to_rest(self, regime: Regime) -> bool:
@@ -317,3 +366,8 @@ class ModeChanges(Guards):
                     f"{self._name(mode)} is not determined; change the torque, or end the motion here",
                     self.end,
                 )
+
+
+def _signed(twins: Sequence[tuple[str, int]], sign: int) -> Modes:
+    """Return the modes of functions that switch together, if the first has the value ``sign``."""
+    return {twin: sign * relative for twin, relative in twins}

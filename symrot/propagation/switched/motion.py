@@ -48,7 +48,7 @@ class SwitchedMotion(MotionInParts):
         """Return the states at scene times, s, shape (n, N), and the cost of the motion with its switches."""
         began, states = perf_counter(), np.empty((len(times), len(self.plan.states)))
         cost, done = np.zeros(3, dtype=np.int64), np.empty(0, dtype=np.intp)
-        changes: dict[tuple[float, str], str] = {}
+        changes, rounded = dict[tuple[float, str], str](), list[float]()
         # sorts the times, so that in_order is not used
         for part in split_at(times, self.start):
             sorted_times = times[part]
@@ -69,12 +69,14 @@ class SwitchedMotion(MotionInParts):
                 run.follow(sample)
             except (IntegrationStopped, KeyboardInterrupt) as error:
                 numbers = np.concatenate([done, part[:count]])
-                add_samples(error, numbers, states[numbers], cost + run.cost)
+                stats = stats_of(cost + run.cost, perf_counter() - began, (), [*rounded, *run.rounded_beyond])
+                add_samples(error, numbers, states[numbers], stats)
                 raise
             done = np.concatenate([done, part])
             cost += run.cost
             changes |= run.changes
-        return states, stats_of(cost, perf_counter() - began, _switchings(changes))
+            rounded += run.rounded_beyond
+        return states, stats_of(cost, perf_counter() - began, _switchings(changes), rounded)
 
     def parts(self, end: float, broken: list[PropagationError]) -> tuple[list[Piece], Recording]:
         """Return the motion from its start to ``end``, s, as polynomials, and also as a function from times to states.
@@ -88,7 +90,7 @@ class SwitchedMotion(MotionInParts):
         except IntegrationStopped as error:
             # the motion before the stop is returned
             broken.append(error)
-        stats = stats_of(run.cost, 0.0, _switchings(run.changes))
+        stats = stats_of(run.cost, 0.0, _switchings(run.changes), run.rounded_beyond)
         states = SwitchedRecording(self.start, self.plan.initial_state, (self.start, end), stats, chunks)
         return [chunk.piece() for chunk in chunks], states
 
@@ -110,7 +112,7 @@ def _switchings(changes: dict[tuple[float, str], str]) -> list[Switching]:
 
 
 class SwitchedRecording(Recording):
-    """A function from times to states, made of smooth intervals of a motion; NaN after a motion that stopped early."""
+    """A function from times to states, made of smooth intervals of a motion; NaN after the time at which it stopped."""
 
     def __init__(
         self, t0: float, y0: tuple[float, ...], span: tuple[float, float], stats: Stats, chunks: list[Chunk]
@@ -122,7 +124,7 @@ class SwitchedRecording(Recording):
 
     def _fill(self, times: Floats, states: Floats) -> None:
         if not self._chunks:
-            # a motion of no length: it has its start alone
+            # a motion that stopped at its start
             states[:] = np.nan
             return
         places = np.searchsorted(self._ends, times)

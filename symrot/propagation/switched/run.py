@@ -16,8 +16,8 @@ from symrot.closed_form.arithmetic.double_double import two_sum
 from symrot.formula.switches import hold
 from symrot.propagation import progress
 from symrot.propagation.compiled_models import error_blocks
-from symrot.propagation.events.events import ZerosNotSeparated, search, signs_at_ends
 from symrot.propagation.events.polynomials import Piece
+from symrot.propagation.events.search import ZerosNotSeparated, search
 from symrot.propagation.motions.motion import Motion
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Floats
@@ -100,16 +100,8 @@ class SwitchedRun(ModeChanges):
             mode = switch.mode
             if mode not in self.system.undecided or not hold(switch.where, self.modes) or self.t == self.end:
                 continue
-            leaving = 0
             # two motions: x in sign(x) is zero, and becomes positive with sign = 1 and negative with sign = -1
-            for sign in (1, -1):
-                modes = self.system.beside_start(mode, sign)
-                regime = self._regime(modes)
-                rates, values = regime.bound(modes, self.zero)
-                piece, _ = next(smooth_pieces(self, regime, rates).pieces())
-                signs, _ = signs_at_ends(regime.path, [guard.formula for guard in regime.guards], values, piece)
-                leaving += all(s > 0 for s, guard in zip(signs, regime.guards, strict=True) if guard.mode == mode)
-            if leaving == 2:
+            if all(self._leaves(mode, self.held, self.system.beside_start(mode, sign)) for sign in (1, -1)):
                 way = "past" if self.side < 0.0 else "future"
                 raise IntegrationStopped(
                     self.t,
@@ -127,8 +119,13 @@ class SwitchedRun(ModeChanges):
         active = regime.active(self.modes)
         if self.held:
             self._check_held_alone()
+            attraction = regime.attraction(self.modes, self.zero, self.t, self.y)
+            if not all(value > 0.0 for value in attraction):
+                if (guard := self._coincident(regime, active, values, -1)) is None:
+                    self._no_longer_held()
+                return guard
             if self.attraction[0] != self.held:
-                self.attraction = self.held, regime.attraction(self.modes, self.zero, self.t, self.y)
+                self.attraction = self.held, attraction
         if not all(map(math.isfinite, rates)):
             if (guard := self._coincident(regime, active, values, 0)) is None:
                 raise IntegrationStopped(self.t, NOT_FINITE_SENTENCE, self.end)

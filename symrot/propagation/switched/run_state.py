@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from symrot.propagation.motions.motion import Motion
+from symrot.propagation.steppers.rounding import RoundingSum
 from symrot.propagation.switched.instant import Instant
 from symrot.propagation.switched.regimes import Modes, Regime
 
@@ -37,6 +38,10 @@ class RunState:
         A Ctrl-C that came while SciPy computed the motion beyond a switch.
     recent : deque of Instant
         The times of the last switches.
+    rounding : RoundingSum
+        The rounding errors of the torques' formulas of the time in all steps so far.
+    rounded_beyond : list of float
+        Time of the scene, s, beyond which these errors may exceed the tolerance; empty if they do not.
     """
 
     def __init__(self, motion: Motion, end: float, modes: Modes) -> None:
@@ -49,10 +54,17 @@ class RunState:
         self.spent, self.mark = 0, (0, 0.0)
         self.interrupt: KeyboardInterrupt | None = None
         self.recent: deque[Instant] = deque(maxlen=CHATTER)
+        self.rounding = RoundingSum(motion.tolerance)
+        self.rounded_beyond: list[float] = []
 
     @property
     def start(self) -> float:
         return Instant(self.motion.start) - self.zero
+
+    def note_rounding(self, zero: Instant) -> None:
+        """Store the time from which rounding matters as a time of the scene; the steps counted time from ``zero``."""
+        if not self.rounded_beyond and self.rounding.beyond is not None:
+            self.rounded_beyond.append(zero.after(self.rounding.beyond).high)
 
     def clock(self, regime: Regime, stepped: Any) -> Callable[[float], tuple[Any, list[float]]] | None:
         """Return a function from a new zero of the clock, s after the last switch, to the rates and their parameters.

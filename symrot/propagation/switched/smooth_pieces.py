@@ -44,6 +44,7 @@ class SteppedPieces:
         else:
             self.integration = dop853.integration(*start, clock=run.clock(regime, motion.library))
         self.integration.way, self.end = run.span, run.end
+        self.integration.rounding, self.run, self.zero = run.rounding, run, run.zero
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
         """Yield each piece in the order of the motion: its polynomials, and a function from its times to states."""
@@ -72,6 +73,7 @@ class SteppedPieces:
     def cost(self) -> NDArray[np.int64]:
         """Return the numbers of steps accepted, steps rejected and evaluations so far, as an array."""
         integration = self.integration
+        self.run.note_rounding(self.zero)
         return np.array([integration.accepted, integration.rejected, integration.evaluations])
 
 
@@ -80,7 +82,7 @@ class SciPyPieces:
 
     def __init__(self, run: RunState, regime: Regime, motion: SciPyMotion, rates: list[float]) -> None:
         self.run, self.motion, self.rates, self.counts = run, motion, rates, np.zeros(3, dtype=np.int64)
-        self.clock = run.clock(regime, motion.rates)
+        self.clock, self.zero = run.clock(regime, motion.rates), run.zero
 
     def pieces(self) -> Iterator[tuple[Piece, Callable[[Floats], Floats]]]:
         """Yield each piece in the order of the motion: its polynomials, and a function from its times to states."""
@@ -94,7 +96,7 @@ class SciPyPieces:
             stop = run.end if abs(run.end - t) <= 1.01 * length else t + side * length
             share = max(abs(stop - t) / run.span, 1e-3)
             self._judge_pace(t)
-            part = replace(options, whole=fallback.WholeMotion(run.start, run.end, run.spent))
+            part = replace(options, whole=fallback.WholeMotion(run.start, run.end, run.spent, run.rounding))
             ended: IntegrationStopped | KeyboardInterrupt | None = None
             recording: Any
             try:
@@ -148,6 +150,7 @@ class SciPyPieces:
 
     def cost(self) -> NDArray[np.int64]:
         """Return the numbers of steps accepted, steps rejected and evaluations so far, as an array."""
+        self.run.note_rounding(self.zero)
         return self.counts
 
 

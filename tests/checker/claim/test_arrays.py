@@ -44,6 +44,10 @@ def test_an_identity_of_arrays_is_true(claim):
     assert symrot.check(claim).verdict == "true"
 
 
+def test_columns_side_by_side_are_a_matrix_from_which_the_unit_matrix_can_be_subtracted():
+    assert symrot.check("hstack(Matrix([1, 0]), Matrix([0, 1])) - I == 0*eye(2)").verdict == "true"
+
+
 @pytest.mark.thinned(3)
 @pytest.mark.parametrize("claim", FALSE)
 def test_a_wrong_identity_of_arrays_is_false(claim):

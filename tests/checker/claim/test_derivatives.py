@@ -3,17 +3,19 @@
 import pytest
 
 import symrot
+from symrot.errors import InputError
 
 
 @pytest.mark.parametrize("claim", [
     "d/dx x^3 = 3x^2", "d/dx sin x = cos x", "d/dθ cos θ = -sin θ", "d²/dx² x^3 = 6x", "d/dx (a sin x) = a cos x",
     "d/dx √x = 1/(2√x)", "d(x^2)/dx = 2x", "d(sin θ)/dt = θ' cos θ", "dy/dx = 2x where y = x²", "d/dt (x²) = 2 x x'",
+    "d²/dt² cos θ = -θ'' sin θ - θ'² cos θ", "d^2/dt^2 (3) = 0", "d/dt (d/dt θ) = θ''", "d^2 y/dx^2 = 2 where y = x²",
 ])  # fmt: skip
 def test_a_derivative_by_a_letter_is_decided(claim):
     assert symrot.check(claim).verdict == "true"
 
 
-@pytest.mark.parametrize("claim", ["d/dx x^3 = x^2", "d/dx sin x = sin x / x", "d/dt (x²) = x x'"])
+@pytest.mark.parametrize("claim", ["d/dx x^3 = x^2", "d/dx sin x = sin x / x", "d/dt (x²) = x x'", "d²/dt² x² = 2 x'²"])
 def test_a_wrong_derivative_is_false(claim):
     assert symrot.check(claim, repair=False).verdict == "false"
 
@@ -26,6 +28,11 @@ def test_a_rate_that_nothing_defines_is_no_identity(claim):
     verdict = symrot.check(claim, repair=False)
     assert verdict.verdict == "definition"
     assert "nothing here says" in verdict.reason
+
+
+def test_a_derivative_that_may_be_a_square_is_refused():
+    with pytest.raises(InputError, match="brackets for a square"):
+        symrot.check("dy²/dx² = 4")
 
 
 @pytest.mark.parametrize(("claim", "verdict"), [

@@ -12,7 +12,8 @@ from symrot.checker.claim.reader import read_expression, read_relation
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.source.text import check_units, is_latex, read_hypothesis
 from symrot.checker.claim.tree import Node
-from symrot.checker.context.context import quantities_of, read_context
+from symrot.checker.context.context import quantities_of
+from symrot.checker.context.statements import read_context
 from symrot.checker.latex.reader import Names, read_latex
 from symrot.checker.typed.readings import Declared, Relation
 from symrot.errors import InputError

@@ -4,7 +4,8 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from symrot.checker.claim.tree import TIME, Node, negated, product, walk
+from symrot.checker.claim.solving import terms_of
+from symrot.checker.claim.tree import TIME, Node, differentiated, negated, nodes_of, product, without_sign
 from symrot.checker.typed.readings import Reading, Relation
 from symrot.errors import InputError
 
@@ -36,7 +37,7 @@ def with_rates(reading: Reading) -> Reading:
         relation = chain.links[0]
         made = _by_rate(relation, vectors) if len(chain.sides) == 2 and relation[0] == "==" else None
         if made is None:
-            if any(BEGIN in [n.value for _, n in walk(side)] for side in chain.sides):
+            if any(BEGIN in [n.value for n in nodes_of(side)] for side in chain.sides):
                 raise InputError(EXPECTED)
             lines.append(chain)
             continue
@@ -50,7 +51,7 @@ def with_rates(reading: Reading) -> Reading:
 
 def _by_rate(relation: Relation, vectors: Mapping[str, bool]) -> tuple[Relation, str] | None:
     """Return ``M = diff(L, t)`` and the name L for ``L_1 + ∫ M dt = L_2``; None for other equations."""
-    terms = [*_terms(relation[1]), *(_negative(term) for term in _terms(relation[2]))]
+    terms = [*terms_of(relation[1]), *(negated(term) for term in terms_of(relation[2]))]
     integrals = [term for term in terms if _integrand(term) is not None]
     if len(integrals) != 1:
         return None
@@ -59,18 +60,18 @@ def _by_rate(relation: Relation, vectors: Mapping[str, bool]) -> tuple[Relation,
     assert inside is not None
     others = [term for term in terms if term is not integral]
     if integral.kind != "neg":
-        others = [_negative(term) for term in others]
+        others = [negated(term) for term in others]
     rate = _rate_of_change(others, vectors)
     return None if rate is None else (("==", inside, rate[0]), rate[1])
 
 
 def _integrand(term: Node) -> Node | None:
     """Return M for the integral of M over time alone, or for its negative, if M has no t inside; else None."""
-    bare = term.args[0] if term.kind == "neg" else term
+    bare = without_sign(term)
     if bare.kind != "call" or bare.value != "integrate" or len(bare.args) != 2:
         return None
     inside, limits = bare.args
-    is_open = TIME not in [node for _, node in walk(inside)]
+    is_open = TIME not in nodes_of(inside)
     return inside if is_open and limits.kind == "list" and limits.args[0] == TIME else None
 
 
@@ -115,17 +116,9 @@ def _rate_of_change(terms: Sequence[Node], vectors: Mapping[str, bool]) -> tuple
 def _derivative(name: str, is_vector: bool) -> Node:
     """Return ``diff(L, t)`` for a vector L, ``diff(L(t), t)`` for a number."""
     inner = Node("name", name) if is_vector else Node("call", name, (TIME,))
-    return Node("call", "diff", (inner, TIME))
+    return differentiated(inner, TIME)
 
 
 def _base(name: str) -> str:
     match = SUFFIX.fullmatch(name)
     return match["base"] if match else ""
-
-
-def _terms(tree: Node) -> list[Node]:
-    return list(tree.args) if tree.kind == "sum" else [tree]
-
-
-def _negative(term: Node) -> Node:
-    return term.args[0] if term.kind == "neg" else negated(term)

@@ -3,12 +3,12 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from symrot.checker.arrays.complex_parts import BAR, imaginary_unit, open_numbers, substituted
+from symrot.checker.arrays.complex_parts import BAR, imaginary_unit, open_numbers, with_numbers
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.reader import readings_of
 from symrot.checker.claim.source.impulses import with_rates
 from symrot.checker.claim.source.text import check_units, claim_of_relation, is_latex
-from symrot.checker.claim.tree import TIME, Node, is_derivative, walk
+from symrot.checker.claim.tree import TIME, Node, is_derivative, names_in, nodes_of
 from symrot.checker.claim.vectors import used_vectors
 from symrot.checker.context.context import NO_CONTEXT, Context, quantities_of
 from symrot.checker.equivalents.product_signs import sign_by_integral, with_sign
@@ -35,21 +35,21 @@ def claims_of_reading(
     if sum(len(chain.links) for chain in reading.lines) > MOST_EQUATIONS:
         raise InputError(f"expected at most {MOST_EQUATIONS} equations in one text; a file of claims may have more")
     # ``stated`` is what the user says in words about names and the body
-    names = {str(n.value) for chain in reading.lines for side in chain.sides for _, n in walk(side)}
+    names = {str(n.value) for chain in reading.lines for n in nodes_of(*chain.sides)}
     check_units(dict(units or {}), names, "claim")
     units = {**stated.units(names - {*reading.vectors}, units or {}), **(units or {})}
     stated.check_names({name for chain in reading.lines for side in chain.sides for name in quantities_of(side)})
     context = [side for chain in reading.lines for side in chain.sides]
     numbers = _complex_numbers(reading.lines, context)
     if numbers and all(unit.kind == "name" for unit in numbers.values()):
-        context = [substituted(side, numbers) for side in context if side.kind != "name"]
+        context = [with_numbers(side, numbers) for side in context if side.kind != "name"]
     assume, stated = _with_signs_of_products(assume, stated)
-    has_time = any(is_derivative(n) or n.args == (TIME,) for side in context for _, n in walk(side))
+    has_time = any(is_derivative(n) or n.args == (TIME,) for n in nodes_of(*context))
     for chain in reading.lines:
         links = chain.links
         if len(links) > 1 and set(chain.signs) != {"=="}:
             raise InputError(f"expected a chain of equals signs, got {' '.join(chain.signs)!r} in {source[:60]!r}")
-        used = {str(n.value) for side in chain.sides for _, n in walk(side) if n.kind in ("name", "call")}
+        used = {str(n.value) for n in nodes_of(*chain.sides) if n.kind in ("name", "call")}
         used |= {name.removesuffix(BAR) for name in used} & {*numbers}  # the conjugate of z needs z
         known = _needed(define, used)
         known += [
@@ -57,11 +57,11 @@ def claims_of_reading(
         ]
         claims = []
         for link in links:
-            in_link = {str(n.value) for side in link[1:] for _, n in walk(side)}
+            in_link = {str(n.value) for n in nodes_of(*link[1:])}
             own = {name: unit for name, unit in (units or {}).items() if name in in_link}
             vectors = [vector for vector in used_vectors(link[1:], reading.vectors) if vector.name not in dict(define)]
             if numbers and not (link[1].kind == "name" and numbers.get(str(link[1].value)) == link[2]):
-                link = link[0], substituted(link[1], numbers), substituted(link[2], numbers)
+                link = link[0], with_numbers(link[1], numbers), with_numbers(link[2], numbers)
             claim = claim_of_relation(link, source, assume, own, known, reading.notes, context, vectors)
             claims.append(replace(claim, context=stated))
         lines.append(claims)
@@ -72,7 +72,7 @@ def claims_of_reading(
         reserved = ("pi", *(["t"] if has_time else []), *(name for name, _ in define))
         # a line that only names a formula defines this name for the lines after it
         is_name = first.kind == "name" and chain.signs[0] == "==" and first.value not in reserved
-        if is_name and not chain.both_signs and first not in [node for _, node in walk(chain.sides[1])]:
+        if is_name and not chain.both_signs and first not in nodes_of(chain.sides[1]):
             define.append((str(first.value), chain.sides[1]))
     return lines
 
@@ -80,7 +80,7 @@ def claims_of_reading(
 def _with_substitutions_first(lines: Sequence[Chain]) -> tuple[Chain, ...]:
     """Return lines with ``u = tan(theta/2)`` before ``sin(theta) = 2*u/(1 + u**2)``, which uses u."""
     of_angles = [line for line in lines if line.sides[0].kind == "call" and line.sides[0].value in CIRCULAR]
-    used = {str(node.value) for line in of_angles for side in line.sides for _, node in walk(side)}
+    used = {str(node.value) for line in of_angles for node in nodes_of(*line.sides)}
     first = [line for line in lines if line.sides[0].kind == "name" and line.sides[0].value in used]
     return (*first, *(line for line in lines if line not in first))
 
@@ -109,7 +109,9 @@ def _complex_numbers(lines: Sequence[Chain], formulas: Sequence[Node]) -> dict[s
     numbers = {
         str(chain.sides[0].value): chain.sides[1]
         for chain in lines
-        if len(lines) > 1 and chain.sides[0].kind == "name" and unit.value in {n.value for _, n in walk(chain.sides[1])}
+        if len(lines) > 1
+        and chain.sides[0].kind == "name"
+        and unit.value in {n.value for n in nodes_of(chain.sides[1])}
     }
     own = {name: tree for name, tree in numbers.items() if name.removesuffix(BAR) not in numbers or BAR not in name}
     return own or open_numbers(formulas, str(unit.value))
@@ -119,13 +121,13 @@ def _names_of_unit(lines: Sequence[Chain], formulas: Sequence[Node]) -> dict[str
     """Return {"q": i} for the lines ``q = i`` and ``q^2 = -1``, whose only letter is the imaginary unit; else {}."""
     first = {chain.sides[0]: chain.sides[1] for chain in lines if chain.sides[0].kind == "name" and len(lines) > 1}
     named = {str(name.value): side for name, side in first.items() if side in (Node("name", "i"), Node("name", "j"))}
-    letters = {str(node.value) for side in formulas for _, node in walk(side) if node.kind in ("name", "call")}
+    letters = {str(node.value) for node in nodes_of(*formulas) if node.kind in ("name", "call")}
     return named if letters - {*named} == {str(side.value) for side in named.values()} else {}
 
 
 def _needed(define: Sequence[tuple[str, Node]], used: set[str]) -> list[tuple[str, Node]]:
     """Return, in order, the definitions on which the names ``used`` depend, directly or through other definitions."""
-    inside = {name: {str(node.value) for _, node in walk(tree) if node.kind == "name"} for name, tree in define}
+    inside = {name: names_in(tree) for name, tree in define}
     trees = dict(define)
     needed: list[str] = []
 

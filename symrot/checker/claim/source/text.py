@@ -38,7 +38,7 @@ from symrot.checker.claim.shapes import (
     shape_of,
     with_unit_matrices,
 )
-from symrot.checker.claim.tree import TIME, Node, negated, walk
+from symrot.checker.claim.tree import TIME, Node, names_in, negated, nodes_of
 from symrot.checker.claim.tree import number as number_node
 from symrot.checker.claim.vectors import Vector, gyroscopic_tensors, is_tensor, with_scalar_products
 from symrot.checker.latex.reader import Names, read_latex
@@ -88,7 +88,7 @@ def claim_of_relation(
     notes = [*notes, *([on_indices] if on_indices else [])]
     relation, on_form = _with_own_name(relation)
     notes = [*notes, *([on_form] if on_form else [])]
-    names = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind == "name"}
+    names = names_in(*relation[1:])
     words = {name for name in names if len(name) > 1 and name.isalpha()}
     matrices = {source: _matrix_given(source, words) for source in assume}
     assume = [source for source in assume if matrices[source] is None]
@@ -134,11 +134,11 @@ def claim_of_relation(
         define = [(name, tree) for name, tree in define if name not in solved]
         notes = [*(note for note in notes if note not in map(_on_matrix, solved)), on_map]
         relation = linear
-        used = {node.value for side in relation[1:] for _, node in walk(side)}
+        used = {node.value for node in nodes_of(*relation[1:])}
         vectors = [vector for vector in vectors if vector.name in used]
     relation, lengths = with_lengths(relation, _shapes(vectors, define))
     notes = [*notes, *(f"{name} means the length of the vector where a vector makes no sense" for name in lengths)]
-    moving = {str(node.value) for v in vectors if v.timed for _, node in walk(v.components) if node.args == (TIME,)}
+    moving = {str(node.value) for v in vectors if v.timed for node in nodes_of(v.components) if node.args == (TIME,)}
     relation = relation[0], with_time(relation[1], moving), with_time(relation[2], moving)
     hypotheses += tuple(vector.length_is_one for vector in vectors if vector.unit and not vector.is_axis)
     define = [*((vector.name, vector.components) for vector in vectors), *define]
@@ -159,11 +159,11 @@ def claim_of_relation(
         *(tree for _, tree in define),
         *context,
     ]
-    calls = (node for tree in trees for _, node in walk(tree) if node.kind == "call")
+    calls = (node for node in nodes_of(*trees) if node.kind == "call")
     functions = {str(node.value) for node in calls if node.args == (TIME,)}
     letters = letters_of_quantities(trees)
     of_axes = _with_rotated_axes(relation)
-    used = {str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind in ("name", "call")}
+    used = {str(node.value) for node in nodes_of(*relation[1:]) if node.kind in ("name", "call")}
     return Claim(
         relation=relation,
         symbols=letters,
@@ -198,7 +198,7 @@ def _with_own_name(relation: Relation) -> tuple[Relation, str]:
 
 def _of_one_time(hypotheses: Sequence[Relation]) -> tuple[Relation, ...]:
     """Return hypotheses with ``f(t)`` for f, if one of them has ``f(t)`` or a time derivative of f."""
-    nodes = [node for hypothesis in hypotheses for side in hypothesis[1:] for _, node in walk(side)]
+    nodes = [node for hypothesis in hypotheses for node in nodes_of(*hypothesis[1:])]
     rates = {str(node.value) for node in nodes if node.kind == "call" and node.args == (TIME,)} - {*BUILT_IN}
     return tuple((sign, with_time(left, rates), with_time(right, rates)) for sign, left, right in hypotheses)
 
@@ -213,7 +213,7 @@ def _matrix_given(source: str, words: Collection[str]) -> tuple[str, Node] | Non
 
 def _with_entries(matrices: Sequence[tuple[str, Node]], relation: Relation) -> Iterator[tuple[str, Node]]:
     """Yield the definitions ``matrices``, and those of entries in a relation: (R_31, ``R[2, 0]``)."""
-    names = dict.fromkeys(str(node.value) for side in relation[1:] for _, node in walk(side) if node.kind == "name")
+    names = dict.fromkeys(str(node.value) for node in nodes_of(*relation[1:]) if node.kind == "name")
     for matrix, tree in matrices:
         yield matrix, tree
         for name in names:
@@ -366,8 +366,7 @@ def functions_of_time(assume: Sequence[str]) -> set[str]:
     ]
     return {
         str(node.value)
-        for side in sides
-        for _, node in walk(side)
+        for node in nodes_of(*sides)
         if node.kind == "call" and node.value not in BUILT_IN and [part.value for part in node.args] == ["t"]
     }
 

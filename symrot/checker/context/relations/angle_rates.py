@@ -10,9 +10,9 @@ from itertools import product
 
 from sympy import Expr, Matrix, Symbol
 
-from symrot.checker.claim.atoms import atoms_of
+from symrot.checker.claim.interpreter import atoms_of, time
 from symrot.checker.context.admission import is_usual_for_body, plain
-from symrot.checker.context.angle_orders import are_roll_pitch_yaw, letter_of_angle, orders
+from symrot.checker.context.angle_orders import USUAL_SEQUENCES, are_roll_pitch_yaw, letter_of_angle, orders
 from symrot.checker.context.context import Context
 from symrot.checker.context.relations.substitution import Substitution
 from symrot.conventions import SEQUENCES
@@ -26,12 +26,11 @@ COMPONENT = re.compile(r"(?:omega|w|Omega)_?([1-3xyz])(?:_prime)?|([pqr])")
 """A component of the angular velocity, with the groups index, and letter of an aircraft's rate."""
 
 AXES = {letter: axis for axis, letters in enumerate(("1xp", "2yq", "3zr")) for letter in letters}
-USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
 
 
 def substitutions_of_rates(context: Context, sides: Sequence[Expr]) -> Iterator[Substitution]:
     """Yield each Substitution for a claim with Euler rates: omega_3 becomes ``phi' cos(theta) + psi'``."""
-    names = {atom: _plain(atom) for atom in sorted(atoms_of(sides) - {TIME}, key=str)}
+    names = {atom: _plain(atom) for atom in sorted(atoms_of(sides) - {time}, key=str)}
     components = {atom: match for atom, name in names.items() if (match := COMPONENT.fullmatch(name))}
     others = {atom: name for atom, name in names.items() if atom not in components}
     rates = {atom: name[1:] for atom, name in others.items() if name[:1] == "d" and letter_of_angle(name[1:])}
@@ -42,8 +41,7 @@ def substitutions_of_rates(context: Context, sides: Sequence[Expr]) -> Iterator[
         return
     is_of_aircraft = not context.sequence and any(match[2] for match in components.values())
     frames = _frames(context, names, components)
-    rest = [name for name in SEQUENCES if name not in USUAL_SEQUENCES]
-    sequences = [context.sequence] if context.sequence else [*USUAL_SEQUENCES, *rest]
+    sequences = [context.sequence] if context.sequence else dict.fromkeys((*USUAL_SEQUENCES, *SEQUENCES))
     # each fixes the sequence, the frame, and the angle of each letter, as far as the context leaves them open
     for sequence, frame in product([name for name in sequences if is_usual_for_body(context, name)], frames):
         for order in orders(context, letters, sequence):
@@ -61,9 +59,6 @@ def substitutions_of_rates(context: Context, sides: Sequence[Expr]) -> Iterator[
             name = f"angular velocity of {sequence} in the {frame} frame, by the rates of the angles"
             source = f'symrot.rate_jacobian("{sequence}", "{frame}")'
             yield Substitution(name, source, values, guess)
-
-
-TIME = Symbol("t", real=True)
 
 
 def _plain(atom: Expr) -> str:
@@ -98,7 +93,7 @@ def substitutions_of_entries(context: Context, sides: Sequence[Expr]) -> Iterato
     """Yield each Substitution for a claim such as ``R_31 = ..``: R_31 becomes its formula by the stated Euler
     sequence.
     """
-    names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides) - {TIME}, key=str)}
+    names = {atom: plain(as_text(atom)) for atom in sorted(atoms_of(sides) - {time}, key=str)}
     entries = {atom: match for atom, name in names.items() if (match := ENTRY.fullmatch(name))}
     angles = {atom: name for atom, name in names.items() if atom not in entries}
     letters = list(dict.fromkeys(angles.values()))

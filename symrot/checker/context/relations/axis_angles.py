@@ -11,7 +11,7 @@ from itertools import permutations
 from sympy import Expr, atan, cancel, cos, diag, sin, tan
 
 from symrot import symbols
-from symrot.checker.claim.atoms import atoms_of
+from symrot.checker.claim.interpreter import atoms_of
 from symrot.checker.context.admission import plain
 from symrot.checker.context.context import Context
 from symrot.checker.context.relations.substitution import Substitution

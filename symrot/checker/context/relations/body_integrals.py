@@ -10,7 +10,7 @@ from typing import Any
 
 from sympy import Add, Expr, ImmutableMatrix, Poly, Symbol
 
-from symrot.checker.claim.atoms import atoms_of
+from symrot.checker.claim.interpreter import atoms_of
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.context.admission import plain
 from symrot.checker.context.context import Context

@@ -12,7 +12,7 @@ from itertools import islice, product
 from sympy import Expr, Matrix, S, Symbol, cos, diag, expand, sin
 
 from symrot import symbols
-from symrot.checker.claim.atoms import atoms_of
+from symrot.checker.claim.interpreter import atoms_of, time
 from symrot.checker.context.admission import plain
 from symrot.checker.context.bodies import TOPS
 from symrot.checker.context.context import Context
@@ -58,7 +58,7 @@ def substitutions_of_tops(context: Context, sides: Sequence[Expr]) -> Iterator[S
     """
     if context.body is not None and context.body.kind.formulas != TOPS:
         return
-    atoms = sorted(atoms_of(sides) - {Symbol("t", real=True)}, key=str)
+    atoms = sorted(atoms_of(sides) - {time}, key=str)
     names = {atom: plain(as_text(atom)).replace("_dot", "") for atom in atoms}
     for load in (MASS * GRAVITY, WEIGHT):
         formulas = _formulas(load)
@@ -75,10 +75,14 @@ def substitutions_of_tops(context: Context, sides: Sequence[Expr]) -> Iterator[S
 
 
 def _substitution(names: Mapping[Expr, str], values: dict[Expr, Expr], own: Sequence[str]) -> Substitution:
-    mapping = {str(value): names[atom] for atom, value in values.items()
-               if isinstance(value, Symbol) and str(value) != names[atom]}  # fmt: skip
-    return Substitution(f"relation for a symmetric top: {', '.join(dict.fromkeys(own))}", HEAVY, values,
-                        mapping=mapping)  # fmt: skip
+    name = f"relation for a symmetric top: {', '.join(dict.fromkeys(own))}"
+    return Substitution(name, HEAVY, values, mapping=_mapping(names, values))
+
+
+def _mapping(names: Mapping[Expr, str], values: Mapping[Expr, Expr]) -> dict[str, str]:
+    """Return the claim's letter for each symbol of the relation that has another letter: {"A": "I_1"}."""
+    return {str(value): names[atom] for atom, value in values.items()
+            if isinstance(value, Symbol) and str(value) != names[atom]}  # fmt: skip
 
 
 def _is_fitting(names: Mapping[Expr, str], values: Mapping[Expr, Expr], own: Sequence[str], has_body: bool) -> bool:
@@ -163,7 +167,5 @@ def _of_steady_precession(
         # the condition is zero if the claim holds
         own = formula.xreplace(mine)
         condition = condition.subs(DPHI, own)
-        mapping = {str(value): names[atom] for atom, value in mine.items()
-                   if isinstance(value, Symbol) and str(value) != names[atom]}  # fmt: skip
-        yield Substitution("rate of steady precession of a heavy top", HEAVY, {}, sides=(condition, S.Zero),
-                           mapping=mapping)  # fmt: skip
+        name = "rate of steady precession of a heavy top"
+        yield Substitution(name, HEAVY, {}, sides=(condition, S.Zero), mapping=_mapping(names, mine))

@@ -10,25 +10,18 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.interpreter import Interpreter
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.tree import Node, sum_of, text, walk
-from symrot.checker.recognition.naming.evidence import (
-    LEAST_SYMBOLS_EDITED,
-    is_of_body,
-)
-from symrot.checker.recognition.naming.quantities import (
-    has_terms,
-    names_in,
-    quantities_in,
-)
+from symrot.checker.recognition.naming.evidence import LEAST_SYMBOLS_EDITED, is_of_body
+from symrot.checker.recognition.naming.quantities import has_terms, names_in, quantities_in
 from symrot.checker.recognition.naming.ranks import RARE, strangeness_of
 from symrot.checker.recognition.naming.readings import LEAST_SYMBOLS, all_letters_stated, readings_of_claim
 from symrot.checker.recognition.single_faults.letters import is_atom
 from symrot.checker.repair.edits.faults import COST, FAULT_DESCRIPTIONS
-from symrot.checker.repair.edits.names import PRODUCT_OF_INERTIA
 from symrot.checker.repair.edits.single import Edit, single_edits
+from symrot.checker.repair.edits.trees import with_other_products
 from symrot.checker.repair.filter import NumericFilter
 from symrot.checker.verdict import Diagnosis, Identification, Repair, Verdict
 
-__all__ = ["doubtful", "recognised_edits", "verdict_by_edit", "with_other_products"]
+__all__ = ["doubtful", "readings_by_other_products", "recognised_edits", "verdict_by_edit"]
 
 MOST_EDITS = 400
 MOST_NODES = 400
@@ -37,17 +30,13 @@ MOST_NODES = 400
 PLUS_PRODUCTS = "for products of inertia without the minus sign, I_xy = integral of x*y dm"
 
 
-def with_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tuple[Identification, ...]:
+def readings_by_other_products(claim: Claim, named: NamedFormula, formula: Node) -> tuple[Identification, ...]:
     """Return the known formulas that equal ``formula`` if products of inertia are defined without the minus sign."""
     if claim.context.sign_of_products == "minus":
         return ()
-    if not any(PRODUCT_OF_INERTIA.fullmatch(name) for name in names_in(formula)):
-        return ()
-    for edit in _edits(claim, formula):
-        if edit.code == "inertia_product_sign":
-            readings = readings_of_claim(claim, named, edit.tree, LEAST_SYMBOLS_EDITED)
-            return tuple(replace(known, how=PLUS_PRODUCTS) for known in readings)
-    return ()
+    other = with_other_products(formula)
+    readings = () if other is None else readings_of_claim(claim, named, other, LEAST_SYMBOLS_EDITED)
+    return tuple(replace(known, how=PLUS_PRODUCTS) for known in readings)
 
 
 def doubtful(repairs: tuple[Repair, ...], readings: tuple[Identification, ...], notes: tuple[str, ...] = ()) -> Verdict:

@@ -1,7 +1,7 @@
-"""How well a known formula fits a claim, judged by names, units, axes and letters, and by the context.
+"""Whether a claim's formula is a known formula with a fault, or may be right: only evident faults are reported.
 
-A claim gives a formula for a quantity (``named``). ``known`` is a formula that symrot derives, or its name; ``near`` is
-a derived formula that differs from the claim's by one fault. The context is what a user states besides the claim.
+A claim gives a formula for a quantity (``named``); ``near`` is a known formula that differs from it by one fault. The
+evidence is the number of letters, the unit, the names, and the context, which a user states besides the claim.
 """
 
 import re

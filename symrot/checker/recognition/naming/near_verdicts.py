@@ -4,18 +4,19 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 from itertools import islice
 
-from symrot.checker.claim.atoms import atoms_of
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.named_formula import NamedFormula, solution
+from symrot.checker.claim.interpreter import atoms_of
+from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
+from symrot.checker.claim.solving import solution
 from symrot.checker.claim.tree import Node, number, text, walk, with_names
 from symrot.checker.context.context import letters_of
 from symrot.checker.decide.decision import decide_equation
 from symrot.checker.decide.equation import Equation
 from symrot.checker.recognition.identification import known_value
 from symrot.checker.recognition.known_formulas import ending_of
-from symrot.checker.recognition.naming.edited import doubtful, verdict_by_edit, with_other_products
+from symrot.checker.recognition.naming.edited import doubtful, readings_by_other_products, verdict_by_edit
 from symrot.checker.recognition.naming.evidence import is_evident, is_inverted, is_of_body, says_too_little
 from symrot.checker.recognition.naming.fit import fits_context, fits_quantity, has_other_length
 from symrot.checker.recognition.naming.quantities import has_word, names_in, quantity_name, words_of
@@ -49,10 +50,12 @@ MOST_SOLVED = 4
 """The most letters for which an equation is solved, to compare it with known relations."""
 
 PER_NAME, PER_PLACE = 0.1, 0.3
-"""The costs of a symbol with a new name, and of a component or an axis that the name of the quantity does not say."""
+"""The cost of each symbol that has another letter than in the known formula, and of each contradiction between the
+name of the quantity and the known formula, such as omega_3 for a first component.
+"""
 
 AS_NEAR = 0.15
-"""The most by which the cost of a moment of inertia, about a parallel axis, may exceed the cost of the nearest one."""
+"""How much more than the nearest moment of inertia another one may cost and still be meant, about a parallel axis."""
 
 MOST_REPAIRS, MOST_PROOFS = 3, 12
 """The most repairs that are offered, and the most formulas near a claim for which a proof is tried."""
@@ -193,7 +196,7 @@ def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
             continue
         if says_too_little(claim, named, near) or _loses_letter(claim, near.tree):
             continue
-        readings = readings_of_claim(claim, named, near.tree, 1) or with_other_products(claim, named, near.tree)
+        readings = readings_of_claim(claim, named, near.tree, 1) or readings_by_other_products(claim, named, near.tree)
         readings = readings or _with_root(claim, named, near)
         if readings and not _has_equal(claim, near.tree, repairs):
             repairs[near.tree] = Repair(f"{text(named.side)} == {text(near.tree)}", near.code, near.cost), readings

@@ -11,8 +11,9 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from symrot.checker.claim.claims import Claim
-from symrot.checker.claim.named_formula import NamedFormula, is_name_or_rate
+from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.reader import read_relation
+from symrot.checker.claim.solving import is_name_or_rate
 from symrot.checker.claim.tree import TIME, Node, exchanged, negated, number, product, sum_of, text, walk
 from symrot.checker.recognition.naming.evidence import LEAST_SYMBOLS_EDITED
 from symrot.checker.recognition.naming.quantities import names_in, quantity_name

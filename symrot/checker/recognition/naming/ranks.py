@@ -5,6 +5,7 @@ from itertools import pairwise
 
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.context.admission import COMPONENTS
+from symrot.checker.context.angle_orders import USUAL_SEQUENCES
 from symrot.checker.recognition.naming.fit import ENTRY
 from symrot.checker.recognition.naming.quantities import quantity_name
 from symrot.checker.verdict import Identification
@@ -17,9 +18,6 @@ RARE = ("annulus", "thin tube", "conical shell", "elliptical")
 
 AXES = ("x1Ap", "y2Bq", "z3Cr")
 """The last letters of symbols that belong to one axis; p, q and r are the rates of an aircraft."""
-
-USUAL_SEQUENCES = ("ZXZ", "ZYX", "xyz", "ZYZ", "XYZ", "zxz")
-"""The sequences of Euler angles that books use most, in this order."""
 
 
 def misfit_of(name: str, known: str) -> float:

@@ -1,8 +1,8 @@
 """Verdicts on claims such as ``I_zz == m/12*(a**2 + b**2)``, which only give a formula for a named quantity.
 
 Nothing in such a claim defines the left side; so the right side is compared with known formulas: those that symrot
-derives. The verdict is "recognised" if the right side equals one, "doubtful" if it does after a single edit, and
-"definition" otherwise. ``readings`` are the known formulas that a claim can mean.
+derives. The verdict is "recognised" if the right side equals a known formula, "doubtful" if it does after a single
+edit, and "definition" otherwise. The readings of a claim are the known formulas that it can mean.
 """
 
 import re
@@ -17,21 +17,12 @@ from symrot.checker.claim.named_formula import NamedFormula, related_formula
 from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, exchanged, is_derivative, negated, number, product, text
-from symrot.checker.recognition.naming.edited import doubtful, with_other_products
-from symrot.checker.recognition.naming.evidence import (
-    is_steady,
-)
-from symrot.checker.recognition.naming.fit import (
-    is_unusual,
-)
+from symrot.checker.recognition.naming.edited import doubtful, readings_by_other_products
+from symrot.checker.recognition.naming.evidence import is_steady
+from symrot.checker.recognition.naming.fit import is_unusual
 from symrot.checker.recognition.naming.near_verdicts import MOST_PROOFS, formulas_nearby, nearest_verdict
-from symrot.checker.recognition.naming.quantities import (
-    MOST_COMPONENTS,
-    names_in,
-)
-from symrot.checker.recognition.naming.quantity_variants import (
-    by_lengths,
-)
+from symrot.checker.recognition.naming.quantities import MOST_COMPONENTS, names_in
+from symrot.checker.recognition.naming.quantity_variants import by_lengths
 from symrot.checker.recognition.naming.ranks import is_in_usual_sequence
 from symrot.checker.recognition.naming.readings import (
     LEAST_SYMBOLS,
@@ -76,7 +67,7 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     if (mapped := _by_matrix(claim, named, repair) or _by_inverse(claim, named, repair)) is not None:
         return mapped
     readings = readings_of_claim(claim, named, named.formula, LEAST_SYMBOLS)
-    readings = readings or with_other_products(claim, named, named.formula) or _slowing_down(claim, named)
+    readings = readings or readings_by_other_products(claim, named, named.formula) or _slowing_down(claim, named)
     if readings and not claim.context and (axes := _axes_of_symmetry(readings)):
         return Verdict("definition", reason=f"it is right for a body that is symmetric about axis {axes}; for three "
                                             "different moments of inertia, one of them has a wrong index")  # fmt: skip

@@ -11,10 +11,7 @@ from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, ending_of
 from symrot.checker.recognition.printed_text import read_printed
-from symrot.checker.recognition.single_faults.letters import (
-    ids_of_nodes,
-    is_atom,
-)
+from symrot.checker.recognition.single_faults.letters import ids_of_nodes, is_atom
 from symrot.checker.recognition.single_faults.parts import (
     Letters,
     Part,
@@ -32,18 +29,9 @@ from symrot.checker.repair.points import UndefinedValue
 from symrot.checker.repair.rows import entries_of, is_matrix, shape_of, times, transposed
 
 __all__ = [
-    "RANDOM",
-    "KnownValues",
-    "formulas_of_quantities",
-    "has_angles",
-    "ids_of_known",
-    "is_column",
-    "names_of",
-    "needed_values",
-    "quantity_node",
-    "tree_of",
-    "views",
-]
+    "RANDOM", "KnownValues", "formulas_of_quantities", "has_angles", "ids_of_known", "is_column", "names_of",
+    "needed_values", "quantity_node", "tree_of", "views",
+]  # fmt: skip
 
 SQUARED = ", squared"
 
@@ -57,12 +45,14 @@ def quantity_node(named: NamedFormula) -> Node:
 
 @cache
 def formulas_of_quantities() -> tuple[Known, ...]:
+    """Return the known formulas that have names of their own: without steps of derivations and without relations."""
     formulas = [known for group in by_fingerprint().values() for known in group]
     return tuple(known for known in formulas if not known.is_step and not known.is_relation)
 
 
 @cache
 def names_of(known: Known) -> tuple[str, ...]:
+    """Return the names of the symbols in a known formula, in the order of their first occurrence."""
     words = dict.fromkeys(re.findall(r"[A-Za-z]\w*", known.text))
     return tuple(word for word in words if word not in _BUILT_IN)
 
@@ -72,6 +62,7 @@ _BUILT_IN = {"sin", "cos", "tan", "cot", "sec", "csc", "sqrt", "pi", "Matrix", "
 
 @cache
 def ids_of_known(known: Known) -> frozenset[int]:
+    """Return the ids of all nodes of a known formula, whose values a test point stores."""
     return ids_of_nodes(tree_of(known))
 
 
@@ -82,11 +73,13 @@ def is_column(known: Known) -> bool:
 
 @cache
 def has_angles(known: Known) -> bool:
+    """Return whether a known formula contains a sine, cosine or tangent."""
     return re.search(r"\b(sin|cos|tan)\(", known.text) is not None
 
 
 @cache
 def tree_of(known: Known) -> Node:
+    """Return the tree of a known formula, the same object at every call."""
     return read_printed(known.text)
 
 
@@ -105,6 +98,7 @@ class KnownValues:
 
     @cached_property
     def points(self) -> list[PointOfLetters]:
+        """The points at which the tree of the formula can be evaluated."""
         return [PointOfLetters(dict(values), {}, {}, ids_of_known(self.known)) for values in self.symbols]
 
     @cached_property
@@ -166,7 +160,8 @@ RANDOM = (0.7310585786, 1.1752011936, 0.4812118251)
 def needed_values(named: NamedFormula, known: Known, target: Values, letters: Letters) -> Values | None:
     """Return the values that the claim's formula needs for its quantity to have the values ``target``.
 
-    None if the formula cannot have these values.
+    For the claim ``2*T = ..`` these are twice the values. None if no formula gives the quantity these values: for
+    example if ``target`` is the negative square of the quantity, or if the claim is not solved for its quantity.
     """
     function = _FUNCTIONS_OF_ENDINGS.get(ending_of(known.name))
     if function is None:

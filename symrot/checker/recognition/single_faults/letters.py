@@ -25,7 +25,7 @@ MOST_DRAWS_WITH_ROOTS = 400
 POINTS = 3
 """The number of points at which formulas are compared."""
 MANY = 9
-"""The number of entries of a matrix, some of which a formula with its name may not depend on."""
+"""The fewest letters of a formula that may contain a matrix of 3 x 3 letters and not depend on all of them."""
 
 
 def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:
@@ -114,10 +114,12 @@ def ids_of_nodes(tree: Node) -> frozenset[int]:
 
 
 def nodes_of(tree: Node) -> list[Node]:
+    """Return all nodes of a tree, parents before children."""
     return [node for _, node in walk(tree)]
 
 
 def is_atom(tree: Node) -> bool:
+    """Return whether a tree is a name, a function of time such as ``phi(t)``, or a derivative of one by time."""
     if tree.kind == "name":
         return True
     inner = tree

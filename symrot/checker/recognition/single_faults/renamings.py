@@ -37,7 +37,7 @@ MOST = 6
 def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] = ()) -> list[dict[str, str | None]]:
     """Return the most plausible renamings of the names ``known`` of a known formula to the names ``own`` of a claim.
 
-    One name may be renamed to None: the claim lacks it.
+    One name may be renamed to None, because the claim lacks it, and one name of the claim may be left over.
     """
     if abs(len(known) - len(own)) > 1:
         return []

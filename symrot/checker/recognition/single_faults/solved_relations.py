@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import NamedTuple
 
-from symrot.checker.claim.named_formula import NamedFormula, Solve
+from symrot.checker.claim.named_formula import NamedFormula
+from symrot.checker.claim.solving import Solve
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of, text, walk
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint
 from symrot.checker.recognition.printed_text import read_printed

@@ -55,10 +55,10 @@ class Tape(NamedTuple):
         ``values`` are those of all operations at some points, the first of which is the one for ``needed``.
         """
         own = values[0]
-        wanted: list[float | None] = [None] * len(own)
-        wanted[-1] = needed
+        required: list[float | None] = [None] * len(own)
+        required[-1] = needed
         for place in range(len(own) - 1, -1, -1):
-            want, operation = wanted[place], self.operations[place]
+            want, operation = required[place], self.operations[place]
             if want is None:
                 continue
             neutral = NEUTRAL.get(operation.parent)
@@ -67,7 +67,7 @@ class Tape(NamedTuple):
                 if abs(want - neutral) <= SLACK * CLOSE * (size + neutral):
                     return True
             for argument in operation.arguments:
-                wanted[argument] = _wanted(operation, own, place, argument, want)
+                required[argument] = _required_value(operation, own, place, argument, want)
         return False
 
 
@@ -91,7 +91,7 @@ def _value(kind: str, arguments: list[float], value: float | str, symbols: Mappi
     return FUNCTIONS[str(value)](*arguments)
 
 
-def _wanted(operation: Operation, own: Sequence[float], place: int, argument: int, want: float) -> float | None:
+def _required_value(operation: Operation, own: Sequence[float], place: int, argument: int, want: float) -> float | None:
     """Return the value that an argument should have for its operation to have the value ``want``, or None."""
     try:
         if operation.kind == "sum":

@@ -39,6 +39,10 @@ def _scalars_in_front(node: Node, matrices: Callable[[Node], bool]) -> tuple[lis
 def edits_of_call(
     node: Node, path: Path, functions: Collection[str], matrices: Callable[[Node], bool]
 ) -> Iterator[PartEdit]:
+    """Yield edits of a function call at ``path``: another function, half of or double the angle, arguments exchanged.
+
+    ``functions`` are the names of functions of time, any of which may be confused with another one.
+    """
     name, arguments = node.value, node.args
     if name in OPPOSITE:
         yield "sin_cos_swap", replace(node, value=OPPOSITE[name]), 0.0

@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 from symrot.checker.claim.tree import Node, Path, negated, number, product, walk
 from symrot.checker.repair.edits.calls import edits_of_call, edits_of_quaternion, edits_of_rows, is_own_transpose
 from symrot.checker.repair.edits.faults import COST
-from symrot.checker.repair.edits.names import OPPOSITE, PRODUCT_OF_INERTIA, neighbours
+from symrot.checker.repair.edits.names import OPPOSITE, neighbours
 from symrot.checker.repair.edits.sums_and_products import PartEdit, edits_of_product, edits_of_sum
-from symrot.checker.repair.edits.trees import put, square_of, substituted, with_cofunctions
+from symrot.checker.repair.edits.trees import put, square_of, substituted, with_cofunctions, with_other_products
 
 __all__ = ["Edit", "single_edits"]
 
@@ -159,9 +159,5 @@ def _everywhere(tree: Node, matrices: Callable[[Node], bool]) -> Iterator[Edit]:
         if sum(other == node for other in nodes) > 1 and matrices(node):
             transposed = substituted(tree, node, Node("transpose", None, (node,)))
             yield Edit("active_passive_transpose", COST["transpose_everywhere"], (), transposed)
-    products = [name for name in names if PRODUCT_OF_INERTIA.fullmatch(name)]
-    if products:
-        made = tree
-        for name in products:
-            made = substituted(made, Node("name", name), negated(Node("name", name)))
-        yield Edit("inertia_product_sign", COST["inertia_product_sign"], (), made)
+    if (other := with_other_products(tree)) is not None:
+        yield Edit("inertia_product_sign", COST["inertia_product_sign"], (), other)

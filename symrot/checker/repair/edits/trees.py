@@ -4,10 +4,13 @@ from collections.abc import Collection
 from dataclasses import replace
 from fractions import Fraction
 
-from symrot.checker.claim.tree import Node, Path, negated, number, product, replaced, sum_of
-from symrot.checker.repair.edits.names import OPPOSITE
+from symrot.checker.claim.tree import Node, Path, negated, number, product, replaced, sum_of, walk
+from symrot.checker.repair.edits.names import OPPOSITE, PRODUCT_OF_INERTIA
 
-__all__ = ["flattened", "normalise_factors", "put", "scaled", "square_of", "substituted", "with_cofunctions"]
+__all__ = [
+    "flattened", "normalise_factors", "put", "scaled", "square_of", "substituted", "with_cofunctions",
+    "with_other_products",
+]  # fmt: skip
 
 
 def put(tree: Node, path: Path, made: Node) -> Node:
@@ -39,6 +42,15 @@ def substituted(tree: Node, old: Node, new: Node, inside: Collection[str] | None
     if args == tree.args:
         return tree
     return _rebuilt(replace(tree, args=args))
+
+
+def with_other_products(tree: Node) -> Node | None:
+    """Return a formula with the other sign of every product of inertia, such as I_xy; None if there is no such name."""
+    names = sorted({node.value for _, node in walk(tree) if node.kind == "name"})
+    products = [Node("name", name) for name in names if PRODUCT_OF_INERTIA.fullmatch(name)]
+    for name in products:
+        tree = substituted(tree, name, negated(name))
+    return tree if products else None
 
 
 def square_of(tree: Node) -> Node:

@@ -5,8 +5,9 @@ from sympy import Matrix, Symbol
 
 import symrot
 from symrot.checker.context.angle_orders import orders
-from symrot.checker.context.context import NO_CONTEXT, read_context
+from symrot.checker.context.context import NO_CONTEXT
 from symrot.checker.context.relations.substitution import Substitution, decided
+from symrot.checker.context.statements import read_context
 from symrot.checker.decide.equation import Equation
 from symrot.conventions import SEQUENCES
 from symrot.kinematics.euler import rate_jacobian

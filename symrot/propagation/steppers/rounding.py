@@ -1,0 +1,45 @@
+"""The sum of the rounding errors along one side of a motion that formulas of the time cause in its torques."""
+
+import math
+from typing import Any
+
+__all__ = ["RoundingSum"]
+
+WARNED = 1.0  # tolerances: from here on the error may exceed the tolerance
+
+
+class RoundingSum:
+    """Sum of the bounds of the rounding errors of the steps of a motion, to be compared with its tolerance.
+
+    Attributes
+    ----------
+    tolerance : float
+        Error of the whole motion to aim for.
+    squares : float
+        Sum of the squares of the bounds: errors of different steps are independent.
+    size : float
+        Largest size of the block of states so far, to which the tolerance is relative.
+    beyond : float or None
+        Time, s, from which the error may exceed the tolerance.
+    """
+
+    def __init__(self, tolerance: float) -> None:
+        self.tolerance, self.squares, self.size = tolerance, 0.0, 0.0
+        self.beyond: float | None = None
+
+    def add(self, t: float, error: float, size: float) -> None:
+        """Add the bound ``error`` of a step at the time t, s; ``size`` is the size of the states in the step."""
+        self.squares += error * error
+        self.size = max(self.size, size)
+        if self.beyond is None and math.sqrt(self.squares) > WARNED * self.tolerance * self.size:
+            self.beyond = t
+
+    def fields(self) -> dict[str, float]:
+        """Return the fields of a run in C with which it continues the sum."""
+        return {"rounded": self.squares, "largest": self.size}
+
+    def read(self, run: Any) -> None:
+        """Take over the sum from a run in C that has continued it."""
+        self.squares, self.size = run.rounded, run.largest
+        if self.beyond is None and not math.isnan(run.rounded_from):
+            self.beyond = run.rounded_from
