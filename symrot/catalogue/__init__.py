@@ -12,7 +12,7 @@ from symrot.errors import InputError, nearest
 if TYPE_CHECKING:
     from symrot.proof.derivation import Derivation
 
-__all__ = ["READING_ORDER", "derivation", "module_of", "names"]
+__all__ = ["READING_ORDER", "derivation", "module_of", "names", "require_name"]
 
 READING_ORDER: dict[str, tuple[str, ...]] = {
     "Attitude": (
@@ -91,6 +91,15 @@ def module_of(name: str) -> str:
     return f"{__name__}.{chapter.lower().replace(' ', '_')}.{name}"
 
 
+def require_name(name: str) -> None:
+    """Raise InputError, with the most similar name, if there is no derivation called ``name``."""
+    if name not in names():
+        hint = nearest(name, names())
+        known = "" if hint else f", one of {', '.join(names())}"
+        after = f" ({hint} `symrot derive` lists all)" if hint else ""
+        raise InputError(f"expected the name of a derivation{known}, got {str(name)[:60]!r}{after}")
+
+
 @cache
 def derivation(name: str) -> "Derivation":
     """Return one derivation of the catalogue, in which every step is proven; it is derived once per process.
@@ -122,11 +131,7 @@ def derivation(name: str) -> "Derivation":
     >>> len(symrot.derivation("intermediate_axis").steps)
     6
     """
-    if name not in names():
-        hint = nearest(name, names())
-        known = "" if hint else f", one of {', '.join(names())}"
-        after = f" ({hint} `symrot derive` lists all)" if hint else ""
-        raise InputError(f"expected the name of a derivation{known}, got {str(name)[:60]!r}{after}")
+    require_name(name)
     module = module_of(name)
     page: Derivation = import_module(module).derive()
     page.file = f"{module.replace('.', '/')}.py"

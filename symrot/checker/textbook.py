@@ -193,9 +193,11 @@ def _correction(claim: Claim, verdict: Verdict, formula: PrintedFormula | None) 
 # -- characters that the extraction lost -------------------------------------------------------------------------------
 
 
-def _inner(kinds: Collection[str]) -> Callable[[Node], Node]:
-    """Return a function that maps a node of one of ``kinds`` to its argument: ``-a`` to a for "neg"."""
-    return lambda node: node.args[0] if node.kind in kinds else node
+def _inner(kind: str) -> Callable[[Node], Node]:
+    """Return a function that maps a node of one ``kind`` to its argument, ``-a`` to a for "neg", and others to
+    themselves.
+    """
+    return lambda node: node.args[0] if node.kind == kind else node
 
 
 def _without_dots(node: Node) -> Node:
@@ -213,9 +215,9 @@ def _without_primes(node: Node) -> Node:
 
 
 LOSSES: dict[str, Callable[[Node], Node]] = {
-    "minus signs": _inner(["neg"]),
-    "fraction bars": _inner(["inv"]),
-    "absolute-value bars": _inner(["power"]),
+    "minus signs": _inner("neg"),
+    "fraction bars": _inner("inv"),
+    "absolute-value bars": _inner("power"),
     "transposes": _without_transpose,
     "dots": _without_dots,
     "primes": _without_primes,

@@ -47,10 +47,11 @@ def _inertia(options: Namespace) -> int:
 def _path_and_link(text: str) -> tuple[str, str]:
     """Return the path and the name of the link in the text ``FILE:LINK``; the name may be missing.
 
-    If there is a file whose name is the whole text, with its colon, the text is the path of this file.
+    Both may contain colons. The path is the longest beginning of the text, up to a colon, that names a file.
     """
-    path, colon, name = text.rpartition(":")
-    return (path, name) if colon and path and not Path(text).is_file() else (text, "")
+    ends = [len(text), *(place for place in range(len(text) - 1, 0, -1) if text[place] == ":")]
+    end = next((end for end in ends if Path(text[:end]).is_file()), ends[min(1, len(ends) - 1)])
+    return text[:end], text[end + 1 :]
 
 
 def _print(inertial: "Inertial", options: Namespace) -> int:

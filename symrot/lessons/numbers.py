@@ -142,8 +142,8 @@ def _quantity(value: Expr, unit: str, digits: int = DIGITS) -> str:
     r"""Return a number with its unit as LaTeX, such as ``2.5\,\mathrm{J}``, rounded to ``digits`` digits."""
     text = _rounded(value, digits)
     if "e" in text:
-        digits, exponent = text.split("e")
-        text = rf"{digits} \cdot 10^{{{int(exponent)}}}"
+        mantissa, exponent = text.split("e")
+        text = rf"{mantissa} \cdot 10^{{{int(exponent)}}}"
     return text + unit_latex("" if unit == "1" else unit)
 
 

@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 from textwrap import wrap
 
-from symrot.catalogue import READING_ORDER, derivation, names
+from symrot.catalogue import READING_ORDER, derivation, names, require_name
 from symrot.errors import InputError
 from symrot.figures.table import figures_of
 from symrot.files.reading import refuse_special
@@ -184,7 +184,12 @@ def pages(say: Say = _quiet) -> dict[str, str]:
 
 
 def _derived(chosen: Sequence[str], say: Say) -> dict[str, PrintedPage]:
-    """Return a map from name to page; ``say`` is called with a line of text before each page is derived."""
+    """Return a map from name to page; ``say`` is called with a line of text before each page is derived.
+
+    InputError is raised for an unknown name before the first page is derived.
+    """
+    for name in chosen:
+        require_name(derivation_of(name))
     derived = {}
     for number, name in enumerate(chosen, 1):
         say(f"{number} of {len(chosen)}: deriving {name}")

@@ -389,6 +389,14 @@ def test_progress_is_shown_while_pages_are_written(form, tmp_path):
     assert lines == ["1 of 2: deriving spherical_body", "2 of 2: deriving intermediate_axis"]
 
 
+@pytest.mark.parametrize("form", ["html", "markdown"])
+def test_an_unknown_name_is_refused_before_any_page_is_derived(form, tmp_path):
+    lines = []
+    with pytest.raises(InputError, match="did you mean 'poinsot'"):
+        derivation_pages.write_handout(tmp_path, form, ["spherical_body", "poinsod"], lines.append)
+    assert lines == []
+
+
 def test_the_catalogue_is_named_without_sympy():
     program = "import sys, symrot.catalogue as c; c.names(); sys.exit('sympy' in sys.modules)"
     subprocess.run([sys.executable, "-c", program], check=True)

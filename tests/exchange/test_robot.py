@@ -270,14 +270,11 @@ def test_links_of_plugins_are_no_links(tmp_path):
     assert symrot.link(empty, "arm").inertia == ball.inertia and '<gazebo><link name="arm"/>' in empty.read_text()
 
 
-def test_links_of_equal_names_in_several_models_have_the_names_of_the_models(tmp_path):
+def test_links_of_equal_names_in_several_models_have_the_names_of_the_models(tmp_path, capsys):
     """Nested models of SDF have names of their own for their links; such links could not be told apart."""
-    inner = SDF.format(attributes="", rotation="0 0 0").partition("<sdf")[2].partition(">")[2].rpartition("</sdf>")[0]
-    left, right = (inner.replace("<model", f"<model name='{side}'", 1) if "<model>" in inner else
-                   inner.replace(inner[inner.index("<model") : inner.index(">", inner.index("<model"))], f"<model name='{side}'", 1)
-                   for side in ("left", "right"))  # fmt: skip
-    base = "<link name='base'/>"
-    path = robot(tmp_path, f"<sdf version='1.9'><model name='robot'>{base}{left}{right}</model></sdf>")
+    model = SDF.format(attributes="", rotation="0 0 0").partition(">")[2].removesuffix("</sdf>")
+    inner = "".join(model.replace('name="m"', f'name="{side}"') for side in ("left", "right"))
+    path = robot(tmp_path, f'<sdf version="1.9"><model name="robot"><link name="base"/>{inner}</model></sdf>')
     names = ["base", "robot::left::arm", "robot::right::arm"]
     assert sorted(each.name for each in symrot.links(path)) == names
     assert symrot.link(path, names[2]).mass == Fraction(5, 2)
@@ -287,6 +284,7 @@ def test_links_of_equal_names_in_several_models_have_the_names_of_the_models(tmp
         symrot.link(path, "arm")
     ball = Inertial("x", Fraction(1), (0, 0, 0), ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
     symrot.write_link(path, names[2], ball)
+    assert main(["inertia", f"{path}:{names[2]}"]) == 0 and "mass               1 kg" in capsys.readouterr().out
     assert symrot.link(path, names[2]).mass == 1 and symrot.link(path, names[1]).mass == Fraction(5, 2)
 
 

@@ -12,15 +12,7 @@ from symrot.checker.claim.reader import read_expression
 from symrot.checker.claim.tree import Node, Path, number, product, replaced, sum_of, text, walk
 from symrot.checker.repair.edits.faults import COST
 from symrot.checker.repair.edits.single import Edit
-from symrot.checker.repair.filter import (
-    Candidate,
-    Change,
-    NumericFilter,
-    at,
-    is_nontrivial,
-    matrix_entries,
-    pieces,
-)
+from symrot.checker.repair.filter import Candidate, Change, NumericFilter, at, is_nontrivial, matrix_entries, pieces
 from symrot.errors import InputError
 from symrot.exact.decision import flatten
 from symrot.exact.factors import factored

@@ -7,23 +7,8 @@ from symrot.checker.repair.dual import UndefinedValue, cosine, inverse, plain, s
 from symrot.kinematics.hamilton import hamilton
 
 __all__ = [
-    "Rows",
-    "agree",
-    "column",
-    "determinant",
-    "dot",
-    "entries_of",
-    "inverted",
-    "is_matrix",
-    "mapped",
-    "needed",
-    "plus",
-    "rotation",
-    "rotation_of_quaternion",
-    "shape_of",
-    "skew",
-    "times",
-    "transposed",
+    "Rows", "agree", "column", "determinant", "dot", "entries_of", "inverted", "is_matrix", "mapped", "needed", "plus",
+    "rotation", "rotation_of_quaternion", "shape_of", "skew", "times", "transposed",
 ]  # fmt: skip
 
 CLOSE = 1e-8

@@ -190,7 +190,7 @@ def solutions(numeric: NumericFilter) -> list[Candidate]:
             needed = values and _needed(numeric, place, path, HOLE, values)
             outer = place in SIDES and len(path) <= 1
             if values and needed:
-                for made, edit in _readings(numeric, vocabulary, piece, values, needed, term, outer):
+                for made, edit in _corrections(numeric, vocabulary, piece, values, needed, term, outer):
                     candidates.append(_candidate(numeric, place, path, made, edit))
     ordered = sorted(candidates, key=lambda candidate: candidate.cost)
     return [candidate for candidate in ordered if _is_meaningful(numeric, candidate.changes[0])]
@@ -286,11 +286,11 @@ def _root(numeric: NumericFilter, point: Point, change: Sequence[Change], start:
     return None
 
 
-Reading = tuple[Node, tuple[str, float]]
-"""The new piece, and the code and cost of the edit."""
+Correction = tuple[Node, tuple[str, float]]
+"""A new formula for a part, and the code and the cost of the fault that it corrects."""
 
 
-def _readings(
+def _corrections(
     numeric: NumericFilter,
     vocabulary: Vocabulary,
     piece: Node,
@@ -298,7 +298,7 @@ def _readings(
     needed: Values,
     is_term: bool,
     is_outer: bool,
-) -> Iterator[Reading]:
+) -> Iterator[Correction]:
     """Yield (formula, (code, cost) of the fault) for formulas with the values ``needed`` that may replace ``piece``."""
     # values: of piece as it is; is_term: piece is a term of a sum; is_outer: it is a side, or directly below a side
     if all(abs(b) <= CLOSE * abs(a) for a, b in zip(values, needed, strict=True)):

@@ -36,18 +36,19 @@ OUTCOMES = {
 
 
 def verdict_on_parts(
-    lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], notation: Notation, units: Collection[str] = ()
+    lines: Sequence[Sequence[Claim]], verdicts: Sequence[Verdict], notation: Notation, has_units: bool = False
 ) -> Verdict:
     """Return the worst verdict on the equations of a chain or of several lines, with a note on each.
 
-    It is "doubtful" for formulas of different bodies, frames or sequences.
+    It is "doubtful" for formulas of different bodies, frames or sequences. ``verdicts`` are those on the equations of
+    ``lines``, in order; with ``has_units``, the first side of a chain is no name, but a number with a unit.
     """
     remaining = iter(verdicts)
     counted, notes = [], []
     total = sum(map(len, lines))
     for place, line in enumerate(lines):
         own = [next(remaining) for _ in line]
-        own = own if units else _as_named_chain(line, own, notation)
+        own = own if has_units else _as_named_chain(line, own, notation)
         others = [*lines[:place], *lines[place + 1 :]]
         elsewhere = {name for other in others for claim in other for name, _ in claim.define}
         named = named_formula(line[0])

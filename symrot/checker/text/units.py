@@ -75,7 +75,7 @@ def _on_units(
         for line in lines
         for claim in line
     ]
-    verdict = parts[0] if len(parts) == 1 else verdict_on_parts(lines, parts, notation, measured.units)
+    verdict = parts[0] if len(parts) == 1 else verdict_on_parts(lines, parts, notation, has_units=True)
     diagnosis = replace(verdict.diagnosis, text=measured.restored(verdict.diagnosis.text))
     notes = tuple(map(measured.restored, verdict.notes))
     digits = (repair for repair in verdict.repairs if repair.code == "digits")  # others lack the units

@@ -2,18 +2,7 @@
 
 from math import comb, prod
 
-from sympy import (
-    Add,
-    Expr,
-    GeneratorsNeeded,
-    Mul,
-    Poly,
-    PolynomialError,
-    Pow,
-    cancel,
-    fraction,
-    together,
-)
+from sympy import Add, Expr, GeneratorsNeeded, Mul, Poly, PolynomialError, Pow, cancel, fraction, together
 
 from symrot.checker.recognition.fingerprint import in_lowest_terms
 

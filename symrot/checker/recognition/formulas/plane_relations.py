@@ -2,17 +2,7 @@
 
 from collections.abc import Iterator
 
-from sympy import (
-    Expr,
-    Matrix,
-    Symbol,
-    cancel,
-    cos,
-    expand,
-    pi,
-    sin,
-    solve,
-)
+from sympy import Expr, Matrix, Symbol, cancel, cos, expand, pi, sin, solve
 
 from symrot import symbols
 from symrot.checker.recognition.formulas.new_symbols import (

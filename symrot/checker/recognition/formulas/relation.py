@@ -3,20 +3,9 @@
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from sympy import (
-    Expr,
-    Poly,
-    Symbol,
-    cancel,
-    factor_terms,
-    fraction,
-    together,
-)
+from sympy import Expr, Poly, Symbol, cancel, factor_terms, fraction, together
 
-__all__ = [
-    "Relation",
-    "solved",
-]
+__all__ = ["Relation", "solved"]
 
 
 class Relation(NamedTuple):

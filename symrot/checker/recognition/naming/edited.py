@@ -10,15 +10,8 @@ from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.interpreter import Interpreter
 from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.tree import Node, sum_of, text, walk
-from symrot.checker.recognition.naming.evidence import (
-    LEAST_SYMBOLS_EDITED,
-    is_of_body,
-)
-from symrot.checker.recognition.naming.quantities import (
-    has_terms,
-    names_in,
-    quantities_in,
-)
+from symrot.checker.recognition.naming.evidence import LEAST_SYMBOLS_EDITED, is_of_body
+from symrot.checker.recognition.naming.quantities import has_terms, names_in, quantities_in
 from symrot.checker.recognition.naming.ranks import RARE, strangeness_of
 from symrot.checker.recognition.naming.readings import LEAST_SYMBOLS, all_letters_stated, readings_of_claim
 from symrot.checker.recognition.single_faults.letters import is_atom

@@ -19,15 +19,8 @@ from symrot.checker.recognition.usual_letters import plain_name, unit_of
 from symrot.checker.verdict import Identification
 
 __all__ = [
-    "ENTRY",
-    "MOMENT",
-    "PARALLEL",
-    "fits_context",
-    "fits_quantity",
-    "has_other_length",
-    "is_unusual",
-    "keeps_places",
-]
+    "ENTRY", "MOMENT", "PARALLEL", "fits_context", "fits_quantity", "has_other_length", "is_unusual", "keeps_places",
+]  # fmt: skip
 
 CENTRE, POINT = re.compile(r"[IJk]_?(bar|G|C|cm|c|S)"), re.compile(r"[IJk]_?[OAPQB0]")
 """Names of moments and radii of gyration about the centre of mass, and about another point."""

@@ -50,10 +50,12 @@ MOST_SOLVED = 4
 """The most letters for which an equation is solved, to compare it with known relations."""
 
 PER_NAME, PER_PLACE = 0.1, 0.3
-"""The costs of a symbol with a new name, and of a component or an axis that the name of the quantity does not say."""
+"""The cost of each symbol that has another letter than in the known formula, and of each contradiction between the
+name of the quantity and the known formula, such as omega_3 for a first component.
+"""
 
 AS_NEAR = 0.15
-"""The most by which the cost of a moment of inertia, about a parallel axis, may exceed the cost of the nearest one."""
+"""How much more than the nearest moment of inertia another one may cost and still be meant, about a parallel axis."""
 
 MOST_REPAIRS, MOST_PROOFS = 3, 12
 """The most repairs that are offered, and the most formulas near a claim for which a proof is tried."""

@@ -103,11 +103,16 @@ def words_of(named: NamedFormula) -> tuple[str, ...] | None:
     """Return words, one of which is in the name of each known formula for a claim's quantity: ("product of inertia",)
     for I_xy. None if the quantity's name has no usual meaning.
     """
-    words = next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, quantity_name(named))), None)
+    words = _words_of_name(quantity_name(named))
     if words and any(node.kind == "call" and node.value == "cross" for _, node in walk(named.formula)):
         words = (*words, *OF_VECTORS)  # w = u cos(a) + ...: any letter may be the name of a vector
     is_matrix_of_rows = named.formula.value == "Matrix" and len(matrix_entries(named.formula)) > MOST_COMPONENTS
     return None if words and is_matrix_of_rows and not {*words} & {*OF_MATRICES} else words
+
+
+@cache
+def _words_of_name(name: str) -> tuple[str, ...] | None:
+    return next((words for pattern, words in QUANTITIES if re.fullmatch(pattern, name)), None)
 
 
 def quantity_name(named: NamedFormula) -> str:

@@ -16,25 +16,15 @@ from symrot.checker.recognition.formulas.common_factors import terms_expanded, w
 from symrot.checker.recognition.identification import identified
 from symrot.checker.recognition.known_formulas import ending_of
 from symrot.checker.recognition.naming.fit import fits_context, fits_quantity, has_other_length, keeps_places
-from symrot.checker.recognition.naming.quantities import (
-    names_in,
-    quantity_name,
-    words_of,
-)
+from symrot.checker.recognition.naming.quantities import names_in, quantity_name, words_of
 from symrot.checker.recognition.naming.ranks import rarity_of, strangeness_of
 from symrot.checker.verdict import Identification
 from symrot.errors import InputError
 
 __all__ = [
-    "LEAST_SYMBOLS",
-    "SQUARED",
-    "all_letters_stated",
-    "has_root_of_sum",
-    "least_symbols_related",
-    "readings_of_claim",
-    "readings_of_formula",
-    "readings_of_relation",
-]
+    "LEAST_SYMBOLS", "SQUARED", "all_letters_stated", "has_root_of_sum", "least_symbols_related", "readings_of_claim",
+    "readings_of_formula", "readings_of_relation",
+]  # fmt: skip
 
 LEAST_SYMBOLS = 2
 """The fewest symbols of a scalar formula that is looked up as it is written."""

@@ -18,20 +18,11 @@ from symrot.checker.claim.reader import read_relation
 from symrot.checker.claim.scope import is_matrix
 from symrot.checker.claim.tree import Node, exchanged, is_derivative, negated, number, product, text
 from symrot.checker.recognition.naming.edited import doubtful, readings_by_other_products
-from symrot.checker.recognition.naming.evidence import (
-    is_steady,
-)
-from symrot.checker.recognition.naming.fit import (
-    is_unusual,
-)
+from symrot.checker.recognition.naming.evidence import is_steady
+from symrot.checker.recognition.naming.fit import is_unusual
 from symrot.checker.recognition.naming.near_verdicts import MOST_PROOFS, formulas_nearby, nearest_verdict
-from symrot.checker.recognition.naming.quantities import (
-    MOST_COMPONENTS,
-    names_in,
-)
-from symrot.checker.recognition.naming.quantity_variants import (
-    by_lengths,
-)
+from symrot.checker.recognition.naming.quantities import MOST_COMPONENTS, names_in
+from symrot.checker.recognition.naming.quantity_variants import by_lengths
 from symrot.checker.recognition.naming.ranks import is_in_usual_sequence
 from symrot.checker.recognition.naming.readings import (
     LEAST_SYMBOLS,

@@ -11,17 +11,11 @@ from symrot.checker.claim.tree import TIME, Node, Path, exchanged, number, repla
 from symrot.checker.recognition.known_formulas import Known, ending_of
 from symrot.checker.recognition.single_faults.absent_names import absent_name
 from symrot.checker.recognition.single_faults.array_faults import ArrayFault, agree, array_faults, has_arrays, matching
-from symrot.checker.recognition.single_faults.known_values import (
-    RANDOM,
-    KnownValues,
-    needed_values,
-    tree_of,
-    views,
-)
+from symrot.checker.recognition.single_faults.known_values import RANDOM, KnownValues, needed_values, tree_of, views
 from symrot.checker.recognition.single_faults.letters import POINTS, is_atom, nodes_of, text_of
 from symrot.checker.recognition.single_faults.moments import is_shifted_moment, is_symmetric_body
 from symrot.checker.recognition.single_faults.parts import (
-    Change,
+    Correction,
     Letters,
     Part,
     Valued,
@@ -137,7 +131,7 @@ def _compared(search: Search, known: Known, renaming: dict[str, str | None]) -> 
     target = own.whole
     if target is None:
         return []
-    changes: list[tuple[Path, Change, str]] = []
+    changes: list[tuple[Path, Correction, str]] = []
     by_edit: list[tuple[float, str, Node, str]] = []
     for view in (*views(known, target), *own.with_other_signs()):
         needed = needed_values(named, known, view, letters)
@@ -207,17 +201,17 @@ def _is_promising(search: Search, needed: Values) -> bool:
     )
 
 
-def _changes(search: Search, part: Part) -> Iterator[Change]:
+def _changes(search: Search, part: Part) -> Iterator[Correction]:
     """Yield the changes of a part that give it its needed values: left out, multiplied, or changed by a usual fault."""
     if is_superfluous(part):
         code, cost = ("extra_term", 0.0) if part.parent == "sum" else ("factor", COST["factor_removed"])
-        yield Change(number(int(part.parent == "product")), code, COST[code] + cost)
+        yield Correction(number(int(part.parent == "product")), code, COST[code] + cost)
     elif is_multiple(part):
         yield from multiples(part)
     yield from (variant.change for variant in search.matching(part))
 
 
-def _repaired(formula: Node, path: Path, change: Change) -> Node:
+def _repaired(formula: Node, path: Path, change: Correction) -> Node:
     """Return ``formula`` with the part at ``path`` changed."""
     tree = flattened(replaced(formula, path, change.made))
     # a new factor may leave factors 1 and fractions in fractions; other numbers stay as typed

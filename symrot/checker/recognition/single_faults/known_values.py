@@ -11,10 +11,7 @@ from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.tree import Node, walk
 from symrot.checker.recognition.known_formulas import Known, by_fingerprint, ending_of
 from symrot.checker.recognition.printed_text import read_printed
-from symrot.checker.recognition.single_faults.letters import (
-    ids_of_nodes,
-    is_atom,
-)
+from symrot.checker.recognition.single_faults.letters import ids_of_nodes, is_atom
 from symrot.checker.recognition.single_faults.parts import (
     Letters,
     Part,
@@ -32,18 +29,9 @@ from symrot.checker.repair.points import UndefinedValue
 from symrot.checker.repair.rows import entries_of, is_matrix, shape_of, times, transposed
 
 __all__ = [
-    "RANDOM",
-    "KnownValues",
-    "formulas_of_quantities",
-    "has_angles",
-    "ids_of_known",
-    "is_column",
-    "names_of",
-    "needed_values",
-    "quantity_node",
-    "tree_of",
-    "views",
-]
+    "RANDOM", "KnownValues", "formulas_of_quantities", "has_angles", "ids_of_known", "is_column", "names_of",
+    "needed_values", "quantity_node", "tree_of", "views",
+]  # fmt: skip
 
 SQUARED = ", squared"
 

@@ -20,23 +20,9 @@ from symrot.checker.repair.points import Point, UndefinedValue
 from symrot.checker.repair.rows import entries_of, is_matrix, mapped, plus, shape_of, times
 
 __all__ = [
-    "CLOSE",
-    "NEUTRAL",
-    "Change",
-    "Letters",
-    "Part",
-    "PointOfLetters",
-    "Valued",
-    "Values",
-    "is_multiple",
-    "is_superfluous",
-    "multiples",
-    "near",
-    "parts",
-    "rates_of_entries",
-    "rational",
-    "values_of",
-]
+    "CLOSE", "NEUTRAL", "Correction", "Letters", "Part", "PointOfLetters", "Valued", "Values", "is_multiple",
+    "is_superfluous", "multiples", "near", "parts", "rates_of_entries", "rational", "values_of",
+]  # fmt: skip
 
 CLOSE = 1e-9
 """The largest relative difference between values that count as equal."""
@@ -62,7 +48,7 @@ class Part(NamedTuple):
     parent: str  # the kind of the node above, such as "sum"
 
 
-class Change(NamedTuple):
+class Correction(NamedTuple):
     """A correction of a part: the tree ``made`` that takes the part's place, and the code and the cost of the fault."""
 
     made: Node
@@ -310,7 +296,7 @@ def is_multiple(part: Part) -> bool:
     return True
 
 
-def multiples(part: Part) -> Iterator[Change]:
+def multiples(part: Part) -> Iterator[Correction]:
     """Yield the change of a part's sign or numeric factor that gives the part its needed values, if there is one."""
     ratio = rational(tuple(_ratio(b, a) or 0.0 for a, b in zip(part.values, part.needed, strict=True)))
     if ratio is None or ratio == 1 or (ratio < 0 and ratio != -1) or part.node.kind == "neg":
@@ -320,14 +306,14 @@ def multiples(part: Part) -> Iterator[Change]:
         if value > 0:
             size = 0.0 if ratio in (2, Fraction(1, 2)) else COST["per_factor_e"] * abs(math.log(ratio))
             cost = COST["factor"] + size
-            yield Change(number(value), "factor", cost + COST["no_integer"] * (value.denominator > 1))
+            yield Correction(number(value), "factor", cost + COST["no_integer"] * (value.denominator > 1))
     elif part.parent not in ("product", "power", "inv") or part.node.kind == "sum":  # else the whole term is changed
         if ratio == -1:
-            yield Change(negated(part.node), "sign_of_term", COST["sign_of_term"])
+            yield Correction(negated(part.node), "sign_of_term", COST["sign_of_term"])
         else:
             cost = COST["solved_factor_2" if ratio in (2, Fraction(1, 2)) else "solved_rational_factor"]
             is_angle = part.node.value in ("acos", "asin", "atan", "atan2")
-            yield Change(scaled(part.node, ratio), HALVES.get(ratio, "factor") if is_angle else "factor", cost)
+            yield Correction(scaled(part.node, ratio), HALVES.get(ratio, "factor") if is_angle else "factor", cost)
 
 
 def rational(values: Sequence[float]) -> Fraction | None:

@@ -5,7 +5,7 @@ should have. It then looks for a single part whose change gives these values.
 """
 
 from collections.abc import Callable, Iterator
-from itertools import chain
+from itertools import chain, islice
 from typing import Any
 
 from symrot.checker.claim.claims import Claim
@@ -40,6 +40,10 @@ FEW = 3
 """The most symbols of a known formula with an angle that a claim without angles may mean."""
 
 
+Renaming = dict[str, str | None]
+"""Symbol of a known formula -> the claim's name for it, or None if the claim lacks the symbol."""
+
+
 def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], bool]) -> list[Near]:
     """Return changes of a claim's formula that may turn it into a known formula with ``fits(known)``, the cheapest
     first. The code "none" means that no change is needed.
@@ -47,49 +51,46 @@ def near_formulas(claim: Claim, named: NamedFormula, fits: Callable[[Known], boo
     search = _search(claim, named)
     if search is None:
         return []
-    letters, scale = search.letters, search.values
-    names = [text_of(atom) for atom in letters.atoms]
+    nearest: dict[tuple[Node, str], Near] = {}
+    for known, renaming in islice(_pairs(claim, named, search, fits), MOST_PAIRS):
+        near_ones = compare(search, known, renaming)
+        # under the hypotheses the claim's formula equals a known one: no change is needed
+        if near_ones is None and claim.hypotheses:
+            return []
+        if near_ones is None and has_root_of_sum(named.formula):
+            texts = tuple((old, new) for old, new in renaming.items() if new is not None)
+            return [Near(0.0, "none", named.formula, known, strangeness(renaming), False, False, False, "", 0, texts)]
+        for candidate in near_ones or ():
+            key = (candidate.tree, known.name)
+            if key not in nearest or candidate.cost < nearest[key].cost:
+                nearest[key] = candidate
+    return sorted(nearest.values(), key=lambda candidate: candidate.cost)
+
+
+def _pairs(
+    claim: Claim, named: NamedFormula, search: Search, fits: Callable[[Known], bool]
+) -> Iterator[tuple[Known, Renaming]]:
+    """Yield (known formula, renaming of its symbols to the claim's letters) for all that are compared with a claim."""
+    letters = search.letters
+    names, quantity = [text_of(atom) for atom in letters.atoms], text_of(quantity_node(named))
     inside = {node for angle in letters.angles for node in nodes_of(angle)}
     angles = {text_of(atom) for atom in letters.atoms if atom in inside}
-    nearest: dict[tuple[Node, str], Near] = {}
-    fitting: dict[tuple[str, ...], list[dict[str, str | None]]] = {}  # names of a known formula -> their renamings
-    pairs = 0
-    quantity = text_of(quantity_node(named))
+    renamings_of: dict[tuple[str, ...], list[Renaming]] = {}  # names of a known formula -> their renamings
     for mine, known in chain((("", known) for known in formulas_of_quantities() if fits(known)), _relations(quantity)):
-        is_wrong_kind = is_column(known) != is_matrix(scale[0])
+        own = names_of(known)
+        is_wrong_kind = is_column(known) != is_matrix(search.values[0])
+        has_one_angle = len(letters.angles) == 1 and len(own) == len(names) - 1  # in a factor too many
+        is_other = has_angles(known) != bool(letters.angles) and len(own) > FEW and not has_one_angle
         is_of_body = claim.context.body is not None and claim.context.body.kind.title in known.name
-        has_one_angle = (
-            len(letters.angles) == 1 and len(names_of(known)) == len(letters.atoms) - 1
-        )  # in a factor too many
-        is_other = has_angles(known) != bool(letters.angles) and len(names_of(known)) > FEW and not has_one_angle
-        is_wrong_kind = is_wrong_kind or (is_other and not is_of_body)
-        if is_wrong_kind or abs(len(names_of(known)) - len(letters.atoms)) > 1:
+        if is_wrong_kind or (is_other and not is_of_body) or abs(len(own) - len(names)) > 1:
             continue
-        if names_of(known) not in fitting:
-            fitting[names_of(known)] = renamings(names_of(known), names, angles)
+        if own not in renamings_of:
+            renamings_of[own] = renamings(own, names, angles)
         of_product = renaming_of_product(names) if "quaternion product" in known.name else None
-        for renaming in [of_product] if of_product else fitting[names_of(known)]:
-            own = [(old, new) for old, new in renaming.items() if new is not None]
-            if mine and not is_consistent([*own, (mine, quantity)]):
-                continue
-            pairs += 1
-            if pairs > MOST_PAIRS:
-                break
-            compared = compare(search, known, renaming)
-            # under the hypotheses the claim's formula equals a known one: no change is needed
-            if compared is None and claim.hypotheses:
-                return []
-            if compared is None and has_root_of_sum(named.formula):
-                texts = tuple((old, new) for old, new in renaming.items() if new is not None)
-                whole = Near(
-                    0.0, "none", named.formula, known, strangeness(renaming), False, False, False, "", 0, texts
-                )
-                return [whole]
-            for candidate in compared or ():
-                key = (candidate.tree, known.name)
-                if key not in nearest or candidate.cost < nearest[key].cost:
-                    nearest[key] = candidate
-    return sorted(nearest.values(), key=lambda candidate: candidate.cost)
+        for renaming in [of_product] if of_product else renamings_of[own]:
+            pairs = [(old, new) for old, new in renaming.items() if new is not None]
+            if not mine or is_consistent([*pairs, (mine, quantity)]):
+                yield known, renaming
 
 
 def _search(claim: Claim, named: NamedFormula) -> Search | None:

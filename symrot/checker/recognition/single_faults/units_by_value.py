@@ -6,14 +6,8 @@ from symrot.checker.claim.named_formula import NamedFormula
 from symrot.checker.claim.tree import Node
 from symrot.checker.recognition.known_formulas import Known
 from symrot.checker.recognition.single_faults.known_values import RANDOM, needed_values, tree_of
-from symrot.checker.recognition.single_faults.letters import (
-    POINTS,
-)
-from symrot.checker.recognition.single_faults.parts import (
-    Letters,
-    PointOfLetters,
-    values_of,
-)
+from symrot.checker.recognition.single_faults.letters import POINTS
+from symrot.checker.recognition.single_faults.parts import Letters, PointOfLetters, values_of
 from symrot.checker.recognition.usual_letters import UNIT_OF_NAME
 from symrot.checker.repair.rows import is_matrix
 from symrot.checker.units.units import read_unit

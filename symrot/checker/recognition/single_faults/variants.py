@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from symrot.checker.claim.tree import Node, negated, number, product, sum_of
-from symrot.checker.recognition.single_faults.parts import Change, Letters, Values, near, rational, values_of
+from symrot.checker.recognition.single_faults.parts import Correction, Letters, Values, near, rational, values_of
 from symrot.checker.repair.edits.faults import COST
 from symrot.checker.repair.edits.names import OPPOSITE, neighbours
 from symrot.checker.repair.edits.trees import scaled, square_of, with_cofunctions
@@ -30,7 +30,7 @@ MULTIPLES = {Fraction(2): "double_half_angle", Fraction(1, 2): "half_angle"}
 class Variant(NamedTuple):
     """A change of a part that undoes a usual fault, with the values of the changed part."""
 
-    change: Change
+    change: Correction
     values: Values
 
 
@@ -55,7 +55,7 @@ def _of_letter(node: Node, parent: str, values: Values, letters: Letters) -> Ite
     for other, others in written.items():
         if other != node:
             cost = COST["solved_neighbour" if other.value in alike or other == LACKING else "solved_symbol"]
-            yield Variant(Change(other, "wrong_symbol", cost), others)
+            yield Variant(Correction(other, "wrong_symbol", cost), others)
 
 
 def _of_exponent(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
@@ -65,7 +65,7 @@ def _of_exponent(node: Node, parent: str, values: Values, letters: Letters) -> I
         base, exponent = node.args[0], node.args[1].value
     elif node.kind == "inv":
         cost = COST["factor"] + COST["quotient_inverted"]
-        yield Variant(Change(node.args[0], "factor", cost), tuple(1 / value for value in values))
+        yield Variant(Correction(node.args[0], "factor", cost), tuple(1 / value for value in values))
         return
     elif not (node.kind in ("name", "call", "sum") and parent) and not (node.kind == "product" and parent == "inv"):
         return
@@ -81,7 +81,7 @@ def _of_exponent(node: Node, parent: str, values: Values, letters: Letters) -> I
                 powers = tuple(value**power for value in bases)
             except OverflowError:  # a number of hundreds of digits
                 continue
-            yield Variant(Change(made, "exponent", cost), powers)
+            yield Variant(Correction(made, "exponent", cost), powers)
 
 
 def _with_other_factor(base: Node, bases: Values, letters: Letters) -> Iterator[Variant]:
@@ -90,7 +90,7 @@ def _with_other_factor(base: Node, bases: Values, letters: Letters) -> Iterator[
     for other, others in letters.atoms.items():
         if other != base:
             cost = COST["solved_neighbour" if other.value in alike or other == LACKING else "solved_symbol"]
-            made = Change(product([base, other]), "wrong_symbol", cost)
+            made = Correction(product([base, other]), "wrong_symbol", cost)
             yield Variant(made, tuple(a * b for a, b in zip(bases, others, strict=True)))
 
 
@@ -99,13 +99,13 @@ def _of_square(node: Node, parent: str, values: Values, letters: Letters) -> Ite
     factors = [factor.args[0] if factor.kind == "inv" else factor for factor in node.args]
     if node.kind == "product" and len(factors) > 1 and parent == "sum" and all(f in letters.atoms for f in factors):
         squares = [square_of(factor) for factor in node.args]
-        yield Variant(Change(product(squares), "exponent", COST["exponent"]), tuple(v**2 for v in values))
+        yield Variant(Correction(product(squares), "exponent", COST["exponent"]), tuple(v**2 for v in values))
     if node.kind == "power" and node.args[0].kind == "sum" and node.args[1] == number(2):
         terms = [negated(square_of(t.args[0])) if t.kind == "neg" else square_of(t) for t in node.args[0].args]
         made = sum_of(terms)
         changed = values_of(made, letters.points)
         if changed is not None:
-            yield Variant(Change(made, "exponent", COST["exponent"]), changed)
+            yield Variant(Correction(made, "exponent", COST["exponent"]), changed)
 
 
 def _of_function(node: Node, parent: str, values: Values, letters: Letters) -> Iterator[Variant]:
@@ -116,14 +116,14 @@ def _of_function(node: Node, parent: str, values: Values, letters: Letters) -> I
     own = letters.angles[angle]
     for name in FUNCTIONS:
         cost = COST["sin_cos_swap"] + (0.0 if OPPOSITE[node.value] == name else COST["other_function"])
-        yield Variant(Change(replace(node, value=name), "sin_cos_swap", cost), tuple(map(FUNCTIONS[name], own)))
+        yield Variant(Correction(replace(node, value=name), "sin_cos_swap", cost), tuple(map(FUNCTIONS[name], own)))
     for multiple, code in MULTIPLES.items():
         made = replace(node, args=(scaled(angle, multiple),))
         angles = tuple(float(multiple) * value for value in own)
-        yield Variant(Change(made, code, COST[code]), tuple(map(FUNCTIONS[node.value], angles)))
+        yield Variant(Correction(made, code, COST[code]), tuple(map(FUNCTIONS[node.value], angles)))
     for other, angles in (*letters.angles.items(), *((n, v) for n, v in letters.atoms.items() if n == LACKING)):
         if other != angle and rational(tuple(b / a for a, b in zip(own, angles, strict=True))) not in MULTIPLES:
-            change = Change(replace(node, args=(other,)), "wrong_symbol", COST["wrong_symbol"])
+            change = Correction(replace(node, args=(other,)), "wrong_symbol", COST["wrong_symbol"])
             yield Variant(change, tuple(map(FUNCTIONS[node.value], angles)))
 
 
@@ -135,14 +135,14 @@ def _of_factor(node: Node, parent: str, values: Values, letters: Letters) -> Ite
         return
     if node.kind == "product":
         cost = COST["wrong_symbol"] + COST["quotient_inverted"]
-        yield Variant(Change(_inverted(node), "wrong_symbol", cost), tuple(1 / value for value in values))
+        yield Variant(Correction(_inverted(node), "wrong_symbol", cost), tuple(1 / value for value in values))
     cost = COST["solved_factor"] + COST["per_piece_added"]
     for atom, factors in _factors(letters):
         for power in (1, -1, 2, -2) if all(factors) else (1, 2):
             factor = atom if abs(power) == 1 else square_of(atom)
             factor = factor if power > 0 else Node("inv", None, (factor,))
             made = tuple(value * other**power for value, other in zip(values, factors, strict=True))
-            yield Variant(Change(product([node, factor]), "factor", cost), made)
+            yield Variant(Correction(product([node, factor]), "factor", cost), made)
 
 
 def _inverted(node: Node) -> Node:
@@ -173,7 +173,7 @@ def _of_terms(node: Node, parent: str, values: Values, letters: Letters) -> Iter
     for made, code in trees:
         changed = values_of(made, letters.points)
         if changed is not None and made != node:
-            yield Variant(Change(made, code, COST[code]), changed)
+            yield Variant(Correction(made, code, COST[code]), changed)
 
 
 def _base(term: Node) -> Node | None:

@@ -1,9 +1,6 @@
 """The faults that occur in practice: the code and the sentence of each diagnosis, and the costs of edits."""
 
-__all__ = [
-    "COST",
-    "FAULT_DESCRIPTIONS",
-]
+__all__ = ["COST", "FAULT_DESCRIPTIONS"]
 
 FAULT_DESCRIPTIONS = {
     "none": "",

@@ -8,15 +8,9 @@ from symrot.checker.claim.tree import Node, Path, negated, number, product, repl
 from symrot.checker.repair.edits.names import OPPOSITE, PRODUCT_OF_INERTIA
 
 __all__ = [
-    "flattened",
-    "normalise_factors",
-    "put",
-    "scaled",
-    "square_of",
-    "substituted",
-    "with_cofunctions",
+    "flattened", "normalise_factors", "put", "scaled", "square_of", "substituted", "with_cofunctions",
     "with_other_products",
-]
+]  # fmt: skip
 
 
 def put(tree: Node, path: Path, made: Node) -> Node:
