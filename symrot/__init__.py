@@ -58,7 +58,7 @@ _NAMES_OF_MODULES = {
     ),
     "workshop.sympy_mechanics": ("from_sympy", "to_sympy"),
     "workshop.emit": ("Emitted", "emit", "explain", "kernel_names", "plan"),
-    "propagation.events.events": ("Event",),
+    "propagation.events.event": ("Event",),
     "propagation.method": ("METHODS",),
     "propagation.propagate": ("propagate", "propagator"),
     "propagation.propagator": ("Propagator",),

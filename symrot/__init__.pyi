@@ -30,7 +30,7 @@ from symrot.planning.rules import RuleOutcome
 from symrot.planning.scene_kernel import SceneKernel
 from symrot.proof.derivation import Derivation, ProofError
 from symrot.proof.page import Step
-from symrot.propagation.events.events import Event
+from symrot.propagation.events.event import Event
 from symrot.propagation.method import METHODS
 from symrot.propagation.propagate import propagate, propagator
 from symrot.propagation.propagator import Propagator

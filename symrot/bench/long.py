@@ -19,8 +19,8 @@ from symrot.bench.comparison.peers import heyoka_integrator
 from symrot.build import cache
 from symrot.planning.plan import make_plan
 from symrot.planning.scene_kernel import bind
-from symrot.propagation.compiled_models import error_blocks, scene_kernel
-from symrot.propagation.invariants import invariant_parameters, invariant_source
+from symrot.propagation.binding import Binding, two_doubles
+from symrot.propagation.compiled_models import error_blocks, invariant_source, scene_kernel
 from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers import taylor
 from symrot.scene.scene import Scene
@@ -59,7 +59,7 @@ def measure(omega: Sequence[Any], revolutions: float) -> dict[str, tuple[float, 
     exact = propagator(scene, method="exact")([stop])
 
     def stepped(project: bool) -> tuple[Floats, int]:
-        parameters = [*p, *invariant_parameters(kernel, plan)]
+        parameters = [*p, *Binding(kernel.quantity_parameters, plan, two_doubles)(plan)]
         states, stats = taylor.integration(path, parameters, start, 0.0, 1e-15, project=project).sample([stop])
         return states[0], stats.accepted
 

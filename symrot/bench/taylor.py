@@ -26,8 +26,8 @@ from symrot.bench.comparison.problem import Problem
 from symrot.bench.comparison.race import EndState, Measured, Task, raced
 from symrot.build import cache
 from symrot.build.sources import c_text
-from symrot.propagation.compiled_models import error_blocks, library_source
-from symrot.propagation.invariants import invariant_parameters, invariant_source
+from symrot.propagation.binding import Binding, two_doubles
+from symrot.propagation.compiled_models import error_blocks, invariant_source, library_source
 from symrot.propagation.steppers import dop853, taylor
 from symrot.scene.scene import Scene
 
@@ -89,7 +89,7 @@ class SteppedProblem(Problem):
 
     @property
     def taylor_p(self) -> list[float]:
-        return [*self.p, *invariant_parameters(self.kernel, self.plan)]
+        return [*self.p, *Binding(self.kernel.quantity_parameters, self.plan, two_doubles)(self.plan)]
 
     def largest_error(self, state: Iterable[Any], exact: Floats) -> float:
         """Return the largest error of ``state`` against ``exact``; infinite if ``state`` is not finite."""

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import lru_cache
 from itertools import product
 
 from sympy import Expr, Symbol
@@ -174,7 +175,13 @@ def _quantities(equations: Equations, conserved: Mapping[str, Expr]) -> Lowered:
     outputs += [(f"attraction {k} of t", "", value) for k, value in enumerate(equations.attraction)]
     results = Argument("out", "out", tuple((name, unit, "") for name, unit, _ in outputs))
     signature = Signature("quantities", (TIME, _state_argument(equations), results))
-    return lower(signature, [(name, value) for name, _, value in outputs])
+    return _lowered(signature, tuple([(name, value) for name, _, value in outputs]))
+
+
+@lru_cache(maxsize=64)
+def _lowered(signature: Signature, outputs: tuple[tuple[str, Expr], ...]) -> Lowered:
+    """Return the program of output quantities; scenes whose torques have other formulas often share it."""
+    return lower(signature, outputs)
 
 
 def derive_scene_kernel(

@@ -23,7 +23,7 @@ from symrot.propagation.compiled_models import (
     grows_late,
     has_formulas,
     kernel_key,
-    missing_compiler,
+    motion_library,
     scene_kernel,
     taylor_library,
 )
@@ -198,7 +198,7 @@ def _stepping_method(problem: Problem) -> str:
     """Return the method that ``auto`` uses for motions without a closed form."""
     if not problem.plan.states:
         return "constant"  # nothing changes
-    if missing_compiler():
+    if library.missing():
         return "scipy"
     rough = has_formulas(problem.plan) and non_smooth_torque(
         problem.plan
@@ -242,7 +242,7 @@ class _Stepped:
         """Convert times of the scene, s, to times since the epoch (a reference time), from which the steppers count."""
         return times - self.epoch if self.epoch else times
 
-    def clock(self, k: int, make: Callable[[Plan, SceneKernel], Any] = epoch.compiled) -> Any:
+    def clock(self, k: int, make: Callable[[Plan, SceneKernel], Any] = motion_library) -> Any:
         """Return a function from an epoch to the rates and parameters of motion k with time counted from the epoch.
 
         None if the rates do not depend on time.
@@ -332,7 +332,7 @@ def _one_by_one(stepped: _Stepped) -> lanes.Outcome:
 
 def _dop853(stepped: _Stepped, method: str) -> lanes.Outcome:
     problem, plan = stepped.problem, stepped.plan
-    path = compiled(plan)[1] if stepped.moved[0] is plan else epoch.compiled(*stepped.moved)
+    path = compiled(plan)[1] if stepped.moved[0] is plan else motion_library(*stepped.moved)
 
     def integrate(k: int, times: Floats) -> tuple[Floats, Any]:
         arguments = path, stepped.p[k], stepped.y[k], stepped.t0, problem.tolerance

@@ -37,10 +37,10 @@ RESERVED = frozenset(
 
 
 def switched(scene: Scene) -> bool:
-    """Return whether a torque formula of a scene contains a function with a jump or kink, such as ``sign``
-    or ``abs``.
+    """Return whether a torque formula of a scene contains a function with a jump or kink: ``sign``, ``abs``, ..
+
+    The equations of such a motion change where the function switches.
     """
-    # The equations of such a motion change where the function switches.
     return any(
         has_switches(expression.parse(formula, switching=True))
         for torque in scene.torques
@@ -49,22 +49,26 @@ def switched(scene: Scene) -> bool:
 
 
 def switching_function(scene: Scene) -> str:
-    """Return the name of a function with a jump or kink in a scene's torques, for messages; empty if there is none."""
+    """Return the name of a function with a jump or kink in a scene's torques, for messages; empty if there is none.
+
+    Of several such functions, it is the alphabetically first.
+    """
     calls = {
         name
         for torque in scene.torques
         for formula in torque.formulas
         for name in expression.operations(expression.parse(formula, switching=True))
     }
-    # the alphabetically first
     return min(calls & set(expression.SWITCHING), default="")
 
 
 def general_structure(scene: Scene, switched: bool = False) -> Structure:
-    """Return the structure of a scene that assumes nothing: full inertia tensor, free constants, full attitude."""
+    """Return the structure of a scene that assumes nothing: full inertia tensor, free constants, full attitude.
+
+    If ``switched``, each function with a jump or kink in a torque formula becomes a constant, its mode, such as 1 for
+    ``sign(omega_3)`` while omega_3 > 0.
+    """
     names: set[str] = set(RESERVED)
-    # With switched, each function with a jump or kink in a torque formula becomes a constant, its mode (such as 1 for
-    # sign(omega_3) while omega_3 > 0).
     torques = [_general_torque(number, torque, names, switched) for number, torque in enumerate(scene.torques, start=1)]
     return Structure(InertiaTensor(tuple(sorted([*MOMENTS, *PRODUCTS]))), tuple(torques))
 
@@ -111,8 +115,9 @@ def _switch(switch: Switch) -> TorqueSwitch:
 
 
 def _prefix(number: int, names: list[str], known: set[str]) -> str:
-    """Return a prefix, empty or such as ``"torque2_"``, that makes ``names`` differ from ``known``; add the new names
-    to ``known``.
+    """Return a prefix, empty or such as ``"torque2_"``, that makes ``names`` differ from ``known``.
+
+    The names with the prefix are added to ``known``.
     """
     prefix = ""
     while known & {f"{prefix}{name}" for name in names}:

@@ -70,11 +70,11 @@ class Plan:
 
     @cached_property
     def constants(self) -> dict[str, Fraction]:
-        """The exact values of all constants in the equations and of the initial state, such as ``{"A":
-        Fraction(1)}``.
+        """The exact values of all constants in the equations and of the initial state: ``{"A": Fraction(1), ..}``.
+
+        Modes, which stand for functions such as sign, are 1; propagation sets them to the values that belong to the
+        state.
         """
-        # Modes, which stand for functions such as sign, are 1; propagation sets them to the values that belong to the
-        # state.
         return self.scene_constants | self.start_constants
 
     @cached_property
@@ -101,15 +101,15 @@ class Plan:
 
     @property
     def switches(self) -> list[str]:
-        """The functions with jumps or kinks in the torques, as the scene writes them, such as ``"sign(omega_3)"``."""
-        # empty if the plan was made without modes
+        """The functions with jumps or kinks in the torques, as the scene writes them, such as ``"sign(omega_3)"``.
+
+        The list is empty if the plan was made without modes.
+        """
         return [switch.label for torque in self.structure.formula_torques for switch in torque.switches]
 
     @cached_property
     def states(self) -> tuple[str, ...]:
-        """The names of the states in the order of the kernel, such as ``("omega_1", "omega_2", "q0", "q1", "q2",
-        "q3")``.
-        """
+        """The names of the states in the order of the kernel: ``("omega_1", "omega_2", "q0", "q1", "q2", "q3")``."""
         structure, axis = self.structure, self.structure.planar
         names = [f"omega_{i + 1}" for i in structure.moving]
         if structure.attitude:
@@ -137,10 +137,10 @@ class Plan:
         return tuple([STATES.index(name) for name in self.states])
 
     def from_start(self, initial: Initial) -> "Plan":
-        """Return the plan of the same scene and structure for ``initial``, which must have the same
-        :func:`structure_key`.
+        """Return the plan for another initial state without an examination of the rules, which saves time.
+
+        The state must have the same :func:`structure_key`; this is not checked.
         """
-        # The rules are not examined again, which saves time. The key is not checked.
         scene, plan = object.__new__(Scene), object.__new__(Plan)
         scene.__dict__.update(self.scene.__dict__, initial=initial)
         plan.__dict__.update(self._shared, scene=scene)
@@ -148,9 +148,7 @@ class Plan:
 
     @cached_property
     def _shared(self) -> dict[str, Any]:
-        """The attributes of a plan that are the same for every initial state, as a dict; :meth:`from_start` copies
-        them.
-        """
+        """The attributes that are the same for every initial state, by name; :meth:`from_start` copies them."""
         names = ("structure", "rows", "scene_constants", "states", "_places", "_start_places")
         attributes: dict[str, Any] = {name: getattr(self, name) for name in names}
         attributes["_shared"] = attributes

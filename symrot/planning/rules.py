@@ -57,8 +57,8 @@ class RuleOutcome(NamedTuple):
     derivation : str
         Name of the derivation that justifies the decision; empty if no derivation is needed.
     item : str
-        The subject of the rule, such as "products of inertia". It is empty in what a rule's function returns; the
-        caller adds it from :data:`RULES`.
+        The subject of the rule, such as "products of inertia". The functions of the rules leave it empty;
+        :func:`symrot.planning.plan.make_plan` adds it from :data:`RULES`.
 
     Examples
     --------

@@ -76,9 +76,7 @@ class SceneKernel:
         cls, rates: Program, rate_parameters: Parameters, quantities: Program, quantity_parameters: Parameters,
         conserved: tuple[Conserved, ...], source: str,
     ) -> "SceneKernel":  # fmt: skip
-        """Return the kernel that consists of the given programs, parameters, conserved quantities and C text of
-        ``rates``.
-        """
+        """Return the kernel of the given programs, parameters and conserved quantities; ``source``: C text of rates."""
         return cls(
             {
                 "rates": rates.to_json(),
@@ -91,10 +89,10 @@ class SceneKernel:
         )
 
     def without_invariants(self, reason: str) -> "SceneKernel":
-        """Return the kernel with all candidates for conserved quantities marked as not conserved, for the
-        ``reason``.
+        """Return the kernel with all candidates for conserved quantities marked as not conserved, for ``reason``.
+
+        Nothing can be proven, for example, about a torque without a formula.
         """
-        # for example, nothing can be proven about a torque without a formula
         lost = [(name, unit, output, False, reason) for name, unit, output, *_ in self.record["conserved"]]
         return SceneKernel({**self.record, "conserved": lost})
 
@@ -105,9 +103,7 @@ class SceneKernel:
 
     @cached_property
     def rate_parameters(self) -> Parameters:
-        """The parameters of the rates in C order, as pairs (name, formula in the scene's constants): ``("p0", (B -
-        C)/A)``.
-        """
+        """The parameters of the rates in C order, as pairs such as ``("p0", (B - C)/A)``: name and formula."""
         return _loaded(self.record["rate_parameters"])
 
     @cached_property
@@ -127,8 +123,7 @@ class SceneKernel:
 
     @property
     def source(self) -> str:
-        """The C text of the rates: the function ``symrot_rates``, which always takes an array of parameters."""
-        # A kernel without parameters ignores the array, so that all are called in the same way.
+        """The C text of the rates: the function ``symrot_rates``, which takes an array of parameters, used or not."""
         return self.record["source"]
 
 
@@ -141,8 +136,6 @@ def _loaded(saved: SavedParameters) -> Parameters:
 
 
 def bind(parameters: Parameters, constants: Mapping[str, Fraction]) -> list[float]:
-    """Return the values of the parameters, pairs (name, formula), computed exactly from the constants and
-    rounded once.
-    """
+    """Return the values of parameters, pairs (name, formula), computed exactly from constants and rounded once."""
     values = {"pi": number.PI, **constants}
     return [float(evaluate(node, values, EXACT_FUNCTIONS)) for _, node in parameters]

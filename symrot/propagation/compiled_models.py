@@ -33,9 +33,9 @@ __all__ = [
     "formula_deviations",
     "grows_late",
     "has_formulas",
+    "invariant_source",
     "kernel_key",
     "library_source",
-    "missing_compiler",
     "motion_library",
     "scene_kernel",
     "taylor_library",
@@ -43,7 +43,7 @@ __all__ = [
 
 FOLDERS = ("codegen", "dynamics", "exact", "formula", "kernels", "kinematics")
 FILES = (
-    "planning/scene_kernel.py", "symbols.py", "propagation/invariants.py", "propagation/steppers/taylor.py",
+    "planning/scene_kernel.py", "symbols.py", "propagation/steppers/taylor.py",
     *taylor.FILES.values(),
 )  # fmt: skip  # the text of these files is cached together with the recurrences
 ATTITUDE_SCALE = 1.0  # a quaternion has unit norm; an error of an angle counts in rad
@@ -92,9 +92,6 @@ def scene_kernel(plan: Plan, on_rates: Callable[[Program, str], object] = lambda
     return kernel
 
 
-missing_compiler = library.missing
-
-
 def compiled(plan: Plan) -> tuple[SceneKernel, Path]:
     """Return the kernel of a plan, and the path of the compiled library of the kernel and its stepper, DOP853.
 
@@ -138,9 +135,6 @@ def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected:
     InputError
         If the rates have no Taylor series, for example since they contain the absolute value of a state.
     """
-    from symrot.propagation.invariants import invariant_source
-    from symrot.propagation.steppers import taylor
-
     # the order of the series suits the tolerance
     order = taylor.order_for(tolerance, kernel.rates)
     key = f"taylor {order}{'' if projected else ' not projected'}\n{kernel_key(plan)}"
@@ -150,6 +144,18 @@ def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected:
         source = taylor.translation_unit(kernel.rates, *error_blocks(plan), order, invariants, has_formulas(plan))
         library.store(key, source)
     return library.build(source, "taylor", taylor.FLAGS)
+
+
+def invariant_source(kernel: SceneKernel, states: Sequence[str]) -> str:
+    """Return C code that computes the conserved quantities from an array of the states, in the order of ``states``.
+
+    The Taylor stepper keeps these quantities constant.
+    """
+    from symrot.codegen.taylor.invariant_source import invariant_definitions
+
+    # those that the derivation of the kernel has proved; invariant_definitions adds the norm of the quaternion
+    outputs = [item.output for item in kernel.conserved if item.holds]
+    return invariant_definitions(kernel.quantities, outputs, states, [name for name, _ in kernel.quantity_parameters])
 
 
 def error_blocks(plan: Plan) -> tuple[list[int], list[float]]:

@@ -359,14 +359,6 @@ class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
 
     has_external_torque = True
 
-    def rounding_warning(self, t: float) -> str:
-        """Return a sentence that warns of errors beyond the time t, s, a time of ``Stats.rounded_beyond``."""
-        return (
-            f"beyond t = {t!r} s the rounding of the times at which the torque is evaluated, to doubles that lie "
-            f"{math.ulp(t):.1e} s apart, may change the motion by more than the tolerance; choose t = 0 nearer to the "
-            "motion, or a larger tolerance"
-        )
-
     def __init__(self, shared: ExternalSetup, plan: Plan) -> None:
         super().__init__(shared.setup, plan)
         self._shared = shared

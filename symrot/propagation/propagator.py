@@ -175,7 +175,7 @@ class Propagator:
             Other values of constants, by the names of :meth:`symrot.Scene.with_`, such as ``{"weight": 2}``. Use
             :func:`symrot.propagate_ensemble` for many values at once.
         events : sequence, optional
-            Formulas whose zeros are located, each as text, as a :class:`symrot.propagation.events.events.Event`, or as
+            Formulas whose zeros are located, each as text, as a :class:`symrot.Event`, or as
             a mapping with the fields of an Event. The times are ``t_events`` of the trajectory; at a terminal event the
             trajectory ends.
 
@@ -230,8 +230,8 @@ class Propagator:
         return other
 
     def _with_events(self, motion: Motion, times: Floats, events: Any) -> Trajectory:
+        from symrot.propagation.events.event import read_events
         from symrot.propagation.events.event_result import integrate_with_events
-        from symrot.propagation.events.events import read_events
 
         requested = read_events(events)
         if self.sensitivities is not None:

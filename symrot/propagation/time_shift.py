@@ -10,7 +10,6 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from math import lcm
-from pathlib import Path
 from typing import Any
 
 from symrot.build import cache as library
@@ -23,7 +22,7 @@ from symrot.propagation.compiled_models import kernel_key, motion_library
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE
 
-__all__ = ["ShiftedParameters", "clock", "compiled", "starts_far", "time_shifted"]
+__all__ = ["ShiftedParameters", "clock", "starts_far", "time_shifted"]
 
 # Long motions from 0 keep the digits of their phases in other ways: Taylor steps hold the time in two doubles, DOP853
 # moves the clock of the rates repeatedly, SciPy restarts on a moved clock where its steps are short.
@@ -129,16 +128,11 @@ def _coefficients(node: Node) -> tuple[Fraction, Fraction] | None:
     return (a / c, b / c) if node[0] == "/" and not d else None
 
 
-def compiled(plan: Plan, kernel: SceneKernel) -> Path:
-    """Return the path of the library (kernel and DOP853 stepper) for plan and kernel from :func:`time_shifted`."""
-    return motion_library(plan, kernel)
-
-
 def clock(
     moving: Callable[[], tuple[Plan, SceneKernel]],
     constants: Mapping[str, Fraction],
     start: float = 0.0,
-    make: Callable[[Plan, SceneKernel], Any] = compiled,
+    make: Callable[[Plan, SceneKernel], Any] = motion_library,
 ) -> Callable[[float], tuple[Any, list[float]]]:
     """Return a function from an epoch, s, to a pair: rates that take the time since the epoch, and their parameters."""
 

@@ -10,7 +10,7 @@ import pytest
 
 import symrot
 from symrot.errors import InputError, PropagationError
-from symrot.propagation.events.events import read_events
+from symrot.propagation.events.event import read_events
 from symrot.scene.scene import Scene
 from tests.needs import needs_compiler
 

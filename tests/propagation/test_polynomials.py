@@ -7,8 +7,7 @@ import pytest
 
 import symrot
 from symrot.errors import PropagationError
-from symrot.propagation.events.events import stepped
-from symrot.propagation.events.polynomials import HEAD, fitted, fitted_pieces
+from symrot.propagation.events.polynomials import HEAD, fitted, fitted_pieces, stepped
 from tests.propagation.test_events import run, scene
 
 

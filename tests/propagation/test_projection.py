@@ -15,8 +15,8 @@ from symrot.formula.program import Argument, Program, Signature
 from symrot.formula.tree import parse
 from symrot.planning.plan import make_plan
 from symrot.planning.scene_kernel import bind
-from symrot.propagation.compiled_models import error_blocks, scene_kernel
-from symrot.propagation.invariants import invariant_parameters, invariant_source
+from symrot.propagation.binding import Binding, two_doubles
+from symrot.propagation.compiled_models import error_blocks, invariant_source, scene_kernel
 from symrot.propagation.steppers import taylor
 from symrot.propagation.steppers.stepping import Integration
 from symrot.scene.scene import Scene
@@ -39,7 +39,10 @@ class Body:
         self.kernel = kernel = scene_kernel(plan)
         source = taylor.translation_unit(kernel.rates, *error_blocks(plan), 20, invariant_source(kernel, plan.states))
         self.path = library.build(source, "body")
-        self.p = [*bind(kernel.rate_parameters, plan.constants), *invariant_parameters(kernel, plan)]
+        self.p = [
+            *bind(kernel.rate_parameters, plan.constants),
+            *Binding(kernel.quantity_parameters, plan, two_doubles)(plan),
+        ]
         self.start, self.plan = [float(value) for value in plan.initial_state], plan
 
     def at(self, t, tolerance=1e-15, **more):

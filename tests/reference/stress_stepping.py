@@ -10,8 +10,8 @@ from symrot.build import cache as library
 from symrot.errors import CompilerError
 from symrot.planning.plan import make_plan
 from symrot.planning.scene_kernel import bind
-from symrot.propagation.compiled_models import error_blocks, scene_kernel
-from symrot.propagation.invariants import invariant_parameters, invariant_source
+from symrot.propagation.binding import Binding, two_doubles
+from symrot.propagation.compiled_models import error_blocks, invariant_source, scene_kernel
 from symrot.propagation.propagate import propagator
 from symrot.propagation.steppers import taylor
 from tests.closed_form.test_heavy_top import S18, tilted
@@ -44,7 +44,10 @@ class Stepped:
             kernel.rates, *error_blocks(plan), order, invariant_source(kernel, plan.states)
         )
         self.path = library.build(source, "taylor", flags)
-        self.p = [*bind(kernel.rate_parameters, plan.constants), *invariant_parameters(kernel, plan)]
+        self.p = [
+            *bind(kernel.rate_parameters, plan.constants),
+            *Binding(kernel.quantity_parameters, plan, two_doubles)(plan),
+        ]
         self.start = [float(value) for value in plan.initial_state]
 
     def task(self, tolerance=1e-15, every=0, **more):

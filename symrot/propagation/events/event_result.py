@@ -16,18 +16,10 @@ from symrot.build import cache as library
 from symrot.errors import InputError, PropagationError
 from symrot.planning.scene_kernel import bind
 from symrot.propagation.compiled_models import error_blocks
-from symrot.propagation.events.events import (
-    Event,
-    EventZero,
-    SearchResult,
-    ZerosNotSeparated,
-    event_library_source,
-    search,
-    stepped,
-    timed,
-    uses_attitude,
-)
-from symrot.propagation.events.polynomials import HEAD, Piece, fitted, fitted_pieces
+from symrot.propagation.events.event import Event, timed, uses_attitude
+from symrot.propagation.events.library import event_library_source
+from symrot.propagation.events.polynomials import HEAD, Piece, fitted, fitted_pieces, stepped
+from symrot.propagation.events.search import EventZero, SearchResult, ZerosNotSeparated, search
 from symrot.propagation.motions.methods import ClosedFormMotion, SciPyMotion
 from symrot.propagation.motions.motion import Motion, MotionInParts, SteppedInC, on_clock
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped

@@ -6,6 +6,7 @@ all states, coefficient 1, and so on, in powers of ``(time - t)/unit``. An *edge
 
 import math
 from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
 from functools import cache
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -14,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symrot.errors import PropagationError
+from symrot.propagation.steppers.stepping import Integration
 
-__all__ = ["HEAD", "Piece", "fitted", "fitted_pieces", "rows_of"]
+__all__ = ["HEAD", "Piece", "fitted", "fitted_pieces", "rows_of", "stepped"]
 
 Floats = NDArray[np.float64]
 
@@ -33,9 +35,11 @@ FEWEST, MOST = 16, 1024  # pieces fitted at a time
 # rounding. Any other motion is interpolated at Chebyshev points, on intervals that are halved until polynomial and
 # motion agree up to rounding.
 class Piece(NamedTuple):
-    """Consecutive polynomials of a motion: row i, one polynomial per state, is valid from edge i to edge i + 1, s."""
+    """Consecutive polynomials of a motion: row i, one polynomial per state, is valid from edge i to edge i + 1, s.
 
-    # in the order of the motion: decreasing if it runs backward in time
+    The edges are in the order of the motion: they decrease if it runs backward in time.
+    """
+
     edges: Floats
     rows: Floats
 
@@ -52,6 +56,30 @@ def rows_of(stepper: Any, record: Floats) -> Floats:
     if count:
         rows[:, HEAD:] = np.einsum("mk,nki->nmi", _nested(terms.shape[1]), terms).reshape(count, -1)
     return rows
+
+
+def stepped(
+    integration: Integration, end: float, broken: list[PropagationError], records: list[Floats]
+) -> Generator[Piece, None, None]:
+    """Integrate a motion from its start to ``end``, s, and yield its polynomials in groups of steps.
+
+    The recorded steps are appended to ``records``. If the motion stops early, the error is appended to ``broken``.
+    """
+    room = integration.stepper.rows_per_call
+    with closing(integration.runs(end)) as runs:
+        for run in runs:
+            while run.t != run.stop:
+                rows = np.empty((room, integration.stepper.row))
+                try:
+                    integration.advance(run, None, 0, None, rows.ctypes.data, room)
+                except PropagationError as error:
+                    broken.append(error)
+                rows = rows[: run.recorded]
+                if len(rows):
+                    records.append(rows)
+                    yield Piece(np.append(rows[:, 0], run.t), rows_of(integration.stepper, rows))
+                if broken:
+                    return
 
 
 @cache

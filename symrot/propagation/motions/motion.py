@@ -1,5 +1,6 @@
 """The motion of a scene from one initial state: what motions by every method have in common."""
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from functools import cached_property
@@ -75,6 +76,12 @@ class Motion(ABC):
 
     def rounding_warning(self, t: float) -> str:
         """Return a sentence that warns of errors beyond the time t, s, a time of ``Stats.rounded_beyond``."""
+        if self.has_external_torque:
+            return (
+                f"beyond t = {t!r} s the rounding of the times at which the torque is evaluated, to doubles that lie "
+                f"{math.ulp(t):.1e} s apart, may change the motion by more than the tolerance; choose t = 0 nearer to "
+                "the motion, or a larger tolerance"
+            )
         return (
             f"beyond t = {t!r} s the rounding of the torque, a formula of the time, may change the motion by more than "
             "the tolerance; choose a larger tolerance"

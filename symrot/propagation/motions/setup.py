@@ -19,7 +19,7 @@ from symrot.planning.plan import Plan
 from symrot.planning.scene_kernel import EPOCH, SceneKernel
 from symrot.propagation import time_shift
 from symrot.propagation.binding import Binding, two_doubles
-from symrot.propagation.compiled_models import formula_deviations, taylor_library
+from symrot.propagation.compiled_models import formula_deviations, motion_library, taylor_library
 from symrot.propagation.method import Choice
 from symrot.propagation.steppers import dop853, taylor
 from symrot.propagation.steppers.stepping import Integration
@@ -158,9 +158,10 @@ class SteppedSetup:
 
 
 def stepped_on_own_clock(setup: Setup) -> SteppedSetup:
+    """Return the compiled setup of motions whose time is counted from their start, for ``setup`` on that clock."""
     if setup.choice.method == "taylor":
         return SteppedSetup(setup, taylor_library(setup.plan, setup.kernel, setup.tolerance))
-    return SteppedSetup(setup, time_shift.compiled(setup.plan, setup.kernel))
+    return SteppedSetup(setup, motion_library(setup.plan, setup.kernel))
 
 
 @final

@@ -35,9 +35,10 @@ def places_within(begin: float, times: Floats) -> Floats:
 def rests_at_corner(
     rates: Program, depends: Sequence[Sequence[str]], p: Sequence[float], times: Floats, samples: Floats
 ) -> bool:
-    """Return whether a motion is where its rates have no derivatives at one of n times, which are chosen by no event.
+    """Return whether the rates of a motion have no derivatives by states or parameters at one of n given times.
 
-    It then stays there, because it only passes such points at single times.
+    The times are arbitrary. A motion that only passes points without derivatives does so at single times, which the
+    given ones miss: if the result is true, the motion stays at such points.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ from symrot.errors import InputError
 from symrot.formula.float_functions import FLOAT_FUNCTIONS
 from symrot.formula.switches import STATES
 from symrot.formula.tree import evaluate, operations
-from symrot.propagation.events.events import Event
+from symrot.propagation.events.event import Event
 
 __all__ = ["TOUCHING", "along_motion", "event_time_slopes", "require_smooth_events"]
 

@@ -16,7 +16,10 @@ Floats = NDArray[np.float64]
 
 
 def beside(guards: Guards, interval: Interval, signs: Mapping[str, int]) -> Interval:
-    """Return an interval's motion beside guards that are held at zero, on the sides that ``signs`` tells."""
+    """Return an interval in which some guards are not held at zero: each has the sign in ``signs`` instead.
+
+    Its rates are those of the motion on this side of the jump, next to the sliding motion.
+    """
     twins = guards.system.twins
     modes = {**interval.modes, **{twin: own * sign for mode, sign in signs.items() for twin, own in twins[mode]}}
     held = interval.held - frozenset(signs)
@@ -24,7 +27,7 @@ def beside(guards: Guards, interval: Interval, signs: Mapping[str, int]) -> Inte
 
 
 def hold_at_rest(guards: Guards, interval: Interval) -> None:
-    """Hold the guards that stay at zero in an interval; list in ``resting`` those that cannot be held."""
+    """Hold the guards that stay at zero in an interval; append those that cannot be held to its list ``resting``."""
     resting = [mode for mode in interval.regime.formulas if mode not in interval.held and rests(guards, interval, mode)]
     for mode in resting:
         # the square of the argument times its sign, for example, has a derivative at zero
@@ -47,9 +50,9 @@ def hold_at_rest(guards: Guards, interval: Interval) -> None:
 def refuse_resting(
     guards: Guards, interval: Interval, integrate: Callable[[Interval, Floats], tuple[Floats, Floats]]
 ) -> None:
-    """Raise PropagationError if a variable moves a guard that stays at zero, where a jump or kink is.
+    """Raise PropagationError if a variable moves a guard of ``interval.resting`` away from zero, its jump or kink.
 
-    ``integrate`` returns states and derivatives in an interval at times.
+    ``integrate`` takes an interval and times, and returns the states and the derivatives at these times.
     """
     for mode in interval.resting:
         places = list(interval.places())
@@ -79,7 +82,10 @@ def _is_smooth_at(guards: Guards, interval: Interval, mode: str) -> bool:
 
 
 def require_one_surface(guards: Guards, interval: Interval, mode: str, t: float, y: Floats) -> None:
-    """Raise PropagationError if functions that a motion holds at zero together are separated by a variable."""
+    """Raise PropagationError if a change of time, state or variable separates the zeros of a mode and of its twins.
+
+    Twins are functions that switch together; a motion can then not be held at all their jumps at once.
+    """
     guard = guards.guard(interval, mode, t, y)
     own = np.array([guard.time, *guard.states, *guard.variables])
     for twin, _ in guards.twins(mode):

@@ -16,7 +16,10 @@ Floats = NDArray[np.float64]
 
 
 def from_start(guards: Guards, interval: Interval, by: Floats) -> Floats:
-    """Return the derivatives just after the start; they differ if friction holds the body from the start on."""
+    """Return the derivatives just after the start of a motion, for the derivatives ``by`` at the start, shape (7, m).
+
+    They differ if friction holds the body from the start on: a nearby start then slides to the same jump at once.
+    """
     f = guards.rates(interval, interval.start, interval.first)
     for mode in interval.regime.formulas:
         if mode in interval.held:

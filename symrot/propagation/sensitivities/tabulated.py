@@ -30,10 +30,9 @@ from symrot.propagation.sensitivities.libraries import MotionLibrary, rates_of
 from symrot.propagation.sensitivities.parameter_slopes import ParameterSlopes, Rows
 from symrot.propagation.sensitivities.variables import Variable, read_variables
 from symrot.propagation.sensitivities.variation import (
-    AT_ONCE,
     columns_of,
-    fitting_unit,
-    follow_columns,
+    follow_interval,
+    groups_of_columns,
     structure_of,
     unit_of,
 )
@@ -51,7 +50,6 @@ Floats = NDArray[np.float64]
 KNOT = "table_knot"
 COEFFICIENTS = tuple(f"table_{axis}_{power}" for axis in (1, 2, 3) for power in (3, 2, 1, 0))
 """The constants of the polynomials, in the order of SciPy's coefficients for each component."""
-ZEROS = [0.0]
 MOST_BOUND = 5000  # intervals whose parameters are stored
 
 
@@ -104,8 +102,7 @@ class TableEquations:
 
         self._slopes_at = at
         self._libraries = []
-        for first in range(0, len(self._columns), AT_ONCE):
-            places = range(first, min(first + AT_ONCE, len(self._columns)))
+        for places in groups_of_columns(len(self._columns)):
             depends = [at(0).depends(self._parameters, k) for k in places]
             self._libraries.append((places, depends, MotionLibrary(self._plan, self._rates, depends)))
         self._bound: dict[int, tuple[dict[str, float], Rows]] = {}
@@ -156,25 +153,15 @@ class TableEquations:
     ) -> tuple[Floats, Floats]:
         """Return states and derivatives at times in the interval number k; ``units`` are changed to those used."""
         values, rows = self._numbers(k)
-        knot, results = float(self._pieces.edges[k]), []
+        knot = float(self._pieces.edges[k])
 
         def labelled(error: PropagationError) -> PropagationError:
             later = error.later(knot) if isinstance(error, IntegrationStopped) else error
             return PropagationError(f"{self.scene.name}: sensitivities: {later}")
 
-        for places, depends, library in self._libraries:
-            slopes = [
-                [rows.get(name, ZEROS)[n if name in rows else 0] for name in moving]
-                for n, moving in zip(places, depends, strict=True)
-            ]
-            own = [fitting_unit(units[n], by[:, n]) for n in places]
-            states, derivatives, used = follow_columns(
-                library, [values[name] for name, _ in self._parameters], slopes, y.tolist(),
-                [by[:, n].tolist() for n in places], own, begin - knot, times - knot, labelled,
-            )  # fmt: skip
-            units[places.start : places.stop] = used
-            results.append((states, derivatives))
-        return results[0][0], np.concatenate([derivatives for _, derivatives in results], axis=2)
+        return follow_interval(
+            self._libraries, self._parameters, values, rows, y, by, units, begin - knot, times - knot, labelled
+        )
 
     def _numbers(self, k: int) -> tuple[dict[str, float], Rows]:
         """Return the values of the parameters in the interval number k, and their derivatives by the variables."""

@@ -4,7 +4,7 @@ Motion and derivatives are one system, integrated in common steps. The derivativ
 *column* of the matrix of derivatives.
 """
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import frexp, ldexp
@@ -21,7 +21,7 @@ from symrot.formula.switches import STATES
 from symrot.planning.general_structure import PRODUCTS, constants_of, general_structure, switched
 from symrot.planning.plan import Plan
 from symrot.planning.rules import UNIT_FIELDS, pattern
-from symrot.planning.scene_kernel import EPOCH
+from symrot.planning.scene_kernel import EPOCH, Parameters
 from symrot.propagation.binding import value_of
 from symrot.propagation.events.event_result import EventResult
 from symrot.propagation.sensitivities.event_times import event_time_slopes
@@ -43,6 +43,8 @@ __all__ = [
     "columns_of",
     "fitting_unit",
     "follow_columns",
+    "follow_interval",
+    "groups_of_columns",
     "rotation_slopes",
     "small_rotation",
     "structure_of",
@@ -111,14 +113,15 @@ def _start(scene: Scene) -> dict[str, Fraction]:
 
 
 def columns_of(scene: Scene, variables: Sequence[Variable]) -> list[Column]:
+    """Return, for each variable, how the initial state and the constants of the scene depend on it."""
     general = general_structure(scene, switched(scene))
     return [Column(scene, variable, general) for variable in variables]
 
 
 def structure_of(scene: Scene, columns: Sequence[Column], varying: Collection[str] = ()) -> Structure:
-    """Return the form of the equations in which the constants ``varying`` are parameters, not numbers.
+    """Return the structure of the equations for derivatives by the variables of ``columns``.
 
-    So is each constant that a variable of ``columns`` changes.
+    In it the constants that these variables change, and the constants ``varying``, are parameters, not numbers.
     """
     # They become parameters even if they are now zero or one, since derivatives by them are needed; so do constants
     # that differ between the motions of an ensemble (varying). Other zeros and ones simplify the equations.
@@ -214,7 +217,7 @@ class SmoothEquations:
 
 def _parts(scene: Scene, columns: Sequence[Column], epoch: float = 0.0) -> "list[_Part]":
     """Return the equations of all columns of derivatives, with time counted from ``epoch``, s."""
-    return [_Part(scene, columns[first : first + AT_ONCE], epoch) for first in range(0, len(columns), AT_ONCE)]
+    return [_Part(scene, columns[own.start : own.stop], epoch) for own in groups_of_columns(len(columns))]
 
 
 class _Part:
@@ -311,6 +314,56 @@ def follow_columns(
             units[k] = ldexp(units[k], 1 - frexp(largest[k])[1])
     scaled = derivatives / np.array(units)[None, :, None]
     return samples[:, :size], np.ascontiguousarray(scaled.transpose(0, 2, 1)), units
+
+
+def follow_interval(
+    libraries: Iterable[tuple[range, Sequence[Sequence[str]], MotionLibrary]],
+    parameters: Parameters,
+    values: Mapping[str, float],
+    rows: Mapping[str, Sequence[float]],
+    y: Floats,
+    by: Floats,
+    units: list[float],
+    begin: float,
+    times: Floats,
+    labelled: Callable[[PropagationError], PropagationError],
+) -> tuple[Floats, Floats]:
+    """Return states at n times of an interval, shape (n, 7), and their derivatives by m variables, (n, 7, m).
+
+    Parameters
+    ----------
+    libraries : iterable of (range, sequences of str, MotionLibrary)
+        For each group of variables: their numbers, the names of the parameters that depend on each, and the code that
+        integrates the motion and the derivatives by them.
+    parameters : pairs of name and formula
+        The parameters of the rates, in order.
+    values, rows : mappings
+        The values of the parameters, and their derivatives by each variable, by name.
+    y, by : arrays, shapes (7,) and (7, m)
+        States and derivatives at the time ``begin``.
+    units : list of m floats
+        As for :func:`follow_columns`; replaced by the units used last.
+    begin, times, labelled
+        As for :func:`follow_columns`.
+    """
+    numbers, results = [values[name] for name, _ in parameters], []
+    for places, depends, library in libraries:
+        slopes = [
+            [rows[name][k] if name in rows else 0.0 for name in own] for k, own in zip(places, depends, strict=True)
+        ]
+        starts, own = [by[:, k].tolist() for k in places], [fitting_unit(units[k], by[:, k]) for k in places]
+        states, derivatives, used = follow_columns(
+            library, numbers, slopes, y.tolist(), starts, own, begin, times, labelled
+        )
+        units[places.start : places.stop] = used
+        results.append((states, derivatives))
+    return results[0][0], np.concatenate([derivatives for _, derivatives in results], axis=2)
+
+
+def groups_of_columns(count: int) -> Iterator[range]:
+    """Yield the numbers of ``count`` columns in groups of at most :data:`AT_ONCE`, which one library integrates."""
+    for first in range(0, count, AT_ONCE):
+        yield range(first, min(first + AT_ONCE, count))
 
 
 def unit_of(scene: Scene, column: Column) -> float:

@@ -19,7 +19,7 @@ from symrot.propagation.sensitivities.parameter_slopes import ParameterSlopes
 from symrot.propagation.sensitivities.sliding import hold_at_rest, refuse_resting
 from symrot.propagation.sensitivities.starts import from_start
 from symrot.propagation.sensitivities.touching import refuse_touching
-from symrot.propagation.sensitivities.variation import AT_ONCE, fitting_unit, follow_columns, unit_of
+from symrot.propagation.sensitivities.variation import follow_interval, groups_of_columns, unit_of
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.smoothness import non_smooth_torque
 from symrot.propagation.switched.motion import SwitchedMotion
@@ -30,7 +30,6 @@ __all__ = ["Walk"]
 
 Floats = NDArray[np.float64]
 MARGIN = 10.0  # times the tolerance: an error of an event time, as part of the length of the motion
-ZEROS = [0.0]
 
 
 class Walk:
@@ -96,31 +95,14 @@ class Walk:
         """Return states and derivatives, (n, 7) and (n, 7, m), at times of an interval, s after its ``zero``."""
         program, parameters = self.guards.program(interval)
         values, rows = self.guards.bound(parameters, interval, "rates")
-        results, columns = [], self.parameter_slopes.columns
-        for first in range(0, len(columns), AT_ONCE):
-            places = range(first, min(first + AT_ONCE, len(columns)))
+        libraries = []
+        for places in groups_of_columns(len(self.parameter_slopes.columns)):
             depends = [self.parameter_slopes.depends(parameters, k) for k in places]
-            library = MotionLibrary(interval.regime.plan, program, depends)
-            slopes_of = [[rows.get(name, ZEROS)[k if name in rows else 0] for name in own]
-                         for k, own in zip(places, depends, strict=True)]  # fmt: skip
-            starts = [interval.before[:, k].tolist() for k in places]
-            units = [fitting_unit(self._units[k], interval.before[:, k]) for k in places]
-            numbers = [values[name] for name, _ in parameters]
-            states, derivatives, units = follow_columns(
-                library,
-                numbers,
-                slopes_of,
-                interval.first.tolist(),
-                starts,
-                units,
-                interval.start,
-                times,
-                self._label(interval),
-            )
-            for k, unit in zip(places, units, strict=True):
-                self._units[k] = unit
-            results.append((states, derivatives))
-        return results[0][0], np.concatenate([derivatives for _, derivatives in results], axis=2)
+            libraries.append((places, depends, MotionLibrary(interval.regime.plan, program, depends)))
+        return follow_interval(
+            libraries, parameters, values, rows, interval.first, interval.before, self._units, interval.start, times,
+            self._label(interval),
+        )  # fmt: skip
 
     def _label(self, interval: Interval) -> Callable[[PropagationError], PropagationError]:
         def named(error: PropagationError) -> PropagationError:

@@ -40,13 +40,21 @@ Piece = tuple[float, float, Any]  # first time, last time, SciPy's solution betw
 
 
 class WholeMotion(NamedTuple):
-    """Start and end, s, of a motion that SciPy computes in parts; ``spent`` counts evaluations in earlier parts."""
+    """The whole motion, of which SciPy computes a part: its limits hold for all parts together.
+
+    Attributes
+    ----------
+    start, end : float
+        Its start and end, s.
+    spent : int
+        Evaluations in earlier parts.
+    rounding : RoundingSum
+        The rounding errors in earlier parts, to which those of this part are added.
+    """
 
     start: float
     end: float
-    # the limit of evaluations holds for the whole motion
     spent: int
-    # as do those of the rounding errors
     rounding: RoundingSum
 
 
@@ -252,7 +260,8 @@ class _Integration:
         self.steps = self.evaluations = self.broken = 0
         self.pieces: list[Piece] = []  # pieces of the pass that is running, or that stopped early
         self.final = False  # whether this is the final pass, not the coarse one
-        self.sums = [options.whole.rounding] if options.whole else []  # of rounding errors, on each side of t0
+        # rounding errors, one sum for each side of t0
+        self.sums = [options.whole.rounding] if options.whole else []
         self.mark = (0, self.t0)  # work and time at the last check of the pace
         self.whole, self.before = options.whole, self.deviations.spent if self.deviations else 0
         with np.errstate(all="ignore"):  # the error below reports it
@@ -320,7 +329,7 @@ class _Integration:
             allowed[block] = share * max(size, slowest) / math.sqrt(len(self.y0))
         if self.whole is None:
             self.sums.append(RoundingSum(self.tolerance))
-        self.size = bars[0] / (SLACK * share)
+        self.size = bars[0] / (SLACK * share)  # of the first block, to which its errors are relative
         self.final = True
         try:
             pieces = self._segments(end, SMALLEST_RTOL, allowed, bars)

@@ -69,9 +69,12 @@ def add_samples(error: BaseException, numbers: NDArray[np.intp], states: Floats,
 
 
 def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
-    """Return why a stepper is stuck at the time t: adjacent doubles lie too far apart there, or else ``reason``."""
+    """Return why a stepper is stuck at the time t of a motion from ``t0`` to ``stop``, s.
+
+    Adjacent doubles lie too far apart there, if less than a million of them lie between the ends of the motion; else it
+    is stuck for the given ``reason``.
+    """
     apart = math.ulp(t)
-    # too coarse: less than a million doubles between the ends of the motion
     if abs(stop - t0) > MANY_TICKS * apart:
         return reason
     advice = "choose t = 0 nearer to the motion"

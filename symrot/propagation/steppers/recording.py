@@ -15,9 +15,11 @@ Floats = NDArray[np.float64]
 
 
 class Recording(ABC):
-    """A motion as a function from times in ``span``, one or n, to states, shape (N,) or (n, N)."""
+    """A motion as a function from times in ``span``, one or n, to states, shape (N,) or (n, N).
 
-    # scene time, s, at which the clock of the motion shows 0
+    Times are counted from ``epoch``, a time of the scene, s; a time outside the span raises InputError.
+    """
+
     epoch = 0.0
 
     def __init__(self, t0: float, y0: Sequence[float] | Floats, span: tuple[float, float], stats: Stats) -> None:

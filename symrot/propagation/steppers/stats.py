@@ -7,12 +7,21 @@ __all__ = ["Stats", "Switching", "stats_of"]
 
 
 class Switching(NamedTuple):
-    """The time t, s, at which a function in a torque, such as ``sign(omega_3)``, switches."""
+    """The time at which a function in a torque, such as ``sign(omega_3)``, switches.
+
+    Attributes
+    ----------
+    t : float
+        The time, s.
+    function : str
+        The function as the scene writes it.
+    how : str
+        ``"passed"``: the argument changes its sign. ``"held"``: it stays at zero from then on, as omega_3 of a wheel
+        that dry friction holds at rest. ``"released"``: it leaves zero after it was held there.
+    """
 
     t: float
     function: str
-    # "passed": the argument changes its sign; "held": it stays at zero from then on (dry friction holds a wheel at
-    # rest); "released": it leaves zero after being held there
     how: str
 
 

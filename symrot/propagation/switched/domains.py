@@ -1,4 +1,4 @@
-"""Where arguments of switching functions have no value: that of ``sign(asin(u))`` has none for u > 1."""
+"""Where arguments of switching functions have no value: the argument of ``sign(asin(u))`` has no value for u > 1."""
 
 from collections.abc import Mapping
 

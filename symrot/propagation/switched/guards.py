@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from symrot.errors import InputError
 from symrot.formula.float_functions import float_value
 from symrot.formula.tree import names, parse
-from symrot.propagation.events.events import signs_at_ends
 from symrot.propagation.events.polynomials import Piece
+from symrot.propagation.events.search import signs_at_ends
 from symrot.propagation.motions.motion import Motion
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import Floats

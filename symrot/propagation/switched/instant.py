@@ -44,7 +44,7 @@ class Instant(NamedTuple):
         return (times - self.high) - self.low
 
     def reached(self, times: Floats, side: float) -> int:
-        """Return how many of the sorted ``times`` a motion has reached at this instant, an equal time included.
+        """Return how many of the sorted ``times`` a motion has reached at this instant; an equal time counts.
 
         ``side`` is 1 if the times increase, -1 if they decrease.
         """

@@ -8,8 +8,8 @@ import numpy as np
 from symrot.formula.float_functions import float_value
 from symrot.formula.switches import CHANGING, hold
 from symrot.formula.tree import names, parse
-from symrot.propagation.events.events import signs_at_ends
 from symrot.propagation.events.polynomials import Piece
+from symrot.propagation.events.search import signs_at_ends
 from symrot.propagation.motions.motion import Motion
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import Floats
@@ -40,11 +40,11 @@ class ModeChanges(Guards):
         self.released: set[str] = set()  # modes held until this time: their guards leave zero slowly
         self.order: list[str] = []  # the modes that changed at the present time, in the order of the changes
         self.rested: set[str] = set()  # modes that were held at the present time though no torque was needed for it
-        self.left: set[tuple[str, int]] = set()  # the values of all modes before the changes at the present time
+        self.left: set[tuple[str, int]] = set()  # pairs (mode, value): the values from which modes changed now
         self.visited: dict[SwitchState, int] = {}  # states at the present time, with the number of changes before each
-        # Held modes, and the attraction when they were first held.
+        # the held modes, and Regime.attraction when they were first held
         self.attraction: tuple[frozenset[str], list[float]] = frozenset(), []
-        self.settled = 0
+        self.settled = 0  # how often functions were set to their value at zero
 
     def _count(self) -> None:
         self.switches += 1
@@ -176,8 +176,10 @@ class ModeChanges(Guards):
         return None
 
     def _returns(self, mode: str) -> bool:
-        """Return whether ``mode`` must be held at its jump, because its switch would only restore earlier modes."""
-        # all modes would be as they were before at this time: the same switches would repeat without end
+        """Return whether ``mode`` must be held at its jump, because its switch would restore earlier modes.
+
+        All modes would be as they were before at this time, and the same switches would repeat without end.
+        """
         first = self.visited.get(self._state(flip=mode))
         if first is None:
             return False
@@ -187,9 +189,7 @@ class ModeChanges(Guards):
 
     def _state(self, flip: str = "", hold: str = "") -> SwitchState:
         """Return all modes, and which are held, after the mode ``flip`` changes its sign or ``hold`` becomes held."""
-        # after flip has changed its sign
         modes = {**self.modes, flip: -self.modes[flip]} if flip else self.modes
-        # after hold becomes held: its argument stays at zero
         held = self.held | {self.system.twins[hold][0][0]} if hold else self.held
         return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
 

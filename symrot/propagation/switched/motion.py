@@ -112,7 +112,7 @@ def _switchings(changes: dict[tuple[float, str], str]) -> list[Switching]:
 
 
 class SwitchedRecording(Recording):
-    """A function from times to states, made of smooth intervals of a motion; NaN after a motion that stopped early."""
+    """A function from times to states, made of smooth intervals of a motion; NaN after the time at which it stopped."""
 
     def __init__(
         self, t0: float, y0: tuple[float, ...], span: tuple[float, float], stats: Stats, chunks: list[Chunk]
@@ -124,7 +124,7 @@ class SwitchedRecording(Recording):
 
     def _fill(self, times: Floats, states: Floats) -> None:
         if not self._chunks:
-            # a motion of no length: it has its start alone
+            # a motion that stopped at its start
             states[:] = np.nan
             return
         places = np.searchsorted(self._ends, times)

@@ -22,7 +22,8 @@ from symrot.formula.tree import Node, names, parse, rename, text
 from symrot.planning.scene_kernel import Parameters
 from symrot.propagation.binding import folded, two_doubles
 from symrot.propagation.compiled_models import error_blocks
-from symrot.propagation.events.events import Event, guard_library_source
+from symrot.propagation.events.event import Event
+from symrot.propagation.events.library import guard_library_source
 from symrot.propagation.motions.methods import SciPyMotion, SteppedMotion
 from symrot.propagation.steppers.stepping import Floats
 from symrot.propagation.switched.domains import may_lose_value

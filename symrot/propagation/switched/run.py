@@ -16,8 +16,8 @@ from symrot.closed_form.arithmetic.double_double import two_sum
 from symrot.formula.switches import hold
 from symrot.propagation import progress
 from symrot.propagation.compiled_models import error_blocks
-from symrot.propagation.events.events import ZerosNotSeparated, search
 from symrot.propagation.events.polynomials import Piece
+from symrot.propagation.events.search import ZerosNotSeparated, search
 from symrot.propagation.motions.motion import Motion
 from symrot.propagation.steppers.integration_stopped import IntegrationStopped
 from symrot.propagation.steppers.stepping import NOT_FINITE_SENTENCE, Floats

@@ -1,4 +1,4 @@
-"""Events: all times at which a formula of the motion is zero, located to the last bits.
+"""The search for events: all times at which a formula of the motion is zero, located to the last bits.
 
 The search in C bounds the formula on intervals, so that it misses no zero. A *piece* is a group of consecutive
 polynomials of the motion; an *entry* is an interval that may contain a zero; a *doubt* is an extremum nearer to zero
@@ -7,38 +7,21 @@ than the motion's error.
 
 import ctypes
 from bisect import bisect, insort
-from collections.abc import Callable, Generator, Iterable, Sequence
-from contextlib import closing
-from functools import cache
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from symrot.build.sources import c_text
-from symrot.errors import InputError, PropagationError
-from symrot.formula import exact_numbers as number
-from symrot.formula.program import Program
-from symrot.formula.tree import Node, names, parse, rename
-from symrot.propagation.events.polynomials import HEAD, Piece, rows_of
-from symrot.propagation.steppers.stepping import Integration
+from symrot.errors import PropagationError
+from symrot.propagation.events.event import Event
+from symrot.propagation.events.library import search_library
+from symrot.propagation.events.polynomials import HEAD, Piece
 
-__all__ = [
-    "Event",
-    "EventZero",
-    "Piece",
-    "event_library_source",
-    "read_events",
-    "search",
-    "stepped",
-    "timed",
-    "uses_attitude",
-]
+__all__ = ["EventZero", "SearchResult", "ZerosNotSeparated", "search", "signs_at_ends"]
 
 Floats = NDArray[np.float64]
-ATTITUDE = frozenset(f"q{i}" for i in range(4))
-KNOWN = {"t", "omega_1", "omega_2", "omega_3", *ATTITUDE}
 NEAR = 64 * float(np.finfo(float).eps)  # relative distance in time below which two entries are joined
 FIELDS = 6  # numbers in one entry of events.c
 ROOM = 1024  # entries per call
@@ -47,41 +30,6 @@ OPERATIONS_PER_CALL = 5e6  # operations in some 20 ms, after which Python can re
 MOST_OPERATIONS, OPERATIONS_PER_ROW = 4e9, 2e5  # operations allowed for a search; each row of a motion adds to them
 MOST_ENTRIES = 500_000
 STATE_ERROR = 4 * float(np.finfo(float).eps)  # relative rounding error of a state in the C source
-
-
-# Not events: poles, jumps past zero, and zeros at the edge of the domain of a formula.
-class Event(NamedTuple):
-    """A formula whose zeros along the motion are located.
-
-    Attributes
-    ----------
-    formula : str
-        A formula in t, omega_1..3 (rad/s, body components) and q0..q3, with the functions of scene formulas;
-        ``"lhs == rhs"`` means lhs - rhs.
-    terminal : bool or int
-        Whether the motion ends at the first zero; with a number n it ends at the n-th zero.
-    direction : int
-        1 to locate only zeros through which the formula rises along the motion, -1 only those through which it falls, 0
-        all zeros, including touches.
-
-    Examples
-    --------
-    >>> import symrot
-    >>> event = symrot.Event("omega_3 == 0", terminal=True)
-    >>> symrot.propagate("t_handle", events=[event]).status
-    1
-    """
-
-    formula: str
-    terminal: bool | int = False
-    direction: int = 0
-
-    @property
-    def node(self) -> Node:
-        """The formula as a tree: ``("-", ("symbol", "t"), ("symbol", "q0"))`` for ``t - q0`` or ``t == q0``."""
-        left, equals, right = self.formula.partition("==")
-        node = parse(left, "event")
-        return ("-", node, parse(right, "event")) if equals else node
 
 
 class ZerosNotSeparated(PropagationError):
@@ -112,146 +60,12 @@ class EventZero(NamedTuple):
     kind: str
 
 
-def read_events(events: Any) -> tuple[Event, ...]:
-    """Return the requested events; each is given as a formula, an :class:`Event`, or a mapping with its fields.
-
-    Raises
-    ------
-    InputError
-        If an event is given in another form, or if a formula contains an unknown name.
-    """
-    if isinstance(events, str | Event) or hasattr(events, "keys"):
-        events = [events]
-    if not isinstance(events, Iterable):
-        raise InputError(f'events: expected formulas as text, such as ["omega_3", "t - 1"], got {number.show(events)}')
-    checked = []
-    for place, entry in enumerate(events):
-        where = f"events[{place}]"
-        if isinstance(entry, str):
-            event = Event(entry)
-        elif isinstance(entry, Event):
-            event = entry
-        elif hasattr(entry, "keys") and "formula" in entry and set(entry) <= set(Event._fields):
-            event = Event(**entry)
-        else:
-            raise InputError(
-                f'{where}: expected a formula as text, such as "omega_3" or "q0 == 0.5", or a mapping with formula, '
-                f"terminal and direction, got {number.show(entry)}"
-            )
-        checked.append(_checked(event, where))
-    return tuple(checked)
-
-
-def _checked(event: Event, where: str) -> Event:
-    if not isinstance(event.formula, str):
-        raise InputError(f"{where}: expected a formula as text, got {number.show(event.formula)}")
-    try:
-        node = event.node
-    except InputError as error:
-        raise InputError(f"{where}: {str(error).removeprefix('event: ')}") from None
-    unknown = sorted(names(node) - KNOWN - {"pi"})
-    if unknown:
-        from symrot.formula.advice import name_advice  # only on the way to an error
-
-        advice = name_advice(unknown[0], KNOWN | {"pi"})
-        reason = f" ({advice})" if advice else ""
-        expectation = "expected names among t, omega_1..3, q0..q3 and pi"
-        raise InputError(f"{where}: {expectation}, got {', '.join(unknown)}{reason}")
-    if not isinstance(event.terminal, bool | int) or event.terminal < 0:
-        raise InputError(f"{where}: terminal: expected true, false or a count, got {number.show(event.terminal)}")
-    if isinstance(event.direction, bool) or event.direction not in (-1, 0, 1):
-        raise InputError(f"{where}: direction: expected -1, 0 or 1, got {number.show(event.direction)}")
-    return event._replace(direction=int(event.direction))
-
-
-def uses_attitude(events: Iterable[Event]) -> bool:
-    """Return whether the formula of at least one event contains a quaternion component, q0 to q3.
-
-    The motion then has to compute the attitude.
-    """
-    return any(names(event.node) & ATTITUDE for event in events)
-
-
-def timed(quantities: Program, events: Iterable[Event]) -> bool:
-    """Return whether the value of an event needs the time t besides the states of the motion."""
-    # if not, the search may count time from the start of the motion
-    used = set().union(*(names(event.node) for event in events))
-    return "t" in used or quantities.uses("t", tuple(f"{name} of t" for name in used))
-
-
-def event_library_source(
-    quantities: Program, events: Sequence[Event], states: Sequence[str], edges: Sequence[int], scales: Sequence[float]
-) -> str:
-    """Return the C source of a library that locates the events of a motion with the given states."""
-    # its functions take the parameters of quantities, the kernel that computes omega and q from the states
-    return _library_source(quantities, [_with_pi(event.node) for event in events], states, edges, scales, False)
-
-
-def guard_library_source(
-    quantities: Program, formulas: Sequence[Node], states: Sequence[str], edges: Sequence[int], scales: Sequence[float]
-) -> str:
-    """Return the C source of a library that locates where formulas change their signs along a motion.
-
-    A change of sign at a pole or jump counts too: a function such as sign then changes its value.
-    """
-    return _library_source(quantities, formulas, states, edges, scales, True)
-
-
-def _library_source(
-    quantities: Program, formulas: Sequence[Node], states: Sequence[str], edges: Sequence[int],
-    scales: Sequence[float], jumps: bool,
-) -> str:  # fmt: skip
-    from symrot.codegen.printing.event_source import event_definitions
-
-    # The formulas contain t, omega, q, and the parameters of quantities, the program that computes omega and q from the
-    # states. jumps: whether a change of sign at a pole or jump counts.
-    columns = {name: f"{name} of t" for name in KNOWN if name != "t"}
-    columned = [rename(formula, columns) for formula in formulas]
-    definitions = event_definitions(quantities, columned, states, edges, scales)
-    head = c_text("propagation/steppers/library.h") + c_text("propagation/events/event_enclosures.h")
-    head += "\nstatic const double SYMROT_ROUNDING = 0.5*DBL_EPSILON, SYMROT_STATE_ERROR = 4.0*DBL_EPSILON;\n"
-    head += f"enum {{ SYMROT_JUMPS = {int(jumps)} }};  /* whether changes of sign at poles and jumps count */\n\n"
-    return head + definitions + "\n" + c_text("propagation/events/events.c")
-
-
-def _with_pi(node: Node) -> Node:
-    """Return the formula in which the name pi is replaced by its value to 33 digits."""
-    if node[0] == "symbol":
-        return ("number", number.PI) if node[1] == "pi" else node
-    if node[0] == "call":
-        return ("call", node[1], tuple(map(_with_pi, node[2])))
-    return tuple(_with_pi(part) if isinstance(part, tuple) else part for part in node)
-
-
-class _Library:
-    """A loaded library that locates events, built from :func:`event_library_source`: its C functions and its sizes."""
-
-    def __init__(self, path: str) -> None:
-        library: Any = ctypes.CDLL(path)
-        pointer, integer, real = ctypes.c_void_p, ctypes.c_int64, ctypes.c_double
-        self.begin = library.symrot_events_begin
-        self.begin.restype = None
-        self.begin.argtypes = (pointer, pointer, integer, pointer, integer, pointer, real, ctypes.c_int)
-        self.next = library.symrot_events_next
-        self.next.restype = real
-        self.next.argtypes = (pointer, pointer, integer, real, pointer)
-        self.sign = library.symrot_events_sign
-        self.sign.restype = ctypes.c_int
-        self.sign.argtypes = (ctypes.c_int, real, pointer, integer, pointer)
-        sizes = (integer * 3)()
-        library.symrot_events_sizes(sizes)
-        self.states, self.events, self.bytes = sizes
-
-
-_library = cache(_Library)
-
-
 class _Search:
     """A search for events along one motion: its state in C, and the number of its operations so far."""
 
     def __init__(self, path: Path | str, p: Sequence[float], formulas: Sequence[str], error: float = 0.0) -> None:
         # error: of the states, relative to their sizes
-        self.library, self.formulas, self.doubt = _library(str(path)), formulas, error / STATE_ERROR
+        self.library, self.formulas, self.doubt = search_library(str(path)), formulas, error / STATE_ERROR
         self.p = (ctypes.c_double * len(p))(*p)
         self.state = ctypes.create_string_buffer(self.library.bytes)
         self.arrived: set[tuple[int, float]] = set()  # events that are zero at an edge of a piece, with the time
@@ -300,12 +114,15 @@ class _Search:
         return count
 
     def sign(self, event: int, t: float, piece: Piece) -> int:
-        """Return the sign of an event's formula at the time t in a piece; 0 if rounding errors are larger."""
+        """Return the sign of an event's formula at the time t in a piece.
+
+        It is 0 if rounding errors are larger than the value, or if the formula has no value at t.
+        """
         sign = self.sign_or_none(event, t, piece)
         return 0 if sign is None else sign
 
     def sign_or_none(self, event: int, t: float, piece: Piece) -> int | None:
-        """Return :meth:`sign`, or None if the formula has no value at t, such as a root of a negative number."""
+        """Return the sign, 0 within rounding errors; None if there is no value at t, as of a negative number's root."""
         edges, side = piece.edges, 1.0 if piece.edges[-1] >= piece.edges[0] else -1.0
         place = int(np.searchsorted(side * edges, side * t, "left")) - 1
         row = np.ascontiguousarray(piece.rows[min(max(place, 0), len(piece.rows) - 1)])
@@ -409,8 +226,10 @@ def _zeros_at(searcher: _Search, events: Iterable[int], t: float, y: Sequence[fl
 
 
 def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: float) -> list[tuple[int, float]]:
-    """Return the extrema, (event, time), nearer to zero than the motion's error, without those that touch it."""
-    # a doubt is an extremum so close to zero that the error of the motion matters
+    """Return the ``doubts``, pairs (event, time) of extrema near zero, each once and without those listed as zeros.
+
+    A doubt is an extremum so close to zero that the error of the motion matters.
+    """
     settled: dict[int, list[float]] = {}
     for zero in zeros:
         if zero.kind == "touching" or zero.t == t0:
@@ -419,7 +238,6 @@ def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: fl
     for event, t in sorted(doubts, key=lambda doubt: (doubt[0], abs(doubt[1] - t0))):
         times = settled.setdefault(event, [])
         place = bisect(times, t)
-        # each only once
         if all(abs(t - other) > 4 * NEAR * max(abs(t), abs(other)) for other in times[max(place - 1, 0) : place + 1]):
             times.insert(place, t)
             own.append((event, t))
@@ -456,8 +274,9 @@ def _first_sign(searcher: _Search, number: int, piece: Piece) -> int:
 
 
 def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]], list[list[float]]]:
-    """Join adjacent intervals that may contain zeros; return those that end before ``last``, and those that
-    reach it.
+    """Join adjacent intervals that may contain zeros; return those that end before the time ``last``, and the others.
+
+    The others reach ``last``, the end of a piece, and may continue in the next piece.
     """
     whole: list[list[float]] = []
     open_ones: dict[float, list[float]] = {}
@@ -475,7 +294,6 @@ def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]],
             continue
         open_ones[entry[0]] = entry
         whole.append(entry)
-    # they reach the time last and may continue in the next piece of the motion
     at_end = [entry for entry in whole if entry[4] == 0 and abs(entry[2] - last) <= NEAR * abs(last)]
     return [entry for entry in whole if entry not in at_end], at_end
 
@@ -544,27 +362,3 @@ def _settled(
             if not left[event]:
                 return t
     return None
-
-
-def stepped(
-    integration: Integration, end: float, broken: list[PropagationError], records: list[Floats]
-) -> Generator[Piece, None, None]:
-    """Integrate a motion from its start to ``end``, s, and yield its polynomials in groups of steps.
-
-    ``records`` gets the steps, ``broken`` an error.
-    """
-    room = integration.stepper.rows_per_call
-    with closing(integration.runs(end)) as runs:
-        for run in runs:
-            while run.t != run.stop:
-                rows = np.empty((room, integration.stepper.row))
-                try:
-                    integration.advance(run, None, 0, None, rows.ctypes.data, room)
-                except PropagationError as error:
-                    broken.append(error)
-                rows = rows[: run.recorded]
-                if len(rows):
-                    records.append(rows)
-                    yield Piece(np.append(rows[:, 0], run.t), rows_of(integration.stepper, rows))
-                if broken:
-                    return
