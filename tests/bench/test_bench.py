@@ -576,6 +576,14 @@ def test_steps_of_other_tools_are_left_out_where_they_are_not_installed(capsys, 
     assert "not installed, left out: CasADi" in report
 
 
+@pytest.mark.campaign
+def test_steps_of_other_tools_compile_and_agree(capsys):
+    """The study compares the states after a step before it times the step."""
+    steps.main(["--rounds", "1", "--scenes", "tumbling_prism"])
+    rows = capsys.readouterr().out.splitlines()[:2]
+    assert all(row.count(" ns)") == 1 + sum(tool in row for tool in steps.PEERS) for row in rows)
+
+
 def test_claims_of_the_study_of_checks_are_forty_typical_and_forty_naming_ones():
     assert [len({*check.claims(group)}) for group in check.LIMITS] == [40, 40, 20]
     with pytest.raises(InputError, match=r"one of typical, naming, conditional; got 'typcal' .*did you mean 'typical'"):

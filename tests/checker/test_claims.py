@@ -103,6 +103,7 @@ FAULTS = (
     ('id = "unit"', 'id = "worked"', "'worked' twice"),
     ("q3**2 == 1", "q3**2 < 1", "hypothesis like"),
     ('printed_value = "2.96"', 'printed_value = "about 3"', "decimal"),
+    ('printed_value = "2.96"', f'printed_value = "2.{"9" * 5000}"', "at most 200 characters"),
     ('printed_value = "2.96"', "", "printed_value"),
     ('value = "2*pi', 'symbols = ["x"]\nvalue = "2*x*pi', "expected a number"),
     ("[[claim]]", "[[clam]]", "claim"),

@@ -251,10 +251,10 @@ def casadi_text(function: Any, signature: Signature) -> str:
     # CasADi writes all results into one array: that of the only output, or another one, which is then copied.
     alone = len(outputs) == 1
     body = [
-        f"const double x[] = {{{values}}};", "const double *arg[1] = {x};",
-        *([] if alone else [f"double y[{len(results)}];"]),
-        f"double *res[1] = {{{outputs[0].name if alone else 'y'}}};", "peer(arg, res, 0, 0, 0);",
-        *([] if alone else [f"{result} = y[{i}];" for i, result in enumerate(results)]),
+        f"const double peer_in[] = {{{values}}};", "const double *arg[1] = {peer_in};",
+        *([] if alone else [f"double peer_out[{len(results)}];"]),
+        f"double *res[1] = {{{outputs[0].name if alone else 'peer_out'}}};", "peer(arg, res, 0, 0, 0);",
+        *([] if alone else [f"{result} = peer_out[{i}];" for i, result in enumerate(results)]),
     ]  # fmt: skip
     head = f"static inline void {c_name(signature.name)}({c_arguments(Program(signature, (), ()))})"
     return str(generator.dump()) + "\n".join([head, "{", *(f"    {line}" for line in body), "}"]) + "\n"

@@ -8,6 +8,7 @@ from mpmath import iv
 from symrot.checker.claim.claims import Claim
 from symrot.checker.decide.decision import decide_equation
 from symrot.checker.decide.equation import Equation
+from symrot.checker.typed.tokens import LONGEST_NUMBER
 from symrot.errors import InputError
 from symrot.exact.decision import Decision
 from symrot.exact.evidence import Counterexample
@@ -62,8 +63,10 @@ def decide_value(claim: Claim) -> Decision:
 def _printed(text: str, where: str) -> tuple[Fraction, Fraction]:
     """Return the decimal number in a text, and one unit of its last digit: 157.08 and 0.01 for ``157.08``."""
     match = _DECIMAL.fullmatch(text)
-    if match is None or not (match[2] or match[3]):
-        raise InputError(f"{where}: expected a decimal number, got {text[:40]!r}")
+    if match is None or not (match[2] or match[3]) or len(text) > LONGEST_NUMBER:
+        raise InputError(
+            f"{where}: expected a decimal number of at most {LONGEST_NUMBER} characters, got {text[:40]!r}"
+        )
     scale = Fraction(10) ** (int(match[4] or 0) - len(match[3] or ""))
     digits = int((match[2] or "") + (match[3] or ""))
     return (-digits if match[1] == "-" else digits) * scale, scale

@@ -195,7 +195,7 @@ _MOTION_WORDS = (
 )  # fmt: skip
 
 _LETTER = r"[A-Za-z](?:_?[A-Za-z0-9])?'?"
-_TERM = rf"(?!\d*[cmk]?m\b)\d*{_LETTER}(?:/\d+)?"
+_TERM = rf"(?!\d*[cmk]?m\b)\d{{0,9}}{_LETTER}(?:/\d{{1,9}})?"
 _NOUNS = {
     "radius": ("base radius", "radius"), "length": ("length", "height"), "height": ("height", "length"),
     "inner": ("inner radius",), "outer": ("outer radius",), "ring": ("ring radius", "radius"),

@@ -13,6 +13,7 @@ from symrot.checker.claim.tree import Node
 from symrot.checker.latex.macros import expanded, with_spelled_functions
 from symrot.checker.latex.shorthand import shorthands
 from symrot.checker.typed.cursor import Doubt
+from symrot.checker.typed.tokens import LONGEST_NUMBER
 from symrot.errors import InputError, complaint
 from symrot.latex import cursor, tree
 from symrot.latex.reader import read
@@ -161,6 +162,8 @@ class Cursor(cursor.Cursor):
                 alone = "one formula, without the words around it" if piece.text == "$" else "LaTeX of mathematics"
                 expected = instead if piece.kind == "left" else alone
                 raise complaint(source, where, source.index(piece.text, piece.start), expected)
+            if piece.kind == "number" and len(piece.text) > LONGEST_NUMBER:
+                raise complaint(source, where, piece.start, f"a number of at most {LONGEST_NUMBER} characters")
         if len(pieces) > MOST_PIECES:
             raise InputError(f"{place}expected at most {MOST_PIECES} numbers, names and signs, got {len(pieces)}")
         self.frames = _frames(pieces)

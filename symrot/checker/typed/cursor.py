@@ -12,7 +12,7 @@ from fractions import Fraction
 from symrot.checker.claim.functions import BUILT_IN, ROTATIONS
 from symrot.checker.claim.tree import Node, derivative
 from symrot.checker.typed.defined_functions import DEFINED
-from symrot.checker.typed.tokens import Token
+from symrot.checker.typed.tokens import LONGEST_NUMBER, Token
 from symrot.checker.typed.words import ALIASES, ENGLISH
 from symrot.errors import InputError, complaint
 
@@ -22,7 +22,6 @@ __all__ = [
 ]  # fmt: skip
 
 DEEPEST_NESTING = 60
-LONGEST_NUMBER = 200
 ADDING = ("+", "-")
 MASS = "dm"
 """The element of mass of a body."""
@@ -200,10 +199,8 @@ class Cursor(ABC):
         return Node("call", function, tuple(arguments), self.span(token.start))
 
     def numeral(self, token: Token) -> Node:
-        """Return the node of the number ``token``; raise InputError if it is too long or has too large an exponent."""
+        """Return the node of the number ``token``; raise InputError if it has too large an exponent."""
         exponent = re.split("[eE]", token.text)[1:]
-        if len(token.text) > LONGEST_NUMBER:
-            raise self.fail(f"a number of at most {LONGEST_NUMBER} characters", token.start)
         if exponent and abs(int(exponent[0])) > LONGEST_NUMBER:
             raise self.fail(f"a power of ten with an exponent up to {LONGEST_NUMBER}", token.start)
         if exponent and self.token().kind == "name" and self.token().tight:

@@ -24,9 +24,6 @@ from symrot.checker.typed.words import SINGLE_ARGUMENT
 
 __all__ = ["OpenFunctionsPart"]
 
-LONGEST_ORDER = 4
-"""The number of digits from which the order of a derivative is not computed: it is refused."""
-
 
 class OpenFunctionsPart(Cursor):
     """The part of the parser for functions without brackets, and for derivatives written as quotients."""
@@ -292,7 +289,7 @@ class OpenFunctionsPart(Cursor):
         digits = self.token(place + length - 1).text
         if not length or not digits.isdigit():
             return 1, place
-        return (int(digits) if len(digits) < LONGEST_ORDER else MOST_DERIVATIVES + 1), place + length
+        return int(digits), place + length
 
     def tight_name(self, place: int) -> tuple[str, int]:
         """Return (name, next place) for the name at ``place``; the name is empty if a blank is before it."""

@@ -13,7 +13,10 @@ from typing import NamedTuple
 from symrot.errors import complaint
 from symrot.latex.tokens import GREEK
 
-__all__ = ["GREEK_WORDS", "LETTERS", "SIGNS", "Token", "tokens_of", "without_dots"]
+__all__ = ["GREEK_WORDS", "LETTERS", "LONGEST_NUMBER", "SIGNS", "Token", "tokens_of", "without_dots"]
+
+LONGEST_NUMBER = 200
+"""The most characters of a number, also of a raised one; Python converts none of more than 4300 digits."""
 
 SIGNS = ("==", "=", "!=", ">=", "<=", ">", "<")
 """The signs of relations."""
@@ -124,6 +127,8 @@ def tokens_of(source: str, where: str = "") -> Iterator[Token]:
             continue
         begin = at
         for kind, word, stop in _pieces(text, at):
+            if kind in ("number", "power", "fraction") and len(word) > LONGEST_NUMBER:
+                raise complaint(source, where, places[at], f"a number of at most {LONGEST_NUMBER} characters")
             yield Token(kind, word, places[at], places[stop], blank, line)
             blank = line = False
             at = stop

@@ -71,7 +71,9 @@ CERTAIN = frozenset({
 """Units that are no letters of formulas, even next to letters."""
 
 _UNIT = "|".join(sorted([*FACTORS, *ALIASES], key=lambda name: (-len(name), name)))
-_POWER = r"(?:(?:\^|\*\*)(?:\(-?\d+\)|-?\d+)|[²³]|⁻[¹²³])?"
+_POWER = r"(?:(?:\^|\*\*)(?:\(-?\d{1,2}\)|-?\d{1,2}(?!\d))|[²³]|⁻[¹²³]|(?!\s*(?:\^|\*\*)))"
+"""The power of a unit, of at most two digits; a name with another power, such as m^x, is no unit."""
+
 _NO_LETTER = r"(?!(?![²³⁻¹])\w|[('])"
 _ONE = rf"(?:{_UNIT}){_NO_LETTER}{_POWER}"
 _NUMBER = r"\d+(?:\.\d*)?(?:[eE][+-]?\d+)?"

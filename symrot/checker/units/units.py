@@ -37,7 +37,9 @@ DERIVED = {
 }  # fmt: skip
 """Dimension -> the units in which it may be written."""
 
-_PIECE = re.compile(r"\s*(?P<divide>[/*·])?\s*(?P<name>[A-Za-z]+|1)(?:(?:\^|\*\*)\(?(?P<power>-?\d+(?:/\d+)?)\)?)?")
+_PIECE = re.compile(
+    r"\s*(?P<divide>[/*·])?\s*(?P<name>[A-Za-z]+|1)(?:(?:\^|\*\*)\(?(?P<power>-?\d{1,9}(?:/\d{1,9})?)\)?)?"
+)
 _BRACKET = re.compile(r"\s*/\s*\((?P<inside>[^()]+)\)")
 
 CONVENTIONAL_UNITS = (
