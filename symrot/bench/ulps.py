@@ -42,7 +42,10 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Function:
-    """A function that kernels call: its exact value in mpmath, its reach, and its forms."""
+    """A function that kernels call: how mpmath computes it exactly, the arguments that are tested, and its C functions.
+
+    ``forms`` pairs "one" (a sample) and "batch" with the beginning of the C function's name.
+    """
 
     name: str
     exact: Callable[..., Any]

@@ -281,7 +281,10 @@ def _with_intended_constants(rates: Program, method: Method) -> Method:
 
 
 def _intended(value: Fraction) -> Fraction | None:
-    """Return the exact number, such as 1/3, for which ``value`` rounded to a double stands; None if there is none."""
+    """Return the exact number, such as 1/3, that the double nearest to ``value`` represents; None if it is not known.
+
+    For 0.3333333333333333 the result is 1/3.
+    """
     try:
         constant = intended_value(Fraction(float(value)), "binary64")
     except CertificateError:

@@ -39,7 +39,7 @@ MOMENTS = (("A", "B", "C"), *((f"{letter}{index.format(1)}", f"{letter}{index.fo
 """Names of the three moments of inertia about perpendicular axes."""
 
 CONDITION = (
-    "it is a condition on its letters, which may hold for some of their values only: nothing is claimed about it"
+    "the inequality is a condition on its letters, which may hold for some of their values only; no verdict is given"
 )
 
 SPIN = "omega_3"

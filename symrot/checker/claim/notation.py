@@ -150,11 +150,11 @@ BOUND_LOOSELY = ("sum", "neg", "product")
 """Kinds of trees that need brackets in a product of quaternions."""
 
 END = Node("name", "")
-"""Stands in for the missing factor after the last factor of a product."""
+"""An empty name that marks the end of a product, where the writer of factors looks at the next factor."""
 
 
 def _is_number_power(node: Node) -> bool:
-    """Return whether a tree is a power with an odd digit as exponent, such as x^3."""
+    """Return whether a tree is a power whose exponent is 1, 3, 5, 7 or 9, such as x^3."""
     # such a power needs brackets before a slash: x^3/2 might be read as x^(3/2)
     return node.kind == "power" and node.args[1].kind == "name" and str(node.args[1].value) in ("1", "3", "5", "7", "9")
 

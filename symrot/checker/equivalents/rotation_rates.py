@@ -28,9 +28,11 @@ REASON = "{} is no rotation with the angular velocity {} in such an equation, ne
 
 
 def tested_on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return ``verdict``, "recognised", if the claim gives the rate of a matrix R and holds for rotations R.
+    """Return the verdict on a claim that was "recognised", after it is tested with rotation matrices.
 
-    Otherwise "doubtful" if it holds without a transpose, else "definition". Other claims keep their verdict.
+    If the claim gives the rate of a matrix R, such as ``dR/dt = R S(omega)``, but does not hold for rotations R, the
+    verdict is "doubtful" if leaving out or adding the claim's transpose makes it hold, and "definition" if not. Every
+    other verdict is returned unchanged.
     """
     if verdict.verdict != "recognised" or claim.relation is None:
         return verdict

@@ -32,7 +32,7 @@ MOST_TERMS = 60
 """The most terms of a sum that is factored to make one term of it."""
 
 MOST_LETTERS = 240
-"""The most letters of a missing term that is offered."""
+"""The largest number of characters of a term that a repair adds."""
 
 MOST_TERMS_READ, MOST_ROOTS_READ = 1000, 12
 """The most terms and roots of a difference of the sides that may be one term after simplification."""

@@ -30,7 +30,10 @@ class ParameterSlopes:
         self._changes = [self._changes_of(column) for column in self.columns]
 
     def with_changes(self, changes: Sequence[Mapping[str, Fraction]]) -> Self:
-        """Return a copy in which the constants change as given, for each variable: their derivatives by name."""
+        """Return a copy with other derivatives of the equations' constants by the variables.
+
+        ``changes[k]`` maps names of constants to their derivatives by the variable number k; others stay the same.
+        """
         other = copy(self)
         other._changes = [{**own, **more} for own, more in zip(self._changes, changes, strict=True)]
         return other

@@ -29,7 +29,10 @@ MOMENTA = {"phi": "precession", "theta": "nutation", "psi": "spin"}
 """Angle of ZXZ -> the word for its momentum in the names of known formulas."""
 
 MOMENT, KNOWN_MOMENT = re.compile(r"[IJ](_?\w+)?"), re.compile(r"[ABCIJ](_?\w+)?")
-"""Names that are moments of inertia in any claim, and names of moments of inertia in known formulas."""
+"""Two patterns of names: of symbols that are moments of inertia in every claim; of moments in known formulas.
+
+    A, B and C may be other quantities in a claim.
+    """
 
 RATE_OF_ANGLE = re.compile(rf"diff\(({'|'.join(ANGLES)}|varphi|vartheta)\(t\), t\)")
 KNOWN_RATE = re.compile(r"d[a-z]+(_?\w+)?|(omega|Omega|w|n)(_?\w+)?")
