@@ -1,8 +1,8 @@
 """The effect of SSE2 and AVX instructions that only rearrange 32-bit words: unpack, shuffle, blend, insert, broadcast.
 
 Each function of the table ``SHUFFLES`` takes the state of the machine, the sources' words and the instruction's
-constant. Most instructions treat each block of 128 bits alike. They number its words from 0 to 7: words 0 to 3 are those
-of the first source, words 4 to 7 those of the last.
+constant. Most instructions treat each block of 128 bits alike. They number its words from 0 to 7: words 0 to 3 come
+from the first source, words 4 to 7 from the last.
 """
 
 from collections.abc import Callable, Sequence

@@ -86,8 +86,8 @@ def _antiderivative(term: Expr, variable: Symbol, divisors: list[Expr]) -> Expr:
             exponent += factor.args[0].expand()
         else:
             raise InputError(
-                f"integrate takes polynomials in {variable}, and sines, cosines and exponentials of formulas linear in it, got the "
-                f"factor {factor}"
+                f"integrate takes polynomials in {variable}, and sines, cosines and exponentials of formulas linear in "
+                f"it, got the factor {factor}"
             )
     rate = exponent.expand().diff(variable)
     if rate == 0:

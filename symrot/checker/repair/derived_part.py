@@ -95,7 +95,7 @@ def _with_entries(claim: Claim, matrix: Node, entries: Sequence[Expr]) -> Node |
 
 
 def _with_rates_first(tree: Node) -> Node:
-    """Return a formula with the functions of each product, such as sin(x), last, and derivatives directly before them."""
+    """Return a formula whose products end with their functions, such as sin(x), and derivatives before these."""
     args = list(map(_with_rates_first, tree.args))
     if tree.kind == "product":
         args.sort(key=lambda factor: (factor.kind == "call") + (factor.kind == "call" and factor.value != "diff"))
