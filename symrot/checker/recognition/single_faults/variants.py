@@ -35,7 +35,10 @@ class Variant(NamedTuple):
 
 
 def variants(node: Node, parent: str, letters: Letters) -> list[Variant]:
-    """Return the changes of a part that undo usual faults, each with the values of the changed part."""
+    """Return the changes of a part that undo usual faults, each with the values of the changed part.
+
+    ``parent`` is the kind of the node above the part. Empty if the part is a matrix, or is 0 at a test point.
+    """
     values = values_of(node, letters.points)
     if values is None or not all(isinstance(value, float) and value for value in values):
         return []
