@@ -38,7 +38,7 @@ VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (0, 1), (-1, 1), (2, 1), (-2,
 """Values of symbols at which sides are compared."""
 
 LONGEST_WHOLE_NUMBER = 40
-"""The most digits of a whole number that is written exactly."""
+"""The largest number of digits of a whole number that is written exactly."""
 
 DIGITS_WRITTEN = (10, 20, 30, 40, 50)
 """Numbers of digits for a pair of values, from which the first is used that shows a difference."""

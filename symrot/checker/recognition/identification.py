@@ -146,7 +146,7 @@ def named_parts(claim: Claim) -> tuple[str, ...]:
 def _parts(claim: Claim) -> Iterator[tuple[str, Any]]:
     """Yield (words, value), such as ("the left side", value), for each side that is not a single name, and (name,
     value) for each definition that a side uses.
-   """
+    """
     assert claim.relation is not None
     sides = claim.relation[1:]
     values = (claim.equation.left, claim.equation.right)

@@ -20,7 +20,7 @@ from symrot.exact.printing import as_text
 __all__ = ["derived_part"]
 
 EVALUATED = ("diff", "integrate")
-"""Functions whose value a correction shows; a formula without them is a correction as it is written."""
+"""Functions that a correction must not contain, since it shows their value."""
 
 
 def derived_part(claim: Claim, place: str) -> Node | None:

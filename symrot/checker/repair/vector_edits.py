@@ -11,7 +11,7 @@ from symrot.checker.repair.filter import Candidate, Change, NumericFilter
 __all__ = ["vector_edits"]
 
 MOST_TERMS = 80
-"""The most terms, products of a scalar and a vector, that are tried in one sum."""
+"""The largest number of terms, products of a scalar and a vector, that are tried in one sum."""
 
 
 def vector_edits(numeric: NumericFilter) -> Iterator[Candidate]:

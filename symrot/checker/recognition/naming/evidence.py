@@ -21,20 +21,20 @@ LEAST_SYMBOLS_EDITED = 3
 """The smallest number of symbols in a scalar formula that is edited."""
 
 MANY_LETTERS = 5
-"""A formula for a quantity of unknown name is called faulty only with at least this many letters; a shorter one may be
-a right formula for something else.
+"""A formula for a quantity of unknown name, one fault away from a known formula, is usually called faulty only if it has
+at least this many letters; a shorter one may be a right formula for something else.
 """
 
 MANY_ENTRIES = 4
-"""A matrix with at least this many letters, each counted as often as it occurs, is called faulty; one with fewer
-letters may be a right formula for something else.
+"""A matrix, one fault away from a known matrix, is called faulty if it has at least this many letters, each counted as
+often as it occurs; one with fewer letters may be a right formula for something else.
 """
 
 SAFE_BY_UNIT = ("exponent", "factor", "wrong_symbol", "extra_term", "missing_term")
 """Codes of the faults that a wrong unit proves."""
 
 SURE_IF_STATED = ("sin_cos_swap", "half_angle", "double_half_angle", "exponent")
-"""Codes of the faults that are evident if the context states the meaning of each letter in the formula."""
+"""Codes of the faults that are evident if the context states what the letters of the formula mean."""
 
 OF_ANGLES = re.compile(r"angle rates of|angular velocity of [xyzXYZ]{3}\b")
 """Pattern of names of known formulas in Euler angles: books print no special case in which two of the angles are equal.

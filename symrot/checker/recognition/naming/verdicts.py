@@ -126,7 +126,7 @@ def _near_usual(claim: Claim, named: NamedFormula, readings: Sequence[Identifica
 def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | None:
     """Return the verdict on the matrix of a claim ``omega = [matrix] q_dot``, with repairs of the whole claim.
 
-    None for claims of another form, and for a matrix that is not near a known rate matrix.
+    None for claims of another form, and for a matrix that is neither equal nor near to a known rate matrix.
     """
     factors = named.formula.args if named.formula.kind == "product" else ()
     is_map = len(factors) == 2 and factors[0].value == "Matrix" and (is_atom(factors[1]) or is_derivative(factors[1]))

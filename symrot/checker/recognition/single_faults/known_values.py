@@ -103,8 +103,7 @@ class KnownValues:
 
     @cached_property
     def on_tape(self) -> list[list[float]] | None:
-        """The values of all parts of a scalar formula at each point; None if there is no tape, or no value at a point.
-        """
+        """The values of all parts of the formula at each point; None if it has no tape, or no value at a point."""
         tape = tape_of(self.known)
         values = [] if tape is None else [tape.values(symbols) for symbols in self.symbols]
         return None if None in values or not values else [own for own in values if own is not None]
