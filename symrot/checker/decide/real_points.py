@@ -84,7 +84,7 @@ def _sign(value: Any, field: Any) -> int:
 def real_points(constraints: Constraints, attempts: int = ATTEMPTS) -> Iterator[RealPoint | None]:
     """Yield, for each attempt, a point that exactly obeys all constraints, or None.
 
-    The points are the same on every machine and in every run. Nothing is yielded if the ring of the constraints contains the imaginary unit.
+    The points are the same on every machine. Nothing is yielded if the constraints are not ``real``.
     """
     source = Random(1)
     known: dict[Any, Any] = {}

@@ -24,14 +24,14 @@ from symrot.kinematics.rotations import elementary_rotation, vee
 __all__ = ["tested_on_rotations"]
 
 PLACES = [(row, column) for row in range(3) for column in range(3)]
-REASON = "the equation is not proven for a rotation matrix {} with the angular velocity {}, neither in the body nor in space"
+REASON = "the equation is not proven for a rotation matrix {} with the angular velocity {} in the body or in space"
 
 
 def tested_on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
     """Return ``verdict``, unless it is "recognised" and the claim gives the rate of a matrix R by an equation that is
     not proven for rotations R.
 
-    In that case return "doubtful" if the equation is proven for rotations with R in place of each R^T, else "definition".
+    In that case return "doubtful" if the equation is proven with R in place of each R^T, else "definition".
     """
     if verdict.verdict != "recognised" or claim.relation is None:
         return verdict

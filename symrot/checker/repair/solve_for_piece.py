@@ -35,7 +35,7 @@ MOST_MATRICES, MOST_COLUMNS = 40, 5
 """The largest numbers of matrices of which a multiple is added to another one, and of vectors in dot products."""
 LARGEST_RATIO = 60
 LARGEST_OF_SIDE = 1000
-"""The largest denominator of a rational factor that corrects a part; LARGEST_OF_SIDE if it is a side or a term of one."""
+"""The largest denominator of a rational factor that corrects a part; the second is for a side or a term of a side."""
 
 Values = tuple[float, ...]
 """One value for each point."""

@@ -21,8 +21,8 @@ LEAST_SYMBOLS_EDITED = 3
 """The smallest number of symbols in a scalar formula that is edited."""
 
 MANY_LETTERS = 5
-"""A formula for a quantity of unknown name, one fault away from a known formula, is usually called faulty only if it has
-at least this many letters; a shorter one may be a right formula for something else.
+"""A formula for a quantity of unknown name, one fault away from a known formula, is usually called faulty only if it
+has at least this many letters; a shorter one may be a right formula for something else.
 """
 
 MANY_ENTRIES = 4
