@@ -230,7 +230,7 @@ class Hypotheses:
         return infeasibility_proof(replace(self.constraints, zeros=(*self.constraints.zeros, *added))) is None
 
     def checked(self, search: Search) -> Search:
-        """Return ``search``, a search for counterexamples, without the points at which a divisor of the claim is
+        """Return a search for counterexamples that drops the points of ``search`` at which a divisor of the claim is
         zero.
         """
 

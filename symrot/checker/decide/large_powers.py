@@ -95,7 +95,7 @@ def _degree(node: Expr, known: dict[Expr, int], bases: Mapping[Expr, Fraction]) 
 
 
 def _angle_degree(argument: Expr, bases: Mapping[Expr, Fraction]) -> int:
-    """Return about the degree of the sine of ``argument`` in sines and cosines of symbols: 3 + 2 for 3*x + y/2."""
+    """Return roughly the degree of the sine of ``argument`` in sines and cosines of symbols: 3 + 2 for 3*x + y/2."""
     total = 0
     for term in argument.as_ordered_terms() if argument.is_Add else [argument]:
         number, atom = term.as_coeff_Mul()

@@ -54,7 +54,7 @@ class RealPoint:
 
     @property
     def rational(self) -> bool:
-        """Whether all values are rational."""
+        """Whether the field of the point is that of the rational numbers."""
         return bool(self.field == QQ)
 
     def value(self, poly: PolyElement) -> Any:

@@ -87,7 +87,8 @@ def identify(
     Raises
     ------
     InputError
-        For text that is not understood, with the position.
+        For text that is not understood, with the position; for a ``formula`` of another type; and for words in
+        ``body``, ``frame`` or ``sequence`` that symrot does not know.
 
     Notes
     -----

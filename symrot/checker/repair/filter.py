@@ -206,7 +206,7 @@ class NumericFilter:
     def holds(self, changes: Sequence[Change]) -> bool:
         """Return whether the claim after ``changes`` is true at the test points.
 
-        False also if the budget of evaluations is spent.
+        False also if both sides have become zero, or if the budget of evaluations is spent.
         """
         if not self.affordable():
             return False

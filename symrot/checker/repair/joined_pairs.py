@@ -18,7 +18,7 @@ MOST_JOINED = 400
 """The largest number of pairs of edits that are tried, the cheapest first."""
 
 DIGITS = 8
-"""Digits, relative to the largest value, to which amounts are compared before a pair is tried."""
+"""The number of decimals to which effects are compared, in units of the largest effect that a pair must have."""
 
 Values = tuple[float, ...]
 

@@ -15,9 +15,9 @@ MOST_TERMS = 80
 
 
 def vector_edits(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield the repairs that square a matrix, or add a vector times a letter to a sum of vectors, the cheapest first.
+    """Yield the repairs that square a matrix, take a matrix for its square, or add a vector times a letter to a sum.
 
-    All are true at the test points.
+    The order is side by side, not by cost. All are true at the test points.
     """
     if not numeric.matrix_names:
         return

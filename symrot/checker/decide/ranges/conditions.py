@@ -250,7 +250,7 @@ class Conditions:
         return outside and bool(((bound.root - pair[0].root) * (bound.root - pair[1].root)).is_negative)
 
     def grants(self, quantity: Expr, own: Range) -> bool:
-        """Return whether a cosine is in the range ``own`` by other conditions, so that this need not be printed.
+        """Return whether a cosine is in the range ``own`` by other conditions, so that the range need not be printed.
 
         False for other quantities.
         """

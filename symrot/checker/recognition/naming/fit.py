@@ -48,7 +48,7 @@ PARALLEL = re.compile("parallel.ax")
 """A part of the names of the formulas for a parallel axis."""
 
 OF_ROLL = re.compile(r"d?([pqr]|[Hh](_?\w+)?)")
-"""Rates of an aircraft and letters of angular momentum: next to them, the name L may mean a torque, as for a roll."""
+"""Rates of an aircraft and letters of angular momentum: beside these, L may mean a torque, the rolling moment."""
 
 RATES_OF_AIRCRAFT = {"p": "x1", "q": "y2", "r": "z3"}
 """Rate of an aircraft -> the axis of this component of its angular velocity in the body frame."""

@@ -86,7 +86,7 @@ def readings_of_relation(
 ) -> tuple[Identification, ...]:
     """Return the known relations that are equivalent to the equation ``named.side == tree``.
 
-    Empty if the equation has fewer than ``least_symbols`` symbols.
+    Empty if the equation has fewer than ``least_symbols`` symbols; also for matrices, roots of sums and long equations.
     """
     difference = sum_of([named.side, negated(tree)])
     try:

@@ -216,4 +216,4 @@ _FUNCTIONS_OF_ENDINGS: dict[str, Callable[[Any], Any]] = {
     ", 2 acos": _multiple_of_arc(2, math.acos), ", asin": _multiple_of_arc(1, math.asin),
     ", atan2": _multiple_of_arc(1, math.atan2), ", 2 atan2": _multiple_of_arc(2, math.atan2),
 }  # fmt: skip
-"""Ending of the name of a known formula -> the function of its value that is the quantity."""
+"""Ending of the name of a known formula -> the function that gives the quantity from the formula's value."""

@@ -122,7 +122,7 @@ _latest: dict[Any, tuple[Search | None, int]] = {}
 
 
 def has_root_of_sum(formula: Node) -> bool:
-    """Return whether a formula has the root of a sum."""
+    """Return whether a formula contains a sum under a square root."""
     # fingerprints of equal formulas with such roots may differ by a sign
     roots = (node.args[0] for _, node in walk(formula) if node.kind == "call" and node.value == "sqrt")
     return any(node.kind == "sum" for root in roots for _, node in walk(root))

@@ -24,7 +24,7 @@ LACKING = Node("name", "?")
 """A symbol of a known formula that a claim lacks, under a name that no text can contain."""
 
 MULTIPLES = {Fraction(2): "double_half_angle", Fraction(1, 2): "half_angle"}
-"""Factor that an angle should have -> the fault of a formula without this factor."""
+"""Factor that is missing in an angle, as 2 in sin(x) for sin(2*x) -> the code of this fault."""
 
 
 class Variant(NamedTuple):
