@@ -197,7 +197,7 @@ def condition(case: ClaimCase) -> Decision | None:
     if case.branches and not needed and case.can_hold(case.branches[0]):
         if not case.counterexample:  # it may hold everywhere
             signs = " and ".join(requirement.text for requirement in case.branches)
-            reason = f"it is true where {signs}, and no point is known where that fails"
+            reason = f"the claim is true where {signs}, and no point is known where this condition fails"
             return Decision("undecided", case.conditions, reason=reason)
         needed = case.branches
     if not needed:

@@ -69,8 +69,8 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     readings = readings_of_claim(claim, named, named.formula, LEAST_SYMBOLS)
     readings = readings or readings_by_other_products(claim, named, named.formula) or _slowing_down(claim, named)
     if readings and not claim.context and (axes := _axes_of_symmetry(readings)):
-        return Verdict("definition", reason=f"it is right for a body that is symmetric about axis {axes}; for three "
-                                            "different moments of inertia, one of them has a wrong index")  # fmt: skip
+        return Verdict("definition", reason=f"it is right for a body that is symmetric about axis {axes}; for a body "
+                                            "with three different moments, one moment has a wrong index")  # fmt: skip
     if readings:
         usual = _near_usual(claim, named, readings) if repair else None
         notes = (*_on_signs_of_products(claim, named, readings), *_on_principal_values(claim, named))
