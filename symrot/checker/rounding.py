@@ -29,7 +29,7 @@ def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def rounded_value(claim: Claim) -> str:
-    """Return the value of ``claim.value`` rounded to as many digits as ``claim.printed`` has; "" if it is not certain.
+    """Return the value of ``claim.value`` rounded to as many decimal places as ``claim.printed`` has; "" if uncertain.
 
     ``claim.printed`` is the number that the document prints.
     """
