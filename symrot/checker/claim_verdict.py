@@ -51,7 +51,7 @@ MOST_SECONDS = 60
 """The limit on the processor time for one claim, in seconds. It is a last resort: MOST_OPERATIONS, the limit that
 normally ends a check, take some ten seconds; but operations inside SymPy are not counted."""
 FOR_ALL_VALUES = "== claims that both sides are equal for all values; as a relation between its letters, write one ="
-WITH_HYPOTHESES = "it is no formula that symrot derives, but the hypotheses, which are not used, may make it one"
+WITH_HYPOTHESES = "symrot derives no such formula; but the hypotheses are not used, and the claim may be true with them"
 
 
 def check_claim(claim: Claim, repair: bool = True) -> Verdict:

@@ -39,7 +39,7 @@ def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:
     # an equation of two letters, a = b
     if all(map(is_name_or_rate, (left, right))) and left != right:
         both = " and ".join(notation.formula(side) for side in (left, right))
-        reason = f"nothing here says what {both} are: it may be a condition, or another name for one quantity"
+        reason = f"nothing here says what {both} are: it may be a condition, or they are two names for one quantity"
         return _open(verdict, reason)
     names = [node for side in (left, right) for _, node in walk(side) if is_name_or_rate(node) and node.value != "pi"]
     if len({*names}) != 1 or len({str(name.value) for name in names}) != 1:

@@ -351,7 +351,7 @@ def _integrate(scope: Scope, node: Node) -> Any:
             inside = sympy.Dummy(str(variable), real=True)
         for written in total if is_matrix(total) else [total]:
             if inside != variable and written.atoms(AppliedUndef):
-                raise scope.fail(place, f"another symbol than {variable}, the upper limit, inside the integral")
+                raise scope.fail(place, f"a variable of integration other than {variable}, which is in the limits")
             entry = written.xreplace({variable: inside})
             try:
                 value, divisors = definite_integral(entry, inside, lower, upper)

@@ -67,7 +67,7 @@ def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verd
     """
     # words about the body or its axis that symrot does not understand leave open what the claim means
     if obscure := claim.context.obscure:
-        reason = f"of the context, these words are not understood: {obscure}; write it without them, or in other words"
+        reason = f"of the context, these words are not understood: {obscure}; leave them out, or use other words"
         return Verdict("definition", reason=reason)
     without, verdict = verdict, _by_context(claim, named, verdict)
     if any(is_at_open_place(claim.context, known.name) for known in verdict.recognised_as):

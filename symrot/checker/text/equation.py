@@ -24,7 +24,7 @@ __all__ = ["for_numbers", "names_in", "verdict_on_equation"]
 
 INDICES = "it is in index notation, which is not decided; write one component, such as I_xy"
 
-INDEX_CONDITION = "it restricts the quantities with indices that it names: it is a condition, and no identity"
+INDEX_CONDITION = "it is a condition on the quantities with indices in it, and no identity"
 
 ROTATION = re.compile(r"[RCQ](_\w+)?")
 """The names of matrices that are rotations in most books."""
@@ -98,7 +98,7 @@ def _on_inertia_matrix(claim: Claim, verdict: Verdict) -> Verdict:
     is_matrix = formula.kind == "list" or formula.value in ("Matrix", "diag")
     if not is_matrix and not any(MASS_OR_INERTIA.fullmatch(name) for name in names):
         return verdict
-    reason = "I is the unit matrix or a tensor of inertia: the first is another matrix, the second is not known here"
+    reason = "I is a tensor of inertia of which the text says nothing, or the unit matrix, which has another formula"
     return Verdict("definition", reason=reason, notes=verdict.notes, dimension=verdict.dimension)
 
 
@@ -120,7 +120,7 @@ def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
     other = check_claim(replace(claim, define=define), repair=False)
     if other.verdict == "false":
         return verdict  # two meanings do not help
-    note = f"{name} is read as another quantity than in {' and '.join(sorted(others))}; as the same, the line is false"
+    note = f"{name} is read as another quantity than in {' and '.join(sorted(others))}; if both are one, it is false"
     return replace(other, notes=(*other.notes, note))
 
 

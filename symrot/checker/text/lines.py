@@ -30,7 +30,7 @@ NAMING = ("definition", "recognised")
 OUTCOMES = {
     "true": "true", "false": "false", "conditional": "true under a condition only", "undecided": "undecided",
     "recognised": "a formula that symrot derives", "doubtful": "nearly a formula that symrot derives",
-    "definition": "a definition, about which nothing is known",
+    "definition": "a definition, which symrot does not judge",
 }  # fmt: skip
 """Verdict -> the words for it in a sentence."""
 
