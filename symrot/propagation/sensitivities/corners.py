@@ -80,7 +80,10 @@ class _Number:
         self.value, self.slopes, self.positive, self.timed = value, slopes, positive, timed
 
     def _zero(self, other: "_Number") -> bool:
-        """Return whether a factor makes the product with ``other`` smooth where ``other`` has no derivative."""
+        """Return whether this number is zero in such a way that its product with ``other`` has derivatives.
+
+        ``other`` may then have none: ``omega_1*|omega|`` has derivatives at omega = 0.
+        """
         if EDGE in other.slopes.values():
             return False
         rough = [slope for slope in self.slopes.values() if not math.isfinite(slope)]

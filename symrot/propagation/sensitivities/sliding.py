@@ -27,7 +27,11 @@ def beside(guards: Guards, interval: Interval, signs: Mapping[str, int]) -> Inte
 
 
 def hold_at_rest(guards: Guards, interval: Interval) -> None:
-    """Hold the guards that stay at zero in an interval; append those that cannot be held to its list ``resting``."""
+    """Change an interval so that it holds the guards which stay at zero in it.
+
+    Guards that cannot be held are appended to the list ``resting`` of the interval. A guard is left alone if the rates
+    and their derivatives are the same on both sides of its zero.
+    """
     resting = [mode for mode in interval.regime.formulas if mode not in interval.held and rests(guards, interval, mode)]
     for mode in resting:
         # the square of the argument times its sign, for example, has a derivative at zero

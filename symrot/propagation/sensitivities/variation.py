@@ -380,7 +380,7 @@ def unit_of(scene: Scene, column: Column) -> float:
 
 
 def fitting_unit(unit: float, by: Floats) -> float:
-    """Return ``unit`` or, if derivatives ``by`` times it are large, a smaller power of two."""
+    """Return ``unit`` or, if ``unit`` times the largest of the derivatives ``by`` exceeds 2, a smaller power of two."""
     largest = float(np.abs(by).max())
     return ldexp(1.0, 1 - frexp(largest)[1]) if largest * unit > 2.0 else unit
 

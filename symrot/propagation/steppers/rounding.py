@@ -20,7 +20,7 @@ class RoundingSum:
     size : float
         Largest size of the block of states so far, to which the tolerance is relative.
     beyond : float or None
-        Time, s, from which the error may exceed the tolerance.
+        Time, s, from which the error may exceed the tolerance; None as long as it may not.
     """
 
     def __init__(self, tolerance: float) -> None:

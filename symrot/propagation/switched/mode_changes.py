@@ -147,7 +147,7 @@ class ModeChanges(Guards):
             self._wake(other)
 
     def _leaves(self, mode: str, held: frozenset[str], modes: Modes) -> bool:
-        """Return whether the guard of ``mode``, now zero, leaves zero to the side where its function has this mode.
+        """Return whether the guard of ``mode``, now zero, leaves zero to the side of the value ``modes[mode]``.
 
         The other functions have the values in ``modes``, and the guards ``held`` stay at zero.
         """
@@ -194,7 +194,7 @@ class ModeChanges(Guards):
         return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether a function in the argument of ``mode`` switched later: sign, in abs(x + sign(y))."""
+        """Return whether a function in the argument of ``mode`` switched after ``mode``: sign, in abs(x + sign(y))."""
         # in abs(x + sign(y)), if sign switched after abs, the argument of abs has jumped: abs may switch again
         last = len(self.order) - self.order[::-1].index(mode)
         return bool(self._inside(mode) & set(self.order[last:]))
