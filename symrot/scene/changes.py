@@ -67,7 +67,8 @@ class Place(NamedTuple):
 class SceneContent(NamedTuple):
     """The content of a scene, and what was read from it: initial angular velocity, body and torques.
 
-    The latter give the numbers that the content gives in another form, such as components of omega from omega_space.
+    A number that the content gives in another form is taken from these objects: a component of omega in the body, for
+    example, if the content gives ``omega_space``.
     """
 
     content: Content

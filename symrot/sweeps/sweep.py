@@ -61,7 +61,7 @@ class Sweep:
     stopped, impossible : int
         Number of trajectories that stopped early, and number of trajectories whose values no body or motion can have.
     reasons : list of (int, str)
-        The first trajectories that stopped or were impossible: their indices and the reasons.
+        Index and reason for at most three trajectories, the first ones that stopped early or were impossible.
     warnings : tuple of str
         Warnings about the scene, such as a hole that may reach out of the body.
 
@@ -219,6 +219,8 @@ def sweep(
         If an argument cannot be used, or if ``path`` contains something else than results of the same sweep.
     PropagationError
         If processes or a cluster fail again and again; complete chunks remain in the file.
+        CompilerError
+        If the method needs a compiler and no compiler is installed.
 
     Notes
     -----
