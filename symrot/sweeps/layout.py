@@ -166,7 +166,7 @@ def _digest(text: str) -> str:
 
 
 def continued(header: Header, path: Path, description: Callable[[], Mapping[str, Any]]) -> Header:
-    """Return ``header`` with the number of trajectories per chunk of the results at ``path``, which the sweep continues.
+    """Return ``header`` with as many trajectories per chunk as the results at ``path``, which the sweep continues.
 
     Parameters
     ----------
