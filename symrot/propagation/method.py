@@ -40,9 +40,9 @@ def _automatic(plan: Plan) -> Choice:
     if no_compiler := library.missing():
         return Choice("scipy", no_compiler)
     if rough := non_smooth_torque(plan):
-        return Choice("dop853", f"{rough}, and a C compiler is there")
+        return Choice("dop853", f"{rough}, and a C compiler is installed")
     between = " between its switches" if plan.switches else ""
-    return Choice("taylor", f"the torque is smooth{between}, and a C compiler is there")
+    return Choice("taylor", f"the torque is smooth{between}, and a C compiler is installed")
 
 
 EXTERNAL_TORQUE = Choice("dop853", "a torque without a formula has no Taylor series")

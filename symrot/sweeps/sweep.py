@@ -285,7 +285,7 @@ def _require_averages(statistics: Sequence[Statistic], outputs: Sequence[SweepOu
 def _chunks(
     job: Job, pending: list[tuple[int, int]], workers: int, scheduler: object, store: Store
 ) -> Iterator[Chunk | Written]:
-    """Yield for each range of trajectories in ``pending`` its chunk, or that a worker has stored it."""
+    """Yield the chunk of each range of trajectories in ``pending``, or :class:`Written` if a worker has stored it."""
     if not pending:
         return iter(())
     return run_here(job, pending, workers) if scheduler is None else run_on_cluster(job, pending, scheduler, store)

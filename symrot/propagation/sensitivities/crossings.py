@@ -6,7 +6,7 @@ jump. The time of the switch changes by ``dt/dv = -(g_x S- + g_p dp/dv)/(g_t + g
 
     S+ = S- - (f+ - f-) dt/dv
 
-(saltation matrix). It holds if the motion crosses the zero with a speed other than zero, and also if the guard is
+(saltation matrix). This holds if the guard passes zero at a speed other than zero, and also if the guard is
 *held* at zero from then on; f+ are then the rates of the sliding motion. At a kink and at the end of sliding, f+ = f-.
 Source: M. A. Aizerman, F. R. Gantmakher, On the stability of periodic motions, J. Appl. Math. Mech. 22 (1958) 1065.
 """

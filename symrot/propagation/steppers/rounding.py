@@ -1,4 +1,7 @@
-"""The sum of the rounding errors along one side of a motion that formulas of the time cause in its torques."""
+"""The sum of the rounding errors that formulas of the time cause in the torques of a motion.
+
+Each direction of time, after and before the start, has its own sum.
+"""
 
 import math
 from typing import Any

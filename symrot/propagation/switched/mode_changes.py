@@ -160,7 +160,7 @@ class ModeChanges(Guards):
     def _released_by_another(self, solvable: bool = True) -> tuple[str, int] | None:
         """Return a held mode that another function's switch now releases, with its new value; None if there is none.
 
-        ``solvable``: for some values of the held modes, all held guards stay at zero.
+        ``solvable``: whether the held modes have values for which all held guards stay at zero.
         """
         # without the other switch, the value of the mode that keeps the guard at zero says when the sliding ends
         for mode in sorted(self.held):
