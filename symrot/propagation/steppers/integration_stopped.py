@@ -71,8 +71,8 @@ def add_samples(error: BaseException, numbers: NDArray[np.intp], states: Floats,
 def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
     """Return why a stepper is stuck at the time t of a motion from ``t0`` to ``stop``, s.
 
-    If fewer than about a million doubles with the spacing at t fit between the ends of the motion, the steps are too short
-    for doubles. Otherwise the result is ``reason``.
+    If fewer than about a million doubles with the spacing at t fit between the ends of the motion, the steps are too
+    short for doubles. Otherwise the result is ``reason``.
     """
     apart = math.ulp(t)
     if abs(stop - t0) > MANY_TICKS * apart:
