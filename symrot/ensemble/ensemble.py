@@ -361,9 +361,9 @@ def propagate_ensemble(
     ------
     InputError
         If the scene, an array or a name cannot be used.
-        CompilerError
+    CompilerError
         If the method needs a compiler and no compiler is installed.
-        PropagationError
+    PropagationError
         If a constant of the equations exceeds the range of doubles. Motions that stop early raise no error.
 
     Notes

@@ -50,7 +50,7 @@ class Binding:
     ------
     OverflowError
         If the value of a parameter exceeds the range of doubles; a call raises the same error.
-        InputError
+    InputError
         If the formula of a parameter has no real value.
     """
 

@@ -219,7 +219,7 @@ def sweep(
         If an argument cannot be used, or if ``path`` contains something else than results of the same sweep.
     PropagationError
         If processes or a cluster fail again and again; complete chunks remain in the file.
-        CompilerError
+    CompilerError
         If the method needs a compiler and no compiler is installed.
 
     Notes
