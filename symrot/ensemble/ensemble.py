@@ -373,8 +373,8 @@ def propagate_ensemble(
     A motion that stops before its last time has the ``status`` -1, and its message says why.
     ``auto`` uses the closed form of each motion that has one; the samples then have the same bits as those of
     :func:`symrot.propagate`. For other motions, and where numeric integration is known to be faster
-    (:func:`symrot.ensemble.exact.choose`), it uses Taylor series with one trajectory in each SIMD lane. Motions under
-    torques that jump, bend or have no Taylor series are computed one by one.
+    (:func:`symrot.ensemble.exact.choose`), it uses Taylor series with one trajectory in each SIMD lane. Motions are
+    computed one by one if a torque jumps, bends or has no Taylor series, or is a formula that may have a short pulse.
 
     Examples
     --------

@@ -435,4 +435,4 @@ BATCHES: dict[str, Callable[[_Part], tuple["Batch | None", Usual]]] = {
     "axial": _driven,
     "spin_up": _spin_up,
 }
-"""For each library of closed forms, the function from a :class:`_Part` to its batch, and whether each row is valid."""
+"""For each library of closed forms, the function from a :class:`_Part` to (batch, whether each row is valid)."""

@@ -129,7 +129,7 @@ def motion_library(plan: Plan, kernel: SceneKernel) -> Path:
 def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected: bool = True) -> Path:
     """Return the path of the compiled library that integrates the motion of a plan by Taylor series.
 
-    ``projected`` says whether the states are corrected after each step, so that the conserved quantities stay constant.
+    ``projected`` says whether the states are corrected every few steps, so that the conserved quantities stay constant.
 
     Raises
     ------

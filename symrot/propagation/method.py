@@ -52,8 +52,8 @@ EXTERNAL_TORQUE = Choice("dop853", "a torque without a formula has no Taylor ser
 def choose_method(plan: Plan, method: str = "auto") -> Choice:
     """Return the named method; for ``"auto"``, the first method of :data:`METHODS` that can compute the motion.
 
-    A scene with a table of torque samples always gets ``dop853``. If the plan has no state to integrate, a stepper is
-    replaced by the method ``constant`` or ``exact``.
+    A scene with a table of torque samples always gets ``dop853``. If the plan has no state to integrate, the method
+    ``constant`` replaces a method that takes steps.
 
     Raises
     ------

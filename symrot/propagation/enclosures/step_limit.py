@@ -1,8 +1,9 @@
 """Proven upper limits of the step length, so that no step misses a short pulse of a torque formula.
 
 An enclosure bounds the change of the rates while time and states vary in complex discs; this bounds the Taylor
-coefficients that a step omits. The disc of the time has the radius *reach* times the length of the step. The error of
-the rates in the step is at most the *missed share*, a number that follows from reach and order, of the bound.
+coefficients that a step omits. The disc of the time has the radius *reach* times the length of the step. The error of a
+state in the step is at most the bound, times the length of the step, times the *missed share*, a small number that
+follows from the reach and the order of the method.
 """
 
 import math

@@ -131,8 +131,8 @@ class Crossings:
     def _at_once(self, interval: Interval, flips: dict[str, Flip], alone: bool) -> Floats | None:
         """Return the jump of the derivatives, shape (7, m), where several functions switch at the end of an interval.
 
-        Return None if only one function switches, if the functions switch at once for all values of the variables, or
-        if the others switched just before, by less than rounding errors: the jump is then that of a single switch.
+        Return None if the jump is that of a single switch: only one function switches, or the functions switch at once
+        for all values of the variables, or the others switched just before, by less than rounding errors.
 
         Raise PropagationError unless each function changes the rates by the same amount before and after the others
         switch, and leaves the speeds of their guards unchanged: the order of the switches then does not matter.
@@ -219,7 +219,7 @@ def _mean_speed(guards: Guards, interval: Interval, mode: str) -> float:
 
 
 def _is_zero(guards: Guards, interval: Interval, mode: str, guard: Gradient, rates: Floats) -> bool:
-    """Return whether a guard is zero within rounding errors at the end of an interval.
+    """Return whether a guard is zero, to 1e-9 of the size of its terms, at the end of an interval.
 
     For floor(x): whether x is a whole number.
     """
