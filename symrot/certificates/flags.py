@@ -158,7 +158,10 @@ class FlagEffect:
 
     @property
     def accepted(self) -> bool:
-        """Whether the proven error bounds hold with these flags; with contraction, they usually do."""
+        """Whether the proven error bounds hold with these flags: True unless ``holds`` is "nothing".
+
+        With contraction they hold, except where a product is fused in one sum and rounded in another.
+        """
         # if ``holds`` is "bounds", results may differ in bits
         return self.holds != NOTHING
 
@@ -254,7 +257,7 @@ def _check_file(word: str) -> None:
 
 
 def _rule(flag: str) -> FlagRule:
-    """Return which properties of the code a compiler flag changes; raise InputError for an unknown flag."""
+    """Return the rule in ``TABLE`` for a compiler flag; raise InputError if no rule matches the flag."""
     for rule in TABLE:
         if re.fullmatch(rule.form, flag):
             return rule

@@ -112,9 +112,9 @@ def step_certificate(step: StepUnderTest) -> str:
 
 
 def trusted(method: str, has_bounds: bool, elliptic: bool = False) -> Data:
-    """Return the section ``trusted`` of a step's certificate: what it assumes, and which errors it does not state.
+    """Return the section ``trusted``: what the certificate of a step assumes, and which errors it does not state.
 
-    ``elliptic`` says whether it is an exact step with elliptic functions.
+    ``elliptic`` says whether the step is an exact step with elliptic functions.
     """
     if elliptic:
         return ELLIPTIC | (ELLIPTIC_BOUNDS if has_bounds else ELLIPTIC_NOT_STATED)
@@ -124,7 +124,10 @@ def trusted(method: str, has_bounds: bool, elliptic: bool = False) -> Data:
 
 
 def step_section(method: Method) -> Data:
-    """Return the name of a step's method and what distinguishes it from others of this name, such as its order."""
+    """Return the name of a step's method with its options: the order and the variables of derivatives, or the axis.
+
+    The axis, 1, 2 or 3, is that of an exact step by steady rotations; it is None if the step has no axis.
+    """
     if isinstance(method, SteadyRotations):
         return {"method": method.name, "axis": None if method.axis is None else method.axis + 1}
     by = {"jacobian": list(method.by)} if isinstance(method, WithDerivatives) else {}
@@ -281,7 +284,10 @@ def _with_intended_constants(rates: Program, method: Method) -> Method:
 
 
 def _intended(value: Fraction) -> Fraction | None:
-    """Return the exact number, such as 1/3, for which ``value`` rounded to a double stands; None if there is none."""
+    """Return the exact number, such as 1/3, that a constant of the C text stands for; None if it stands for none.
+
+    The constant is the double nearest to ``value``.
+    """
     try:
         constant = intended_value(Fraction(float(value)), "binary64")
     except CertificateError:
@@ -301,7 +307,8 @@ def formula_section(name: str, rates: Program, method: Method, source: str) -> D
     Raises
     ------
     CertificateError
-        If a C function computes another formula.
+        If a C function computes another formula, or if the method is an exact step for other states than those of
+        ``rates``.
     """
     if isinstance(method, SteadyRotations):
         states = [state for state, *_ in rates.signature.argument("y").components]
