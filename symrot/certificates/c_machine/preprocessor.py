@@ -103,7 +103,10 @@ class _Preprocessor:
 
 
 def _arguments(tokens: list[Token], start: int) -> tuple[list[list[Token]], int]:
-    """Return the arguments of a macro call whose opening bracket is at ``start``, and the place after it."""
+    """Return the arguments of a macro call, and the index of the first token after its closing bracket.
+
+    The opening bracket is the token with the index ``start``.
+    """
     arguments: list[list[Token]] = [[]]
     depth = 0
     for i in range(start, len(tokens)):

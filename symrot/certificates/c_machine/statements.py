@@ -7,7 +7,7 @@ from symrot.errors import CertificateError
 __all__ = ["Statements"]
 
 MOST_STEPS = 10_000_000
-"""Statements that one call may run; more mean a loop without end."""
+"""The largest number of loop iterations in one call of the machine; more mean a loop without end."""
 
 
 class _Break(Exception):

@@ -83,8 +83,11 @@ def _bounds(step: StepText, data: Data, ranges: Sequence[str]) -> Data:
 
 
 def proofs(data: Data) -> tuple[str, ...]:
-    """Return the kinds of proof in the certificate of a step, such as ``("C text", "rounding", "truncation")``."""
-    if "scene" in data:  # its equations are checked at some states, not proven
+    """Return the kinds of proof in the certificate of a step, such as ``("C text", "rounding", "truncation")``.
+
+    The result is empty for an exact step with elliptic functions, which is checked at some states only.
+    """
+    if "scene" in data:
         return ()
     return ("C text", "rounding", "truncation") if "bounds" in data else ("C text",)
 
