@@ -72,7 +72,7 @@ TABLE: tuple[FlagRule, ...] = (
     FlagRule(r"-fno-fast-math", "takes -ffast-math back", clears=(*FAST, "flush to zero")),
     FlagRule(r"-funsafe-math-optimizations", "sums in another order, reciprocals, unsigned zeros; at linking it sets "
              "flush to zero", sets=("reassociation", "reciprocals", "unsigned zeros", "flush to zero")),
-    FlagRule(r"-fno-unsafe-math-optimizations", "takes it back",
+    FlagRule(r"-fno-unsafe-math-optimizations", "takes -funsafe-math-optimizations back",
              clears=("reassociation", "reciprocals", "unsigned zeros", "flush to zero")),
     FlagRule(r"-fassociative-math", VOID["reassociation"], sets=("reassociation",)),
     FlagRule(r"-fno-associative-math", "keeps the order of the C text", clears=("reassociation",)),

@@ -91,9 +91,10 @@ RANDOM["sinc"] = lambda x: RANDOM["sin"](x) / x
 
 
 def exact(precision: str) -> Callable[[Fraction], Residue]:
-    """Return a function from a constant to the residue of the simple number that the rounded constant stands for.
+    """Return a function from a constant to the residue of the number for which it stands in the C text.
 
-    The constant is rounded to ``precision`` first, as in the C text; for 0.333.. the simple number is 1/3.
+    The constant is rounded to ``precision`` first, as in the C text. It stands for the simple fraction that rounds to
+    the same number, such as 1/3 for 0.333.., or else for its rounded value.
     """
     return lambda value: _intended(
         float(value) if precision == "binary64" else float(unpack("f", pack("f", float(value)))[0]), precision

@@ -124,9 +124,10 @@ def trusted(method: str, has_bounds: bool, elliptic: bool = False) -> Data:
 
 
 def step_section(method: Method) -> Data:
-    """Return the name of a step's method with its options: the order and the variables of derivatives, or the axis.
+    """Return the name of a step's method with its options: its order, and the inputs by which it is differentiated.
 
-    The axis, 1, 2 or 3, is that of an exact step by steady rotations; it is None if the step has no axis.
+    For an exact step by steady rotations, the option is the body's symmetry axis, 1, 2 or 3, or None if omega is
+    constant.
     """
     if isinstance(method, SteadyRotations):
         return {"method": method.name, "axis": None if method.axis is None else method.axis + 1}
@@ -251,8 +252,9 @@ def _require_intended(rates: Program) -> None:
             meant = intended_value(Fraction(float(node[1])), "binary64")
             number = f"{meant.fraction}*pi" if meant.times_pi else str(meant.fraction)
             raise InputError(
-                f"{rates.signature.name}: expected constants with doubles of their own in a step with bounds, got "
-                f"{float(node[1])!r}, whose double is that of {number}; write {number} or fewer digits"
+                f"{rates.signature.name}: expected only constants whose double stands for no other number, because "
+                f"errors are bounded, got {float(node[1])!r}, whose double is that of {number}; write {number} or "
+                "fewer digits"
             )
 
 

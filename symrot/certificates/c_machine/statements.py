@@ -113,7 +113,7 @@ class Statements(Declarations):
             while condition is None or condition(f):
                 self.steps += 1
                 if self.steps > MOST_STEPS:
-                    raise CertificateError("expected loops that end, got one that runs on")
+                    raise CertificateError(f"expected at most {MOST_STEPS} iterations of loops in a call, got more")
                 try:
                     body(f)
                 except _Break:

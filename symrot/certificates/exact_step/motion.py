@@ -29,9 +29,9 @@ class _NoRootError(ArithmeticError):
 
 
 def require_limits(file: str, operations: Operations) -> None:
-    """Raise CertificateError if a C function has a case other than ``x == 0 ? 1 : sin(x)/x``.
+    """Raise CertificateError if a C function has a conditional other than ``x == 0 ? 1 : sin(x)/x``.
 
-    A random point meets only one branch of a case.
+    A random point tests only one branch of a conditional.
     """
     nodes = operations.nodes
     for node in nodes:

@@ -253,10 +253,11 @@ class _EqualityProver:
         return product
 
     def _truncated(self, name: str, split: Fraction, written: list[Fraction]) -> Truncation:
-        """Return the error bound of the Taylor polynomial by which the C text computes a function for x^2 < ``split``.
+        """Return a record, with an error bound, of the Taylor polynomial by which the C text computes a function.
 
-        ``written`` are the coefficients in the C text. CertificateError is raised if they are not those of the series
-        of ``name``, or if the terms of the series do not alternate in sign and decrease.
+        The C text uses the polynomial for x^2 < ``split``; ``written`` are its coefficients there. CertificateError is
+        raised if they are not those of the series of the function ``name``, or if the terms of the series do not
+        alternate in sign and decrease.
         """
         exact = REMOVABLE[name].taylor(len(written) + 1)
         for value, true in zip(written, exact, strict=False):

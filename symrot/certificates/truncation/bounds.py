@@ -216,7 +216,7 @@ class _Problem:
         return None
 
     def _step_coefficients(self, values: Mapping[str, Any], span: Any, order: int) -> list[Any]:
-        """Return, for each state, an interval with the coefficient of h^``order`` in the Taylor series of the step.
+        """Return, for each state, an interval that contains the coefficient of h^``order`` in the series of the step.
 
         ``values`` and ``span`` are the ranges of the inputs and of h.
         """

@@ -17,7 +17,7 @@ from symrot.errors import CertificateError
 __all__ = ["DEFECT", "require_order", "trees"]
 
 DEFECT = Fraction(1, 10**25)
-"""The largest defect that is accepted of a method whose coefficients are rounded decimals."""
+"""The largest accepted defect of an order condition, for a method whose coefficients are rounded decimals."""
 
 Tree = tuple[Any, ...]  # a rooted tree: the subtrees of its root, in order
 

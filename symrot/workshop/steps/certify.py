@@ -102,13 +102,15 @@ def lines(data: Data) -> list[str]:
         rows.append(
             (
                 "C text",
-                f"{name} and its batch are the method, {count} operations (equal at {function['points']} "
-                f"random points; otherwise with a probability below {function['wrong_with_probability_below']})",
+                f"{name} and its batch function compute the method in {count} operations (equal at "
+                f"{function['points']} random points; wrong with a probability below "
+                f"{function['wrong_with_probability_below']})",
             )
         )
         if "motion" in function:
             chance = function["motion"]["wrong_with_probability_below"]
-            rows.append(("motion", f"{name} solves the equations of the rates exactly (otherwise below {chance})"))
+            sentence = f"{name} solves the equations of the rates exactly (wrong with a probability below {chance})"
+            rows.append(("motion", sentence))
     if "bounds" in data:
         rows += _bound_rows(data["bounds"], [name for name, _ in data["rates"]["states"]])
     else:
