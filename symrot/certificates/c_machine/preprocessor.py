@@ -83,7 +83,9 @@ class _Preprocessor:
 
     def expanded(self, tokens: list[Token], depth: int = 0) -> list[Token]:
         if depth > _DEEPEST:
-            raise CertificateError(f"line {tokens[0].line}: expected macros without recursion, got one that uses itself")
+            raise CertificateError(
+                f"line {tokens[0].line}: expected macros without recursion, got one that uses itself"
+            )
         result: list[Token] = []
         i = 0
         while i < len(tokens):
