@@ -186,7 +186,7 @@ def _only_along(vector: tuple[Pattern, ...], axis: int) -> bool:
 def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, scene_torque: Torque) -> bool:
     """Return whether a torque is parallel to body axis ``axis`` while the body rotates only about this axis.
 
-    False also if not decided.
+    Return False also for formulas and for other kinds of torque, whose direction is not examined.
     """
     if isinstance(torque, FormulaTorque):
         # the direction of formulas is not examined
