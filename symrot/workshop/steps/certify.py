@@ -109,8 +109,12 @@ def lines(data: Data) -> list[str]:
         )
         if "motion" in function:
             chance = function["motion"]["wrong_with_probability_below"]
-            sentence = f"{name} solves the equations of the rates exactly (wrong with a probability below {chance})"
-            rows.append(("motion", sentence))
+            rows.append(
+                (
+                    "motion",
+                    f"{name} solves the equations of the rates exactly (wrong with a probability below {chance})",
+                )
+            )
     if "bounds" in data:
         rows += _bound_rows(data["bounds"], [name for name, _ in data["rates"]["states"]])
     else:
