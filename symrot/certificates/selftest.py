@@ -1,8 +1,8 @@
 """The self-test: check that this machine's C functions and arithmetic are as accurate as the certificates assume.
 
-``symrot selftest`` compiles ``symrot_selftest.c``, which holds values of sine, cosine, arc tangent and square root to
-60 digits (by mpmath), rounded once. The test runs inside this process, because a loaded library may have changed the
-arithmetic.
+``symrot selftest`` compiles ``symrot_selftest.c``, which holds values of sine, cosine, arc tangent and square root,
+computed by mpmath to 60 digits and rounded once. The test runs inside this process, because a loaded library may have
+changed the arithmetic.
 """
 
 import ctypes
@@ -33,7 +33,10 @@ CHECKS: tuple[tuple[str, str], ...] = (
     ("CONTRACTION", "expected a*b + c to be rounded twice: compile with -ffp-contract=off for the bits of the C "
      "text, whose error bounds hold"),
 )  # fmt: skip
-"""The checks in order: the name in C and the sentence for a failure; the checks of libm functions follow them."""
+"""The outcomes by number: the name in C and the sentence. Number 0 is success, the others are the checks that failed.
+
+The checks of libm functions have the numbers after these.
+"""
 
 
 @dataclass(frozen=True)

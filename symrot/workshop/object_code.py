@@ -84,7 +84,9 @@ def table(sections: Mapping[str, Data | None]) -> list[str]:
 
 
 def object_lines(text: str, path: Path, where: str) -> list[str]:
-    """Return a line for each function in the object file ``path`` that agrees with the C text, and one about batches.
+    """Return a line for each function in the object file ``path`` that performs the operations of the C text.
+
+    One more line says that loops over samples (``*_batch``) are not compared.
 
     Raises
     ------

@@ -55,7 +55,7 @@ def _dop853(order: int) -> RungeKutta:
 STEPS: Mapping[str, Callable[[int], RungeKutta | TaylorSeries]] = {
     "rk4": lambda order: RK4, "taylor": TaylorSeries, "dop853": _dop853,
 }  # fmt: skip
-"""The methods of emitted steps, by name; each is made from the order of the Taylor series."""
+"""Name of a method -> the function that makes it from the order of the Taylor series, which only ``taylor`` uses."""
 
 
 def step_method(name: str, order: int | None = None, jacobian: Sequence[str] = ()) -> Method:

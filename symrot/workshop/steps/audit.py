@@ -61,7 +61,7 @@ def audit_step(
     path : Path
         NAME.cert.json, in the folder with the files that it names.
     data : mapping
-        Its content, from :func:`step_data`.
+        The content of that file, from :func:`step_data`.
     rerun : bool
         Whether to search for the bounds of rounding errors again; bounds of truncation are always computed again.
     scene : Scene, str, Path or dict, optional

@@ -152,7 +152,7 @@ class ExactStepText(StepFiles):
     Parameters
     ----------
     scene : Scene
-        A scene whose motion has a closed form.
+        A free body or a symmetric heavy top, given along its principal axes; InputError is raised for other scenes.
     """
 
     def __init__(self, scene: Scene) -> None:
