@@ -276,7 +276,7 @@ def _one_axis(scene: Scene, structure: Structure) -> RuleOutcome:
 
 def _constant_spin(scene: Scene, structure: Structure) -> RuleOutcome:
     if structure.planar is not None:
-        return RuleOutcome(structure, False, "already one axis")
+        return RuleOutcome(structure, False, "the body already rotates about one axis only")
     if not isinstance(structure.inertia, PrincipalInertia):
         return RuleOutcome(structure, False, "the axes of the body are not principal axes")
     letters = structure.inertia.moments

@@ -27,7 +27,7 @@ MASS = "dm"
 """The element of mass of a body."""
 
 FACTOR_MARKS = ("(", "[", "√")
-"""Marks with which a factor without a sign before it may start."""
+"""Marks with which a factor without a product sign before it may start."""
 
 VECTOR_FUNCTIONS = ("cross", "vee", "Matrix")
 USUAL_VECTORS = frozenset([*"abcdeuvwrpqnsFLHMNRT", "omega", "Omega", "alpha", "tau", "epsilon", "eps", "sigma"])
@@ -128,7 +128,7 @@ class Cursor(ABC):
         return is_next
 
     def expect(self, mark: str) -> None:
-        """Skip the next token; raise InputError if it is not the operator or bracket ``mark``."""
+        """Skip the operator or bracket ``mark``; raise InputError if it is not the next token."""
         if not self.take(mark):
             raise self.fail(f"'{mark}'")
 
@@ -146,11 +146,11 @@ class Cursor(ABC):
             raise self.fail(f"at most {DEEPEST_NESTING} nested levels of brackets and arguments")
 
     def other_reading(self, kind: str, at: int, start: int, stop: int) -> bool:
-        """Record an ambiguous piece of the text, ``start`` to ``stop``; return whether it gets its less usual
-        meaning.
+        """Record an ambiguous piece of the text, from ``start`` to before ``stop``, with the key (``kind``, ``at``).
+
+        Return whether it gets its less usual meaning.
         """
         self.plain = True
-        # flips has the keys (kind of ambiguity, position)
         doubt = Doubt((kind, at), self.source[start:stop].strip())
         if doubt.key not in [known.key for known in self.doubts]:
             self.doubts.append(doubt)
