@@ -1,4 +1,4 @@
-"""The rates of all components of omega and of the quaternion of a scene: exact steps have all of them in their state."""
+"""The rates of all components of omega and of the quaternion of a scene; exact steps have all of these as states."""
 
 from dataclasses import replace
 from fractions import Fraction
