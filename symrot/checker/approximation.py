@@ -36,9 +36,10 @@ among which the first omitted term is sought."""
 def verdict_on_approximation(source: str) -> Verdict | None:
     """Return the verdict on ``f ≈ g`` for small values of a letter; None for other texts.
 
-    If f is no polynomial in exactly one letter, and g is one in this letter, g should be the Taylor polynomial of f. If
-    both are no polynomials in it, as in ``tan θ ≈ sin θ``, their Taylor series should agree in the first terms, one of
-    which must be a nonzero term with the letter.
+    The small letter is one in which f is no polynomial. If g is a polynomial in exactly one such letter, g should be
+    the Taylor polynomial of f in it. If f has a single such letter, and g is no polynomial in it either, as in
+    ``tan θ ≈ sin θ``, both Taylor series should agree in their first terms, one of which must be nonzero and contain
+    the letter.
     """
     if len(SIGN.findall(source)) != 1 or re.search("[=<>]", source):
         return None

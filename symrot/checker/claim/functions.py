@@ -190,7 +190,10 @@ def _inverse_of(scope: Scope, node: Node) -> ImmutableMatrix:
 
 
 def inverted(scope: Scope, matrix: ImmutableMatrix, node: Node) -> ImmutableMatrix:
-    """Return the inverse of a matrix, and record its determinant as a divisor; raise InputError if that is zero."""
+    """Return the inverse of a matrix, and record its determinant as a divisor.
+
+    Raise InputError if the determinant is zero or has more than LARGEST_INVERSE products.
+    """
     determinant = _determinant(scope, matrix, node, LARGEST_INVERSE)
     from symrot.exact import normal_form
 

@@ -45,7 +45,8 @@ class WordReader:
     def read(self, alone: Collection[str], vectors: Collection[str]) -> list[Token]:
         """Return the tokens of the text, in which words are divided or joined as they are read.
 
-        ``alone`` are the names that no bracket follows, so that they are no functions; ``vectors`` those of vectors.
+        ``alone`` are the names that no bracket follows, so that they are no functions; ``vectors`` are the names of
+        vectors.
         """
         tokens = list(split_tokens(self.tokens, self.products(alone, vectors)))
         tokens = self.with_indices(self.without_shorthand(tokens))

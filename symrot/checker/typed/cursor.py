@@ -140,7 +140,10 @@ class Cursor(ABC):
         return start, self.tokens[self.index - 1].end
 
     def deeper(self) -> None:
-        """Count one more nested level; raise InputError if there are too many. The caller counts it off again."""
+        """Add 1 to ``depth``, the number of nested brackets and arguments; raise InputError if there are too many.
+
+        The caller must subtract 1 again.
+        """
         self.depth += 1
         if self.depth > DEEPEST_NESTING:
             raise self.fail(f"at most {DEEPEST_NESTING} nested levels of brackets and arguments")
@@ -181,7 +184,7 @@ class Cursor(ABC):
         return entries
 
     def members(self, closing: str) -> list[Node]:
-        """Parse formulas with commas between them, up to the bracket ``closing``, which is skipped."""
+        """Parse formulas with commas between them and the bracket ``closing`` after them; return their trees."""
         bars, self.bars = self.bars, 0
         members = self.row()
         self.expect(closing)

@@ -183,7 +183,7 @@ class Parser(PiecesPart):
     def dotted(self, factors: list[Node]) -> None:
         """Parse a dot after a vector a, and the factor b after it; put ``dot(a, b)`` in place of a in ``factors``.
 
-        If b is no vector, append it.
+        If b is no vector, append it to ``factors``.
         """
         self.plain = True
         self.next()

@@ -145,7 +145,7 @@ class UnitProduct:
 
 @dataclass(frozen=True)
 class Measured:
-    """A text with a name such as ``unit_1`` in place of each unit: ``2*unit_1`` for ``2 kg``."""
+    """A text with a name such as ``unit_1`` in place of each unit or product of units: ``2*unit_1`` for ``2 kg``."""
 
     source: str
     text: str
@@ -169,7 +169,10 @@ class _Interpretation:
 
 
 def measured_text(source: str) -> Measured | None:
-    """Return a text with a name such as unit_1 in place of each unit, or None if no number has a unit.
+    """Return a text with a name such as unit_1 in place of each unit or product of units.
+
+    Return None if the text has no units, if it has other names than one that is its left side, or if its one-letter
+    units are probably quantities, as m and g in ``T = 2 m g``.
 
     Raises
     ------
