@@ -187,14 +187,14 @@ class Integers:
     def fill(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> bool:
         """Write the samples at ``times``, s, computed by NumPy, into ``rates`` and ``attitudes``.
 
-        Return whether some times exceed :attr:`longest`; the samples at these times are not valid.
+        An array that is None is skipped. Return whether some times exceed :attr:`longest`; the samples at these times
+        are not valid.
         """
         first, last = min(0.0, float(times.min())), max(0.0, float(times.max()))
         near = attitudes is not None and not self._far(first, last)
         if near not in self._kinds:
             self._kinds[near] = Portable(self._constants(near), self._near.table() if near else None).evaluate
         self._kinds[near](times, rates, attitudes)
-        # an array that is None is skipped
         return not max(last, -first) <= self.longest
 
     def finite(self, time: float) -> bool:
