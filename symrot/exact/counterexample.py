@@ -34,7 +34,7 @@ ATTEMPTS = 60
 """Number of random points; a nonzero polynomial of degree d is zero at one of them with a probability of about d/40."""
 
 SIMPLER_TERMS = 200_000
-"""Number of terms of the residual that may be evaluated in order to simplify a point."""
+"""Largest number of terms of the residual that are evaluated to simplify a point."""
 
 UNMOVED = 20
 """Number of random points that are tried unchanged; later points are first moved into the domain if necessary."""

@@ -143,7 +143,7 @@ def _entries(
                 continue
             entries.append(entry)
             if entry[0].first > effort.longest:
-                why = f"tolerances below {tolerance:.0e}: at this one, a run takes {entry[0].first:.1f} s"
+                why = f"tolerances below {tolerance:.0e}, at which a run takes {entry[0].first:.1f} s"
                 skipped.append({"method": contestant.name, "why": why})
                 break
     return entries, skipped

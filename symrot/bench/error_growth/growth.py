@@ -181,7 +181,7 @@ class Method(NamedTuple):
 
 METHODS = (
     Method("exact", "closed form", math.inf, math.inf, _exact),
-    Method("taylor", "Taylor series, the low digits of the state projected onto the invariants", math.inf, math.inf, _taylor(True)),
+    Method("taylor", "Taylor series, low digits projected onto the invariants", math.inf, math.inf, _taylor(True)),
     Method("taylor, plain", "the same without projection", math.inf, math.inf, _taylor(False)),
     Method("dop853", "Dormand-Prince 8(5,3) in C", math.inf, math.inf, _dop853),
     Method("SciPy DOP853", "solve_ivp at its least rtol", 1e3, 1e4, _scipy),
