@@ -352,8 +352,8 @@ def main(arguments: list[str] | None = None) -> None:
         _block.cache_clear()
         _samples.cache_clear()
     print(f"not installed, left out: {', '.join(sorted(absent))}" if absent else "every tool took part")
-    print(f"{cells - len(over)} of {cells} cells within the limit (operations: no more than the best other tool; ns: at "
-          f"most {BAR} times those of the fastest); over it: {'; '.join(over) or 'none'}")  # fmt: skip
+    print(f"{cells - len(over)} of {cells} cells within the limit (operations: no more than the best other tool; ns: "
+          f"at most {BAR} times those of the fastest); over it: {'; '.join(over) or 'none'}")  # fmt: skip
 
 
 if __name__ == "__main__":
