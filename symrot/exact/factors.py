@@ -47,7 +47,7 @@ def factor_list(poly: PolyElement) -> tuple[Any, list[tuple[PolyElement, int]]]:
 
 
 def _split(poly: PolyElement) -> list[tuple[PolyElement, int]]:
-    """Return the factors of a primitive polynomial of the first degree in one unknown; of others, the polynomial."""
+    """Return pairs (factor, power) of a primitive polynomial that is linear in an unknown; any other is left whole."""
     linear = [place for place, degree in enumerate(poly.degrees()) if degree == 1]
     if not linear:
         return [(poly, 1)]

@@ -36,7 +36,7 @@ Conditions = tuple[tuple[Node, int], ...]
 
 
 class Switch(NamedTuple):
-    """A jump or kink of a formula: a mode, and the guard whose sign determines the mode.
+    """A jump or kink of a formula: a mode, and the guard whose sign or floor is the mode.
 
     Attributes
     ----------

@@ -46,7 +46,7 @@ def as_mpf(value: Any) -> Any:
 def exact_parameters(parameters: Parameters, plan: Plan) -> dict[str, Fraction]:
     """Return a map from the name of each parameter of a kernel to its exact value, for the exact constants of ``plan``.
 
-    Such a parameter is ``(C - B)/A``.
+    A parameter stands for a formula of constants, such as ``(C - B)/A``.
     """
     values = {"pi": number.PI, **plan.constants}
     return {name: Fraction(evaluate(node, values, EXACT_FUNCTIONS)) for name, node in parameters}

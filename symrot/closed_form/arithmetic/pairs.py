@@ -87,8 +87,10 @@ def on_grid(values: Sequence[tuple[int, int]]) -> list[float]:
 
 
 def same(a: Number, b: Number) -> bool:
-    """Return whether two numbers count as equal: they differ by less than 2^-200 of their size."""
-    # two floats count as equal only if they are identical
+    """Return whether two numbers count as equal: they differ by less than 2^-200 of their size.
+
+    Two floats count as equal only if they are identical.
+    """
     return a == b or (not (isinstance(a, float) and isinstance(b, float)) and equal(Fraction(a), Fraction(b)))
 
 

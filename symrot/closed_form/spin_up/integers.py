@@ -114,10 +114,12 @@ class Integers:
         return Near(rounded(self._sweep.across * self._scale / self._root))
 
     def _side(self, omega: Fraction) -> int:
-        """Return the formula for an axial rate ``omega``: 1 or -1 for the asymptotic series after or before resonance,
-        0 for the series near it.
+        """Return which formula holds at the axial rate ``omega``.
+
+        1 or -1: the asymptotic series after or before resonance; 0: the series near resonance. If the asymptotic series
+        is accurate everywhere, always 1.
         """
-        if self._sweep.series.wide:  # then it holds everywhere
+        if self._sweep.series.wide:
             return 1
         return 0 if abs(omega) < self._edge else 1 if omega > 0 else -1
 

@@ -17,7 +17,7 @@ as one, a value of a sine at a point as twenty."""
 class OutOfOperations(BaseException):
     """The exception for a claim that needs more operations than its budget allows.
 
-    It is not derived from ``Exception``: code that goes on after a failed proof must not go on after it.
+    It is not derived from ``Exception``, so that code that catches the exceptions of a failed proof does not catch it.
     """
 
 
