@@ -1155,7 +1155,7 @@ LEAST = {"double": Fraction(1, 2**55), "float": Fraction(1, 2**26)}  # a quarter
 def check_series(series, functions, real):
     """Check the polynomial that replaces a function near x = 0, for numbers of the C type ``real``.
 
-    Return ``functions`` with a function that computes the polynomial near x = 0.
+    Return ``functions`` with one more function, which computes the polynomial near x = 0.
     """
     name, split_text, coefficient_texts, rest_text = series
     place = f"series of {quoted(name)}"

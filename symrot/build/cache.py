@@ -1,7 +1,8 @@
 """The cache of compiled C: a library is compiled once, stored for the user, and later loaded without a compiler.
 
 The name of a library contains the checksum of its content, so a damaged one is built again. ``CC`` names the compiler,
-``SYMROT_CACHE`` the cache directory. If that directory cannot be used, a temporary one replaces it. No NumPy here.
+``SYMROT_CACHE`` the cache directory. If that directory cannot be used, a temporary one replaces it. This module does
+not import NumPy, which would be slow.
 """
 
 import os
@@ -59,7 +60,7 @@ OWN_FILE = re.compile(r"(\w+-[0-9a-f]{32}\.(so|dll|dylib|index|text)|\.symrot-\w
 
 
 class Compiler(NamedTuple):
-    """A C compiler: the words of its command line, and a text that changes with its program or its options."""
+    """A C compiler: the words of its command line, and a text that differs for another program or other options."""
 
     command: tuple[str, ...]
     # a part of cache keys, so that another compiler never gets libraries of this one
@@ -128,12 +129,13 @@ def build(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path:
     name : str
         Beginning of the file name: letters, digits and underscores.
     flags : tuple of str
-        Flags of the compiler. If the compiler rejects ``-march=native``, it is run again without this flag.
+        Flags of the compiler. If the compiler fails, it is run again without the flags in ``TUNING``, and then also
+        without ``-march=native``.
 
     Raises
     ------
     CompilerError
-        If there is no compiler, or if it rejects the source; the message quotes the first error.
+        If there is no compiler, or if it rejects the source or takes too long; the message quotes the first error.
     """
     tool = compiler()
     library = built(source, name, flags)
@@ -143,7 +145,8 @@ def build(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path:
 def built(source: str, name: str, flags: tuple[str, ...] = FLAGS) -> Path | None:
     """Return the path of the library if the cache contains it, otherwise None; nothing is compiled.
 
-    The arguments are the arguments of :func:`build`.
+    The arguments are the arguments of :func:`build`. CompilerError is raised if there is no compiler, even if the
+    cache contains a library: the compiler is a part of the library's key.
     """
     entry = _entry(compiler(), source, name, flags)
     for directory in _directories():
@@ -221,7 +224,10 @@ def _entry(tool: Compiler, source: str, name: str, flags: tuple[str, ...]) -> st
 
 
 def store(key: str, text: str) -> None:
-    """Store a small text in the cache; ``key`` is any string."""
+    """Store a small text in the cache; ``key`` is any string.
+
+    If no directory can be written, the text is kept in memory, for this process only.
+    """
     try:
         _keep(_text_name(key), f"{_digest(text)}\n{text}".encode())
     except CompilerError:

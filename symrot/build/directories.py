@@ -1,6 +1,7 @@
 """The directories for compiled libraries: the cache of the user, if nobody else can write there, or a temporary one.
 
-Libraries are machine code that symrot runs, so a directory that another user could change is not used. No NumPy here.
+Libraries are machine code that symrot runs, so a directory that another user could change is not used. This module
+does not import NumPy, which would be slow.
 """
 
 import os
@@ -25,7 +26,9 @@ class Temporary:
         self.texts: dict[str, str] = {}  # used when no disk can be written
 
     def use(self, reason: str) -> Path:
-        """Return the directory; ``reason`` says why it replaces the user's, if it is created now.
+        """Return the path of the temporary directory; the first call creates the directory.
+
+        ``reason`` says why the user's directory cannot be used; later calls do not change the stored reason.
 
         Raises
         ------
@@ -111,9 +114,9 @@ def _shared_group(group: int) -> bool:
 
 
 def user_directory() -> tuple[Path, str]:
-    """Return the user's cache directory, and the reason why it cannot be used, or an empty text.
+    """Return the user's cache directory and the reason why it cannot be used; the reason is "" if it can be used.
 
-    A missing directory is created.
+    If the directory does not exist, it is created.
     """
     directory = _cache_directory() / CACHE_SUBDIR
     try:

@@ -169,12 +169,15 @@ def _check_others(path: Path, data: Data, source: str) -> list[str]:
 
 
 def _unchecked_objects(data: Data) -> list[str]:
-    """Return a list with the sentence "its verdicts on object code were not checked; ..".
+    """Return a list with the sentence "the certificate's verdicts on object code were not checked; ..".
 
     The list is empty if the certificate has no verdicts on object code.
     """
     # a verdict holds only for the machine where it was made
-    finding = "its verdicts on object code were not checked; pass your object file by --object to compare it"
+    finding = (
+        "the certificate's verdicts on object code were not checked; pass your object file by --object to compare its "
+        "code with the C text"
+    )
     return [finding] if data.get("objects") else []
 
 

@@ -72,7 +72,7 @@ TABLE: tuple[FlagRule, ...] = (
     FlagRule(r"-fno-fast-math", "takes -ffast-math back", clears=(*FAST, "flush to zero")),
     FlagRule(r"-funsafe-math-optimizations", "sums in another order, reciprocals, unsigned zeros; at linking it sets "
              "flush to zero", sets=("reassociation", "reciprocals", "unsigned zeros", "flush to zero")),
-    FlagRule(r"-fno-unsafe-math-optimizations", "takes it back",
+    FlagRule(r"-fno-unsafe-math-optimizations", "takes -funsafe-math-optimizations back",
              clears=("reassociation", "reciprocals", "unsigned zeros", "flush to zero")),
     FlagRule(r"-fassociative-math", VOID["reassociation"], sets=("reassociation",)),
     FlagRule(r"-fno-associative-math", "keeps the order of the C text", clears=("reassociation",)),
@@ -158,7 +158,10 @@ class FlagEffect:
 
     @property
     def accepted(self) -> bool:
-        """Whether the proven error bounds hold with these flags; with contraction, they usually do."""
+        """Whether the proven error bounds hold with these flags: True unless ``holds`` is "nothing".
+
+        With contraction they hold, except where a product is fused in one sum and rounded in another.
+        """
         # if ``holds`` is "bounds", results may differ in bits
         return self.holds != NOTHING
 
@@ -254,7 +257,7 @@ def _check_file(word: str) -> None:
 
 
 def _rule(flag: str) -> FlagRule:
-    """Return which properties of the code a compiler flag changes; raise InputError for an unknown flag."""
+    """Return the rule in ``TABLE`` for a compiler flag; raise InputError if no rule matches the flag."""
     for rule in TABLE:
         if re.fullmatch(rule.form, flag):
             return rule

@@ -91,7 +91,11 @@ RANDOM["sinc"] = lambda x: RANDOM["sin"](x) / x
 
 
 def exact(precision: str) -> Callable[[Fraction], Residue]:
-    """Return a function that rounds a constant as the C text does, and returns the residue of its exact number."""
+    """Return a function from a constant to the residue of the number for which it stands in the C text.
+
+    The constant is rounded to ``precision`` first, as in the C text. It stands for the simple fraction that rounds to
+    the same number, such as 1/3 for 0.333.., or else for its rounded value.
+    """
     return lambda value: _intended(
         float(value) if precision == "binary64" else float(unpack("f", pack("f", float(value)))[0]), precision
     )
@@ -108,9 +112,10 @@ def _intended(rounded: float, precision: str) -> Residue:
 
 
 def probability(degree: int, factor: int = 2) -> str:
-    """Return a bound of the probability that functions of a ``degree`` agree by chance, such as ``"2^-450"``.
+    """Return a bound of the probability that two different functions agree by chance, such as ``"2^-450"``.
 
-    A point is assumed to mislead with a probability of at most ``factor*degree/PRIME``.
+    ``degree`` is the functions' degree. The functions are assumed to agree at one random point with a probability of
+    at most ``factor*degree/PRIME``, and have to agree at all ``POINTS`` points.
     """
     wrong = Fraction(factor * degree, PRIME) ** POINTS
     return f"2^-{wrong.denominator.bit_length() - wrong.numerator.bit_length() - 1}"

@@ -1,8 +1,8 @@
 """The self-test: check that this machine's C functions and arithmetic are as accurate as the certificates assume.
 
-``symrot selftest`` compiles ``symrot_selftest.c``, which holds values of sine, cosine, arc tangent and square root to
-60 digits (by mpmath), rounded once. The test runs inside this process, because a loaded library may have changed the
-arithmetic.
+``symrot selftest`` compiles ``symrot_selftest.c``, which holds values of sine, cosine, arc tangent and square root,
+computed by mpmath to 60 digits and rounded once. The test runs inside this process, because a loaded library may have
+changed the arithmetic.
 """
 
 import ctypes
@@ -33,7 +33,10 @@ CHECKS: tuple[tuple[str, str], ...] = (
     ("CONTRACTION", "expected a*b + c to be rounded twice: compile with -ffp-contract=off for the bits of the C "
      "text, whose error bounds hold"),
 )  # fmt: skip
-"""The checks in order: the name in C and the sentence for a failure; the checks of libm functions follow them."""
+"""The outcomes by number: the name in C and the sentence. Number 0 is success, the others are the checks that failed.
+
+The checks of libm functions have the numbers after these.
+"""
 
 
 @dataclass(frozen=True)
@@ -49,7 +52,10 @@ class _CheckedFunction:
     arguments: Callable[[Random, int], Iterator[tuple[float, float]]]
 
     def sentence(self, suffix: str) -> str:
-        """Return the sentence that this function of libm, with the suffix ``"f"`` for floats, failed its test."""
+        """Return a sentence that says that this function of libm failed its test.
+
+        ``suffix`` is ``"f"`` for the function for floats, and empty for the function for doubles.
+        """
         if self.allowed == CORRECT:
             return f"expected {self.name}{suffix} to be rounded correctly: on this machine it is not"
         return (
@@ -111,7 +117,7 @@ def _rounded(value: Any, digits: int) -> float:
 
 
 def _point(name: str, suffix: str, y: float, x: float) -> str:
-    """Return a row of a C table of test points: y, x, the rounded exact value, its error in ulp, and the ulp.
+    """Return a row of a C table of test points: y, x, the rounded value, exact minus rounded value in ulp, and the ulp.
 
     ``name`` is the function, such as ``"sin"``; ``suffix`` is ``"f"`` for floats and ``""`` for doubles.
     """
@@ -236,7 +242,7 @@ def run_selftest(bits: bool = True, flags: Sequence[str] = FLAGS) -> SelfTest:
     Raises
     ------
     CompilerError
-        If there is no compiler, or it rejects the text, as with -ffast-math.
+        If there is no compiler, if it rejects the text, as with -ffast-math, or if the library cannot be loaded.
     """
     from symrot.build.cache import build, compiler
 

@@ -112,9 +112,9 @@ def step_certificate(step: StepUnderTest) -> str:
 
 
 def trusted(method: str, has_bounds: bool, elliptic: bool = False) -> Data:
-    """Return the section ``trusted`` of a step's certificate: what it assumes, and which errors it does not state.
+    """Return the section ``trusted``: what the certificate of a step assumes, and which errors it does not state.
 
-    ``elliptic`` says whether it is an exact step with elliptic functions.
+    ``elliptic`` says whether the step is an exact step with elliptic functions.
     """
     if elliptic:
         return ELLIPTIC | (ELLIPTIC_BOUNDS if has_bounds else ELLIPTIC_NOT_STATED)
@@ -124,7 +124,11 @@ def trusted(method: str, has_bounds: bool, elliptic: bool = False) -> Data:
 
 
 def step_section(method: Method) -> Data:
-    """Return the name of a step's method and what distinguishes it from others of this name, such as its order."""
+    """Return the name of a step's method with its options: its order, and the inputs by which it is differentiated.
+
+    For an exact step by steady rotations, the option is the body's symmetry axis, 1, 2 or 3, or None if omega is
+    constant.
+    """
     if isinstance(method, SteadyRotations):
         return {"method": method.name, "axis": None if method.axis is None else method.axis + 1}
     by = {"jacobian": list(method.by)} if isinstance(method, WithDerivatives) else {}
@@ -248,8 +252,9 @@ def _require_intended(rates: Program) -> None:
             meant = intended_value(Fraction(float(node[1])), "binary64")
             number = f"{meant.fraction}*pi" if meant.times_pi else str(meant.fraction)
             raise InputError(
-                f"{rates.signature.name}: expected constants with doubles of their own in a step with bounds, got "
-                f"{float(node[1])!r}, whose double is that of {number}; write {number} or fewer digits"
+                f"{rates.signature.name}: expected only constants whose double stands for no other number, because "
+                f"errors are bounded, got {float(node[1])!r}, whose double is that of {number}; write {number} or "
+                "fewer digits"
             )
 
 
@@ -281,7 +286,10 @@ def _with_intended_constants(rates: Program, method: Method) -> Method:
 
 
 def _intended(value: Fraction) -> Fraction | None:
-    """Return the exact number, such as 1/3, for which ``value`` rounded to a double stands; None if there is none."""
+    """Return the exact number, such as 1/3, that a constant of the C text stands for; None if it stands for none.
+
+    The constant is the double nearest to ``value``.
+    """
     try:
         constant = intended_value(Fraction(float(value)), "binary64")
     except CertificateError:
@@ -301,7 +309,8 @@ def formula_section(name: str, rates: Program, method: Method, source: str) -> D
     Raises
     ------
     CertificateError
-        If a C function computes another formula.
+        If a C function computes another formula, or if the method is an exact step for other states than those of
+        ``rates``.
     """
     if isinstance(method, SteadyRotations):
         states = [state for state, *_ in rates.signature.argument("y").components]

@@ -34,7 +34,7 @@ class Enclosed:
         return self.high + 0.0, np.isfinite(self.high) & (below == self.high) & (above == self.high)
 
     def _lost(self, other: "Enclosed") -> Floats:
-        """Return the relative error of a sum or product of two arrays: 0 where both numbers are doubles."""
+        """Return a bound of the relative error of a sum or product of two arrays: 0 where both numbers are doubles."""
         return np.where((self.low == 0) & (other.low == 0), 0.0, ERROR)
 
     def __neg__(self) -> "Enclosed":

@@ -361,6 +361,10 @@ def propagate_ensemble(
     ------
     InputError
         If the scene, an array or a name cannot be used.
+    CompilerError
+        If the method needs a compiler and no compiler is installed.
+    PropagationError
+        If a constant of the equations exceeds the range of doubles. Motions that stop early raise no error.
 
     Notes
     -----
@@ -369,7 +373,8 @@ def propagate_ensemble(
     A motion that stops before its last time has the ``status`` -1, and its message says why.
     ``auto`` uses the closed form of each motion that has one; the samples then have the same bits as those of
     :func:`symrot.propagate`. For other motions, and where numeric integration is known to be faster
-    (:func:`symrot.ensemble.exact.choose`), it uses Taylor series with one trajectory in each SIMD lane.
+    (:func:`symrot.ensemble.exact.choose`), it uses Taylor series with one trajectory in each SIMD lane. Motions are
+    computed one by one if a torque jumps, bends or has no Taylor series, or is a formula that may have a short pulse.
 
     Examples
     --------

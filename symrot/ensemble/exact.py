@@ -113,7 +113,7 @@ class Solved(NamedTuple):
 def choose(variation: Variation, times: Floats, start: float, faster: bool) -> list[Solved]:
     """Return the trajectories of an ensemble to compute in closed form, grouped by their form; the others need steps.
 
-    ``faster`` leaves out trajectories for which steps are faster.
+    If ``faster``, trajectories for which steps are faster than the closed form are left out.
     """
     solved: list[Solved] = []
     for kind, rows in forms_of(variation):
@@ -270,7 +270,7 @@ class _Part(NamedTuple):
 def _batches(variation: Variation, kind: Kind, rows: Rows) -> Iterator[tuple[Rows, "Batch | None", Any]]:
     """Yield groups of the trajectories ``rows``, all of one closed form, as (indices, batch, usual).
 
-    ``usual`` tells which trajectories the batch computes correctly. If ``batch`` is None, all are computed alone.
+    ``usual`` tells which trajectories the batch computes correctly. If ``batch`` is None, all are computed one by one.
     """
     make = BATCHES.get(kind.form.library) if kind.form else None
     if make is None:
@@ -435,4 +435,4 @@ BATCHES: dict[str, Callable[[_Part], tuple["Batch | None", Usual]]] = {
     "axial": _driven,
     "spin_up": _spin_up,
 }
-"""For each library of closed forms, the function that returns the batch of a part, and for which rows it is valid."""
+"""For each library of closed forms, the function from a :class:`_Part` to (batch, whether each row is valid)."""

@@ -83,8 +83,8 @@ def follow(problem: Problem, method: str) -> Followed:
     Parameters
     ----------
     method : str
-        ``auto`` (closed form or Taylor series in SIMD lanes, see :func:`symrot.ensemble.exact.choose`), ``exact``,
-        ``taylor``, ``dop853`` or ``scipy:NAME``.
+        ``auto`` (closed form, see :func:`symrot.ensemble.exact.choose`; for the other motions Taylor series in SIMD
+        lanes where that is possible), ``exact``, ``taylor``, ``dop853`` or ``scipy:NAME``.
     """
     name, colon, _ = method.partition(":") if isinstance(method, str) else ("", "", "")
     if method != "auto" and (name not in METHODS or name == "constant" or (colon and name != "scipy")):

@@ -87,7 +87,8 @@ def read_variation(
 def own_rates(initial: Initial, quaternion: Floats | None, count: int) -> Floats:
     """Return the angular velocity that a scene gives, body components, rad/s, for ``count`` motions, shape (count, 3).
 
-    With other attitudes, quaternions of any norm but zero, the components that the scene gives stay: body or space.
+    ``quaternion``, shape (count, 4), holds other initial attitudes, of any norm but zero. If the scene gives space
+    components, these stay the same, and the body components follow from the attitudes.
     """
     if quaternion is None or initial.omega_s is None:
         return np.tile([float(x) for x in initial.omega_b], (count, 1))

@@ -3,8 +3,8 @@
 Motions under torques that jump or bend are followed one by one.
 
 A column consists of the derivatives by one variable. The equations are those of
-:mod:`symrot.propagation.sensitivities.variation`. Every constant that varies in the ensemble is a parameter of them, so
-the derivatives of a motion depend on this motion alone.
+:mod:`symrot.propagation.sensitivities.variation`. Every constant that varies in the ensemble is a parameter of the
+equations, so the derivatives of a motion do not depend on the other motions.
 """
 
 from collections.abc import Collection, Sequence

@@ -175,7 +175,10 @@ def _out_of_torus(own: Solid3, pieces: list[Piece], d: Dimensions) -> float:
 
 
 def are_apart(first: Solid3, second: Solid3, rounding: float) -> bool:
-    """Return whether a plane separates the hulls of two shapes, which may overlap by the length ``rounding``, m."""
+    """Return whether one of several tested planes separates the hulls of two shapes.
+
+    The hulls may overlap by the length ``rounding``, m. False does not prove that they overlap by more.
+    """
     offset = plus(hulls.center(second), hulls.center(first), -1.0)
     axes = [solid.pose.rotate(Z) for solid in (first, second)]
     across = [unit_vector(plus(offset, axis, -dot(offset, axis))) for axis in axes]

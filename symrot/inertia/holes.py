@@ -168,7 +168,10 @@ def _crosses(plane: tuple[Vec, float], points: Sequence[Vec], rounding: float) -
 
 
 def _carry(parts: Sequence[DensePart], holes: Sequence[DensePart]) -> bool:
-    """Return whether the sum of the densities of ``parts``, which overlap, is at least that of ``holes`` there."""
+    """Return whether the sum of the densities of ``parts``, which overlap, is at least the sum of those of ``holes``.
+
+    One per cent less is allowed (:data:`DENSITY`).
+    """
     filled = sum(part.density for part in parts if isinstance(part.density, Fraction))
     emptied = Fraction(0)
     for hole in holes:

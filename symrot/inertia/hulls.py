@@ -242,7 +242,7 @@ def _across(axis: Vec) -> Vec:
 
 
 def polygon_around(disk: Disk) -> list[Vec]:
-    """Return the corners of a polygon that contains a disk."""
+    """Return the corners of a polygon that contains a disk, without the ball that inflates it."""
     if not disk.radius:
         return [disk.center]
     first = _across(disk.normal)

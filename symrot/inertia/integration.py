@@ -266,7 +266,7 @@ def exact_moments(
     """Return the moments of a shape with a polynomial density as numbers, in kg, kg m, kg m^2; pi is exact to 2^-320.
 
     ``source`` is the density as the user wrote it, for messages. Raise InputError if the corners of a tetrahedron lie
-    in one plane, or if the density is no polynomial or is negative somewhere.
+    in one plane, or if the density is no polynomial or is negative at one of the points of :func:`shape_points`.
     """
     numbers = scalars(shape, dimensions)
     region = domain(shape, numbers)

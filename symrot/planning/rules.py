@@ -186,7 +186,7 @@ def _only_along(vector: tuple[Pattern, ...], axis: int) -> bool:
 def _torque_along(torque: TorqueStructure, axis: int, scene: Scene, scene_torque: Torque) -> bool:
     """Return whether a torque is parallel to body axis ``axis`` while the body rotates only about this axis.
 
-    False also if not decided.
+    Return False also for formulas and for other kinds of torque, whose direction is not examined.
     """
     if isinstance(torque, FormulaTorque):
         # the direction of formulas is not examined
@@ -276,7 +276,7 @@ def _one_axis(scene: Scene, structure: Structure) -> RuleOutcome:
 
 def _constant_spin(scene: Scene, structure: Structure) -> RuleOutcome:
     if structure.planar is not None:
-        return RuleOutcome(structure, False, "already one axis")
+        return RuleOutcome(structure, False, "the body already rotates about one axis only")
     if not isinstance(structure.inertia, PrincipalInertia):
         return RuleOutcome(structure, False, "the axes of the body are not principal axes")
     letters = structure.inertia.moments

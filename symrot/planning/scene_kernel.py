@@ -29,7 +29,7 @@ class Conserved(NamedTuple):
     name, unit : str
         Name and SI unit of the quantity.
     output : str
-        Name of the output of the kernel that is its value; empty if the quantity is not conserved.
+        Name of the output of the kernel that computes the quantity; it may be empty if ``holds`` is false.
     holds : bool
         Whether the quantity is conserved.
     reason : str

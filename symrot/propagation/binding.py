@@ -50,6 +50,8 @@ class Binding:
     ------
     OverflowError
         If the value of a parameter exceeds the range of doubles; a call raises the same error.
+    InputError
+        If the formula of a parameter has no real value.
     """
 
     def __init__(

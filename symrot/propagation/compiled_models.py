@@ -79,7 +79,8 @@ def _structure_text(structure: Structure) -> str:
 def scene_kernel(plan: Plan, on_rates: Callable[[Program, str], object] = lambda rates, source: None) -> SceneKernel:
     """Return the kernel of a plan, from the cache or newly derived.
 
-    ``on_rates(program, c_text)`` is called once the rates are derived, and never for a cached kernel.
+    ``on_rates(program, c_text)`` is called as soon as the rates are derived, before the conserved quantities are; it is
+    not called for a kernel from the cache.
     """
     saved = library.fetch(kernel_key(plan))
     if saved is not None:
@@ -128,7 +129,7 @@ def motion_library(plan: Plan, kernel: SceneKernel) -> Path:
 def taylor_library(plan: Plan, kernel: SceneKernel, tolerance: float, projected: bool = True) -> Path:
     """Return the path of the compiled library that integrates the motion of a plan by Taylor series.
 
-    ``projected`` says whether states are corrected after steps to conserve quantities.
+    ``projected`` says whether the states are corrected every few steps, so that the conserved quantities stay constant.
 
     Raises
     ------

@@ -305,9 +305,9 @@ class EulerPropagator(Propagator):
         return EulerMotion(plan, self._method, self.tolerance, self._sequence, self._switching)
 
     def __call__(self, t: ArrayLike | None = None, *, events: Any = None, **state: Any) -> Trajectory:
-        """Return the motion at the times t; ``state`` holds another initial state, such as ``omega``.
+        """Return the motion at the times t, s; ``state`` holds other arguments of :class:`Propagator`, such as omega.
 
-        Raise InputError for events, which are not supported.
+        Raise InputError for events, which are not supported with Euler angles as state.
         """
         if events is not None:
             raise InputError("events: expected state='quaternion'; events are not located with Euler angles as state")

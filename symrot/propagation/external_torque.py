@@ -141,7 +141,7 @@ class _Function(TorqueSource):
         return self.pointer
 
     def check(self, low: float, high: float) -> None:
-        """Accept a motion over any times, and forget the last exception of the function."""
+        """Accept a motion over any times, and forget the exception of the function in an earlier motion."""
         # it is not known where the user's function is defined; failure() reports only exceptions from here on
         self.error = None
 

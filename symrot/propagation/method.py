@@ -1,4 +1,4 @@
-"""Choice of the method that follows a motion, with the reason for it."""
+"""Choice of the method that computes a motion, with the reason for it."""
 
 from typing import NamedTuple
 
@@ -31,7 +31,7 @@ class Choice(NamedTuple):
 
 
 def _automatic(plan: Plan) -> Choice:
-    """Return the method that follows the motion of a plan if the user names none, with the reason."""
+    """Return the method that computes the motion of a plan if the user names no method, with the reason."""
     if not plan.states:
         return Choice("constant", "the plan leaves no state to integrate")
     if form := exact_form(plan.scene):
@@ -40,9 +40,9 @@ def _automatic(plan: Plan) -> Choice:
     if no_compiler := library.missing():
         return Choice("scipy", no_compiler)
     if rough := non_smooth_torque(plan):
-        return Choice("dop853", f"{rough}, and a C compiler is there")
+        return Choice("dop853", f"{rough}, and a C compiler is installed")
     between = " between its switches" if plan.switches else ""
-    return Choice("taylor", f"the torque is smooth{between}, and a C compiler is there")
+    return Choice("taylor", f"the torque is smooth{between}, and a C compiler is installed")
 
 
 EXTERNAL_TORQUE = Choice("dop853", "a torque without a formula has no Taylor series")
@@ -50,12 +50,15 @@ EXTERNAL_TORQUE = Choice("dop853", "a torque without a formula has no Taylor ser
 
 
 def choose_method(plan: Plan, method: str = "auto") -> Choice:
-    """Return the named method or, for ``"auto"`` or if no state changes, the first one that can follow the motion.
+    """Return the named method; for ``"auto"``, the first method of :data:`METHODS` that can compute the motion.
+
+    A scene with a table of torque samples always gets ``dop853``. If the plan has no state to integrate, the method
+    ``constant`` replaces a method that takes steps.
 
     Raises
     ------
     InputError
-        If there is no such method, or if it cannot follow this motion.
+        If there is no such method, or if it cannot compute this motion.
     CompilerError
         If the method needs a compiler and no compiler is installed.
     """

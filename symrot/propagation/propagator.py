@@ -122,7 +122,7 @@ class Propagator:
 
     @property
     def method(self) -> str:
-        """The name of the method that follows the motion, such as ``"taylor"``."""
+        """The name of the method that computes the motion, such as ``"taylor"``."""
         return self._motion.choice.method
 
     @property

@@ -15,9 +15,10 @@ Floats = NDArray[np.float64]
 
 
 def table_splines(t: Floats, values: Floats, switching: Sequence[float]) -> list[Any]:
-    """Return the cubic splines (SciPy) of a table, one between any two consecutive switching times, s.
+    """Return the cubic splines (SciPy) of a table, divided at each switching time, s, that has two samples.
 
-    ``t``: times of the samples, shape (n,); ``values``: the samples, shape (n, m).
+    ``t``: times of the samples, shape (n,); ``values``: the samples, shape (n, m). Raise InputError if there is only
+    one sample between two such times.
     """
     from scipy.interpolate import CubicSpline
 

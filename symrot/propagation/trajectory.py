@@ -87,7 +87,7 @@ class Trajectory(MotionSamples):
     Attributes
     ----------
     t : array, shape (n,)
-        The requested sample times, s; after a terminal event there are no samples.
+        The requested sample times, s; the time of a terminal event replaces all requested times beyond it.
     y : array, shape (N, n)
         The integrated states, in the order of ``states``; same layout as in solve_ivp.
     method, stats : str, Stats

@@ -26,7 +26,7 @@ TIME = "t"
 
 
 class Sensitivity(NamedTuple):
-    """Derivatives at n samples by one variable, or by a vector of k components, one after the other on the last axis.
+    """Derivatives at n samples by one variable, or by a vector; its k components are then the last axis of the arrays.
 
     Attributes
     ----------

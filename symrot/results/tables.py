@@ -44,6 +44,8 @@ def _axes(item: Labelled) -> tuple[tuple[str, Sequence[Any]], ...]:
 def dataframe(items: Sequence[Labelled], origin: About) -> Any:
     """Return a pandas DataFrame with one row for each sample and one column for each component.
 
+    ``items[0]`` is the time, which becomes the index; ``origin`` becomes attributes of the table.
+
     Raises
     ------
     InputError
@@ -85,6 +87,8 @@ def _lead(items: Sequence[Labelled]) -> tuple[int, ...]:
 
 def dataset(items: Sequence[Labelled], origin: About) -> Any:
     """Return an xarray Dataset with one variable for each quantity.
+
+    ``items[0]`` is the time, which becomes a coordinate; ``origin`` becomes attributes of the data set.
 
     Raises
     ------

@@ -67,7 +67,8 @@ class Place(NamedTuple):
 class SceneContent(NamedTuple):
     """The content of a scene, and what was read from it: initial angular velocity, body and torques.
 
-    The latter give the numbers that the content gives in another form, such as components of omega from omega_space.
+    A number that the content gives in another form is taken from these objects: a component of omega in the body, for
+    example, if the content gives ``omega_space``.
     """
 
     content: Content
@@ -148,7 +149,7 @@ def number_path(scene: SceneContent, key: str) -> Path:
 
 
 def set_last(key: str) -> bool:
-    """Return whether a change by ``key`` must come after others, because it starts from numbers that these may set.
+    """Return whether a change by ``key`` must come after the other changes, because it uses numbers that they may set.
 
     ``I_xx`` and ``center_of_mass`` replace the shapes of the body by moments of inertia; ``omega_2`` keeps the other
     two components of omega in the body, which depend on the attitude if the scene gives omega in space.

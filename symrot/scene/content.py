@@ -63,7 +63,10 @@ def _scalar_first(rotation: Any, where: str) -> list[float]:
 
 
 def toml_text(content: Content) -> str:
-    """Return the content of a scene as TOML text, such as a scene file; numbers keep their exact values."""
+    """Return the content of a scene as the text of a scene file (TOML); numbers keep their exact values.
+
+    Raise InputError for a value that TOML cannot hold, such as None.
+    """
     lines: list[str] = []
     _write_table(content, "", lines)
     return "\n".join(lines).strip() + "\n"

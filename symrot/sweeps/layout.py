@@ -118,7 +118,10 @@ class Store(Protocol):
 
 
 def header_of(job: Job, rows: int | None = None) -> Header:
-    """Return the header of the results of a sweep, with ``rows`` trajectories in a chunk."""
+    """Return the header of the results of a sweep, with ``rows`` trajectories in a chunk.
+
+    If ``rows`` is None, a number is chosen that suits the size of the results.
+    """
     design = job.design
     inputs = [
         Variable(f"input_{axis.target.name}", (), axis.target.unit, "", f"value of {axis.target.name} that varies")
@@ -163,7 +166,7 @@ def _digest(text: str) -> str:
 
 
 def continued(header: Header, path: Path, description: Callable[[], Mapping[str, Any]]) -> Header:
-    """Return the header with which the sweep whose results are at ``path`` goes on: with the chunks of these results.
+    """Return ``header`` with as many trajectories per chunk as the results at ``path``, which the sweep continues.
 
     Parameters
     ----------

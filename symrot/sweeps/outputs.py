@@ -37,7 +37,7 @@ Floats = NDArray[np.float64]
 
 AT_TIMES = ("start", "end")
 UNAVERAGED = {
-    "euler": "angles jump by a turn, and the mean of 179 and -179 degrees is not 0",
+    "euler": "angles jump by 360 degrees, and the mean of 179 and -179 degrees is not 0",
     "quaternion": "q and -q are one attitude",
 }
 """Quantity -> why its components have no mean and no percentiles."""

@@ -61,7 +61,7 @@ class Sweep:
     stopped, impossible : int
         Number of trajectories that stopped early, and number of trajectories whose values no body or motion can have.
     reasons : list of (int, str)
-        The first trajectories that stopped or were impossible: their indices and the reasons.
+        Index and reason for at most three trajectories, the first ones that stopped early or were impossible.
     warnings : tuple of str
         Warnings about the scene, such as a hole that may reach out of the body.
 
@@ -219,6 +219,8 @@ def sweep(
         If an argument cannot be used, or if ``path`` contains something else than results of the same sweep.
     PropagationError
         If processes or a cluster fail again and again; complete chunks remain in the file.
+    CompilerError
+        If the method needs a compiler and no compiler is installed.
 
     Notes
     -----
@@ -283,7 +285,7 @@ def _require_averages(statistics: Sequence[Statistic], outputs: Sequence[SweepOu
 def _chunks(
     job: Job, pending: list[tuple[int, int]], workers: int, scheduler: object, store: Store
 ) -> Iterator[Chunk | Written]:
-    """Yield for each range of trajectories in ``pending`` its chunk, or that a worker has stored it."""
+    """Yield the chunk of each range of trajectories in ``pending``, or :class:`Written` if a worker has stored it."""
     if not pending:
         return iter(())
     return run_here(job, pending, workers) if scheduler is None else run_on_cluster(job, pending, scheduler, store)

@@ -29,7 +29,7 @@ Content = Mapping[str, Any]
 # so that everything follows: the mass of a shape changes its inertia, centre of mass and weight.
 @dataclass(frozen=True)
 class Target:
-    """A quantity that a sweep varies: its name, its unit, and its path if it is a number in the scene file."""
+    """A quantity that a sweep varies: its name and its unit; for a number in the scene file, its path and no unit."""
 
     name: str
     unit: str

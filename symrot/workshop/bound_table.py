@@ -47,7 +47,7 @@ def library_tasks() -> dict[str, BoundTask]:
 def table_faults() -> list[str]:
     """Return the faults of the table of bounds, one sentence each; an empty list if it is complete and up to date."""
     required, known = library_tasks(), table()["bounds"]
-    faults = [] if table()["method"] == method() else ["another version of the method computed the table"]
+    faults = [] if table()["method"] == method() else ["the table was computed by other source files than the present"]
     if lacking := len(set(required) - set(known)):
         faults.append(f"{lacking} bounds are not in the table")
     if others := len(set(known) - set(required)):

@@ -189,7 +189,7 @@ def lines(section: Mapping[str, Any]) -> list[str]:
     rows = [
         (names.get(each["output"], each["output"]),
          f"{float.fromhex(each['absolute']):.3e}", f"{each['units']} * {unit}",
-         ("" if each["converged"] else f"not below {float.fromhex(each['pointwise']):.3e} by this method")
+         ("" if each["converged"] else f"this method cannot go below {float.fromhex(each['pointwise']):.3e}")
          + (" (modulo whole turns)" if each["modulo_turns"] else ""))
         for each in part["outputs"]
     ]  # fmt: skip

@@ -121,7 +121,7 @@ class OutputError:
     bound : float
         No computed value on the box differs by more than this from the exact value; in the unit of the output.
     pointwise : float
-        The largest bound at a single point of the box; ``bound`` cannot be smaller than this number.
+        The largest error bound found at a single point of the box; ``bound`` cannot be smaller than this number.
     converged : bool
         Whether ``bound`` is about as small as this method can make it.
     modulo_turns : bool
@@ -265,11 +265,12 @@ def certify(
     Raises
     ------
     InputError
-        For an unknown kernel, an edited file or a box that cannot be used.
+        For an unknown kernel, an edited file or a box that cannot be used, or if ``objects`` is true and there is no
+        compiler or no ``objdump``.
     CertificateError
         If a proof fails.
     CompilerError
-        If ``objects`` is true and there is no compiler.
+        If ``objects`` is true and a compiler fails.
 
     Notes
     -----
@@ -336,6 +337,8 @@ def audit(
         If no path is passed, a file cannot be read, or a flag is unknown.
     CertificateError
         If a statement does not hold; the message names the first such statement.
+    CompilerError
+        If an object file is passed and there is no ``objdump``.
 
     Notes
     -----

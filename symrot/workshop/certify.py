@@ -53,7 +53,8 @@ MANY = 12  # smallest number of certificates that several processes audit at onc
 def _proven_statement(data: Data, own: SceneSource | None = None) -> Data | None:
     """Return the statements that symrot proves about the kernel named in the certificate ``data``.
 
-    The result is None for an unknown kernel. ``own`` is the user's scene, whose kernel it should be.
+    The result is None for an unknown kernel. With ``own``, the user's scene, CertificateError is raised unless the
+    certificate is that of the scene's kernel.
     """
     if own is not None:
         jacobian = re.search(r" --jacobian ([\w,]+) ", str(data["regenerate"]))

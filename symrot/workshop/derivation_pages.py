@@ -51,7 +51,7 @@ ABOUT_HANDOUT = (
 )
 
 FEW_FIGURES = 3
-"""A page with no more figures opens with the first of them, also if it belongs to a section."""
+"""A page with at most this many figures opens with its first figure, even if that figure belongs to a section."""
 
 CONVERTER = "rsvg-convert"
 """The program that converts SVG to PDF for LaTeX; without it, LaTeX prints the caption of a figure alone."""

@@ -34,7 +34,7 @@ class Emitted(_Texts):
     name : str
         Name of the kernel.
     source, header : str
-        The text of the kernel and, in C, of its header.
+        The text of the kernel and, in C, of its header; in other languages the header is empty.
 
     Notes
     -----

@@ -62,7 +62,10 @@ def input_box(kernel_problem: RoundingProblem, inputs: SceneInputs | None, range
 
 
 def plain_box(ranges: Sequence[str]) -> dict[str, Ends]:
-    """Return the ranges ``NAME=LOW:HIGH`` by name, with ends that are doubles; raise InputError for two of a name."""
+    """Return the ranges ``NAME=LOW:HIGH`` by name, with ends rounded to doubles.
+
+    InputError is raised for a malformed range, or for two ranges of one name.
+    """
     box: dict[str, Ends] = {}
     for text in ranges:
         name, (low, high) = _range(text)

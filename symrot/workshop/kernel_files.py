@@ -72,7 +72,8 @@ def certificate_files(
 ) -> dict[str, str]:  # fmt: skip
     """Return the certificate file of a kernel, as a map from file name to text; empty if it has no certificate.
 
-    Verdicts on object code are copied from a certificate in ``directory`` if it is about the same C text.
+    Verdicts on object code and, for a time step, bounds of errors are copied from the certificate of that name in
+    ``directory`` if it is about the same C text.
     """
     if not kernel.has_certificate:
         return {}
@@ -189,7 +190,10 @@ def write_files(directory: Path, files: Mapping[str, str]) -> list[Path]:
 
 
 def write_all(directory: Path, targets: Sequence[str], progress: Callable[[str], object]) -> list[Path]:
-    """Write the files of all kernels, of the library and of shipped scenes, delete others; return the changed paths."""
+    """Write the files of all kernels, of the library and of shipped scenes; return the changed paths.
+
+    Kernel files that symrot no longer prints are deleted; their paths are returned too.
+    """
     files = _all_files(targets, directory, progress)
     changed = write_files(directory, files)
     for name in _printed_before(directory, targets):

@@ -1,7 +1,8 @@
 """The texts of one kernel of the library or of one scene: C, NumPy, JavaScript, JAX and its certificate.
 
-Each text is printed at its first use and at most once. The argument ``bounds`` of the methods has the bounds of a scene
-kernel's rounding errors; only the kernel's C comment and certificate depend on it. Library kernels ignore it.
+The argument ``bounds`` of the methods has the bounds of a scene kernel's rounding errors; only the comment at the head
+of its C files and its certificate depend on them. Library kernels ignore ``bounds``. Whatever does not depend on
+``bounds`` is printed at its first use, and only once.
 """
 
 import re

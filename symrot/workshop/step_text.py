@@ -55,7 +55,7 @@ def _dop853(order: int) -> RungeKutta:
 STEPS: Mapping[str, Callable[[int], RungeKutta | TaylorSeries]] = {
     "rk4": lambda order: RK4, "taylor": TaylorSeries, "dop853": _dop853,
 }  # fmt: skip
-"""The methods of emitted steps, by name; each is made from the order of the Taylor series."""
+"""Name of a method -> the function that makes it from the order of the Taylor series, which only ``taylor`` uses."""
 
 
 def step_method(name: str, order: int | None = None, jacobian: Sequence[str] = ()) -> Method:
@@ -218,7 +218,10 @@ class StepText(StepFiles):
         )  # fmt: skip
 
     def certificate(self, bounds: Bounds | None = None) -> str:
-        """Return the text of the certificate; raise CertificateError if the C text does not compute the method."""
+        """Return the text of the certificate, without bounds of errors; ``bounds`` is not used.
+
+        CertificateError is raised if the C text does not compute the method.
+        """
         return step_certificate(self.certified)
 
     @cached_property

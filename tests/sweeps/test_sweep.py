@@ -231,7 +231,7 @@ def test_times_in_another_order_than_that_of_the_results_are_refused():
 ])  # fmt: skip
 def test_angles_and_quaternions_have_no_mean(output, statistic):
     """Of two tops at 174 and -174 degrees, the mean angle was 0."""
-    with pytest.raises(InputError, match=r"angles jump by a turn|q and -q are one attitude"):
+    with pytest.raises(InputError, match=r"angles jump by 360 degrees|q and -q are one attitude"):
         sweep(outputs=[output], statistics=statistic)
 
 

@@ -1,1 +1,1 @@
-"""C text that is read and run on numbers of many digits, to check that a program with loops solves its equations."""
+"""A machine that reads C text and runs it on numbers of many digits, to check that the text solves its equations."""

@@ -10,7 +10,7 @@ __all__ = ["Declarations"]
 
 
 class Declarations(Expressions):
-    """Reader of declarations."""
+    """Reader of declarations: it records the names and types, and compiles the first values of variables."""
 
     def _declarator(self, base: Type) -> tuple[str, Type]:
         while self._take("*"):
@@ -60,7 +60,10 @@ class Declarations(Expressions):
         return self.slots - 1
 
     def _variables(self, kind: Type, name: str, base: Type, is_global: bool) -> list[Run]:
-        """Return statements that initialise the variables of a declaration whose first declarator was read."""
+        """Read the rest of a declaration of variables; return statements that give the variables their first values.
+
+        The first variable, ``name`` of type ``kind``, was read before. Global variables get their first values at once.
+        """
         runs: list[Run] = []
         while True:
             initial = None

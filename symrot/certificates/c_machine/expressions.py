@@ -31,7 +31,7 @@ _BINDING = {
 _PREFIXES: Mapping[str, Callable[[Any], Any]] = {"-": operator.neg, "!": lambda x: int(not x), "~": operator.invert}
 _STEPS = {"++": 1, "--": -1}
 _LETTERS = {"r": REAL, "i": INT}
-"""Types in the signature of a function of ``own``; other letters mean any type."""
+"""Letters for types in the signature of a function that replaces one of the C text; other letters mean any type."""
 _ASSIGNMENTS = {"=", "+=", "-=", "*=", "/=", "<<="}
 _OPERATIONS: Mapping[str, Callable[[Any, Any], Any]] = {
     "+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv, "<": operator.lt, ">": operator.gt,
@@ -175,13 +175,13 @@ class Expressions(Reader):
         return Value(INT, lambda f: size)
 
     def _length(self, kind: Type) -> int:
-        """Return the number of doubles in a variable."""
+        """Return the number of doubles in a variable of type ``kind``; an integer or pointer counts as one double."""
         if kind.kind == "struct":
             return sum(map(self._length, self.structs[kind.of].types))
         return kind.size * self._length(kind.of) if kind.kind == "array" else 1
 
     def _at(self, kind: Type, place: Run) -> Value:
-        """Return the variable of type ``kind`` at a place."""
+        """Return the variable of type ``kind`` at a place (container and index), as a compiled expression."""
         if kind.kind == "array":
             # the address of the first element
 
@@ -318,7 +318,7 @@ class Expressions(Reader):
         return Value(result, lambda f: called(function, [run(f) for run in runs]))
 
     def _converted(self, value: Value, kind: Type) -> Run:
-        """Return the value of an expression as a variable of type ``kind`` receives it."""
+        """Return a function that computes the value of an expression, converted to the type ``kind`` of a variable."""
         run, number = value.run, self.number
         if kind == REAL and value.type == INT:
             return lambda f: number(Fraction(run(f)))

@@ -1,8 +1,8 @@
 """A machine that runs functions of C on numbers of any kind, such as decimals of 60 digits instead of doubles.
 
-It knows the C of symrot's closed forms: structures, arrays, pointers, loops, cases; no strings, allocation or recursion
-without end. Every ``double`` operation is one operation on the numbers, and every constant the exact value of the
-double. The modules of this room read the text from the small to the large: types, expressions, declarations,
+It knows the C of symrot's closed forms: structures, arrays, pointers, loops and cases, but neither strings nor
+allocation. Every ``double`` operation is one operation on the numbers, and every constant has the exact value of the
+double. The modules of this folder read the text from the small to the large: types, expressions, declarations,
 statements, functions.
 """
 
@@ -17,7 +17,7 @@ from symrot.errors import CertificateError, InputError
 __all__ = ["Machine"]
 
 _FAULTS = (ArithmeticError, AttributeError, IndexError, RecursionError, TypeError, ValueError)
-"""What the reading or the running of a faulty text raises."""
+"""The exceptions that reading or running a faulty text may raise."""
 
 
 class Machine(Statements):
@@ -29,8 +29,10 @@ class Machine(Statements):
         The C text.
     number : callable
         Converts a Fraction, the exact value of a constant, to the kind of number.
-    own : mapping of str to callable
-        Functions that replace those of the text or of ``<math.h>``. A pointer is a pair (list, index).
+    own : mapping of str to (str, callable)
+        Functions that replace those of the text or of ``<math.h>``, by name: letters for the types of the result and
+        of each argument ("r" a number, "i" an integer, others any type), and the function. If the text declares the
+        function, its declaration counts instead of the letters. A pointer is passed as a pair (list, index).
 
     Raises
     ------
@@ -54,7 +56,10 @@ class Machine(Statements):
         return fields
 
     def call(self, name: str, *arguments: Any) -> Any:
-        """Call a function with numbers, integers and pointers; return its result."""
+        """Call a function with numbers, integers and pointers; return its result, or None if it has none.
+
+        CertificateError is raised if the text has no such function, or for a fault while the function runs.
+        """
         if name not in self.functions:
             raise CertificateError(f"expected a function {name} in the C text, got none")
         self.steps = 0

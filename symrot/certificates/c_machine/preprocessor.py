@@ -83,7 +83,9 @@ class _Preprocessor:
 
     def expanded(self, tokens: list[Token], depth: int = 0) -> list[Token]:
         if depth > _DEEPEST:
-            raise CertificateError(f"line {tokens[0].line}: expected macros that end, got one in terms of itself")
+            raise CertificateError(
+                f"line {tokens[0].line}: expected macros without recursion, got one that uses itself"
+            )
         result: list[Token] = []
         i = 0
         while i < len(tokens):
@@ -103,7 +105,10 @@ class _Preprocessor:
 
 
 def _arguments(tokens: list[Token], start: int) -> tuple[list[list[Token]], int]:
-    """Return the arguments of a macro call whose opening bracket is at ``start``, and the place after it."""
+    """Return the arguments of a macro call, and the index of the first token after its closing bracket.
+
+    The opening bracket is the token with the index ``start``.
+    """
     arguments: list[list[Token]] = [[]]
     depth = 0
     for i in range(start, len(tokens)):

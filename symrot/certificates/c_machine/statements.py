@@ -7,7 +7,7 @@ from symrot.errors import CertificateError
 __all__ = ["Statements"]
 
 MOST_STEPS = 10_000_000
-"""Statements that one call may run; more mean a loop without end."""
+"""The largest number of loop iterations in one call of the machine; more mean a loop without end."""
 
 
 class _Break(Exception):
@@ -113,7 +113,7 @@ class Statements(Declarations):
             while condition is None or condition(f):
                 self.steps += 1
                 if self.steps > MOST_STEPS:
-                    raise CertificateError("expected loops that end, got one that runs on")
+                    raise CertificateError(f"expected at most {MOST_STEPS} iterations of loops in a call, got more")
                 try:
                     body(f)
                 except _Break:

@@ -29,7 +29,7 @@ INT, REAL, VOID = Type("int"), Type("real"), Type("void")
 
 
 def pointer(kind: Type) -> Type:
-    """Return the type as which an argument is passed: an array as a pointer to its elements."""
+    """Return the type with which an argument of type ``kind`` is passed: an array becomes a pointer to its elements."""
     return Type("pointer", kind.of) if kind.kind == "array" else kind
 
 
@@ -50,7 +50,7 @@ class Function(NamedTuple):
 
 
 class Value(NamedTuple):
-    """A compiled expression: its type, its value, and its place if it has one."""
+    """A compiled expression: its type, the function that computes its value and, for a variable, that of its place."""
 
     type: Type
     run: Run
@@ -62,7 +62,7 @@ class Return(Exception):
 
 
 def called(function: Function, arguments: Sequence[Any]) -> Any:
-    """Return the result of a compiled function for numbers, integers and pointers."""
+    """Call a compiled function with numbers, integers and pointers; return its result, or None if it has none."""
     frame: Frame = [None] * function.slots[0]
     frame[: len(arguments)] = arguments
     try:
@@ -73,5 +73,5 @@ def called(function: Function, arguments: Sequence[Any]) -> Any:
 
 
 def copied(value: Any) -> Any:
-    """Return a copy of a structure or array, with copies of those within; a number itself."""
+    """Return a copy of a structure or array, in which inner structures and arrays are copied too; else the value."""
     return [copied(each) for each in value] if isinstance(value, list) else value

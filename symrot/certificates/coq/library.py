@@ -85,7 +85,10 @@ def assumptions_text(names: tuple[str, ...]) -> str:
 
 
 def coq_texts(names: tuple[str, ...] | None = None) -> dict[str, str]:
-    """Return the Coq files ``names`` (default: all), ``rotation.v``, which they need, and two more files, by name."""
+    """Return the texts of the Coq files ``names`` (default: all) and of three files that go with them, by file name.
+
+    The three are ``rotation.v``, which all others need, ``assumptions.v`` and ``_CoqProject``.
+    """
     names_needed = tuple(name for name in coq_file_names() if names is None or name in names)
     printed = {name: coq_file(name).text for name in names_needed}
     texts = {RULES: rules_text(), **printed, ASSUMPTIONS: assumptions_text(names_needed)}

@@ -21,7 +21,7 @@ _GROW = 1 + 2.0**-40  # more than the rounding errors of a computed bound
 
 
 class UndecidedError(Exception):
-    """A comparison whose result is not the same for all inputs of the set."""
+    """Raised for a comparison, or another decision, whose result may differ between inputs of the set."""
 
 
 def _down(x: float) -> float:
@@ -33,7 +33,7 @@ def _up(x: float) -> float:
 
 
 def _scaled_up(a: float, b: float) -> float:
-    """Return at least the product of two numbers that are not negative; it is 0 only if one of them is."""
+    """Return an upper bound of the product of two numbers that are not negative; it is 0 only if a factor is 0."""
     return _known(a * b) * _GROW + _LEAST if a and b else 0.0
 
 

@@ -1,12 +1,13 @@
 """Bounds of the errors of an exact step of a free body on a box of states, from its C text.
 
-The C text runs on numbers with bounds of their errors (bounded_number.py), for parts of the box: of each sign of each
-component of omega, and of the phase of the elliptic functions. Operations on sums of two doubles have the relative
-errors of functions.py; every operation on doubles, which makes nearly all of the error, is bounded where the C text has
-it. Some intervals are cut to what is known of exact values, such as 0 <= m <= 1 of the modulus.
+The C text runs on numbers with bounds of their errors (bounded_number.py), once for each part of the box. In a part
+no component of omega changes its sign, and the phase of the elliptic functions is in one of 64 equal ranges.
+Operations on sums of two doubles have the relative errors of functions.py; every operation on doubles, which makes
+nearly all of the error, is bounded where the C text has it. Some intervals are cut to the known range of the exact
+value, such as 0 <= m <= 1 for the modulus m.
 
 Bounds exist where the modulus m is below 0.7, that is not near the rotation about the middle axis. There the series
-in the nome q are cut after q^15, with an error below 40 q^16 of the elliptic functions.
+in the nome q are cut after q^15, which makes an error below 40 q^16 in the elliptic functions.
 """
 
 from collections.abc import Callable
@@ -185,7 +186,10 @@ class _Context:
         self.motion = motion[0]
 
     def after(self, size: Bounded) -> list[Bounded]:
-        """Return the state after a step of a size, for phases of the elliptic functions in ``self.phase``."""
+        """Return the state (omega, then the quaternion) after a step of ``size``, with bounds of its errors.
+
+        They hold for phases of the elliptic functions in the range ``self.phase``.
+        """
         result: list[Any] = [point(0.0)] * 7
         self.machine.call(f"{self.prefix}_at", ([self.motion], 0), 1, ([size], 0), (result, 0), (result, 3))
         return result
@@ -271,9 +275,9 @@ def _series_error(machine: Machine) -> float:
 
 
 def free_body_bounds(source: str, name: str, moments: list[float], box: Box) -> tuple[list[float], list[float]]:
-    """Return bounds of rounding and of truncation of an exact step of a free body: of omega, then of the quaternion.
+    """Return (rounding, truncation): bounds of the errors of an exact step of a free body.
 
-    Equal calls are computed once per process.
+    Each is a list of seven bounds: of omega_1 to omega_3, then of q0 to q3. Equal calls are computed once per process.
 
     Parameters
     ----------
@@ -289,7 +293,8 @@ def free_body_bounds(source: str, name: str, moments: list[float], box: Box) -> 
     Raises
     ------
     InputError
-        If the box contains states near a rotation about the middle axis, where no bounds are known.
+        If the box contains states near a rotation about the middle axis, where no bounds are known, or if an error
+        has no bound for another reason, such as steps of too many revolutions.
     CertificateError
         If the C text is no exact step of a free body.
     """

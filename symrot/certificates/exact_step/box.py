@@ -45,7 +45,10 @@ def signed_parts(box: Box) -> Iterator[Part]:
 
 
 def shells(part: Part) -> Iterator[tuple[float, Part]]:
-    """Yield the powers of two by which omega is divided in a part of the box, each with the part of omega for it."""
+    """Yield pairs (power of two, sub-part): the C text divides omega in this sub-part of ``part`` by the power.
+
+    InputError is raised for a part that reaches nearly to omega = 0.
+    """
     smallest = max(min(abs(low), abs(high)) for low, high in part)
     largest = max(max(abs(low), abs(high)) for low, high in part)
     if largest == 0:
@@ -63,7 +66,7 @@ def shells(part: Part) -> Iterator[tuple[float, Part]]:
 
 
 def _power(exponent: int) -> float:
-    """Return the power of two by which the C text divides numbers, from the binary exponent of the largest."""
+    """Return the power of two by which the C text divides numbers; ``exponent`` is that of the largest of them."""
     return 2.0 ** min(max(exponent, LEAST_POWER), LARGEST_POWER)
 
 
@@ -73,7 +76,10 @@ def power_near(largest: float) -> float:
 
 
 def halves(part: Part) -> tuple[Part, Part]:
-    """Return a part of the box, divided in the middle of its widest range; InputError is raised if it is a point."""
+    """Return the two halves of a part of the box, divided in the middle of its widest range.
+
+    InputError is raised if no double is inside that range, so that the part cannot be divided.
+    """
     widths = [abs(high - low) for low, high in part]
     place = widths.index(max(widths))
     low, high = part[place]

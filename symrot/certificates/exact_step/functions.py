@@ -1,8 +1,8 @@
 """Functions of numbers with bounds of their errors, as the C text of an exact step computes them.
 
-The C text computes with sums of two doubles, of about 31 digits. Operations on them have the relative errors that are
-proven for them, generously. Intervals of exact values come from functions of doubles, whose results are widened by more
-than their error.
+The C text computes with sums of two doubles, of about 31 digits. Each operation on such sums is taken to have a
+relative error somewhat larger than the one that is proven for it. Intervals of exact values come from functions of
+doubles, whose results are widened by more than their error.
 """
 
 from collections.abc import Callable
@@ -24,7 +24,11 @@ SLACK = 1e-12  # relative error of intervals computed with doubles from <math.h>
 
 
 def pair(value: Bounded) -> list[Any]:
-    """Return a sum of two doubles: its high part, which knows the sum, and its low part, which no operation reads."""
+    """Return a number as a sum of two doubles: [high part, low part].
+
+    The high part refers to the number itself; the low part is 0 if the number is exact, else None: no operation reads
+    it.
+    """
     high = value.rounded(DOUBLE)
     return [Bounded(high.low, high.high, high.error, high.relative, value), point(0.0) if value.is_exact else None]
 
@@ -61,7 +65,10 @@ def widened(low: float, high: float) -> tuple[float, float]:
 
 
 def agm(a: Bounded) -> Bounded:
-    """Return the arithmetic-geometric mean of 1 and ``a``, which is at most 1; UndecidedError is raised near 0."""
+    """Return the arithmetic-geometric mean of 1 and ``a``, where ``a`` is at most 1.
+
+    UndecidedError is raised if ``a`` may be near 0.
+    """
     if a.low < 1e-160:
         raise UndecidedError
     low, high = widened(mean_of(a.low), mean_of(min(a.high, 1.0)))
@@ -113,7 +120,7 @@ def _range_of(function: Callable[[float], float], low: float, high: float, peak:
 
 
 def sine_and_cosine(turns: Bounded, error: float) -> tuple[Bounded, Bounded]:
-    """Return sine and cosine of an angle in revolutions, computed with an absolute error."""
+    """Return sine and cosine of an angle in revolutions, as numbers with the absolute error ``error``."""
     sine = _range_of(sin, turns.low, turns.high, 0.25)
     cosine = _range_of(cos, turns.low, turns.high, 0.0)
     return Bounded(*sine, error, inf), Bounded(*cosine, error, inf)

@@ -247,7 +247,7 @@ def _violation(
     def after(size: _Slope) -> list[_Slope]:
         result: list[Any] = [Decimal(0)] * len(states)
         if machine.call(name, Decimal(0), (list(state), 0), (list(p), 0), size, (result, 0)):
-            raise CertificateError(f"{name}: expected a step of a state in the domain, got a refusal")
+            raise CertificateError(f"{name}: expected the step to accept a state in its domain, got an error code")
         return [_slope(each) for each in result]
 
     worst = Decimal(0)

@@ -25,13 +25,13 @@ FACTOR = 8
 
 
 class _NoRootError(ArithmeticError):
-    """A number modulo the prime that is no square."""
+    """Raised for the square root of a number that has no square root modulo the prime."""
 
 
 def require_limits(file: str, operations: Operations) -> None:
-    """Raise CertificateError if a C function has a case other than ``x == 0 ? 1 : sin(x)/x``.
+    """Raise CertificateError if a C function has a conditional other than ``x == 0 ? 1 : sin(x)/x``.
 
-    A random point meets only one branch of a case.
+    A random point tests only one branch of a conditional.
     """
     nodes = operations.nodes
     for node in nodes:
@@ -45,7 +45,9 @@ def require_limits(file: str, operations: Operations) -> None:
 
 
 def motion_section(file: str, rates: Program, places: Mapping[str, str], operations: Operations) -> dict[str, Any]:
-    """Return the section ``motion`` about a C function: the law that holds, and the probability that it fails.
+    """Check that a C function is the motion; return the section ``motion`` of the certificate.
+
+    It states the law, and a bound of the probability that a function which violates the law passes the check.
 
     Parameters
     ----------

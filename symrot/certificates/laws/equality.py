@@ -253,9 +253,11 @@ class _EqualityProver:
         return product
 
     def _truncated(self, name: str, split: Fraction, written: list[Fraction]) -> Truncation:
-        """Return the Taylor series of the function ``name``, which the C text uses for x^2 < ``split``.
+        """Return a record, with an error bound, of the Taylor polynomial by which the C text computes a function.
 
-        The result has a bound of the error. CertificateError is raised if the coefficients ``written`` are wrong.
+        The C text uses the polynomial for x^2 < ``split``; ``written`` are its coefficients there. CertificateError is
+        raised if they are not those of the series of the function ``name``, or if the terms of the series do not
+        alternate in sign and decrease.
         """
         exact = REMOVABLE[name].taylor(len(written) + 1)
         for value, true in zip(written, exact, strict=False):

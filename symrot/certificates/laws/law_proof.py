@@ -175,7 +175,7 @@ class LawProver(FormulaReader):
     def generator(self, meaning: str) -> PolyElement:
         """Return an unused variable of the ring for a function value; ``meaning`` is its text, such as ``"sin(x)"``.
 
-        OutOfGenerators is raised if there is none.
+        OutOfGenerators is raised if no unused variable is left.
         """
         if self.generator_count == self.pool:
             raise OutOfGenerators
@@ -363,7 +363,10 @@ class LawProver(FormulaReader):
         return known
 
     def _pair(self, unit: PolyElement, angle: PolyElement) -> tuple[Quotient, Quotient]:
-        """Return (cosine, sine) of ``angle``, the base angle of ``unit``, such as x/2 of x; usually variables."""
+        """Return (cosine, sine) of ``angle``, the base angle for multiples of ``unit``, such as x/2 for x.
+
+        Both are new generators, except for an arc tangent: its cosine and sine are the fractions found by :meth:`arc`.
+        """
         # ``unit`` is the monomial of the angle without the number, such as x
         if unit not in self.angle_functions:
             cosine, sine = self.generator(f"cos({angle})"), self.generator(f"sin({angle})")

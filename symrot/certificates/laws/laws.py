@@ -1,8 +1,8 @@
 """Proofs of a kernel's laws, such as "the norm is 1", from its formulas, as polynomial identities.
 
 A law states that expressions in inputs and outputs are zero. With generators (variables for function values such as
-cos(x/2)), each is a fraction. The proof writes its numerator as a sum of cofactors times relations, polynomials known
-to be zero.
+cos(x/2)), each expression becomes a fraction of polynomials. The proof writes the numerator as a sum of cofactors
+times relations, which are polynomials known to be zero.
 """
 
 from collections.abc import Mapping, Sequence
@@ -102,7 +102,10 @@ ENTRIES = 9  # number of entries of a rotation matrix
 
 
 def hypotheses(symbols: Sequence[Symbol]) -> tuple[Expr, ...]:
-    """Return the expressions that are zero if the symbols form a unit vector, unit quaternion or rotation matrix."""
+    """Return the expressions that are zero if the symbols form a unit vector, unit quaternion or rotation matrix.
+
+    The result is empty if there are no symbols.
+    """
     # nine symbols are a matrix, row by row
     if len(symbols) == ENTRIES:
         return rotation_relations(Matrix(3, 3, symbols))

@@ -1,7 +1,7 @@
 """Proofs that the object code of a kernel's one-sample functions performs the same roundings as the C text.
 
-The machine code is executed on symbolic terms. Its outputs must equal the terms of the C text for every combination of
-outcomes of floating-point comparisons: this is one "case". Loops over samples (``*_batch``) are not compared.
+The machine code is executed on symbolic terms. Its outputs must equal the terms of the C text in every "case": for
+every combination of outcomes of floating-point comparisons. Loops over samples (``*_batch``) are not compared.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -198,7 +198,8 @@ def _outputs(path: ExecutionPath, text: Operations, terms: Terms, width: int) ->
 def _unfused(terms: Terms, got: list[int], known: Known) -> tuple[list[int], Known, str]:
     """Return the outputs ``got`` and comparisons ``known`` with each fused a*b + c split into product and sum.
 
-    The third result is ``""``, or a term that makes this split invalid, so that the code is rejected.
+    The third result is ``""`` if this split is valid; otherwise it is the text of a product or number that makes it
+    invalid, so that the code is rejected.
     """
     pairs = [operand for pair in known for operand in pair]
     if not any(terms.kind(index) in ("fma", "fnma") for index in terms.order(got + pairs)):

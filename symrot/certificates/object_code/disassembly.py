@@ -108,7 +108,7 @@ class Instruction:
 
 @dataclass(frozen=True)
 class Listing:
-    """The content of an object file, by section and address: instructions, symbols (names of functions), constants."""
+    """The content of an object file: its instructions, the section and offset of each symbol, and its constants."""
 
     where: str
     code: Mapping[tuple[str, int], Instruction]
@@ -268,7 +268,7 @@ def _instruction(
     section: str, address: int, content: bytes, text: str,
     relocations: Mapping[tuple[str, int], tuple[str, str, int]], where: str,
 ) -> Instruction:  # fmt: skip
-    """Return the instruction that a line of objdump's listing states; ``content`` are its bytes."""
+    """Return the instruction in a line of objdump's listing; ``content`` holds the bytes of the instruction."""
     # addresses within the instruction that the linker fills in
     inside = [
         (at, relocations[section, at]) for at in range(address, address + len(content)) if (section, at) in relocations

@@ -311,7 +311,10 @@ def _leave(state: MachineState, instruction: Instruction) -> None:
 
 
 def condition_holds(state: MachineState, condition: str) -> bool:
-    """Return whether a conditional jump such as ``jne``, whose ``condition`` is ``"ne"``, is taken."""
+    """Return whether a conditional jump such as ``jne``, whose ``condition`` is ``"ne"``, is taken.
+
+    UndecidedBranch is raised if that depends on the inputs.
+    """
     kind, values = state.flags
     # raises UndecidedBranch if the compared numbers depend on the inputs
     if kind == "numbers" and condition in OF_NUMBERS:

@@ -1,7 +1,8 @@
 """The effect of SSE2 and AVX instructions that only rearrange 32-bit words: unpack, shuffle, blend, insert, broadcast.
 
 Each function of the table ``SHUFFLES`` takes the sources' words and the instruction's constant. Most instructions
-treat each 128 bits of a register alike: words 0 to 3 are then in the first source, and words 4 to 7 in the last.
+do the same in every block of 128 bits. Within a block, the numbers 0 to 3 name the four words of the first source,
+and the numbers 4 to 7 name the four words of the last source.
 """
 
 from collections.abc import Callable, Sequence
@@ -14,7 +15,10 @@ Shuffle = Callable[[MachineState, list[Words], int], Words]
 
 
 def _pick(places: Sequence[int]) -> Shuffle:
-    """Return the function that picks the words numbered ``places`` from each block of 128 bits of two sources."""
+    """Return the function that picks the words with the numbers ``places`` from each 128-bit block of the sources.
+
+    The numbers 0 to 3 are the block's words in the first source, and 4 to 7 those in the last source.
+    """
 
     def shuffle(_: MachineState, sources: list[Words], __: int) -> Words:
         picked: Words = []
@@ -27,11 +31,13 @@ def _pick(places: Sequence[int]) -> Shuffle:
 
 
 def _by_constant(places: Callable[[int, int], Sequence[int]]) -> Shuffle:
-    """Return a function that picks the words ``places(constant, k)`` from block k (128 bits) of the sources."""
+    """Return a function that picks the words with the numbers ``places(constant, k)`` from the k-th 128-bit block.
+
+    The numbers are as for :func:`_pick`; the constant is a part of the instruction.
+    """
 
     def shuffle(state: MachineState, sources: list[Words], constant: int) -> Words:
         picked: Words = []
-        # the constant is part of the instruction
         for lane, start in enumerate(range(0, len(sources[0]), 4)):
             part = [words[start : start + 4] for words in sources]
             picked += _pick(places(constant, lane))(state, part, 0)

@@ -99,7 +99,7 @@ class MachineState:
     def decide(self, outcomes: Outcomes, a: int, b: int) -> bool:
         """Return whether comparing the term ``a`` with ``b`` has one of ``outcomes``, such as less or equal.
 
-        UndecidedBranch is raised if that is not known.
+        UndecidedBranch is raised if that depends on the inputs.
         """
         terms = self.context.terms
         a, b = terms.rebuilt((a, b), self.known)

@@ -1,8 +1,9 @@
 """The check that the header of an emitted kernel contains only fixed lines and the prototypes of its C file.
 
 A header can change what a C file means; a macro called ``sin`` is enough. So every line outside comments must be one
-of the constants ``_TOP`` to ``_END``, in this order, or part of a prototype. So can another header, or a function that
-is called like one of the C library: the C file of a step contains nothing but its functions.
+of the constants ``_TOP`` to ``_END``, in this order, or part of a prototype. Another included header, or a function
+with the name of one in the C library, can change the meaning too, so the C file of a step is checked to contain nothing
+but the functions of the step.
 """
 
 import re

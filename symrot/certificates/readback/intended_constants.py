@@ -27,7 +27,7 @@ class IntendedConstant:
     times_pi: bool
 
     def rounds(self, precision: str) -> bool:
-        """Return whether the exact number, rounded to ``precision``, is the C text's constant ``written``."""
+        """Return whether the exact number, rounded to ``precision``, equals ``written``, the constant in the C text."""
         return rounds_to(self.fraction * PI if self.times_pi else self.fraction, precision) == self.written
 
 

@@ -1,7 +1,7 @@
 """Bounds of the rounding errors of a kernel's outputs on a box of inputs.
 
-A bound limits the absolute error of an output against the exact formula at the same floating-point inputs. No number
-overflows on the box.
+A bound limits the absolute error of an output against the exact formula at the same floating-point inputs. A finite
+bound also shows that no number overflows on the box.
 """
 
 from collections.abc import Mapping
@@ -226,7 +226,10 @@ def output_bound(operations: Operations, place: str, task: BoundTask, result: Se
 
 
 def choice_phrases(task: BoundTask) -> list[str]:
-    """Return the conditions of an output that compare rounded numbers, as text, such as ``"q[0] >= 0.0"``."""
+    """Return the conditions of an output that compare rounded numbers, as text, such as ``"(x[0] + x[1]) >= 0.0"``.
+
+    If the two branches are equal modulo 2 pi, the text ends with ``, by whole turns``.
+    """
     return [f"{text}, by whole turns" if turns else text for text, turns in task.graph.choices]
 
 

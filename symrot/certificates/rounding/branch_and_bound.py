@@ -169,7 +169,10 @@ class _BoundSearch:
         return np.concatenate(boxes, axis=2), np.concatenate(decided, axis=1)
 
     def cut(self, parts: _Parts, branch: int) -> Array:
-        """Return the boxes of ``parts``, reduced to points at which the part's undecided condition takes ``branch``."""
+        """Return the boxes of ``parts``, reduced to points at which the part's undecided condition takes ``branch``.
+
+        A box is reduced only if the condition compares an input with a constant; otherwise it stays as it is.
+        """
         boxes = parts.boxes.copy()
         for number, (relation, i, j) in enumerate(self.graph.conditions):
             left, right = self.graph.nodes[i], self.graph.nodes[j]
@@ -270,7 +273,8 @@ def search(
 def _run_search(run: _BoundSearch, budget: int, target: float | None) -> SearchResult:
     """Return the result of a search that ends when the bound is tight, or after ``budget`` evaluations.
 
-    With a ``target``, the search also ends when it is known whether the bound exceeds the target.
+    The search also ends if a part without a bound is almost as small as a point and, with a ``target``, when it is
+    known whether the bound exceeds the target.
     """
     graph, box = run.graph, run.box
     conditions = len(graph.conditions)

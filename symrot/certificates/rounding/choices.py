@@ -37,7 +37,8 @@ def decide_branches(
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Set ``decision`` to 1 on boxes where ``a relation b`` holds everywhere, and to 0 where it holds nowhere.
 
-    Return two Boolean arrays: where this contradicts an earlier decision, and where both branches remain possible.
+    An earlier decision, 0 or 1, is not changed. Return two Boolean arrays: the boxes on which the earlier decision is
+    impossible, and the undecided boxes on which both branches remain possible.
     """
     # ``decision``: 1 if the condition is assumed to hold on a box, 0 if not to hold, -1 if nothing is assumed
     holds, fails = _POSSIBLE[relation](a, b)

@@ -1,7 +1,7 @@
 """Intervals that contain sine, cosine, arc tangent and related functions, computed from ``+ - * / sqrt`` alone.
 
 The C library's sine differs between machines, but bounds must be the same everywhere. Arguments are reduced by
-multiples of pi/2, and Taylor series are summed. Results are widened by more than their absolute error, below 1e-15.
+multiples of pi/2, and Taylor series are summed. Their absolute error is below 1e-15; each result is widened by more.
 """
 
 from collections.abc import Callable
@@ -181,7 +181,10 @@ def _arc(z: Array) -> Array:
 
 
 def arc_tangent(y: Array, x: Array) -> Array:
-    """Return intervals that contain atan2(y, x); the interval is [-pi, pi] if y contains zero and x is not positive."""
+    """Return intervals that contain atan2(y, x) for all numbers in the intervals ``y`` and ``x``.
+
+    The result is about [-pi, pi] if y contains zero and x contains a number that is not positive.
+    """
     with np.errstate(all="ignore"):
         right, up = divide(y, x), divide(x, y)
         sloped = [_arc(np.where(np.isfinite(q), q, 0.0)) for q in (right, up[::-1])]

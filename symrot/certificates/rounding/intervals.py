@@ -140,7 +140,7 @@ def half_ulp(size: Array, precision: str) -> Array:
 
 
 def rounded_to(a: Array, precision: str) -> Array:
-    """Return intervals that contain the intervals ``a`` and all numbers in these, rounded to a precision."""
+    """Return intervals that contain all numbers in the intervals ``a``, and these numbers rounded to ``precision``."""
     if precision == "binary64":
         return a
     with np.errstate(over="ignore"):

@@ -78,7 +78,9 @@ def prepare(
     kernels: Iterable[tuple[str, str]], workers: int = 2, budget: int = BUDGET, libm_ulp: float = LIBM_ULP,
     progress: Callable[[str], object] = lambda text: None, with_table: bool = True,
 ) -> int:  # fmt: skip
-    """Compute the error bounds of library kernels in several processes, and store them; equal tasks are computed once.
+    """Compute those error bounds of library kernels that are not stored, in several processes, and store them.
+
+    Equal tasks of different kernels are computed once.
 
     Parameters
     ----------
@@ -131,10 +133,10 @@ def largest_box(
     operations: Operations, box: Box, target: float, places: Sequence[str] | None = None, region: Region = EVERYWHERE,
     budget: int = BUDGET, libm_ulp: float = LIBM_ULP,
 ) -> tuple[float, dict[str, tuple[Fraction, Fraction]]]:  # fmt: skip
-    """Return (size, box): the box whose ranges are ``size`` times as wide, as far as ``target`` allows.
+    """Return (size, box): the largest size found at which no rounding error on the box exceeds ``target``.
 
-    Only the inputs ``places`` (default: all) are resized, about the middles of their ranges: for size 2, 1 to 3 becomes
-    0 to 4. No rounding error on the returned box exceeds ``target``.
+    The ranges of the inputs ``places`` (default: all) are ``size`` times as wide, with the same middles: for size 2,
+    1 to 3 becomes 0 to 4. The size is found by bisection and is at most 1024.
 
     Raises
     ------

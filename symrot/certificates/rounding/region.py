@@ -37,7 +37,10 @@ def _numbers(region: Region, places: Sequence[str]) -> list[list[int]]:
 
 
 def off_unit(boxes: Array, region: Region, places: Sequence[str]) -> NDArray[np.bool_]:
-    """Return a Boolean array: whether each box, shape (2, inputs, n), surely has no inputs whose squares sum to 1."""
+    """Return a Boolean array: whether each of n boxes surely has no point where the groups of inputs have unit norm.
+
+    ``boxes`` has the shape (2, inputs, n): the least and the largest value of each input; ``places`` names the inputs.
+    """
     outside = np.zeros(boxes.shape[2], bool)
     for group, numbers in zip(region.unit, _numbers(region, places), strict=True):
         total = intervals.point(0.0, boxes.shape[2])

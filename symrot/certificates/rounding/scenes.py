@@ -59,7 +59,10 @@ def scene_problem(inputs: SceneInputs, operations: Operations) -> RoundingProble
 
 
 def header_lines(inputs: SceneInputs, section: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
-    """Return lines (title, text) about rounding bounds, for the header comment of a scene's C file."""
+    """Return lines (title, text) about rounding bounds, for the header comment of a scene's C file.
+
+    ``section`` is the section ``rounding`` of the kernel's certificate.
+    """
     names: dict[tuple[float, float], list[str]] = {}
     parameters = {f"p[{i}]": value for i, value in enumerate(inputs.parameters)}
     for place, ends in section["box"].items():
@@ -67,7 +70,6 @@ def header_lines(inputs: SceneInputs, section: Mapping[str, Any]) -> tuple[tuple
         if (Fraction(low), Fraction(high)) != ANY and not (low == high == parameters.get(place)):
             names.setdefault((low, high), []).append(inputs.components[place][0])
     ranges = [f"{', '.join(each)} {_range(low, high)}" for (low, high), each in names.items()]
-    # ``section`` is the section ``rounding`` of a certificate
     (part,) = section["precisions"]
     errors: dict[str, list[tuple[str, Fraction]]] = {}
     for each in part["outputs"]:

@@ -137,7 +137,10 @@ def _plain_output(bound: OutputBound, unit: float) -> dict[str, Any]:
 
 
 def _units(value: Fraction) -> str:
-    """Return a number as decimal text, rounded up to four digits, or to four decimals below 1: 2/3 -> ``0.6667``."""
+    """Return a number as decimal text, rounded upward: four significant digits, or four decimals if it is below 1.
+
+    2/3 gives ``0.6667``.
+    """
     if value == 0:
         return "0"
     exponent = len(str(int(value))) - 1 if value >= 1 else -1

@@ -32,8 +32,10 @@ def method() -> str:
 
 @cache
 def table() -> Mapping[str, Any]:
-    """Return the table of bounds that comes with symrot."""
-    # "bounds": key of a task -> its bound; "method": hash of the code that computed them
+    """Return the table of bounds that comes with symrot; without its file, a table that has no bounds.
+
+    ``"bounds"`` maps the key of a task to its bound; ``"method"`` is the hash of the code that computed the bounds.
+    """
     try:
         return dict(json.loads(TABLE.read_text(encoding="utf-8")))
     except OSError:

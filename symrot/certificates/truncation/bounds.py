@@ -27,7 +27,7 @@ from symrot.formula.tree import names
 __all__ = ["PIECES", "truncation_bounds"]
 
 PIECES = 24
-"""Number of sub-boxes into which the box of the start is divided at most."""
+"""The largest number of sub-boxes into which a box of states and step sizes is divided."""
 
 GROWTH = Fraction(1, 8)  # by which the box around a motion grows in each attempt, relative to its width
 ATTEMPTS = 24
@@ -168,7 +168,10 @@ class _Problem:
             return [inf] * len(self.states)
 
     def advice(self, box: Box) -> str:
-        """Return which steps to take if those of a box have no bounds: the first half, quarter .. of dt that has."""
+        """Return a phrase for a message: which step sizes have bounds if those of ``box`` have none.
+
+        It names the first of half, a quarter, an eighth .. of dt for which all errors are bounded, if there is one.
+        """
         size = max(map(abs, box[SIZE]))
         for _ in range(HALVINGS):
             size /= 2
@@ -213,7 +216,7 @@ class _Problem:
         return None
 
     def _step_coefficients(self, values: Mapping[str, Any], span: Any, order: int) -> list[Any]:
-        """Return, for each state, an interval with the coefficient of h^``order`` in the Taylor series of the step.
+        """Return, for each state, an interval that contains the coefficient of h^``order`` in the series of the step.
 
         ``values`` and ``span`` are the ranges of the inputs and of h.
         """

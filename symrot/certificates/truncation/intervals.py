@@ -1,4 +1,4 @@
-"""Intervals of real numbers, from mpmath, and the functions of them that rates may contain."""
+"""Intervals of real numbers, from mpmath, and the functions of intervals that rates may contain."""
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager

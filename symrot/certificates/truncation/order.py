@@ -17,7 +17,7 @@ from symrot.errors import CertificateError
 __all__ = ["DEFECT", "require_order", "trees"]
 
 DEFECT = Fraction(1, 10**25)
-"""The largest defect that is accepted of a method whose coefficients are rounded decimals."""
+"""The largest accepted defect of an order condition, for a method whose coefficients are rounded decimals."""
 
 Tree = tuple[Any, ...]  # a rooted tree: the subtrees of its root, in order
 
@@ -59,7 +59,7 @@ def require_order(method: Method) -> tuple[Fraction, ...]:
     """Raise CertificateError unless a method has its order; return the largest defects of its order conditions.
 
     Entry k is the largest defect of trees with k + 1 nodes, 0 unless the method's coefficients are rounded decimals.
-    A Taylor method has its order by construction; an exact step has no order, and no defects.
+    For a Taylor method, which has its order by construction, all entries are 0; for an exact step there are no entries.
     Source: Hairer, Norsett, Wanner, Solving ODEs I, 2nd ed., theorem II.2.13.
     """
     method = method.plain if isinstance(method, WithDerivatives) else method

@@ -1,4 +1,4 @@
-"""Polynomials with rational coefficients whose monomials are integers, for bounds of truncation.
+"""Polynomials with rational coefficients whose monomials are stored as integers, for bounds of truncation errors.
 
 Their products take a tenth of the time of those in ``symrot.formula.polynomial``. Standard library only.
 """

@@ -1,7 +1,9 @@
 """Proven upper limits of the step length, so that no step misses a short pulse of a torque formula.
 
-An enclosure evaluates terms of the rates on complex discs, which bounds the Taylor coefficients that a step omits. A
-disc's radius in time is the step times the *reach*. A step may miss a fraction of the deviation, the *missed share*.
+An enclosure bounds the change of the rates while time and states vary in complex discs; this bounds the Taylor
+coefficients that a step omits. The disc of the time has the radius *reach* times the length of the step. The error of a
+state in the step is at most the bound, times the length of the step, times the *missed share*, a small number that
+follows from the reach and the order of the method.
 """
 
 import math
@@ -209,10 +211,11 @@ class Deviations:
     ) -> list[float]:
         """Return a bound of the change of each rate while time and states vary around ``t`` and ``y``.
 
-        Time varies within ``radius``, s, and state k within ``radii[k]``; all are complex.
+        Time varies within ``radius``, s, and state k within ``radii[k]``; all are complex. The radius of a square root
+        near zero is multiplied by ``whole``. A bound is infinite if a pole may lie in the discs.
         """
-        # A bound is infinite if a pole may lie in the discs. The caller counts the missed share of a deviation as
-        # overlooked; of a square root near zero a step may overlook all: it is multiplied by whole, 1/missed share.
+        # The caller counts the missed share of a deviation as overlooked; of a square root near zero a step may
+        # overlook all: it is multiplied by whole, 1/missed share.
         self.spent += 1
         try:
             discs = self._discs(t, radius, whole, y, radii)
@@ -222,8 +225,9 @@ class Deviations:
         return [_or_infinite(bound) for bound in bounds]
 
     def rounding_errors(self, t: float, y: Sequence[float]) -> list[float]:
-        """Return a bound of the error of each rate from the rounding of formulas such as ``t**2 - 25``; empty if none.
+        """Return a bound of the error of each rate from the rounding of formulas of the time, such as ``t**2 - 25``.
 
+        The list is empty if the rates contain no such formula.
         The same bounds in C: :func:`symrot.codegen.enclosure.source.rounding_source`.
         """
         return [] if self._rounding is None else self._rounding(t, 0.0, 1.0, y, [0.0] * len(y))
@@ -231,7 +235,7 @@ class Deviations:
     def _discs(
         self, t: float, radius: float, whole: float, y: Sequence[float], radii: Sequence[float]
     ) -> dict[int, Parts]:
-        """Return the disc of each term: a map from the index of its series."""
+        """Return a map from the index of each series to the disc that contains the values of its term."""
         discs: dict[int, Parts] = {}
         for i, series, operands, weights in self._rules:
             rule = series.rule
@@ -284,9 +288,10 @@ def longest_followed(
     edges: Sequence[int],
     order: int,
 ) -> float:
-    """Return the length of a step, at most h, that is proven to miss no more of a torque than ``allowed``.
+    """Return the length of a step, at most h, for which the error from a missed change of the torque is proven small.
 
-    It is h if that is proven, and usually close to the longest such length otherwise. At 1e-300 s, nothing is proven.
+    This error is at most ``allowed``. The result is h if that is proven for h; otherwise it is usually close to the
+    longest length for which it is proven. A result of 1e-300 s or less means that nothing was proven.
 
     Parameters
     ----------
@@ -299,7 +304,7 @@ def longest_followed(
     path : N sequences
         For each state, the absolute values of the coefficients 1, 2, .. of its polynomial in (time - t)/h.
     allowed : one number per block
-        Error allowed in the step, for each block of states (omega, attitude).
+        Largest error from missed changes of the torque, for each block of states (omega, attitude).
     edges : sequence of int
         Edges of the blocks: block k consists of the states from edge k up to edge k + 1.
     order : int

@@ -204,7 +204,10 @@ def _warnings(events: Sequence[Event], doubts: Sequence[tuple[int, float]]) -> I
 
 
 def _flat_warnings(events: Sequence[Event], flat: Sequence[tuple[int, float, float]]) -> Iterator[str]:
-    """Yield a warning for each event whose formula is zero for long; ``flat`` has its number and two times, s."""
+    """Yield a warning for each event whose formula is zero for a while.
+
+    ``flat`` has triples: number of the event, and the times, s, between which its formula is zero.
+    """
     for number, event in enumerate(events):
         times = [t for each, *both in flat if each == number for t in both]
         if times:

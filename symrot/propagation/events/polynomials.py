@@ -124,7 +124,8 @@ def fitted(
 ) -> Piece:  # fmt: skip
     """Return polynomials that follow a motion between the successive times ``edges``; more edges are added if needed.
 
-    They agree with it usually up to rounding errors, at least to 1e-9.
+    They agree with the motion usually up to rounding errors, and at least to 1e-9 of the states plus ``accuracy``,
+    except on an interval that cannot be halved further because its ends are adjacent doubles.
 
     Parameters
     ----------

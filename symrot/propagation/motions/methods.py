@@ -119,7 +119,10 @@ class SteppedMotion(ShiftableMotion, SteppedInC):
 
     @cached_property
     def taylor_parameters(self) -> list[float]:
-        """Values for the Taylor library: one double for a parameter of the rates, two for one of the quantities."""
+        """The values of the parameters of the Taylor library: first those of the rates, each as one double.
+
+        Those of the output quantities follow, each as two doubles whose sum is the value.
+        """
         return [*self.rate_parameters, *self.setup.quantity_binding(self.plan)]
 
     @cached_property

@@ -41,7 +41,7 @@ class Motion(ABC):
 
     @property
     def choice(self) -> Choice:
-        """The method that follows the motion, such as ``"taylor"``, and the reason for it, as a :class:`Choice`."""
+        """The method that computes the motion, such as ``"taylor"``, and the reason for it, as a :class:`Choice`."""
         return self.setup.choice
 
     @property
@@ -225,7 +225,10 @@ class ShiftableMotion(RestartableMotion):
             raise error.later(motion.epoch) from None
 
     def _shifts(self, times: Floats) -> bool:
-        """Return whether the start is not 0 and all ``times`` of the scene, s, lie between half and twice the start."""
+        """Return whether time is counted from the start of the motion for the states at ``times`` of the scene, s.
+
+        This is so if the setup allows it, the start is not 0, and all times lie between half and twice the start.
+        """
         if not (self.start and self.setup.allows_time_shift and len(times)):
             return False
         # they keep more digits on a clock that shows 0 at the start

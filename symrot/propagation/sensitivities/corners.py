@@ -35,10 +35,10 @@ def places_within(begin: float, times: Floats) -> Floats:
 def rests_at_corner(
     rates: Program, depends: Sequence[Sequence[str]], p: Sequence[float], times: Floats, samples: Floats
 ) -> bool:
-    """Return whether the rates of a motion have no derivatives by states or parameters at one of n given times.
+    """Return whether a motion stays where its rates have no derivatives by states or parameters.
 
-    The times are arbitrary. A motion that only passes points without derivatives does so at single times, which the
-    given ones miss: if the result is true, the motion stays at such points.
+    This is examined at n arbitrary times. A motion that only passes such a point does so at a single time, which the
+    arbitrary times miss.
 
     Parameters
     ----------
@@ -80,7 +80,10 @@ class _Number:
         self.value, self.slopes, self.positive, self.timed = value, slopes, positive, timed
 
     def _zero(self, other: "_Number") -> bool:
-        """Return whether a factor makes the product with ``other`` smooth where ``other`` has no derivative."""
+        """Return whether this number is zero in such a way that its product with ``other`` has derivatives.
+
+        ``other`` may then have none: ``omega_1*|omega|`` has derivatives at omega = 0.
+        """
         if EDGE in other.slopes.values():
             return False
         rough = [slope for slope in self.slopes.values() if not math.isfinite(slope)]

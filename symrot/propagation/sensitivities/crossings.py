@@ -6,7 +6,7 @@ jump. The time of the switch changes by ``dt/dv = -(g_x S- + g_p dp/dv)/(g_t + g
 
     S+ = S- - (f+ - f-) dt/dv
 
-(saltation matrix). It holds if the motion crosses the zero with a speed other than zero, and also if the guard is
+(saltation matrix). This holds if the guard passes zero at a speed other than zero, and also if the guard is
 *held* at zero from then on; f+ are then the rates of the sliding motion. At a kink and at the end of sliding, f+ = f-.
 Source: M. A. Aizerman, F. R. Gantmakher, On the stability of periodic motions, J. Appl. Math. Mech. 22 (1958) 1065.
 """
@@ -34,7 +34,10 @@ MOST_AT_ONCE = 6  # functions that may switch at one time
 
 
 class Flip(NamedTuple):
-    """The switch of one function: its new mode, the derivatives of its time by variables, of its guard by states."""
+    """The switch of one function: its new mode, and the derivatives of its time by the m variables.
+
+    ``guard`` holds the derivatives of the function's guard by the seven states.
+    """
 
     value: int
     time: Floats
@@ -49,7 +52,7 @@ class Crossings:
     guards : Guards
         The guards and rates.
     changes : mapping
-        How each function switches, by time, s, and function.
+        For each pair (time in s, function): the way in which the function switches then, such as ``"passed"``.
     length : float
         The length of the motion, s.
 
@@ -65,7 +68,11 @@ class Crossings:
         self._last: tuple[Interval, Instant, dict[str, Flip], bool] | None = None  # the last jump of the rates
 
     def across(self, before: Interval, after: Interval, by: Floats) -> Floats:
-        """Return the derivatives after a switch between two intervals, and note those of the time of the switch."""
+        """Return the derivatives of the states after a switch between two intervals; ``by`` are those before, (7, m).
+
+        The derivatives of the time of the switch are appended to :attr:`switchings`. Raise PropagationError if the
+        derivatives after the switch do not exist.
+        """
         guards = self.guards
         changed = [
             mode
@@ -122,17 +129,20 @@ class Crossings:
         return by if first is None else np.asarray(by - np.outer(later - f, rows[first]))
 
     def _at_once(self, interval: Interval, flips: dict[str, Flip], alone: bool) -> Floats | None:
-        """Return the jump of the derivatives where functions switch at once at the end of an interval, shape (7, m).
+        """Return the jump of the derivatives, shape (7, m), where several functions switch at the end of an interval.
 
-        None: the functions also switch at once if a variable changes, or only one switches. Otherwise each must change
-        the rates by the same amount before and after the others switch, and leave the speeds of their guards unchanged.
+        Return None if the jump is that of a single switch: only one function switches, or the functions switch at once
+        for all values of the variables, or the others switched just before, by less than rounding errors.
+
+        Raise PropagationError unless each function changes the rates by the same amount before and after the others
+        switch, and leaves the speeds of their guards unchanged: the order of the switches then does not matter.
 
         Parameters
         ----------
         interval : Interval
             The interval.
         flips : mapping
-            The modes that switch.
+            The switch of each function, by its mode.
         alone : bool
             Whether no other function switches, and none is held at zero.
         """
@@ -198,7 +208,10 @@ def jumps_at_end(guards: Guards, interval: Interval) -> NDArray[np.bool_]:
 
 
 def _mean_speed(guards: Guards, interval: Interval, mode: str) -> float:
-    """Return how fast a guard changes in an interval, on average, as a scale for its speed at the end."""
+    """Return the largest absolute value of a guard in an interval, over the interval's length.
+
+    It is a scale for the speed with which the guard reaches zero at the end.
+    """
     values = [abs(guards.guard(interval, mode, *place).value) for place in interval.places()]
     if guards.is_floor(mode):
         values = [min(value, abs(1.0 - value)) for value in values]
@@ -206,7 +219,10 @@ def _mean_speed(guards: Guards, interval: Interval, mode: str) -> float:
 
 
 def _is_zero(guards: Guards, interval: Interval, mode: str, guard: Gradient, rates: Floats) -> bool:
-    """Return whether a guard is zero at the end of an interval; for floor(x): whether x is a whole number."""
+    """Return whether a guard is zero, to 1e-9 of the size of its terms, at the end of an interval.
+
+    For floor(x): whether x is a whole number.
+    """
     size = guard.size(rates) * abs(interval.stop) + float(np.abs(guard.states) @ np.abs(interval.last))
     distances = (0.0, 1.0) if guards.is_floor(mode) else (0.0,)
     return min(abs(guard.value - zero) for zero in distances) <= AT_ZERO * size

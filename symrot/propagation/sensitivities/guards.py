@@ -36,7 +36,7 @@ DUALS = dual_functions(FLOAT_FUNCTIONS)
 
 
 class Gradient(NamedTuple):
-    """The value of a formula g, its derivatives by time and states, those by the variables through parameters."""
+    """The value of a formula and its derivatives: by time, by the 7 states, and by the m variables at fixed states."""
 
     value: float
     time: float
@@ -52,7 +52,7 @@ class Gradient(NamedTuple):
         return abs(self.time) + float(np.abs(self.states) @ np.abs(rates))
 
     def change(self, slopes_of_states: Floats) -> Floats:
-        """Return the derivatives of the formula by the variables, at fixed time, for those of the states, (7, m)."""
+        """Return the m derivatives of the formula by the variables at fixed time, from those of the states, (7, m)."""
         return np.asarray(self.states @ slopes_of_states + self.variables)
 
 
@@ -80,7 +80,10 @@ class Guards:
         self._require_settled()
 
     def _require_settled(self) -> None:
-        """Raise InputError if a variable moves the argument of a function that never switches to a jump or kink."""
+        """Raise InputError if a variable changes an argument that is at a jump or kink of its function.
+
+        Only functions that never switch, since their arguments are constant, are examined.
+        """
         modes = self.system.initial_modes()
         constants = {**self._constants, **{name: Fraction(mode) for name, mode in modes.items()}}
         for switch in self.system.switches:
@@ -175,7 +178,10 @@ class Guards:
         return np.array(list(program.evaluate(inputs, FLOAT_FUNCTIONS, float).values()), dtype=np.float64)
 
     def rate_slopes(self, interval: Interval, t: float, y: Floats) -> Floats:
-        """Return the rates with all their derivatives by states and variables, one row for each state."""
+        """Return the rates and all their derivatives, shape (7, 1 + 7 + m): one row for each state.
+
+        A row holds the rate, its derivatives by the states, and those by the variables.
+        """
         program, parameters = self.program(interval)
         inputs = self._duals(parameters, interval, t, y, "rates")
         rows = [self._gradient(value) for value in program.evaluate(inputs, DUALS, float).values()]
@@ -183,6 +189,9 @@ class Guards:
 
 
 def alike(left: Floats, right: Floats) -> NDArray[np.bool_]:
-    """Return where derivatives differ by at most 1e-9 of their size, that of the column if they form a matrix."""
+    """Return, for each entry of two arrays of derivatives, whether they differ by at most 1e-9 of their size.
+
+    The size is that of the larger entry or, for matrices, of the largest entry in the column.
+    """
     sizes = np.maximum(np.abs(left), np.abs(right))
     return np.abs(left - right) <= ALIKE * (sizes if sizes.ndim == 1 else sizes.max(axis=0))

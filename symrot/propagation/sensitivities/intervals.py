@@ -84,7 +84,7 @@ def smooth_intervals(motion: SwitchedMotion, end: float) -> tuple[list[Interval]
 
 
 def _without_returns(motion: SwitchedMotion, intervals: list[Interval], length: float) -> list[Interval]:
-    """Return the intervals without those in which a motion, by rounding errors, passes a zero before it stays there."""
+    """Return the intervals without very short ones, where rounding errors make a guard pass zero before it is held."""
     result = intervals[:1]
     for current, following in pairwise([*intervals[1:], None]):
         assert current is not None

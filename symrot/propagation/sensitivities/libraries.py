@@ -70,7 +70,7 @@ def variation_source(
     source: Callable[..., str],
     rough: bool = False,
 ) -> str:
-    """Return the C source of a library that integrates the motion and its derivatives together by Taylor series.
+    """Return the C source of a library that integrates the motion and its derivatives together.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def variation_source(
     depends : sequence of sequences of str
         For each variable of the derivatives, the names of those parameters of ``rates`` whose values depend on it.
     stepper : str
-        The name of the stepper, which is a part of the key.
+        The name of the stepper, Taylor series or Dormand-Prince, which is a part of the key.
     source : function
         Returns the C source for three arguments: the program of the rates of states and derivatives, ``edges`` and
         ``scales``. The error of a step is measured in blocks of the state vector: block i goes from index ``edges[i]``
@@ -93,7 +93,7 @@ def variation_source(
     Raises
     ------
     InputError
-        If the rates have no Taylor series.
+        If the rates have no derivatives, or no Taylor series where ``source`` needs them.
     """
     key = f"variation {stepper} {ORDER} {json.dumps(depends)}\n{kernel_key(plan)}"
     text = library.fetch(key)
@@ -154,7 +154,9 @@ class MotionLibrary:
         return library.build(text, "motion")
 
     def sample(self, p: Sequence[float], y: Sequence[float], begin: float, times: Floats) -> Floats:
-        """Return states and derivatives at n times, s, shape (n, 7 + 7 m), for parameters and initial values of both.
+        """Return the states and their derivatives by m variables at n times, s, shape (n, 7 + 7 m).
+
+        ``p`` holds the parameters of the rates, then their derivatives; ``y`` the states and derivatives at ``begin``.
 
         Raises
         ------

@@ -30,7 +30,7 @@ class ParameterSlopes:
         self._changes = [self._changes_of(column) for column in self.columns]
 
     def with_changes(self, changes: Sequence[Mapping[str, Fraction]]) -> Self:
-        """Return a copy in which the constants change as given, for each variable: their derivatives by name."""
+        """Return a copy with more derivatives of constants: ``changes[k]`` has those by variable k, by name."""
         other = copy(self)
         other._changes = [{**own, **more} for own, more in zip(self._changes, changes, strict=True)]
         return other
@@ -46,7 +46,7 @@ class ParameterSlopes:
         return [name for name, formula in parameters if names(formula) & self._changes[column].keys()]
 
     def slopes_of(self, parameters: Parameters, constants: Mapping[str, Fraction]) -> Rows:
-        """Return the derivatives of parameters by the m variables, by name, if they depend on one of them."""
+        """Return, by name, the m derivatives of each parameter that depends on at least one of the variables."""
         rows: dict[str, list[float]] = {}
         rational = {name for name, formula in parameters if not _has_calls(formula)}
         moved = set[str]().union(*self._changes)

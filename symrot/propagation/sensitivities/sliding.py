@@ -16,9 +16,9 @@ Floats = NDArray[np.float64]
 
 
 def beside(guards: Guards, interval: Interval, signs: Mapping[str, int]) -> Interval:
-    """Return an interval in which some guards are not held at zero: each has the sign in ``signs`` instead.
+    """Return a copy of an interval in which some guards are not held at zero, but have the signs ``signs``, by mode.
 
-    Its rates are those of the motion on this side of the jump, next to the sliding motion.
+    The rates of the copy are those on one side of the jump at which the motion slides.
     """
     twins = guards.system.twins
     modes = {**interval.modes, **{twin: own * sign for mode, sign in signs.items() for twin, own in twins[mode]}}
@@ -27,7 +27,11 @@ def beside(guards: Guards, interval: Interval, signs: Mapping[str, int]) -> Inte
 
 
 def hold_at_rest(guards: Guards, interval: Interval) -> None:
-    """Hold the guards that stay at zero in an interval; append those that cannot be held to its list ``resting``."""
+    """Change an interval so that it holds the guards which stay at zero in it.
+
+    Guards that cannot be held are appended to the list ``resting`` of the interval. A guard is left alone if the rates
+    and their derivatives are the same on both sides of its zero.
+    """
     resting = [mode for mode in interval.regime.formulas if mode not in interval.held and rests(guards, interval, mode)]
     for mode in resting:
         # the square of the argument times its sign, for example, has a derivative at zero
@@ -82,7 +86,9 @@ def _is_smooth_at(guards: Guards, interval: Interval, mode: str) -> bool:
 
 
 def require_one_surface(guards: Guards, interval: Interval, mode: str, t: float, y: Floats) -> None:
-    """Raise PropagationError if a change of time, state or variable separates the zeros of a mode and of its twins.
+    """Raise PropagationError if the guards of a mode and of its twins are zero together only at this state.
+
+    A change of time, state or variable then makes them zero at different times.
 
     Twins are functions that switch together; a motion can then not be held at all their jumps at once.
     """

@@ -18,7 +18,8 @@ Floats = NDArray[np.float64]
 def from_start(guards: Guards, interval: Interval, by: Floats) -> Floats:
     """Return the derivatives just after the start of a motion, for the derivatives ``by`` at the start, shape (7, m).
 
-    They differ if friction holds the body from the start on: a nearby start then slides to the same jump at once.
+    They differ from ``by`` if friction holds a component at zero from the start on: a motion that starts nearby then
+    comes to zero at once. Raise PropagationError if there are no derivatives.
     """
     f = guards.rates(interval, interval.start, interval.first)
     for mode in interval.regime.formulas:
@@ -58,9 +59,10 @@ def from_start(guards: Guards, interval: Interval, by: Floats) -> Floats:
 
 
 def _require_constant(guards: Guards, interval: Interval, mode: str, other: int, change: Floats, f: Floats) -> None:
-    """Raise PropagationError if a variable moves a guard that is zero at the start away from zero.
+    """Raise PropagationError if a variable moves a guard that is zero at the start, and the rates jump there.
 
-    ``change``: the derivatives of the guard by the variables; ``other``: the value of floor(x) on the other side.
+    ``change``: the derivatives of the guard by the variables; ``other``: the value of floor(x) on the other side;
+    ``f``: the rates on this side.
     """
     if not change.any() or guards.is_continuous(mode):
         return

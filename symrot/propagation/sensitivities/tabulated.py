@@ -236,7 +236,9 @@ def _unit_table(table: Table, place: int, axis: int) -> Table:
 
 
 def _sample_of(scene: Scene, variable: Variable) -> tuple[int, int] | None:
-    """Return the sample and component that a variable is, such as (2, 0); None for a variable outside the table.
+    """Return the numbers of the sample and of the component that a variable changes, such as (2, 0).
+
+    Return None for a variable outside the table.
 
     Raises
     ------

@@ -113,7 +113,7 @@ def read_variables(scene: Scene, keys: Sequence[str]) -> list[Variable]:
     Raises
     ------
     InputError
-        If a key names no initial value or constant, or is named twice.
+        If a key names no initial value or constant, or is named twice; if there is no key, or more than 100 variables.
     """
     if isinstance(keys, str) or not isinstance(keys, Sequence) or not all(isinstance(key, str) for key in keys):
         raise InputError(f'sensitivities: expected a list of names such as ["omega", "weight"], got {show(keys)}')
@@ -300,7 +300,10 @@ class _Differences:
         return total / (size * self._step)
 
     def _bends(self, each: str) -> bool:
-        """Return whether the derivatives on both sides differ: the sum of a kink grows as the step, not its square."""
+        """Return whether the derivatives on both sides differ.
+
+        At a kink the second difference is proportional to the step, elsewhere to the square of the step.
+        """
         if self._weights is not self.SCHEMES[0]:
             return False
         center = self.at(0)[each]

@@ -367,9 +367,9 @@ def groups_of_columns(count: int) -> Iterator[range]:
 
 
 def unit_of(scene: Scene, column: Column) -> float:
-    """Return a power of two near the value of a column's variable, by which its derivatives are multiplied.
+    """Return the power of two by which a column of derivatives is multiplied: near the value of its variable.
 
-    For omega, it is near the largest component; for zero or a rotation, it is 1.
+    For a component of omega it is near the largest component; for a variable that is zero, or for a rotation, it is 1.
     """
     # a column times this number is about as large as the states, so that one error control fits both
     value = abs(float(column.variable.value))
@@ -380,7 +380,7 @@ def unit_of(scene: Scene, column: Column) -> float:
 
 
 def fitting_unit(unit: float, by: Floats) -> float:
-    """Return ``unit`` or, if derivatives ``by`` times it are large, a smaller power of two."""
+    """Return ``unit`` or, if ``unit`` times the largest of the derivatives ``by`` exceeds 2, a smaller power of two."""
     largest = float(np.abs(by).max())
     return ldexp(1.0, 1 - frexp(largest)[1]) if largest * unit > 2.0 else unit
 

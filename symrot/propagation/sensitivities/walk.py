@@ -114,7 +114,10 @@ class Walk:
         return named
 
     def sample(self, times: Floats) -> tuple[Floats, Floats]:
-        """Return states, (n, 7), and derivatives, (n, 7, m), at times of the scene, s, after the start."""
+        """Return states, (n, 7), and derivatives, (n, 7, m), at n times of the scene, s, between start and end.
+
+        The start itself is excluded. Derivatives are NaN exactly at a switch at which they jump.
+        """
         order = np.argsort(self.side * times, kind="stable")
         ordered, count = times[order], 0
         states = np.empty((len(times), len(STATES)))

@@ -60,7 +60,7 @@ class Samples(NamedTuple):
 def add_samples(error: BaseException, numbers: NDArray[np.intp], states: Floats, stats: Stats) -> None:
     """Store the samples computed before an error, with their indices and cost, as ``samples`` of the exception.
 
-    They are put before samples that the exception already has; ``stats`` replaces the cost of these.
+    If the exception already has samples, these follow the new ones, and ``stats`` replaces their cost.
     """
     before: Samples | None = getattr(error, "samples", None)
     if before is not None:  # samples on the other side of the start were finished before
@@ -71,8 +71,8 @@ def add_samples(error: BaseException, numbers: NDArray[np.intp], states: Floats,
 def why_stuck(reason: str, t: float, t0: float, stop: float) -> str:
     """Return why a stepper is stuck at the time t of a motion from ``t0`` to ``stop``, s.
 
-    Adjacent doubles lie too far apart there, if less than a million of them lie between the ends of the motion; else it
-    is stuck for the given ``reason``.
+    If fewer than about a million doubles with the spacing at t fit between the ends of the motion, the steps are too
+    short for doubles. Otherwise the result is ``reason``.
     """
     apart = math.ulp(t)
     if abs(stop - t0) > MANY_TICKS * apart:

@@ -1,4 +1,7 @@
-"""The sum of the rounding errors along one side of a motion that formulas of the time cause in its torques."""
+"""The sum of the rounding errors that formulas of the time cause in the torques of a motion.
+
+Each direction of time, after and before the start, has its own sum.
+"""
 
 import math
 from typing import Any
@@ -20,7 +23,7 @@ class RoundingSum:
     size : float
         Largest size of the block of states so far, to which the tolerance is relative.
     beyond : float or None
-        Time, s, from which the error may exceed the tolerance.
+        Time, s, from which the error may exceed the tolerance; None as long as it may not.
     """
 
     def __init__(self, tolerance: float) -> None:

@@ -33,7 +33,7 @@ class Stats(NamedTuple):
     accepted, rejected : int
         Numbers of accepted and rejected steps.
     evaluations : int
-        Evaluations of the kernel.
+        Evaluations of the kernel; with Taylor series, one evaluation computes all coefficients of a step.
     seconds : float
         Time of the whole propagation.
     switches : int

@@ -147,7 +147,7 @@ class ModeChanges(Guards):
             self._wake(other)
 
     def _leaves(self, mode: str, held: frozenset[str], modes: Modes) -> bool:
-        """Return whether the guard of ``mode``, now zero, leaves zero to the side where its function has this mode.
+        """Return whether the guard of ``mode``, now zero, leaves zero to the side of the value ``modes[mode]``.
 
         The other functions have the values in ``modes``, and the guards ``held`` stay at zero.
         """
@@ -160,7 +160,7 @@ class ModeChanges(Guards):
     def _released_by_another(self, solvable: bool = True) -> tuple[str, int] | None:
         """Return a held mode that another function's switch now releases, with its new value; None if there is none.
 
-        ``solvable``: for some values of the held modes, all held guards stay at zero.
+        ``solvable``: whether the held modes have values for which all held guards stay at zero.
         """
         # without the other switch, the value of the mode that keeps the guard at zero says when the sliding ends
         for mode in sorted(self.held):
@@ -194,7 +194,7 @@ class ModeChanges(Guards):
         return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
 
     def _jumped(self, mode: str) -> bool:
-        """Return whether a function in the argument of ``mode`` switched later: sign, in abs(x + sign(y))."""
+        """Return whether a function in the argument of ``mode`` switched after ``mode``: sign, in abs(x + sign(y))."""
         # in abs(x + sign(y)), if sign switched after abs, the argument of abs has jumped: abs may switch again
         last = len(self.order) - self.order[::-1].index(mode)
         return bool(self._inside(mode) & set(self.order[last:]))

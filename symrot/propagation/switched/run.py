@@ -111,7 +111,10 @@ class SwitchedRun(ModeChanges):
                 )
 
     def _segment(self, regime: Regime, consume: Consumer) -> Guard | None:
-        """Compute the motion up to its next switch, and return the guard that is zero there; None without a switch."""
+        """Compute the motion up to its next switch, and return the guard that is zero there.
+
+        Return None if the motion ends without a switch, or if it has to be followed again from the time :attr:`t` on.
+        """
         # a guard is the argument of a function such as sign or abs
         if self.t != 0.0:
             self._move_clock(self._at(self.t))

@@ -51,9 +51,9 @@ class SwitchedSystem:
     def twins(self) -> dict[str, list[tuple[str, int]]]:
         """The functions that switch together with each sign or abs, as in sign(omega_3) and abs(2*omega_3).
 
-        A map from mode to pairs (mode, 1 or -1).
+        A map from each mode to a list of pairs (mode, 1 or -1), which includes this mode; -1 means that the argument
+        has the opposite sign of the first argument in the list.
         """
-        # -1: the argument has the opposite sign of the first argument in the list
         numbers: dict[str, Node] = {name: ("number", value) for name, value in self.constants.items()}
         for mode in self.switches:
             numbers.pop(mode.mode, None)

@@ -47,7 +47,9 @@ def _machine() -> str:
 
 @contextmanager
 def offered(store: Store) -> Iterator[Offer | None]:
-    """Provide the offer to workers to write into a store; None if they cannot, because it is in memory or not on Linux.
+    """Context manager: provide the :class:`Offer` with which workers on this machine may write into a store.
+
+    It is None if they cannot, because the store is in memory or the system is not Linux.
 
     Use: ``with offered(store) as offer: ..``. The offer ends with the block, or with the process.
     """

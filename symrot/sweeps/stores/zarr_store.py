@@ -151,7 +151,7 @@ class ZarrStore:
 
 
 def _description(zarr: Any, path: Path) -> dict[str, Any]:
-    """Return what identifies the sweep whose results are in a folder, and its number of trajectories in a chunk."""
+    """Return the settings of the sweep whose results are in a folder, and the number of trajectories in a chunk."""
     attributes = dict(zarr.open_group(str(path), mode="r").attrs)
     return {"identity": json.loads(attributes[IDENTITY]), "rows": attributes[ROWS]}
 

@@ -83,8 +83,11 @@ def _bounds(step: StepText, data: Data, ranges: Sequence[str]) -> Data:
 
 
 def proofs(data: Data) -> tuple[str, ...]:
-    """Return the kinds of proof in the certificate of a step, such as ``("C text", "rounding", "truncation")``."""
-    if "scene" in data:  # its equations are checked at some states, not proven
+    """Return the kinds of proof in the certificate of a step, such as ``("C text", "rounding", "truncation")``.
+
+    The result is empty for an exact step with elliptic functions, which is checked at some states only.
+    """
+    if "scene" in data:
         return ()
     return ("C text", "rounding", "truncation") if "bounds" in data else ("C text",)
 
@@ -99,13 +102,19 @@ def lines(data: Data) -> list[str]:
         rows.append(
             (
                 "C text",
-                f"{name} and its batch are the method, {count} operations (equal at {function['points']} "
-                f"random points; otherwise with a probability below {function['wrong_with_probability_below']})",
+                f"{name} and its batch function compute the method in {count} operations (equal at "
+                f"{function['points']} random points; wrong with a probability below "
+                f"{function['wrong_with_probability_below']})",
             )
         )
         if "motion" in function:
             chance = function["motion"]["wrong_with_probability_below"]
-            rows.append(("motion", f"{name} solves the equations of the rates exactly (otherwise below {chance})"))
+            rows.append(
+                (
+                    "motion",
+                    f"{name} solves the equations of the rates exactly (wrong with a probability below {chance})",
+                )
+            )
     if "bounds" in data:
         rows += _bound_rows(data["bounds"], [name for name, _ in data["rates"]["states"]])
     else:

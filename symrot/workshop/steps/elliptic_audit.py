@@ -20,7 +20,11 @@ from symrot.workshop.steps.exact import ExactStepText, plain_content
 __all__ = ["audit_elliptic"]
 
 NEAR = 1 + 1e-6
-"""Bounds that differ by at most this factor are equal; certificates state them larger than computed by more than it."""
+"""Stated and recomputed bounds count as equal if they differ by at most this factor.
+
+So the stated bounds still hold: certificates state bounds that are larger than the computed ones by more than this
+factor.
+"""
 
 
 def audit_elliptic(path: Path, data: Data, scene: SceneSource | None = None) -> list[str]:
@@ -31,7 +35,7 @@ def audit_elliptic(path: Path, data: Data, scene: SceneSource | None = None) -> 
     path : Path
         NAME.cert.json, in the folder with the files that it names.
     data : mapping
-        Its content.
+        The content of that file.
     scene : Scene, str, Path or dict, optional
         The scene whose step this should be; by default a shipped scene of the name in the certificate.
 
@@ -88,7 +92,11 @@ def _box(path: Path, data: Data) -> dict[str, tuple[Fraction, Fraction]]:
 
 
 def _bounds(path: Path, step: ExactStepText, data: Data) -> Data:
-    """Return the section ``bounds`` of a certificate if its numbers are bounds; raise CertificateError if not."""
+    """Return the section ``bounds`` as symrot prints it, with the numbers that the certificate states.
+
+    CertificateError is raised unless these numbers agree, but for the factor ``NEAR``, with the bounds that symrot
+    computes on the same box.
+    """
     box = _box(path, data)
     stated = {kind: _numbers(path, data["bounds"], kind) for kind in ("rounding", "truncation")}
     try:

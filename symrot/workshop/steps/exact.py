@@ -152,7 +152,7 @@ class ExactStepText(StepFiles):
     Parameters
     ----------
     scene : Scene
-        A scene whose motion has a closed form.
+        A free body or a symmetric heavy top, given along its principal axes; InputError is raised for other scenes.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -172,7 +172,10 @@ class ExactStepText(StepFiles):
         raise InputError(f"step: expected the target 'c' for the step 'exact', got {target}")
 
     def certificate(self, bounds: Bounds | None = None) -> str:
-        """Return the text of the certificate; raise CertificateError if the C text violates the equations of motion."""
+        """Return the text of the certificate, without bounds of errors; ``bounds`` is not used.
+
+        CertificateError is raised if the C text violates the equations of motion.
+        """
         rates, source = WholeState(self.scene), self.c()[0]
         exact, p = rates.exact_parameters, [value for _, _, value in self.form.parameters]
         laws = {
