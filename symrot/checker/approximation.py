@@ -29,15 +29,17 @@ __all__ = ["verdict_on_approximation"]
 
 SIGN = re.compile(r"≈|≃|\\(?:approx|simeq)(?![A-Za-z])")
 MOST_POWER, MOST_LEFT_OUT = 8, 4
-"""The highest power of the small letter, and the most powers above that of the right side that are looked at."""
+"""The highest power of the small letter that is compared, and the number of powers above the degree of the right side
+among which the first omitted term is sought."""
 
 
 def verdict_on_approximation(source: str) -> Verdict | None:
     """Return the verdict on ``f ≈ g`` for small values of a letter; None for other texts.
 
-    If g is a polynomial in the only letter in which f is none, it should be the Taylor polynomial of f. If neither is a
-    polynomial in the only letter that both have, as in ``tan θ ≈ sin θ``, the first terms of their Taylor series should
-    agree, beyond the constant.
+    The small letter is one in which f is no polynomial. If g is a polynomial in exactly one such letter, g should be
+    the Taylor polynomial of f in it. If f has a single such letter, and g is no polynomial in it either, as in
+    ``tan θ ≈ sin θ``, both Taylor series should agree in their first terms, one of which must be nonzero and contain
+    the letter.
     """
     if len(SIGN.findall(source)) != 1 or re.search("[=<>]", source):
         return None
@@ -69,7 +71,7 @@ def _verdict(source: str) -> Verdict | None:
 
 
 class _Unknown(Exception):
-    """Exception raised if a coefficient of a Taylor series is not decided."""
+    """Exception raised if it cannot be decided whether two coefficients of Taylor series are equal."""
 
 
 def _agree(own: Expr, other: Expr) -> bool:

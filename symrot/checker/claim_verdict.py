@@ -1,6 +1,8 @@
 """The verdict on one claim: the claim is decided, or recognised as a known formula, and diagnosed if it is not true.
 
-The functions ``_on_..`` recognise a claim. They return (None, verdict): None stands in place of a decision.
+The functions ``_on_name``, ``_on_rule``, ``_on_relation``, ``_on_determinant`` and ``_on_expanded`` recognise a claim.
+They return (None, verdict): None in place of a decision, since a recognised claim has none. They return None for claims
+that they do not recognise.
 """
 
 from collections.abc import Callable, Iterator
@@ -46,9 +48,10 @@ __all__ = [
 Limit = OutOfOperations | TimeUp
 
 MOST_SECONDS = 60
-"""The most processor time for one claim, a last resort: MOST_OPERATIONS take some ten seconds, except inside SymPy."""
+"""The limit on the processor time for one claim, in seconds. It is a last resort: MOST_OPERATIONS, the limit that
+normally ends a check, take some ten seconds; but operations inside SymPy are not counted."""
 FOR_ALL_VALUES = "== claims that both sides are equal for all values; as a relation between its letters, write one ="
-WITH_HYPOTHESES = "it is no formula that symrot derives, but the hypotheses, which are not used, may make it one"
+WITH_HYPOTHESES = "symrot derives no such formula; but the hypotheses are not used, and the claim may be true with them"
 
 
 def check_claim(claim: Claim, repair: bool = True) -> Verdict:
@@ -73,9 +76,10 @@ def check_claim(claim: Claim, repair: bool = True) -> Verdict:
 
 
 def check_readings(claim: Claim, repair: bool = True) -> tuple[Verdict, Verdict | None]:
-    """Return (verdict, None) for a claim in its usual interpretation.
+    """Return (verdict, other): the verdict on a claim in its usual interpretation, and the one in another
+    interpretation.
 
-    If only another interpretation makes the claim true, its verdict replaces the None.
+    ``other`` is None unless the claim is true (or recognised) in another interpretation and not in the usual one.
     """
     start = perf_counter()
     verdict: Verdict | None = None
@@ -158,7 +162,9 @@ def _operations() -> str:
 
 
 def _of_another_reading(claim: Claim) -> Verdict | None:
-    """Return the verdict on the first true reading (interpretation) of a claim besides the usual one; or None."""
+    """Return the verdict on the first interpretation, besides the usual one, in which a claim is true; None if there is
+    none.
+    """
     for relation in claim.alternatives:
         source = relation_text(relation)
         other = claim.with_relation(relation, alternatives=(), sources={**claim.sources, "claim": source})

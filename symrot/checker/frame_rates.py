@@ -1,8 +1,8 @@
 r"""Equations with the rates of one vector seen from two frames, ``(dA/dt)_I = (dA/dt)_B + ω × A`` (transport theorem).
 
-A mark names the frame from which a rate is seen, so such an equation can be decided: A gets arbitrary components in a
-frame B that rotates arbitrarily. Its rate seen from B is the derivative of these components, its rate seen from I the
-derivative of its components in I.
+The mark I or B names the frame from which a rate is seen, so the equation can be decided: the vector A gets arbitrary
+components in a frame B that rotates arbitrarily. The rate of A seen from B is the derivative of these components; the
+rate of A seen from I is the derivative of its components in I.
 """
 
 import re
@@ -71,7 +71,7 @@ PLAIN = tuple(re.compile(pattern) for pattern in (
     r"(?<![\w(])d(?P<v>\w)\s*/\s*dt(?!\w)",
     "(?P<v>\\w)\N{COMBINING DOT ABOVE}",
 ))  # fmt: skip
-"""The same in plain text."""
+"""The derivatives of a vector by time in plain text."""
 
 OMEGA = r"(?P<omega>\\(?:boldsymbol|mathbf|vec|bm)\s*(?:\{\s*\\\w+\s*\}|\\\w+)|\\[oO]mega|[ωΩ])\s*"
 MARK = r"\{?\s*(?:\\(?:mathcal|mathrm|text)\s*\{?)?\s*(?P<{0}>\w+'?)\s*\}*"
@@ -82,7 +82,7 @@ DIRECTIONS = (
     re.compile(OMEGA + r"_\s*\{\s*(?P<moving>\w+'?)\s*/\s*(?P<still>\w+'?)\s*\}"),
     re.compile(OMEGA + r"_(?P<moving>\w)/(?P<still>\w)"),
 )
-"""Angular velocities with the marks of two frames, of which one turns relative to the other."""
+"""Angular velocities with the marks of two frames: the frame ``moving`` rotates relative to the frame ``still``."""
 
 OPERATOR = re.compile(OPEN + r"\\d?frac\s*\{?\s*" + D + r"\}?\s*" + DT + CLOSE + LABEL.replace("{0}", "l"))
 
@@ -147,8 +147,9 @@ def verdict_on_rates(source: str) -> Verdict | None:
 
 
 def _with_operand(source: str) -> str:
-    """Return an equation with the sign × for an x, and applied to a vector A if it is one between operators,
-    ``(d/dt)_I = (d/dt)_B + ω ×``.
+    """Return the text of an equation with the sign × for a letter x after ω.
+
+    An equation between operators, ``(d/dt)_I = (d/dt)_B + ω ×``, is applied to a vector A.
     """
     source = re.sub(r"(?<=[wωΩ]) x (?=\w\b)", " × ", source)
     if not re.search(r"\\times\s*$", source):
@@ -157,8 +158,10 @@ def _with_operand(source: str) -> str:
 
 
 def _without_direction(source: str, still: str, moving: str) -> tuple[str, list[_Rate], int]:
-    """Return the text with ω for ``{}^N ω^B`` and ``ω_{B/N}``, its rates, and 1 if these marks say that ω is the
-    angular velocity of ``moving`` relative to ``still``, -1 if the opposite, 0 without such marks.
+    """Return (text, rates, direction): the text with ω for the first ``{}^N ω^B`` or ``ω_{B/N}``, and its rates.
+
+    The direction is 1 if these marks say that ω is the angular velocity of ``moving`` relative to ``still``, -1 if they
+    say the opposite. Without such marks, the text is unchanged, and the direction is 0.
     """
     for pattern in DIRECTIONS:
         for match in pattern.finditer(source):
@@ -170,7 +173,10 @@ def _without_direction(source: str, still: str, moving: str) -> tuple[str, list[
 
 
 def without_marks(source: str) -> tuple[str, str]:
-    """Return a text in which ``dA/dt`` stands for ``(dA/dt)_s``, and a note; the text itself without such a mark."""
+    """Return (text, note): a text with ``dA/dt`` in place of ``(dA/dt)_s``, and a note for the user on the mark s.
+
+    Return the text unchanged and "" if its derivatives have no such marks, or the marks of several frames.
+    """
     marked = [rate for rate in _rates_in(source) if rate.frame in {*INERTIAL, *TURNING} - {""}]
     if not marked or len({rate.frame for rate in marked}) != 1:
         return source, ""
@@ -211,7 +217,10 @@ def _claim(source: str) -> Claim:
 
 
 def _column(side: Any) -> Any:
-    """Return a column of three components for a vector, whose name may stand alone; None for a number."""
+    """Return the column of three components that is a side of an equation; for a name alone, a column of new symbols.
+
+    Return None for any other side, such as a number.
+    """
     if isinstance(side, Symbol):
         return Matrix([Symbol(f"{side}_{axis}", real=True) for axis in "xyz"])
     return side if getattr(side, "shape", None) == (3, 1) else None
@@ -225,8 +234,8 @@ def _plain(vector: str) -> str:
 def _values(
     names: Mapping[str, str], still: str, moving: str, vector: str, angular: str, sign: int
 ) -> dict[Symbol, Any]:
-    """Return the components of both rates, of the vector and of ``sign`` times the angular velocity, in the moving
-    frame.
+    """Return the value of each component, by its symbol: those of both rates, of the vector, and of ``sign`` times the
+    angular velocity, all along the axes of the moving frame.
     """
     angles = [Function(f"angle_{number}", real=True)(time) for number in range(3)]
     turned = (

@@ -1,7 +1,8 @@
 """Verdicts on inequalities such as ``x^2 + 1 > 0``, and on the inequalities between moments of inertia.
 
-An inequality is true if the difference of its sides is proven to have one sign, and false if it has the other sign at
-an exact point. One such as ``omega > 2`` is a condition, about which nothing is claimed.
+An inequality is true if the difference of its sides is proven to have the right sign everywhere, and false if it has
+the other sign at an exact point. An inequality such as ``omega > 2`` is a condition on its letters: its verdict is
+"definition".
 """
 
 from collections.abc import Iterator, Mapping
@@ -26,10 +27,10 @@ from symrot.exact.intervals import enclosure
 __all__ = ["OPPOSITE", "is_inequality", "verdict_on_inequality"]
 
 OPPOSITE = {">": "<", ">=": "<=", "<": ">", "<=": ">="}
-"""Sign of an inequality -> the sign in the other direction."""
+"""Sign of an inequality -> the reversed sign."""
 
 MOST_POINTS = 4000
-"""The most points at which a counterexample is looked for."""
+"""The largest number of points at which a counterexample is sought."""
 
 VALUES = (*map(Rational, ("0", "1", "-1", "1/2", "2", "-2", "3", "-1/3", "10", "-10", "1/10")), pi / 2, -pi / 2, pi)
 MOMENTS = (("A", "B", "C"), *((f"{letter}{index.format(1)}", f"{letter}{index.format(2)}", f"{letter}{index.format(3)}")
@@ -39,7 +40,7 @@ MOMENTS = (("A", "B", "C"), *((f"{letter}{index.format(1)}", f"{letter}{index.fo
 """Names of the three moments of inertia about perpendicular axes."""
 
 CONDITION = (
-    "it is a condition on its letters, which may hold for some of their values only: nothing is claimed about it"
+    "it is a condition on its letters, which may hold for some of their values only: it is neither proven nor refuted"
 )
 
 SPIN = "omega_3"
@@ -100,7 +101,7 @@ def _verdict(claim: Claim, sign: str, flipped: str, start: float) -> Verdict:
 
 
 def _on_least_spin(claim: Claim, sign: str) -> Verdict | None:
-    """Return the verdict on an inequality for the least spin of a top, such as ``I_3^2 w_3^2 >= 4 m g l I_1``.
+    """Return the verdict on an inequality for the least spin of an upright top: ``I_3^2 w_3^2 >= 4 m g l I_1``.
 
     Return None for others.
     """
@@ -185,7 +186,7 @@ def _counterexample(claim: Claim, difference: Expr, strict: bool) -> Counterexam
 
 
 def _points(symbols: list[Any]) -> Iterator[Mapping[Any, Expr]]:
-    """Yield points with simple values of the assumed signs for ``symbols``."""
+    """Yield points, {symbol: value}, with simple values that agree with the assumed signs of ``symbols``."""
     allowed = [
         [v for v in VALUES if not (s.is_positive and v <= 0) and not (s.is_nonnegative and v < 0)] for s in symbols
     ]

@@ -32,12 +32,13 @@ __all__ = ["RefusedClaims", "check", "check_claim", "check_file", "check_reading
 
 
 class RefusedClaims(InputError):
-    """Error raised if some claims of a file cannot be read.
+    """Error raised if some claims of a file are refused: they cannot be read, or have no meaning.
 
     Attributes
     ----------
     verdicts : list of Verdict
-        The verdicts on all claims; the verdict is ``"refused"`` for a claim that cannot be read.
+        The verdicts on all claims of the file, in its order; ``"refused"`` for a claim that cannot be read or has no
+        meaning, such as a division by zero.
 
     Examples
     --------
@@ -70,9 +71,10 @@ def check(
     ----------
     left : str, Expr or Matrix
         The whole claim as text, ``"left == right"`` in SymPy syntax, as people type it, or in LaTeX (with a backslash):
-        names are real symbols, ``phi(t)`` is a function of time. Or the left side as a SymPy expression or matrix.
+        names are real symbols, ``phi(t)`` is a function of time. Or the left side as a SymPy expression or matrix, or
+        the whole claim as a SymPy ``Eq``.
     right : Expr or Matrix, optional
-        The right side, if ``left`` is a SymPy value.
+        The right side, if ``left`` is a SymPy expression or matrix.
     assume : sequence
         Hypotheses. If the claim is a text: texts ``"a == b"``, ``"x > 0"``, ``"x != 0"``. If it is a SymPy value:
         equations ``Eq(a, b)``, or expressions; ``a - b`` means that a - b is zero.
@@ -96,7 +98,8 @@ def check(
     -------
     Verdict
         ``.verdict`` is ``"true"``, ``"false"``, ``"conditional"`` or ``"undecided"``. For a claim that names a
-        formula, such as ``"I = m r^2/2"``, it may be ``"recognised"``, ``"doubtful"`` or ``"definition"``.
+        formula, such as ``"I = m r^2/2"``, it may be ``"recognised"``, ``"doubtful"`` or ``"definition"``. A text that
+        holds for some values only, such as ``"x^2 = 4"`` or ``"omega > 2"``, is a ``"definition"`` too.
         ``.dimension`` says whether the units fit.
 
     Raises
@@ -233,7 +236,10 @@ def check_file(path: str | Path, *, repair: bool = True) -> list[Verdict]:
 def verdicts_of_file(
     path: str | Path, repair: bool = True, progress: Callable[[str], None] = lambda text: None
 ) -> Iterator[Verdict]:
-    """Yield the verdict on each claim of a file; it is ``"refused"``, with a reason, if the claim cannot be read."""
+    """Yield the verdict on each claim of a file: ``"refused"``, with a reason, if it cannot be read or has no meaning.
+
+    ``progress`` is called with a line of text before each claim.
+    """
     for entry in read_entries(path):
         if isinstance(entry, Refusal):
             yield Verdict("refused", reason=entry.reason, id=entry.id, where=entry.where, text=entry.text)

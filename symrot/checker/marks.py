@@ -13,14 +13,14 @@ from symrot.errors import InputError
 __all__ = ["carets", "changed_entry", "changed_spans", "html_with_marks", "latex_with_marks"]
 
 Span = tuple[int, int]
-"""Start and end of a piece of a text."""
+"""Start and end (exclusive) of a part of a text."""
 
 TOKEN = re.compile(r"\\[A-Za-z]+|\\.|[^\W\d]\w*|\d+(?:\.\d+)?|\*\*|==|\s+|.", re.DOTALL)
 """A name, a number, a command of LaTeX, a sign, or blanks."""
 
 
 def changed_spans(claim: str, repair: str) -> tuple[Span, ...]:
-    """Return the positions (start, end) in a repair's text that differ from the claim.
+    """Return the positions (start, end), end exclusive, of the parts of a repair's text that differ from the claim.
 
     Examples
     --------
@@ -78,7 +78,7 @@ def _rows(side: Node) -> list[tuple[Node, ...]] | None:
 
 
 def carets(spans: Sequence[Span], start: int, end: int) -> str:
-    """Return carets for a terminal, one under each marked character of a text from ``start`` to ``end``."""
+    """Return a line for a terminal with a caret under each character in ``spans``, from ``start`` to before ``end``."""
     marks = (any(first <= place < last for first, last in spans) for place in range(start, end))
     return "".join("^" if mark else " " for mark in marks).rstrip()
 
@@ -120,7 +120,10 @@ def _is_formula(piece: str) -> bool:
 
 
 def _stands_alone(text: str, start: int, end: int) -> bool:
-    """Return whether underlining a LaTeX text from ``start`` to ``end`` keeps the formula: not 2 in ``x^2``."""
+    """Return whether the part of a LaTeX text from ``start`` to ``end`` can be underlined without changing the formula.
+
+    It cannot for 2 in ``x^2``.
+    """
     before, after = text[:start].rstrip(), text[end:].lstrip()
     if re.search(r"([\^_]|\\(?!\\)[A-Za-z]+\{?|\}\{)$", before) and not before.endswith(("\\cdot", "\\times")):
         return before.endswith("{") and after.startswith("}")

@@ -23,7 +23,7 @@ DECIMAL, ROUNDED_WHOLE = r"\d+\.\d+(?:[eE][+-]?\d+)?", r"[1-9]\d*[1-9]"
 """Decimal numbers, and whole numbers that may be rounded: 37, but not 40, whose count of digits is unclear."""
 
 LONG_WHOLE = 3
-"""The fewest digits of a whole number to which a rational value may be rounded: 1 hp = 746 W."""
+"""The smallest number of digits of a whole number that may be a rounded rational value, as in 1 hp = 746 W."""
 
 TURN = 7
 """An angle of at least this number, without pi, is probably in degrees: a full turn is 6.28 rad."""
@@ -67,8 +67,9 @@ def with_units(claim: Claim, measured: Measured, decide: Callable[[Claim], Verdi
 
 
 def _right_number(claim: Claim, sides: list[Node], factors: dict[str, Node], measured: Measured) -> dict[str, Any]:
-    """Return a diagnosis and repairs that correct the whole number on the right of ``2 m = 300 cm``, a false equation;
-    none if no number is right.
+    """Return {"diagnosis": .., "repairs": ..} that correct the whole number on the right of a false ``2 m = 300 cm``.
+
+    If no number is right there, the diagnosis has the code "none", and there are no repairs.
     """
     # sides: with names in place of units; factors: name of a unit -> its factor to SI units
     left, right = sides

@@ -28,8 +28,8 @@ MANY_TO_ONE = ("sin", "cos", "tan", "abs")
 
 
 def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:
-    """Turn "false" into "definition" for an equation of one letter with a real solution, such as ``x² = 4``, or of two
-    letters, ``a = b``.
+    """Return the verdict "definition" for a false equation of one letter with a real solution, such as ``x² = 4``, or
+    for two letters, ``a = b``; otherwise return ``verdict``, which must be "false".
     """
     if claim.relation is None or claim.has_double_equals or not claim.implied:
         return verdict
@@ -39,7 +39,7 @@ def as_equation(claim: Claim, verdict: Verdict, notation: Notation) -> Verdict:
     # an equation of two letters, a = b
     if all(map(is_name_or_rate, (left, right))) and left != right:
         both = " and ".join(notation.formula(side) for side in (left, right))
-        reason = f"nothing here says what {both} are: it may be a condition, or another name for one quantity"
+        reason = f"nothing here says what {both} are: it may be a condition, or they are two names for one quantity"
         return _open(verdict, reason)
     names = [node for side in (left, right) for _, node in walk(side) if is_name_or_rate(node) and node.value != "pi"]
     if len({*names}) != 1 or len({str(name.value) for name in names}) != 1:
@@ -105,8 +105,10 @@ def _may_have_others(claim: Claim, letter: Node) -> bool:
 
 
 def _roots(difference: Expr, symbol: Symbol, name: str) -> str | None:
-    """Return all real zeros of ``difference`` as text, ``"x == -2 and x == 2"``, or only how many they are; None if
-    none are known. ``name`` is the name of ``symbol``.
+    """Return all real zeros of ``difference`` as text, ``"x == -2 and x == 2"``, or only how many there are.
+
+    Return None if there are none, or if ``difference`` is not a polynomial in ``symbol`` with rational coefficients and
+    a degree from 1 to HIGHEST_DEGREE. ``name`` is the name of ``symbol``.
     """
     try:
         polynomial = Poly(difference, symbol, domain="QQ")
@@ -121,7 +123,7 @@ def _roots(difference: Expr, symbol: Symbol, name: str) -> str | None:
 
 
 def _is_polynomial(claim: Claim, letter: Node) -> bool:
-    """Return whether both sides are sums of different powers of a letter, as in ``x^2 = 4``."""
+    """Return whether both sides are sums of powers of a letter in which no power occurs twice, as in ``x^2 = 4``."""
     assert claim.relation is not None
     sides = [[] if side == number(0) else _exponents(side, letter) for side in claim.relation[1:]]
     powers = [exponent for exponents in sides if exponents is not None for exponent in exponents]

@@ -29,7 +29,10 @@ def with_rounding(claim: Claim, verdict: Verdict) -> Verdict:
 
 
 def rounded_value(claim: Claim) -> str:
-    """Return a computed number, rounded to as many digits as the document prints, or "" if that is not certain."""
+    """Return the value of ``claim.value`` rounded to as many decimal places as ``claim.printed`` has; "" if uncertain.
+
+    ``claim.printed`` is the number that the document prints.
+    """
     assert claim.value is not None
     interval = enclosure(claim.interpreter().read(claim.value))
     if interval is None:

@@ -106,7 +106,8 @@ def finding_of(
 ) -> Finding:
     """Return the result of checking one claim, whose record in the document's file is ``data``.
 
-    ``formula`` is its entry in the errata, or None.
+    ``formula`` is the claim's entry in the errata, or None. ``condition`` makes the claim true although the document
+    does not state it, or is None.
     """
     if "editable" not in data:
         claim = replace(claim, editable=("left",))  # the left side is what the document prints
@@ -194,8 +195,8 @@ def _correction(claim: Claim, verdict: Verdict, formula: PrintedFormula | None) 
 
 
 def _inner(kind: str) -> Callable[[Node], Node]:
-    """Return a function that maps a node of one ``kind`` to its argument, ``-a`` to a for "neg", and others to
-    themselves.
+    """Return a function that maps a node of one ``kind`` to its first argument, ``-a`` to a for "neg", and any other
+    node to itself.
     """
     return lambda node: node.args[0] if node.kind == kind else node
 
@@ -222,8 +223,8 @@ LOSSES: dict[str, Callable[[Node], Node]] = {
     "dots": _without_dots,
     "primes": _without_primes,
 }
-"""Kind of characters that an extraction may lose -> what the loss does to a piece of a formula. A power on lost bars is
-lost with them."""
+"""Kind of characters that an extraction may lose -> a function from a node of a formula to the node without these
+characters. A power on lost absolute-value bars is lost with the bars."""
 
 
 def _is_reading(claim: Claim, other: tuple[str, Node, Node], lost: Collection[str]) -> bool:

@@ -20,8 +20,10 @@ class TimeUp(BaseException):
 
 @contextmanager
 def processor_seconds(limit: float) -> Iterator[None]:
-    """Raise TimeUp in a ``with`` block after ``limit`` seconds of computing; no limit in another thread, or if the
-    timer is in use.
+    """Raise TimeUp in a ``with`` block after ``limit`` seconds of processor time.
+
+    There is no limit on a platform without the timer ``ITIMER_PROF``, in a thread other than the main one, inside
+    another such block, or if the program uses the signal SIGPROF.
     """
     if not _timer_is_free():  # no ITIMER_PROF, another thread, inside another limit, or in use by the program
         yield

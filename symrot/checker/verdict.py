@@ -50,7 +50,7 @@ class Repair:
     edited : dict of str to str
         The changed parts of the claim, ``"left"``, ``"right"`` or the name of a definition, with their new text.
     changed : tuple of (int, int)
-        Start and end of each part of the text that differs from the claim.
+        Start and end (exclusive) of each part of the text that differs from the claim.
     entry : (int, int) or None
         Row and column, from 1, of the only entry that differs, if a side is a matrix.
     requires : str
@@ -101,7 +101,7 @@ class Dimensions:
     status : str
         ``"consistent"``, ``"inconsistent"`` or ``"unknown"``.
     text : str
-        Where the units do not fit.
+        Where the units do not fit, and which they are; empty if the status is not ``"inconsistent"``.
     units : dict of str to str
         Units that the claim implies for names without a stated or conventional unit.
 
@@ -125,10 +125,10 @@ class Identification:
     ----------
     name : str
     how : str
-        The change that makes the formulas equal: ``""`` for no change, ``"transposed"``,
-        ``"with the other sign"``.
+        The change that makes the formulas equal, such as ``"transposed"`` or ``"with the other sign"``; ``""`` for no
+        change.
     mapping : dict
-        Symbol of the known formula -> symbol of the formula, where their names differ.
+        Symbol of the known formula -> symbol of the user's formula, where their names differ.
     source : str
         The place of the formula in symrot: a call, or a page with its step.
     proven : bool
@@ -179,8 +179,9 @@ class Verdict:
     verdict : str
         ``"true"``, ``"false"``, ``"conditional"`` (true under ``requires``) or ``"undecided"``. For a claim that only
         names a formula, ``I_zz == m/12*(a**2 + b**2)``: ``"recognised"``, ``"doubtful"`` (a single edit makes it a
-        formula that symrot derives) or ``"definition"`` (neither; nothing is claimed about it). A claim of a file that
-        cannot be read is ``"refused"``.
+        formula that symrot derives) or ``"definition"`` (neither: symrot does not judge it). An equation or inequality
+        that restricts its letters, such as ``x^2 = 4``, is a ``"definition"`` too. A claim of a file that cannot be
+        read or has no meaning is ``"refused"``.
     conditions : tuple of str
         Conditions under which both sides are defined, such as ``"sin(theta) != 0"``; for a conditional claim, its
         requirements come first.
@@ -203,7 +204,7 @@ class Verdict:
     id, where, text : str
         The name of the claim, its place in a document, and its text.
     seconds : float
-        The time that the check took.
+        The time that the check took, in seconds.
     reading : str
         The claim as it was read, in the notation of the input; empty if that is the same as the text.
     context : str
@@ -261,7 +262,7 @@ class Verdict:
         return symrot.in_notebook(self)
 
     def facts(self) -> list[tuple[str, str]]:
-        """Return all that the verdict says besides ``verdict`` itself, as pairs (name, text) for printing."""
+        """Return the lines that are printed below the word ``verdict``, as pairs (name, text) with nonempty texts."""
         defined = [condition for condition in self.conditions if condition not in self.requires]
         wrong = self.diagnosis.code != "none"
         near = self.verdict == "doubtful"

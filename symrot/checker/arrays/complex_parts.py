@@ -45,7 +45,7 @@ CIRCULAR, HYPERBOLIC = ("sin", "cos", "tan"), ("sinh", "cosh", "tanh")
 OF_MATRICES = ("skew", "transpose", "inverse", "trace", "det", "eye", "cross", "qmul")
 """Functions of formulas in which I is the unit matrix."""
 MOST_FACTORS = 16
-"""The highest power of a complex number that is multiplied out."""
+"""The largest exponent with which a power of a complex number is multiplied out."""
 
 
 def imaginary_unit(trees: Sequence[Node]) -> Node | None:
@@ -132,14 +132,17 @@ def _is_of_complex(node: Node, letter: str) -> bool:
 
 
 def with_numbers(tree: Node, numbers: Mapping[str, Node]) -> Node:
-    """Return a tree in which the formulas ``numbers`` replace names: ``x + i*y`` for z, and its conjugate for z_bar."""
+    """Return a tree in which the formulas ``numbers`` replace names: ``x + i*y`` replaces z, and the conjugate of
+    ``x + i*y`` replaces z_bar.
+    """
     conjugates = {f"{name}{BAR}": Node("call", "conjugate", (formula,)) for name, formula in numbers.items()}
     return substituted(tree, {**conjugates, **numbers})
 
 
 def open_numbers(formulas: Sequence[Node], letter: str = "i") -> dict[str, Node]:
-    """Return ``Re_z + i*Im_z`` for each complex number z that nothing defines, as in ``|z|^2 = z z_bar``; {} if z may
-    be real. ``letter`` is the imaginary unit.
+    """Return {"z": ``Re_z + i*Im_z``} for the complex numbers that nothing defines, as z in ``|z|^2 = z z_bar``.
+
+    Return {} if they may be real numbers. ``letter`` is the imaginary unit i.
     """
     nodes = nodes_of(*formulas)
     names = [str(node.value) for node in nodes if node.kind == "name"]
@@ -195,8 +198,9 @@ def is_complex(sides: Sequence[Node], letter: str) -> bool:
 
 
 def with_parts(relation: tuple[str, Node, Node], letter: str, source: str) -> tuple[str, Node, Node]:
-    """Return a complex equation with each side as a column (real part, imaginary part); a name alone stays a name.
+    """Return a complex equation with each side as a column (real part, imaginary part).
 
+    If a side is a name alone, it stays a name, and the other side becomes its real part if its imaginary part is zero.
     ``letter`` is the imaginary unit, ``source`` the typed text, for messages.
 
     Raises

@@ -25,7 +25,8 @@ OF_PAULI = frozenset({"sigma", "i", "I"})
 """The letters of identities such as ``σ_j σ_k = δ_jk + i ε_jkl σ_l``: Pauli's matrices, i and the unit matrix."""
 
 MOST_ENTRIES, WIDTH = 81, 9
-"""The most terms of a sum, and of entries of an equation; the number of entries in a row of its matrix."""
+"""The largest number of terms of a written-out sum, and of entries of a written-out equation; and the number of entries
+in a row of the matrix that holds them."""
 
 
 def written_out(relation: Relation) -> tuple[Relation, str]:
@@ -36,7 +37,8 @@ def written_out(relation: Relation) -> tuple[Relation, str]:
     Raises
     ------
     InputError
-        For an index that occurs more than twice in a term, and for terms with different free indices.
+        For an index that occurs more than twice in a term, for terms with different free indices, and for more than
+        four free indices or four summed ones.
     """
     sign, left, right = relation
     nodes = nodes_of(left, right)

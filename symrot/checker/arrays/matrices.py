@@ -143,7 +143,10 @@ def bold_matrices(sides: Sequence[Node], vectors: Collection[str]) -> dict[str, 
 
 
 def rate_matrices(relation: tuple[str, Node, Node]) -> dict[str, bool]:
-    """Return {"R": True} for an equation such as ``R' = skew(w) R``, and {"R": False} for ``R_dot = skew(w) R``."""
+    """Return the matrices whose rate an equation gives by a skew matrix, each with True if it is a function of time.
+
+    These are {"R": True} for ``R' = skew(w) R``, and {"R": False} for ``R_dot = skew(w) R``, where R_dot is a symbol.
+    """
     matrices: dict[str, bool] = {}
     for side, other in (relation[1:], relation[:0:-1]):
         # R' is the derivative of R(t); beside R_dot, which is a symbol, R does not depend on t

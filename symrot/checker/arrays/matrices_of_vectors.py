@@ -45,11 +45,11 @@ OMEGA = ("omega", "w")
 
 
 class WithMatrices(NamedTuple):
-    """An equation with ``skew(k)`` for K, the unit vectors k that it has then, and notes on how it is read."""
+    """An equation with ``skew(k)`` for K, the unit vectors k that are new in it, and notes on how it is read."""
 
     relation: tuple[str, Node, Node]
     vectors: tuple[Vector, ...] = ()
-    letters: tuple[str, ...] = ()  # the letters K that are replaced
+    letters: tuple[str, ...] = ()  # letters that mean matrices or quaternions: no vectors, though they may be bold
     notes: tuple[str, ...] = ()
     written: tuple[tuple[Node, Node], ...] = ()  # rotation matrices, each with the exponential that it stands for
 
@@ -68,7 +68,7 @@ def with_matrices_of_vectors(
         The names that the claim defines; they stay.
     """
     if (rates := _with_rate_matrix(relation, known)) is not None:
-        letters_of_rates = ("q", "p", "beta", "epsilon", "Omega")  # no vectors, though they may be bold
+        letters_of_rates = ("q", "p", "beta", "epsilon", "Omega")
         note = "Ω(ω) q is read as the product of the quaternions q and (0, ω)"
         return WithMatrices(rates, (), letters_of_rates, (note,))
     sign, *sides = relation
@@ -118,9 +118,7 @@ def _skew_letters(node: Node, hats: Collection[str], known: Collection[str]) -> 
 
 
 def _name_of(factor: Node) -> str:
-    """Return the name K for K and for K^2, and for the length of K squared, as which a reader takes K^2; an empty text
-    for others.
-    """
+    """Return the name K if a factor is K, K^2 or ``dot(K, K)``, as which the readers take K^2; otherwise return ""."""
     if factor.kind == "call" and factor.value == "dot" and factor.args[0] == factor.args[1]:
         factor = factor.args[0]
     base = factor.args[0] if factor.kind == "power" else factor

@@ -28,7 +28,7 @@ PARTS = ("name", "number", "sum", "product", "neg", "power", "inv", "list")
 """The kinds of formulas in which letters may be matrices; sines and cosines are scalars."""
 
 OF_MATRICES = ("trace", "det")
-"""Functions of a matrix only: their arguments are Pauli's matrices, since a stress sigma_x has no trace."""
+"""Functions of matrices only: a sigma_x in their arguments is Pauli's matrix, since a stress sigma_x has no trace."""
 
 CALLS = ("sin", "cos", "sqrt", "Matrix", *OF_MATRICES)
 """The functions in equations of Pauli's matrices."""

@@ -39,7 +39,7 @@ ANGULAR = re.compile(r"(omega|Omega|w)(_[A-Za-z]+)?")
 """Names of angular velocities."""
 
 RATES = ("q", "Q", "beta", "epsilon")
-"""Names of quaternions in a product with an angular velocity alone, which has no mark."""
+"""Names that mean a quaternion in a product with an angular velocity, even without a sign such as ⊗ or a star."""
 
 ENDINGS = ("_vec", "_v", "v")
 """Endings of a name for the vector part of a quaternion."""

@@ -39,7 +39,7 @@ class Definitions:
     functions : frozenset of str
         Names of functions of time.
     divisors, radicands : tuple
-        The divisors in the texts of the definitions, and formulas there that must not be negative, as under a root.
+        The divisors in the texts of the definitions, and the formulas there that must not be negative, as under a root.
     bases : tuple of Expr
         Bases of powers whose exponents are not numbers.
     """
@@ -64,9 +64,11 @@ class Claim:
     define : tuple of (str, Node)
         Definitions in order, each of which may use those before it.
     hypotheses : tuple of Relation
+        Equations and inequalities that the claim assumes, such as ``x > 0``.
     relation : Relation or None
         The equation; None for a formula that is compared with a printed number, ``value`` and ``printed``.
     value : Node or None
+        A formula that is compared with a printed number; None for an equation.
     printed : str
         The decimal number that a document prints for ``value``.
     alternatives : tuple of Relation
@@ -165,8 +167,9 @@ class Claim:
         return self.sources.get("claim") or relation_text(self.relation)
 
     def label(self, key: str) -> str:
-        """Return where a text of the claim stands in a file, as in ``"C3: define R"``; empty if the claim has no
-        id.
+        """Return the place of a text of the claim for error messages, such as ``"C3: define R"``.
+
+        It is empty if the claim has no id.
         """
         # a claim that a user typed has no id; keys are claim, given, define NAME, value and printed_value
         return f"{self.id}: {key}" if self.id else ""
@@ -180,7 +183,9 @@ class Claim:
         return other
 
     def with_parts(self, parts: Mapping[str, Node]) -> "Claim":
-        """Return the claim with new trees for some of its parts: ``"left"``, ``"right"`` or names of definitions."""
+        """Return the claim with the trees ``parts`` in place of its own: {"left": tree, "R": tree} for the left side
+        and for the definition of R.
+        """
         assert self.relation is not None
         sign, left, right = self.relation
         relation = (sign, parts.get("left", left), parts.get("right", right))
@@ -191,7 +196,7 @@ class Claim:
 
     @cached_property
     def definitions(self) -> Definitions:
-        """The symbols and definitions as SymPy values; a symbol is positive if a hypothesis says so.
+        """The symbols and definitions as SymPy values; a symbol is positive or nonnegative if a hypothesis says so.
 
         Raises
         ------
@@ -263,7 +268,10 @@ def relation_text(relation: Relation) -> str:
 
 
 def _differences(left: Any, right: Any, where: str) -> list[Expr]:
-    """Return left - right of a hypothesis ``a == b`` or ``a != b``: one formula, or one for each entry of a matrix."""
+    """Return left - right of a hypothesis ``a == b`` or ``a != b``: one formula, or one for each entry of a matrix.
+
+    Raise InputError if the shapes differ.
+    """
     try:
         lefts, rights, _ = matched_sides(left, right)
     except ShapeMismatch:

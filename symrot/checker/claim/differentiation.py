@@ -21,9 +21,8 @@ __all__ = ["as_functions", "is_rule"]
 
 
 def as_functions(claim: Claim) -> Claim | None:
-    """Return a rule of differentiation with q renamed to t and x to x(t): ``diff(x(t), t)`` for ``diff(x, q)``.
-
-    None for other claims.
+    """Return a rule of differentiation with the variable q renamed to t, and with x(t) for each function x of it:
+    ``diff(x(t), t)`` for ``diff(x, q)``. Return None for other claims.
     """
     assert claim.relation is not None
     sign, *sides = claim.relation

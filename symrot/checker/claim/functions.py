@@ -1,6 +1,7 @@
 """The built-in functions of claims, such as sin and cross, each with the function that evaluates it.
 
-Every divisor and every formula under a root is recorded before SymPy can cancel it.
+Every divisor that may be zero, and every formula under a root that may be negative, is recorded before SymPy can cancel
+it.
 """
 
 import re
@@ -119,7 +120,9 @@ def _rotation(axis: str) -> Any:
 
 
 def _components(scope: Scope, node: Node, size: int) -> list[Expr]:
-    """Return the components in a call such as ``skew(a, b, c)``: its ``size`` arguments, or the entries of a column."""
+    """Return the components in a call such as ``skew(a, b, c)``: its ``size`` arguments, or the entries of the column
+    of this size that is its only argument. Raise InputError for other arguments.
+    """
     if len(node.args) == size:
         return [scope.scalar(argument, f"as a component in {node.value}") for argument in node.args]
     if len(node.args) != 1:
@@ -187,7 +190,10 @@ def _inverse_of(scope: Scope, node: Node) -> ImmutableMatrix:
 
 
 def inverted(scope: Scope, matrix: ImmutableMatrix, node: Node) -> ImmutableMatrix:
-    """Return the inverse of a matrix, and record its determinant as a divisor; raise InputError if that is zero."""
+    """Return the inverse of a matrix, and record its determinant as a divisor.
+
+    Raise InputError if the determinant is zero or has more than LARGEST_INVERSE products.
+    """
     determinant = _determinant(scope, matrix, node, LARGEST_INVERSE)
     from symrot.exact import normal_form
 
@@ -348,7 +354,7 @@ def _integrate(scope: Scope, node: Node) -> Any:
             inside = sympy.Dummy(str(variable), real=True)
         for written in total if is_matrix(total) else [total]:
             if inside != variable and written.atoms(AppliedUndef):
-                raise scope.fail(place, f"another symbol than {variable}, the upper limit, inside the integral")
+                raise scope.fail(place, f"a variable of integration other than {variable}, which is in the limits")
             entry = written.xreplace({variable: inside})
             try:
                 value, divisors = definite_integral(entry, inside, lower, upper)
@@ -365,8 +371,8 @@ COORDINATES = re.compile(r"[xyzr]|xi|eta|zeta|[rs]_[xyz123]")
 
 
 def _integral_over_body(scope: Scope, node: Node) -> Any:
-    """Return an integral such as ∫ x^2 dm over a body of unknown shape: a new symbol for each product of
-    coordinates.
+    """Return an integral over a body of unknown shape, with one symbol for each product of coordinates: ``integral_xx``
+    for ∫ x^2 dm.
     """
     value = scope.evaluate(node.args[0])
     scope.shape(value, node.args[0])

@@ -16,7 +16,7 @@ MOST_PRODUCTS = 20_000  # that are formed while an integrand is multiplied out
 
 @lru_cache(maxsize=64)
 def definite_integral(integrand: Expr, variable: Symbol, lower: Expr, upper: Expr) -> tuple[Expr, tuple[Expr, ...]]:
-    """Return an integral over an interval, and its divisors: k for the integral of cos(k x).
+    """Return (integral, divisors) for an integral over an interval: the divisors that may be zero, as k for cos(k x).
 
     Parameters
     ----------
@@ -41,7 +41,10 @@ def definite_integral(integrand: Expr, variable: Symbol, lower: Expr, upper: Exp
 
 
 def _rewritten(integrand: Expr, variable: Symbol) -> Expr:
-    """Return an integrand as a sum of powers and complex exponentials: ``(e^(ix) + e^(-ix))/2`` for cos(x)."""
+    """Return an integrand as a sum of powers and complex exponentials: ``(e^(ix) + e^(-ix))/2`` for cos(x).
+
+    Raise InputError for an integrand that would take too long to expand.
+    """
     angles = [node for node in integrand.atoms(sin, cos) if node.has(variable)]
     # each term of such a sum has an elementary integral
     exponentials = {}
@@ -50,7 +53,6 @@ def _rewritten(integrand: Expr, variable: Symbol) -> Expr:
         forward, backward = exp(I * argument), exp(-I * argument)
         exponentials[node] = (forward + backward) / 2 if node.func is cos else (forward - backward) / (2 * I)
     plain = integrand.xreplace(exponentials)
-    # refuses an integrand that takes too long to expand
     if any(node.exp.is_Integer and node.exp > LARGEST_DEGREE and node.base.has(variable) for node in plain.atoms(Pow)):
         raise InputError(f"expected an integrand of degree at most {LARGEST_DEGREE}, got {integrand}")
     if _products(plain) > MOST_PRODUCTS:

@@ -19,7 +19,7 @@ from symrot.exact.limits.operations import spend
 __all__ = ["CONSTANTS", "Interpreter", "atoms_of", "time"]
 
 LARGEST_EXPONENT = 64
-"""The largest exponent of a matrix or under a root."""
+"""The largest exponent of a matrix, and the largest numerator of a fractional exponent, as 3 in x^(3/2)."""
 
 LARGEST_WHOLE_EXPONENT = 1_000_000
 LARGEST_ROOT = 12
@@ -35,7 +35,7 @@ UNKNOWN_HERE = (
 """Names that a claim must declare to use them as symbols, since to most readers they mean something else."""
 
 INSTEAD = {"I": "I_1", "E": "E_k"}
-"""Maps such a name to a name that mechanics uses for the quantity."""
+"""Maps a name that is refused as an undeclared symbol to a name for the quantity that it means in mechanics."""
 
 
 @dataclass

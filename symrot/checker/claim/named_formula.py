@@ -41,7 +41,7 @@ __all__ = [
 ]  # fmt: skip
 
 MARKED = ("_prime", "_dot", "_star")
-"""Endings of names such as ``theta'`` and ``z*``, whose marks say that they depend on theta and z."""
+"""Endings of the names for ``theta'`` and ``z*``: such quantities depend on theta and z."""
 
 
 class NamedFormula(NamedTuple):
@@ -89,8 +89,9 @@ def named_formula(claim: Claim) -> NamedFormula | None:
 
 
 def open_formula(claim: Claim) -> NamedFormula | None:
-    """Return both sides of an equation for an unknown function L, such as ``diff(L, q) == 0``; None for other
-    claims.
+    """Return an equation for an unknown function L, such as ``diff(L, q) == 0``, as a NamedFormula that is not solved.
+
+    Return None for other claims.
     """
     assert claim.relation is not None
     _, left, right = claim.relation
@@ -136,7 +137,10 @@ def _depends_on_time(derivative: Node) -> bool:
 
 
 def related_formula(claim: Claim) -> NamedFormula | None:
-    """Return an equation such as ``k^2 = I/m``, true only if its letters mean certain quantities; otherwise None."""
+    """Return the NamedFormula of an equation such as ``k^2 = I/m``, true only if its letters mean certain quantities.
+
+    Return None for other claims, which are meant as identities.
+    """
     assert claim.relation is not None
     left, right = without_common_factors(*claim.relation[1:])
     known = _known(claim)
@@ -248,13 +252,15 @@ def _says_something(claim: Claim, left: Node, right: Node) -> bool:
 
 
 def _solved_for_vector(claim: Claim, left: Node, right: Node) -> NamedFormula | None:
-    """Return a vector of an equation and its formula: v and ``u + w x r`` for ``v - u = w x r``; or None."""
+    """Return the NamedFormula for a vector of an equation: v and ``u + w x r`` for ``v - u = w x r``.
+
+    Return None if no vector without a definition is a whole term and occurs once.
+    """
     terms = [*terms_of(left), *map(negated, terms_of(right))]
     generic = {name for name, tree in claim.define if is_components(name, tree)}
     everywhere = [node.value for node in nodes_of(*terms) if node.kind == "name"]
     for term in terms:
         bare = without_sign(term)
-        # the vector must be a whole term and occur once
         if bare.kind == "name" and bare.value in generic and everywhere.count(bare.value) == 1:
             rest = sum_of([other for other in terms if other is not term])
             return NamedFormula(str(bare.value), bare, rest if term.kind == "neg" else negated(rest))
@@ -389,7 +395,10 @@ def _known(claim: Claim) -> set[str]:
 
 
 def _equation_of_motion(left: Node, right: Node) -> NamedFormula | None:
-    """Return x'' and its formula ``-k*x/m`` for a linear differential equation ``m*x'' + k*x = 0``; or None."""
+    """Return the NamedFormula for x'', ``-k*x/m``, of a linear differential equation ``m*x'' + k*x = 0``.
+
+    Return None for other equations.
+    """
     if (parts := with_highest_rate(left, right)) is None:
         return None
     rate, coefficient, rest = parts

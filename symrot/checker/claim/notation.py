@@ -134,7 +134,7 @@ def with_formulas(source: str, formula: Callable[[Node], str], signs: Mapping[st
 
 
 def decimal(value: Fraction) -> str:
-    """Return a number as text: a decimal number if that is exact and short, otherwise a fraction in brackets."""
+    """Return a number as text: an integer, a decimal number of at most 28 digits if it is exact, or else ``(1/3)``."""
     if value.denominator == 1:
         return str(value)
     written = format(Decimal(value.numerator) / Decimal(value.denominator), "f")
@@ -150,11 +150,11 @@ BOUND_LOOSELY = ("sum", "neg", "product")
 """Kinds of trees that need brackets in a product of quaternions."""
 
 END = Node("name", "")
-"""Stands in for the missing factor after the last factor of a product."""
+"""A placeholder after the last factor of a product: each factor is examined together with the one after it."""
 
 
 def _is_number_power(node: Node) -> bool:
-    """Return whether a tree is a power with an odd digit as exponent, such as x^3."""
+    """Return whether a tree is a power whose exponent is one of the digits 1, 3, 5, 7 and 9, such as x^3."""
     # such a power needs brackets before a slash: x^3/2 might be read as x^(3/2)
     return node.kind == "power" and node.args[1].kind == "name" and str(node.args[1].value) in ("1", "3", "5", "7", "9")
 

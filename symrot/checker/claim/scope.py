@@ -104,7 +104,7 @@ class Scope(ABC):
         return value
 
     def within_nesting(self, value: Expr, node: Node) -> None:
-        """Raise InputError if another function or root around ``value`` would be nested too deeply."""
+        """Raise InputError if ``value`` has so many nested functions and roots that one more would be too many."""
         if nesting(value) >= MOST_NESTED:
             raise self.fail(node, f"at most {MOST_NESTED} functions and roots inside each other")
 
@@ -141,7 +141,7 @@ class Scope(ABC):
         return value
 
     def divide_by(self, value: Expr, node: Node) -> None:
-        """Record that the text divides by a value; InputError if the value is obviously zero."""
+        """Record the factors of a divisor in the text that may be zero; raise InputError if it is obviously zero."""
         # a zero that takes a proof, such as sin(x)**2 + cos(x)**2 - 1, is refused when the claim is decided
         if value.is_zero:
             raise self.fail(node, "a divisor that is not zero")

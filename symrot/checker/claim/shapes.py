@@ -17,7 +17,7 @@ Shape = tuple[int, int] | None
 """Rows and columns of a matrix; None for a scalar."""
 
 UNIT_MATRICES = ("I", "I_3", "I_33", "I_3x3", "E_3", "1_3")
-"""Names of the unit matrix, where a scalar makes no sense."""
+"""Names that mean the unit matrix where a scalar makes no sense."""
 
 FIXED: Mapping[str, Shape] = {
     "cross": (3, 1),
@@ -150,7 +150,10 @@ def _with_unit_matrices(node: Node, shapes: Mapping[str, Shape]) -> Node:
 
 
 def _as_matrix(node: Node, shape: Shape) -> Node | None:
-    """Return ``eye(n)`` for a term I or 1, and ``cos(a)*eye(n)`` for ``cos(a)*I``; None for other terms. n: rows."""
+    """Return ``eye(n)`` for a term I or 1, and ``cos(a)*eye(n)`` for ``cos(a)*I``; None for other terms.
+
+    n is the number of rows in ``shape``.
+    """
     assert shape is not None
     unit = Node("call", "eye", (number(shape[0]),), node.span)
     if node == number(1) or (node.kind == "name" and node.value in UNIT_MATRICES):

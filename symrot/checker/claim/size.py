@@ -18,25 +18,27 @@ __all__ = [
 ]
 
 MOST_PIECES = 200_000
-"""The most symbols, numbers and operations of a value; those that occur twice are counted twice."""
+"""The largest number of symbols, numbers and operations in a value; those that occur twice are counted twice."""
 
 MOST_DIFFERENTIATED = 3_000
-"""The most symbols, numbers and operations of a formula that is differentiated."""
+"""The largest number of symbols, numbers and operations in a formula that is differentiated."""
 
 MOST_PRODUCTS = 2_000
-"""The most products of entries in a determinant; a full 6 x 6 matrix has 720, a full 7 x 7 matrix 5040."""
+"""The largest number of products of entries in a determinant; a full 6 x 6 matrix has 720, a full 7 x 7 matrix 5040."""
 
 LARGEST_INVERSE = 200
-"""The most products of entries in the determinant of a matrix that is inverted; a full 5 x 5 matrix has 120."""
+"""The largest number of products in the determinant of a matrix that is inverted; a full 5 x 5 matrix has 120."""
 
 LARGE_MATRIX = 1_000
-"""The size (symbols, numbers and operations) of a matrix from which its determinant is expanded by cofactors."""
+"""Number of symbols, numbers and operations in a matrix: above it, the determinant is expanded by cofactors."""
 
 MOST_ANGLE_TERMS = 2_000
-"""The most terms of a sine, expanded into sines and cosines of single angles; the sine of a sum of eleven has 1024."""
+"""The largest number of terms of a sine that is expanded into sines and cosines of single angles; the sine of a sum of
+eleven angles has 1024 terms."""
 
 MOST_NESTED = 16
-"""The most nested functions and fractional powers; SymPy needs seconds for depth 16, and minutes for depth 25."""
+"""The largest number of functions and fractional powers inside one another; SymPy needs seconds for 16, and minutes for
+25."""
 
 
 def nesting(formula: Expr) -> int:

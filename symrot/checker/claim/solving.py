@@ -30,7 +30,7 @@ Quantity = tuple[str, bool]
 """A name, and whether its rate is meant: x and dx/dt are two quantities."""
 
 INVERSES = {"sin": "asin", "cos": "acos", "tan": "atan", "exp": "log", "log": "exp"}
-"""Maps a function to its inverse, which solves for its argument."""
+"""Maps a function to the inverse function, by which an equation is solved for the argument."""
 
 
 def is_name_or_rate(tree: Node) -> bool:
@@ -51,7 +51,7 @@ def solution(side: Node) -> tuple[Quantity, Solve] | None:
     """Return the only quantity (or the only rate) on a side of an equation, and a function that solves for it.
 
     For the side ``2*k^2`` these are k and a function that turns the other side, I, into ``(I/2)^(1/2)``. None if the
-    side has several quantities, or none.
+    side has several quantities or none, or operations such as a sum that are not inverted.
     """
     steps: list[Solve] = []
     while not is_name_or_rate(side):
@@ -111,7 +111,8 @@ def with_highest_rate(left: Node, right: Node) -> tuple[Node, Node, Node] | None
     """Return (x'', m, -k*x) for ``m*x'' + k*x = 0``: the highest derivative, its coefficient, and the other terms on
     the other side.
 
-    None unless the equation is linear in one highest derivative and has another term.
+    None unless the equation is linear in a single highest derivative, all derivatives are by time and of single names,
+    and there is another term.
     """
     terms = [*terms_of(left), *map(negated, terms_of(right))]
     derivatives = {node for node in nodes_of(*terms) if is_derivative(node)}

@@ -80,7 +80,7 @@ def is_derivative(node: Node) -> bool:
 
 
 def derivative(args: Sequence[Node], span: tuple[int, int] = (0, 0)) -> Node:
-    """Return the derivative ``diff(x, t, t)`` for the arguments x, t, 2 of SymPy's ``diff``, also as ``(t, 2)``."""
+    """Return ``diff(x, t, t)``, the derivative that SymPy's ``diff`` has for the arguments x, t, 2, or x, (t, 2)."""
     inner, *others = args
     variables: list[Node] = []
     for other in others:
@@ -119,7 +119,7 @@ def sum_of(terms: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
 def product(factors: list[Node], span: tuple[int, int] = (0, 0)) -> Node:
     """Return the product of ``factors`` as one flat node, with a sign in front: ``-a*b*c`` for -a and b*c.
 
-    1 for an empty list.
+    Return 1 for an empty list.
     """
     flat: list[Node] = []
     negative = False
@@ -220,7 +220,7 @@ def replaced(node: Node, path: Path, made: Node) -> Node:
 
 
 def exchanged(node: Node, trees: Mapping[Node, Node]) -> Node:
-    """Return the tree with new parts, by the map ``trees`` from old parts to new ones; new parts are not searched."""
+    """Return the tree with new subtrees, by the map ``trees`` from old ones to new ones, which are not searched."""
     return trees.get(node) or replace(node, args=tuple(exchanged(child, trees) for child in node.args))
 
 

@@ -39,8 +39,8 @@ __all__ = [
 
 MARK = "\N{RIGHTWARDS ARROW}"
 BASES = (("i", "j", "k"), *(tuple(f"e{mark}{axis}" for axis in axes) for mark in ("_", "") for axes in ("123", "xyz")))
-"""Names of basis vectors, which mean the axes if a text has two of them; all but i, j and k then allow no other
-vectors."""
+"""Names of basis vectors, which mean the axes if at least two of them are vectors of a text. Those other than i, j and
+k mean the axes only if the text has no further vectors."""
 
 AXES = ("xyz", "123", "1234", "0123")
 """Endings of the names of a vector's components, "xyz" for a_x, a_y and a_z; the four digits are for quaternions."""
@@ -135,7 +135,10 @@ def without_marks(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[lis
 
 
 def used_vectors(sides: Sequence[Node], names: Mapping[str, bool]) -> tuple[Vector, ...]:
-    """Return the vectors that a claim needs by components: r and p for ``L = r x p``, but not L."""
+    """Return the vectors whose components a claim needs: r and p for ``L = r x p``, but not L.
+
+    ``names`` maps the names of vectors to True for those with a hat.
+    """
     trees = nodes_of(*sides)
     used = {str(node.value) for node in trees if node.kind == "name"}
     rates = [node for node in trees if is_derivative(node) and node.args[-1] == TIME]

@@ -247,7 +247,9 @@ PLACE_OF_RATE = {"dphi": "first", "dtheta": "second", "dpsi": "third"}
 
 
 def same_rotation(sequence: str) -> str:
-    """Return the same rotation with its angles in reverse order, xyz for ZYX; empty for ZXZ and its like.
+    """Return the sequence of the same rotation with the angles in reverse order, such as xyz for ZYX.
+
+    Return "" for sequences such as ZXZ, whose first and last axes are equal.
 
     Examples
     --------

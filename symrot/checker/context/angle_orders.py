@@ -61,7 +61,7 @@ def has_order(sequence: str) -> bool:
 def are_roll_pitch_yaw(sequence: str, places: Mapping[str, int]) -> bool:
     """Return whether phi, theta and psi can be roll, pitch and yaw: the angles about x, y and z.
 
-    True for ZXZ and its like.
+    True for sequences such as ZXZ, whose first and last axes are equal.
     """
     # ZXZ has no roll, pitch and yaw, so that the usage of these books restricts nothing
     axes = {"phi": "X", "theta": "Y", "psi": "Z"}

@@ -27,7 +27,8 @@ class Kind:
     shape : str
         The name of this shape in :mod:`symrot.inertia.shapes`, or an empty text.
     thin : tuple (str, str) or empty
-        Phrase and shape of the body with a thin wall, which may be meant too if only one radius is stated.
+        Phrase and shape of the body with a thin wall. It is meant instead if only one radius is stated, and may be
+        meant too if none is.
     """
 
     title: str
@@ -208,8 +209,8 @@ _SIDES: dict[str, tuple[tuple[str, Fraction], ...]] = {
     "ellipsoid": ((r"(?:half|semi)-?\s?ax[ei]s", Fraction(1)), (r"diameters|full axes", Fraction(1, 2))),
     "other": ((r"(?:half|semi)[- ]?(?:sides?|edges?|ax[ei]s)", Fraction(2)), ("sides?|edges?", Fraction(1))),
 }  # fmt: skip
-"""Maps the form of a body to nouns for a list of its dimensions, each with the factor by which a letter is
-multiplied."""
+"""Maps the form of a body to (noun, factor) for a list of its dimensions: the author's letter times the factor is
+symrot's dimension."""
 
 _HARMLESS = re.compile(
     r"\b(uniform|homogeneous|rigid|solid|(of |with )?(constant|uniform) density|(of |with |and )?mass( [a-zA-Z]\b)?"
@@ -314,7 +315,7 @@ def _without_plane(kind: Kind, words: str) -> tuple[str, str]:
 
 
 def _direction(kind: Kind, words: str) -> tuple[str, str]:
-    """Return the axes that words state, "xy" for "parallel to its base", and the other words."""
+    """Return the axes that words state, "xy" for "parallel to its base", or "" for none, and the other words."""
     for kinds, pattern, axes in _DIRECTIONS:
         if kind.title in kinds or kind.shape in kinds:
             rest = re.sub(rf"{_LINE}{pattern}", " ", words, count=1)

@@ -110,7 +110,7 @@ class Context:
 
     @property
     def obscure(self) -> str:
-        """Words about the body, or about the axis of a quantity, that symrot does not understand; often empty."""
+        """The words about the body, or about the axis of a quantity, that symrot does not understand; "" if none."""
         own = [self.body.obscure] if self.body else []
         for meaning in self.meanings:
             own += [meaning.body.obscure] if meaning.body else []
@@ -131,7 +131,7 @@ class Context:
                 )
 
     def units(self, names: Iterable[str], explicit: Mapping[str, str]) -> dict[str, str]:
-        """Return the units of ``names`` that follow from their meanings.
+        """Return the units of those ``names`` whose meaning has one: {"I": "kg m^2"}.
 
         Raises
         ------

@@ -41,10 +41,10 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["in_context"]
 
 MOST_DIAGNOSED = 4
-"""The most assignments of letters for which the fault of a claim is sought."""
+"""The largest number of assignments of letters for which the fault of a claim is sought."""
 
 MOST_COSTLY = 2.0
-"""The cost of a repair that is a derived formula as a whole."""
+"""The cost of a repair that replaces the whole formula by a derived one."""
 
 
 def in_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
@@ -67,7 +67,7 @@ def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verd
     """
     # words about the body or its axis that symrot does not understand leave open what the claim means
     if obscure := claim.context.obscure:
-        reason = f"of the context, these words are not understood: {obscure}; write it without them, or in other words"
+        reason = f"of the context, these words are not understood: {obscure}; leave them out, or use other words"
         return Verdict("definition", reason=reason)
     without, verdict = verdict, _by_context(claim, named, verdict)
     if any(is_at_open_place(claim.context, known.name) for known in verdict.recognised_as):
@@ -90,15 +90,16 @@ def _with_all_words(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verd
 
 
 MOST_EDITS = 40
-"""The most edits that are tried of a formula for another quantity than the context states."""
+"""The largest number of edits of a formula that are tried if it is one for another quantity than the context states."""
 
 
 ENGLISH = ("from", "to", "that", "at", "between", "on", "of")
 
 
 def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
-    """Return the verdict by comparison of a claim with the formulas that its context means; ``verdict`` if
-    undecided.
+    """Return the verdict that follows from comparing a claim with the formulas that its context means.
+
+    Return ``verdict``, the one without the context, if the comparison decides nothing.
     """
     # the caller checks that all words of the context are used
     context, quantity = claim.context, _name(named)
@@ -134,7 +135,7 @@ def _by_context(claim: Claim, named: NamedFormula, verdict: Verdict) -> Verdict:
         if verdict.repairs and verdict.diagnosis.code not in ("none", "derived"):
             whole = replace(verdict.diagnosis, text=f"{verdict.diagnosis.text}; {sentence}")
             return replace(verdict, verdict=word, diagnosis=whole, reason="")
-        # of the repairs, those are offered that the context admits
+        # only repairs that the context admits
         repairs = tuple(islice((repair for repair, _ in recognised_edits(claim, named, (), MOST_EDITS)), MOST_REPAIRS))
         return replace(verdict, verdict=word, diagnosis=Diagnosis("context", sentence), reason="", repairs=repairs)
     return verdict

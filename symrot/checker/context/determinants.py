@@ -40,7 +40,7 @@ SECOND_ANGLE = re.compile(r"(var)?theta(_?[2yn])?|Theta|beta|pitch|(q|alpha|phi|
 """Names of the second of three Euler angles."""
 
 MOST_REPAIRS, MOST_SEQUENCES = 3, 4
-"""The most repairs of a claim, and the most sequences that are named for one formula."""
+"""The largest number of repairs of a claim, and of sequences that are named for one formula."""
 
 
 @cache

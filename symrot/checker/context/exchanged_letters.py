@@ -13,7 +13,7 @@ from symrot.checker.verdict import Diagnosis, Repair, Verdict
 __all__ = ["by_exchanged_letters"]
 
 MOST_PAIRS = 10
-"""The most pairs of letters that are exchanged."""
+"""The largest number of pairs of letters for which an exchange is tried."""
 
 
 def by_exchanged_letters(

@@ -24,9 +24,9 @@ from symrot.exact.printing import as_text
 __all__ = ["with_lacking_letters"]
 
 LEAST_LETTERS = 2
-"""The fewest letters that a claim's formula must share with a derived one."""
+"""The smallest number of letters of a claim's formula that is compared with derived formulas."""
 MOST_ASSIGNMENTS = 6
-"""The most assignments of a claim's letters to the symbols of one derived formula."""
+"""The largest number of assignments of a claim's letters to the symbols of one derived formula that are tried."""
 
 Assignments = Callable[[Known, Any, set[Expr]], Iterator[Mapping[Expr, Expr]]]
 

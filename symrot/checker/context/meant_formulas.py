@@ -25,10 +25,10 @@ from symrot.exact.printing import as_text
 __all__ = ["ANGLE", "Meant", "all_known", "assignments_of", "meant_by", "with_letters"]
 
 MOST_ASSIGNMENTS = 24
-"""The most assignments of a claim's letters to the symbols of a derived formula that are decided."""
+"""The largest number of assignments of a claim's letters to the symbols of one derived formula that are decided."""
 
 MOST_CHOICES = 10_000
-"""The most choices of symbols for letters that are tried, before it is known whether they suit the axes."""
+"""The largest number of choices of symbols for letters that are tested for agreement with the axes."""
 
 ANGLES = tuple(Symbol(symbol.name, real=True) for symbol in (*symbols.angles, *symbols.angle_rates))
 
@@ -157,8 +157,10 @@ def with_letters(context: Context, target: Any) -> Any:
 def assignments_of(
     context: Context, target: Any, own: set[Expr], quantity: str, known: Known, is_specific: bool
 ) -> Iterator[dict[Expr, Expr]]:
-    """Yield maps from symbols of the known formula ``target`` to a claim's letters ``own``, {R: r}, that books may
-    use.
+    """Yield the assignments {R: r} of a claim's letters ``own`` to symbols of the known formula ``target`` that agree
+    with the usage of books and with the context.
+
+    ``is_specific`` says that the formula is for one body or one sequence, and may have symbols that the claim lacks.
     """
     own_symbols = sorted(target.free_symbols - {time}, key=str)
     if context.sequence and context.sequence in known.name:  # a formula may lack an angle that the claim has
@@ -166,7 +168,6 @@ def assignments_of(
     pinned = set(context.body.letters.values()) if context.body else set()
     names = {symbol.name for symbol in own_symbols}
     atoms = [atom for atom in sorted(own, key=str) if plain(as_text(atom)) not in pinned - names]
-    # a formula for one body or one sequence may have symbols that the claim lacks
     if len(atoms) > len(own_symbols) or (len(atoms) < len(own_symbols) and not is_specific):
         return
     choices = []

@@ -87,7 +87,9 @@ def _judged(claim: Claim, named: NamedFormula, verdict: Verdict, stated: Context
 
 def _not_of_name(named: NamedFormula, verdict: Verdict) -> Verdict:
     """Return "definition" for a claim with the formula of another body or point than its quantity's name says."""
-    reason = f"the name {named.name} says something else, and the formula is the {verdict.recognised_as[0].name}"
+    reason = (
+        f"the formula is the {verdict.recognised_as[0].name}; but the name {named.name} is for another body or point"
+    )
     return replace(verdict, verdict="definition", recognised_as=(), reason=reason)
 
 

@@ -246,7 +246,7 @@ def _with_case(letters: str, kinds: Sequence[str]) -> str:
     """Return axes in upper case if ``kinds`` has words for moving axes ("body"), in lower case for fixed ones
     ("space").
 
-    Unchanged without such words; empty if they contradict each other.
+    Return the axes unchanged without such words, and "" if the words contradict each other.
     """
     fixed = {kind in ("space", "extrinsic", "fixed") for kind in kinds}
     if len(fixed) > 1:
@@ -256,8 +256,8 @@ def _with_case(letters: str, kinds: Sequence[str]) -> str:
 
 
 def _check_consistency(context: Context, prefix: str) -> None:
-    """Raise InputError if two statements of the context contradict each other, or a meaning the usual unit of its
-    name.
+    """Raise InputError if two statements of the context contradict each other, or if the quantity that a name means has
+    another unit than this name usually has.
     """
     seen: dict[str, Meaning] = {}
     for meaning in context.meanings:

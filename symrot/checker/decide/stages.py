@@ -35,10 +35,13 @@ MUCH_LARGER = 5
 """The ratio of sizes from which on the larger formula certainly has the longer text."""
 
 MOST_PIECES = 60
-"""The most symbols and operations of a condition that is compared with the others."""
+"""A sum that must be nonzero is simplified, to see if the other conditions imply it, if it has fewer symbols and
+operations than this.
+"""
 
 MOST_LETTERS_OF_CONDITION = 80
-"""The most characters of a condition on signs, if the range of an inverse function says the same."""
+"""A condition on signs with more characters is replaced by the range of an inverse function that says the same, if any.
+"""
 
 
 @dataclass
@@ -132,7 +135,7 @@ def nonzero_by_hypothesis(case: ClaimCase) -> None:
 
 
 def domain_of_text(case: ClaimCase) -> None:
-    """Add the divisors of a claim's text to the ring; InputError if the sides are provably real nowhere."""
+    """Add the divisors of a claim's text to the ring; raise InputError if the sides are provably real nowhere."""
     # the proof must not lose the condition that they are nonzero
     for divisor in case.equation.divisors:
         case.ring.ratios.invert(case.ring.ratio(divisor), divisor)
@@ -194,7 +197,7 @@ def condition(case: ClaimCase) -> Decision | None:
     if case.branches and not needed and case.can_hold(case.branches[0]):
         if not case.counterexample:  # it may hold everywhere
             signs = " and ".join(requirement.text for requirement in case.branches)
-            reason = f"it is true where {signs}, and no point is known where that fails"
+            reason = f"the claim is true where {signs}, and no point is known where this condition fails"
             return Decision("undecided", case.conditions, reason=reason)
         needed = case.branches
     if not needed:

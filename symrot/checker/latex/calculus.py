@@ -48,8 +48,9 @@ class CalculusPart(NamesPart):
         return self.trigonometric(replace(font, text=command)) if command in FUNCTIONS else super().spelled(font)
 
     def loose_argument(self, function: tree.Node) -> tuple[Node, Node | None]:
-        r"""Parse an argument without brackets, ``2\theta``; return it, and 2 for ``\sin\theta^2`` read as (sin
-        theta)^2, or None.
+        r"""Parse an argument without brackets, ``2\theta``; return (argument, power).
+
+        The power is that of the whole function: 2 if ``\sin\theta^2`` is read as (sin theta)^2, otherwise None.
         """
         expected = f"brackets around the argument of {function.text}"
         if self.at("-") and self.flips is None:
@@ -58,7 +59,6 @@ class CalculusPart(NamesPart):
         factors, power = [self.factor()], None
         is_power = factors[0].kind == "power"
         if is_power and self.doubtful("power of argument", function, self.peek().start, expected):
-            # \sin\theta^2 as (sin theta)^2
             factors, power = [factors[0].args[0]], factors[0].args[1]
         only_number = factors[0].kind == "number" or (factors[0].kind == "product" and not any(
             piece.kind in ("name", "call") for piece in nodes_of(factors[0])))  # fmt: skip

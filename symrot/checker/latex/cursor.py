@@ -28,7 +28,7 @@ MATRIX_CALLS = ("Matrix", "cross", "skew", "vee", "inverse", "transpose", "eye",
 MARKS = frozenset("-+*/=<>:;()[]{}&|,−·×⋅")
 TEXT_FONTS = ("\\text", "\\mbox", "\\textrm")
 JOINTS = ("and", "or", "where", "with", "so that", "thus", "hence", "i.e", "if", "for", "when", "since", "so")
-"""Fonts of the text around a formula, and words there between two equations."""
+"""Fonts of words in a formula, and words in such a font that join two equations."""
 
 _COMMANDS = {character: f"\\{name}" for name, character in GREEK.items()} | {
     "π": "\\pi",
@@ -182,7 +182,6 @@ class Cursor(cursor.Cursor):
         """
         if self.flips is None:
             raise self.fail(expected, place or item)
-        # flips has the keys (kind, start) of such parts
         doubt = Doubt((kind, item.start), self.source[item.start : stop].strip())
         if doubt.key not in [known.key for known in self.doubts]:
             self.doubts.append(doubt)
@@ -222,7 +221,9 @@ _INLINE = re.compile(r"\$\$.+?\$\$|(?<!\$)\$[^$]+\$(?!\$)|(?<!\\)\\\(.+?\\\)|(?<
 
 
 def _unwrapped(source: str) -> tuple[int, int]:
-    """Return where the formula starts and ends, without the dollar signs around it and a full stop after it."""
+    """Return the positions at which the formula starts and ends (exclusive), without the dollar signs around it and the
+    full stop after it.
+    """
     start, end = 0, len(source)
     formulas = list(_INLINE.finditer(source))
     if len(formulas) == 1 and not {"=", "<", ">"} & {*source[: formulas[0].start()], *source[formulas[0].end() :]}:

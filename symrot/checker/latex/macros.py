@@ -47,7 +47,7 @@ BRACED = ("\\underbrace", "\\overbrace")
 """Commands after which an index or power is a remark on the formula, not a part of it."""
 
 LONGEST_NUMBER = 8
-"""The most tokens that are looked at for the number of an equation."""
+"""The number of tokens after a wide space among which the number of an equation must end."""
 
 SPELLED = {
     **{name: f"\\{name}" for name in ("sin", "cos", "tan", "cot", "sec", "csc", "sinh", "cosh", "tanh", "exp", "ln",
@@ -166,7 +166,10 @@ class _Expansion:
                 yield from self.longer(piece)
 
     def equation_number(self) -> int:
-        r"""Return the number of tokens of an equation number, as in ``a = b \qquad (5.12)``; 0 if there is none."""
+        r"""Return how many tokens the number of an equation has, with its brackets, as in ``a = b \qquad (5.12)``.
+
+        Return 0 if no such number follows.
+        """
         rest = self.pieces[self.place : self.place + LONGEST_NUMBER]
         texts = [piece.text for piece in rest]
         end = texts.index(")") if texts[:1] == ["("] and ")" in texts[:-1] else 0

@@ -32,7 +32,7 @@ MARKS_IN_SUBSCRIPTS = {
     "+": "plus", "-": "minus", "*": "star", "\\ast": "star", "\\perp": "perp", "\\parallel": "par", "\\|": "par",
     "\\max": "max", "\\min": "min", "\\infty": "inf", ",": "_", "/": "_", ":": ":", "\\rm": "", "\\circ": "circ",
 }  # fmt: skip
-"""Mark in a subscript -> the letters for it in a name."""
+"""Mark in a subscript -> the text for it in a name: "plus" for +."""
 TOTALS = ("M", "F", "N", "T", "tau", "Gamma")
 """Letters of torques and forces, of which a sum without limits is the total."""
 
@@ -152,7 +152,7 @@ class NamesPart(SumsPart):
         return pieces
 
     def pieces(self, items: tuple[tree.Node, ...]) -> Iterator[str]:
-        """Yield the letters and numbers of the ``items`` of a subscript, upright or not; a comma becomes ``_``."""
+        """Yield the texts of the ``items`` of a subscript, upright or not; marks become letters, and a comma ``_``."""
         for item in items:
             if isinstance(item, tree.Row):
                 yield from self.pieces(item.items)
@@ -183,11 +183,12 @@ class NamesPart(SumsPart):
         return self.at("(") and self.peek(1).text == "t" and self.peek(2).text == ")"
 
     def derivative(self, node: Node, times: int, item: tree.Node) -> Node:
-        """Return the time derivative of a formula, of the order ``times``."""
+        """Return the time derivative of a formula, of the order ``times``, and make an undeclared name a function of
+        time. If the claim declares a symbol for the rate, such as dx for that of x, return this symbol.
+        """
         if node.kind == "name" and node.value not in (*self.names.functions, *self.names.matrices, *self.names.others):
             name = str(node.value)
             forms = ["d" * times + name, name + "dot", name + "d" * times]
-            # the claim may declare a symbol such as dx for the derivative of x
             declared = [form for form in forms if form in self.names.symbols] if times == 1 else []
             if declared:
                 return Node("name", declared[0])

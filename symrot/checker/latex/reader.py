@@ -1,7 +1,7 @@
 r"""The LaTeX reader: from an equation to the tree of a claim. Every token is used, or refused with its position.
 
-Where usage is ambiguous, as in ``\sin\theta/2`` or ``a/bc``, the reader asks for brackets instead of guessing. The text
-of the claim shows how the LaTeX was read.
+Where usage is ambiguous, as in ``\sin\theta/2`` or ``a/bc``, :func:`read_latex` asks for brackets, and
+:func:`latex_readings` returns an interpretation for each meaning.
 """
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
@@ -23,7 +23,7 @@ from symrot.latex import tree
 __all__ = ["Equation", "Names", "latex_readings", "read_latex", "read_latex_formula"]
 
 Line = tuple[list[str], list[Node]]
-"""The signs of a chain, and its sides."""
+"""The signs of a chain ``a = b = c``, and the sides between them."""
 
 ALIGNED = (*SEVERAL_LINES, "array")
 """Environments whose lines hold equations."""
@@ -76,8 +76,8 @@ def read_latex(source: str, where: str = "", names: Names | None = None) -> Equa
 def latex_readings(source: str, names: Names | None = None) -> list[Reading]:
     r"""Return the readings (interpretations) of a LaTeX text, the usual one first.
 
-    There are at most six. In each but the first, an ambiguous part such as ``\cos^{-1} x``, or all parts of one kind,
-    have their less usual meaning.
+    There are at most six. In each but the first, one ambiguous part such as ``\cos^{-1} x``, or all parts with the same
+    kind of ambiguity, have their less usual meaning.
 
     Raises
     ------
@@ -99,7 +99,6 @@ def latex_readings(source: str, names: Names | None = None) -> list[Reading]:
 
 def _reading(source: str, names: Names, flips: Collection[tuple[str, int]]) -> Reading:
     """Return the reading of a LaTeX text in which the pieces with the keys ``flips`` have their less usual meaning."""
-    # flips has the keys (kind of ambiguity, position) of the parts
     lines, reader = _read(source, "", names, _Interpreter.equations, flips)
     if reader.both_signs:
         lines += _read(source, "", names, _Interpreter.equations, flips, upper=False)[0]

@@ -18,7 +18,7 @@ FUNCTIONS: tuple[Mapping[str, str], ...] = (
 """Letters that are used as short forms together -> their functions; vers is the versine 1 - cos."""
 
 NO_ANGLES = ("pi", "omega", "Omega")
-"""Greek letters that name no angle: the number, and rates."""
+"""Greek letters that name no angle: the number pi, and angular velocities."""
 
 RATES_OF_THREE = "123"
 """The numbers of the angles of a sequence."""
@@ -26,10 +26,11 @@ RATES_OF_THREE = "123"
 _DEFINITION = re.compile(
     r"(?:(?:c|C)_?\{?(\\[A-Za-z]+)\}? *= *\\cos *[({ ]*\1[)} ]*|(?:s|S)_?\{?(\\[A-Za-z]+)\}? *= *\\sin *[({ ]*\2[)} ]*)"
 )
-"""A definition of a short form; its groups are the angle."""
+"""A definition of a short form, such as ``c_\\theta = \\cos\\theta``; one of its two groups is the angle."""
 
 FEWEST_NUMBERED = 2
-"""The fewest cosines and the fewest sines with numbers, as c_1 and c_2, that are evidently short forms."""
+"""The smallest number of cosines, and of sines, at which letters with numbers, such as c_1, c_2, s_1 and s_2, are read
+as short forms."""
 
 
 class Shorthand(NamedTuple):
@@ -65,7 +66,7 @@ def shorthands(pieces: Sequence[Token], declared: Collection[str] = ()) -> dict[
 def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int, Shorthand]:
     """Return the short forms in a text by their positions; ``letters`` maps letters to functions, as c to cos.
 
-    Empty without both a cosine and a sine.
+    Return {} unless there are both a cosine and a sine.
     """
     named: dict[int, Shorthand] = {}
     numbered: dict[int, tuple[str, str]] = {}
@@ -94,7 +95,7 @@ def _of_letters(pieces: Sequence[Token], letters: Mapping[str, str]) -> dict[int
 def _numbered(pieces: Sequence[Token], numbered: Mapping[int, tuple[str, str]]) -> dict[int, Shorthand]:
     """Return a Shorthand, cos(theta_1), for each member of ``numbered``, {0: ("cos", "1")} for ``c_1`` at position 0.
 
-    Empty if ``c_1`` may be a name.
+    Return {} if ``c_1`` may be a name.
     """
     digits = {digit for _, number in numbered.values() for digit in number}
     # next to the rate of theta_1, c_2 and s_3 are functions of theta_2 and theta_3

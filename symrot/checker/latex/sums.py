@@ -31,7 +31,7 @@ FUNCTIONS = {
 """Command -> function; ``\\log``, whose base differs from book to book, is refused."""
 
 LONGEST_MATRIX_NAME = 2
-"""The most letters of the name of a matrix in brackets: ``[C]`` and ``[FB]``."""
+"""The largest number of letters in the name of a matrix in brackets: ``[C]`` and ``[FB]``."""
 
 MATRICES = {"matrix": "", "pmatrix": "", "bmatrix": "", "Bmatrix": "", "smallmatrix": "", "array": "", "vmatrix": "det"}
 SEVERAL_LINES = ("align", "aligned", "alignat", "gather", "gathered", "eqnarray", "split", "cases", "dcases", "flalign",
@@ -50,7 +50,7 @@ ENDS = frozenset([
     "", "+", "-", ")", "]", "\\}", "}", "&", "\\\\", ",", ";", "\\end", "\\cdot", "\\times", "*", "/", "^", "_", "'",
     *QUATERNION_SIGNS, *SIGNS,
 ])  # fmt: skip
-"""Items that cannot start a factor."""
+"""Texts of the items that cannot start a factor; "" is that of the end."""
 
 
 NORM = re.compile(r"\\(?:\||lVert|Vert)(.*?)\\(?:\||rVert|Vert)")
@@ -70,10 +70,11 @@ class SumsPart(Cursor):
     vector: Callable[[str], Node]
     named: Callable[[str, Any], Node]
     leibniz: Callable[[], Node | None]
-    """The methods of further parts that return the name of a vector, and read what follows a name, and ``dx/dt``."""
+    """The methods of subclasses that return the node of a vector, that parse what follows a name, and that parse
+    ``dx/dt``."""
 
     readers: ClassVar[Mapping[str, Callable[[Any, Any], Node]]] = {}
-    """Kind or text of an item -> the method of a further part that reads it."""
+    """Kind or text of an item -> the method, perhaps of a subclass, that parses a factor that starts with it."""
 
     def expression(self) -> Node:
         """Parse a sum and return its tree."""
@@ -157,17 +158,19 @@ class SumsPart(Cursor):
         return self.at("\\times") and self.peek(1).text == "]"
 
     def note_vector(self, node: Node) -> None:
-        """Record that a name in a cross product, or the name of a rate in it, is a vector."""
+        """Record that a name in a cross product, or the name whose rate is in it, is a vector.
+
+        The text is then parsed again, with this name as a vector.
+        """
         name = name_of(node)
         is_name = node.kind in ("name", "call") and name not in BUILT_IN and not str(name).endswith(MARK)
         if is_name and self.names.implied and str(name) not in self.names:
-            # the text is then parsed once more, with this name as a vector
             self.crossed.add(str(name))
 
     def scalar_product(self, left: Node, right: Node) -> Node:
         """Return the product that a dot means between vectors or tensors.
 
-        Two vectors give ``dot(a, b)``, a tensor I gives ``I*b`` or ``a.T*I``.
+        Two vectors give ``dot(a, b)``; a tensor I before a vector b gives ``I*b``, and after a vector a, ``a.T*I``.
         """
         if self.is_row(left):
             return Node("call", "dot", (Node("transpose", None, (left,)), right))
@@ -360,14 +363,15 @@ class SumsPart(Cursor):
         return Node("call", "skew", (inner,))
 
     def paired(self, first: Node, sign: str) -> Node:
-        """Parse ``, B`` after A, which is ``first``, in ``[A, B]``; return A B - B A, or A B + B A by ``sign``; A alone
-        if no comma follows.
+        """Parse ``, B`` after ``first``, the A of a bracket ``[A, B]`` or ``{A, B}`` of Pauli's matrices.
+
+        Return A B - B A for the ``sign`` "-", A B + B A for "+", and A if no comma follows. Raise InputError if A or B
+        has no Pauli matrix.
         """
         if not self.at(","):
             return first
         comma = self.next()
         pair = commutator(first, self.expression(), sign)
-        # without Pauli's matrices, [A, B] is no commutator
         if pair is None:
             raise self.fail(
                 "a closing bracket (write a commutator as A B - B A, unless A and B have Pauli matrices)", comma

@@ -44,20 +44,19 @@ class LatexNotation:
     vectors: Mapping[str, bool] = field(default_factory=dict)  # name -> whether the vector has a hat
 
     def formula(self, node: Node) -> str:
-        """Return the LaTeX of a formula."""
+        """Return the LaTeX of a formula, or its SymPy syntax if parsing the LaTeX would not give the same formula."""
         written = latex_of(("==", node, number(0)), self.functions, self.vectors)
-        # SymPy syntax, if parsing the LaTeX would not give the same formula
         return text(node) if written is None else written.removesuffix(" = 0")
 
     def relation(self, relation: Relation) -> str:
-        """Return the LaTeX of an equation or inequality."""
+        """Return the LaTeX of an equation or inequality, or SymPy syntax if the LaTeX would be read as another one."""
         sign, left, right = relation
         if sign != "==":
             return f"{self.formula(left)} {SIGNS.get(sign, sign)} {self.formula(right)}"
         return latex_of(relation, self.functions, self.vectors) or f"{text(left)} {sign} {text(right)}"
 
     def rewritten(self, source: str) -> str:
-        """Return the LaTeX of an equation in SymPy syntax."""
+        """Return the LaTeX of an equation in SymPy syntax, or the text itself, as :func:`latex_of_text`."""
         return latex_of_text(source, self.functions, self.vectors)
 
     def condition(self, source: str) -> str:

@@ -20,7 +20,7 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["complex_repairs"]
 
 MOST_EDITS, MOST_REPAIRS = 300, 3
-"""The most edits of each side that are tried, and the most repairs that are offered."""
+"""The largest number of edits of each side that are tried, and of repairs that are returned."""
 
 
 def complex_repairs(claim: Claim) -> tuple[Diagnosis, tuple[Repair, ...]]:

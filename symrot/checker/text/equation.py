@@ -24,7 +24,7 @@ __all__ = ["for_numbers", "names_in", "verdict_on_equation"]
 
 INDICES = "it is in index notation, which is not decided; write one component, such as I_xy"
 
-INDEX_CONDITION = "it restricts the quantities with indices that it names: it is a condition, and no identity"
+INDEX_CONDITION = "it is a condition on the quantities with indices in it, and no identity"
 
 ROTATION = re.compile(r"[RCQ](_\w+)?")
 """The names of matrices that are rotations in most books."""
@@ -37,7 +37,10 @@ ARRAY = re.compile(r"[A-Zpq](_?[0-9])?")
 
 
 def verdict_on_equation(claim: Claim, notation: Notation, repair: bool, plain: bool) -> Verdict:
-    """Return the verdict on one equation, written in the notation of the text."""
+    """Return the verdict on one equation, written in the notation of the text.
+
+    ``repair`` says whether repairs are sought, ``plain`` whether the text is read as people type, not as SymPy syntax.
+    """
     verdict = with_rounding(claim, check_claim(claim, repair and not claim.has_parts))
     if verdict.verdict == "false" and repair and claim.unsplit is not None:
         verdict = _with_complex_repairs(claim, verdict)
@@ -95,14 +98,15 @@ def _on_inertia_matrix(claim: Claim, verdict: Verdict) -> Verdict:
     is_matrix = formula.kind == "list" or formula.value in ("Matrix", "diag")
     if not is_matrix and not any(MASS_OR_INERTIA.fullmatch(name) for name in names):
         return verdict
-    reason = "I is the unit matrix or a tensor of inertia: the first is another matrix, the second is not known here"
+    reason = "I is a tensor of inertia of which the text says nothing, or the unit matrix, which has another formula"
     return Verdict("definition", reason=reason, notes=verdict.notes, dimension=verdict.dimension)
 
 
 def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return the verdict on ``L = T - V`` after ``I = m L^2`` with L renamed to L_1 in the earlier line.
+    """Return the verdict on a claim that uses a letter for two quantities: ``L = T - V`` after a line ``I = m L^2``.
 
-    Return ``verdict`` if no letter has two meanings, or if the claim is false with two meanings too.
+    For this verdict, L is renamed to L_1 in the earlier line. Return ``verdict`` if the left side is no such letter, or
+    if the claim is false with two meanings too.
     """
     assert claim.relation is not None
     _, left, right = claim.relation
@@ -116,7 +120,7 @@ def _with_two_meanings(claim: Claim, verdict: Verdict) -> Verdict:
     other = check_claim(replace(claim, define=define), repair=False)
     if other.verdict == "false":
         return verdict  # two meanings do not help
-    note = f"{name} is read as another quantity than in {' and '.join(sorted(others))}; as the same, the line is false"
+    note = f"{name} is read as another quantity than in {' and '.join(sorted(others))}; if both are one, it is false"
     return replace(other, notes=(*other.notes, note))
 
 
@@ -148,9 +152,9 @@ def _on_numbers(claim: Claim, verdict: Verdict) -> tuple[str, ...]:
 
 
 def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return "conditional" for a claim that is false for general matrices but true for rotation matrices.
+    """Return the verdict "conditional" on a claim that is false for general matrices but true for rotation matrices.
 
-    Others keep their ``verdict``.
+    Return ``verdict`` for other claims.
     """
     names = matrices_of_entries(claim.define)
     # each matrix alone, any of which suffices; then all together
@@ -172,7 +176,8 @@ def _on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
 def _on_rotation_by_letter(claim: Claim, verdict: Verdict) -> Verdict:
     """Return "conditional" for a condition such as ``R R^T = I`` that all rotations R satisfy; otherwise ``verdict``.
 
-    Only for one matrix, whose letter books use for rotations; a note says if some rotations do not satisfy it.
+    Only claims about one matrix, whose letter books use for rotations, are changed. If some rotations do not satisfy
+    the condition, the verdict gets a note that says so.
     """
     names = matrices_of_entries(claim.define)
     if len(names) != 1 or not ROTATION.fullmatch(names[0]):
@@ -192,10 +197,10 @@ def _has_indices(claim: Claim) -> bool:
 
 
 def for_numbers(reading: Reading, part: tuple[Claim, Verdict], source: str) -> Verdict | None:
-    """Return "conditional" for an equation that is false for Pauli's matrices and true for numbers sigma_x, sigma_y.
+    """Return the verdict "conditional" on an equation that is false for Pauli's matrices and true for numbers sigma_x.
 
-    Return None for other equations, and for those without the product or power of a sum: ``σ_x σ_y = σ_y σ_x`` would
-    say nothing about numbers.
+    ``part`` is the equation as a claim about matrices, and its verdict. Return None for other equations, and for those
+    without a product or power of a sum: ``σ_x σ_y = σ_y σ_x`` would say nothing about numbers.
     """
     claim, verdict = part
     link = reading.lines[0].links[0]

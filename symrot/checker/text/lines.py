@@ -18,19 +18,19 @@ from symrot.exact import normal_form
 __all__ = ["OUTCOMES", "verdict_on_parts", "with_all_conditions"]
 
 WORST_FIRST = ("false", "doubtful", "undecided", "conditional", "definition", "recognised", "true")
-"""The order in which the verdicts on the parts of a text decide the verdict on the whole."""
+"""Verdicts, the worst first: the verdict on a text is the worst of the verdicts on its equations."""
 
 APART = "each line is a formula that symrot derives, but no body, frame or sequence has all of them for its components"
 
 MOST_LINES, MOST_EDITS_OF_LINE = 4, 120
-"""The most lines, and the most edits of each, that are tried so that lines fit together."""
+"""The largest number of lines, and of edits of each, in the search for an edit that makes the lines fit together."""
 
 NAMING = ("definition", "recognised")
 
 OUTCOMES = {
     "true": "true", "false": "false", "conditional": "true under a condition only", "undecided": "undecided",
     "recognised": "a formula that symrot derives", "doubtful": "nearly a formula that symrot derives",
-    "definition": "a definition, about which nothing is known",
+    "definition": "a definition, which symrot does not judge",
 }  # fmt: skip
 """Verdict -> the words for it in a sentence."""
 
@@ -40,8 +40,9 @@ def verdict_on_parts(
 ) -> Verdict:
     """Return the worst verdict on the equations of a chain or of several lines, with a note on each.
 
-    It is "doubtful" for formulas of different bodies, frames or sequences. ``verdicts`` are those on the equations of
-    ``lines``, in order; with ``has_units``, the first side of a chain is no name, but a number with a unit.
+    It is "doubtful" if each equation is recognised, but as formulas of different bodies, frames or sequences.
+    ``verdicts`` are those on the equations of ``lines``, in order. If ``has_units``, the first side of a chain is
+    a number with a unit, not a name.
     """
     remaining = iter(verdicts)
     counted, notes = [], []
@@ -115,11 +116,15 @@ def _with_fitting_line(
 
 
 def with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], both_signs: bool) -> Verdict:
-    """Return the verdict on several conditional equations with all their conditions: "a > 0 or b > 0 and c > 0"."""
+    """Return ``verdict``, on several equations, with the conditions of all of them: "a > 0 or b > 0 and c > 0".
+
+    ``conditions`` has the alternatives for each conditional equation. If ``both_signs``, the two equations are those
+    with the upper and the lower sign of ±, and each keeps its own condition.
+    """
     texts = list(dict.fromkeys(" or ".join(alternatives) for alternatives in conditions))
     stated = {condition for alternatives in conditions for condition in alternatives}
     others = tuple(condition for condition in verdict.conditions if condition not in stated)
-    if both_signs:  # the two equations are those with the upper and the lower sign of ±
+    if both_signs:
         required = tuple(f"{text} for the {word} sign" for text, word in zip(texts, ("upper", "lower"), strict=False))
     else:
         required = tuple(conditions[0]) if len(texts) == 1 else (" and ".join(texts),)
@@ -129,7 +134,8 @@ def with_all_conditions(verdict: Verdict, conditions: Sequence[Sequence[str]], b
 def _as_named_chain(line: Sequence[Claim], verdicts: Sequence[Verdict], notation: Notation) -> list[Verdict]:
     """Return the verdicts on a chain ``name = a = b``.
 
-    If ``a = b`` is no identity, its verdict may be replaced by that on ``name = b``, or by "definition".
+    If ``a = b`` is no identity, the verdict on ``name = b`` may replace the verdict on it; or "definition" may, if b is
+    a number and ``a = b`` holds for some values of its letters only.
     """
     named = named_formula(line[0]) if len(line) > 1 else None
     if named is None or line[0].relation is None or line[0].relation[1] != named.side:

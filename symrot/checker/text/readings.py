@@ -114,7 +114,7 @@ def verdict_on_readings(
         if other.verdict != verdict.verdict:
             notes.append(_on_reading(usual, reading, other, notation(reading)))
     if late:
-        notes.append("other readings of the text were not decided, since one needs more than the budget for a claim")
+        notes.append("other readings of the text were not decided, since one of them used up the budget for a claim")
     seconds = sum(other.seconds for _, other in verdicts)
     verdict = replace(verdict, notes=tuple(dict.fromkeys(notes)), seconds=seconds)
     return beside_units(verdict, source, verdict_on_text)

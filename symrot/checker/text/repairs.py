@@ -16,14 +16,14 @@ from symrot.errors import InputError
 __all__ = ["as_inequality", "as_typed", "as_typed_repairs", "in_notation", "relation_of"]
 
 AS_TYPED = ("degrees",)
-"""The codes of repairs that are written in the notation of the input already."""
+"""The codes of repairs whose text is already in the notation of the claim's text."""
 
 CALLS_FOR_ARRAYS = ("qmul(", "eye(", "⊗", "\\otimes")
-"""Calls that answers have only if the claim has one of them, and signs for the product of quaternions."""
+"""Calls and signs: if a claim's text has none of them, its repairs are written without calls such as ``qmul``."""
 
 
 def as_typed_repairs(repairs: Sequence[Repair], claim: Claim, notation: Notation) -> tuple[Repair, ...]:
-    """Return ``repairs`` of a claim in the notation of its text, each text once, without those that people would not
+    """Return ``repairs`` in the notation of the claim's text, each text once, without those that people would not
     write.
     """
     typed = [
@@ -63,7 +63,10 @@ def as_inequality(repair: Repair, claim: Claim, sign: str, notation: Notation) -
 
 
 def as_typed(source: str, written: Sequence[tuple[Node, Node]]) -> str:
-    """Return the text of an equation with the short forms that the claim has for its formulas."""
+    """Return the text of an equation with the short forms that the claim's text has for some of its formulas.
+
+    ``written`` are pairs (formula, short form).
+    """
     relation = relation_of(source) if written else None
     if relation is None:
         return source
@@ -72,7 +75,7 @@ def as_typed(source: str, written: Sequence[tuple[Node, Node]]) -> str:
 
 
 def _keeps(repair: Repair, written: Sequence[tuple[Node, Node]]) -> bool:
-    """Return whether a repair leaves the formulas unchanged for which the claim has short forms."""
+    """Return whether a repair still contains each formula of ``written``, pairs (formula, short form in the text)."""
     relation = relation_of(repair.text) if written else None
     nodes = [node for side in relation[1:] for _, node in walk(side)] if relation else []
     return not nodes or all(formula in nodes for formula, _ in written)

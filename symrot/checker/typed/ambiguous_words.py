@@ -25,7 +25,8 @@ FIRST_AND_LAST = ("i", "f")
 
 
 class WordReader:
-    """Reader of the words of a text in which the pieces ``flips`` have their less usual meaning.
+    """The reader of the words of a text in which the ambiguous words with the keys ``flips`` have their less usual
+    meaning.
 
     Attributes
     ----------
@@ -44,7 +45,8 @@ class WordReader:
     def read(self, alone: Collection[str], vectors: Collection[str]) -> list[Token]:
         """Return the tokens of the text, in which words are divided or joined as they are read.
 
-        ``alone`` are the names that no bracket follows, so that they are no functions; ``vectors`` those of vectors.
+        ``alone`` are the names that no bracket follows, so that they are no functions; ``vectors`` are the names of
+        vectors.
         """
         tokens = list(split_tokens(self.tokens, self.products(alone, vectors)))
         tokens = self.with_indices(self.without_shorthand(tokens))
@@ -54,7 +56,7 @@ class WordReader:
         return tokens
 
     def is_flipped(self, kind: str, start: int, excerpt: str) -> bool:
-        """Return whether an ambiguous piece of the text has its less usual meaning; add it to the doubts."""
+        """Add an ambiguous piece of the text to the doubts, and return whether it has its less usual meaning."""
         self.doubts.append(Doubt((kind, start), excerpt))
         return (kind, start) in self.flips
 
@@ -133,21 +135,19 @@ class WordReader:
         return tokens
 
     def with_indices(self, tokens: list[Token]) -> list[Token]:
-        """Return tokens in which ``ωp``, if it is a whole left side, is usually one name omega_p, not ω times p.
+        """Return tokens with one name omega_p in place of ω and p, if ``ωp`` is a whole left side.
 
-        So are ``ωi`` and ``ωf`` if both occur.
+        The same holds for ``ωi`` and ``ωf`` anywhere, if both occur. In the less usual reading they are products.
         """
         padded = [None, *tokens]
         for place in range(len(tokens) - 3, -1, -1):
             before, first, second, after = padded[place], *tokens[place : place + 3]
             greek = first.kind == second.kind == "name" and first.text in GREEK_WORDS and first.end == first.start + 1
             whole = (before is None or first.breaks) and after.text in SIGNS
-            # ωi and ωf anywhere, if both occur
             if greek and second.tight and second.text in FIRST_AND_LAST and self.has_first_and_last(first.text):
                 whole = True
             if not greek or not whole or not second.tight or len(second.text) > 1 or first.text == "pi":
                 continue
-            # the less usual meaning is the product
             if not self.is_flipped("index", first.start, self.source[first.start : second.end]):
                 merged = first._replace(text=f"{first.text}_{second.text}", end=second.end)
                 tokens[place : place + 2] = [merged]

@@ -14,7 +14,7 @@ _THOUSANDS = re.compile(r"(?<![\w.,(\[])\d{1,3}(?:,\d{3})+(?![\d,])(?![^()\[\]]*
 """A number such as 1,500 outside of brackets, in which a comma separates arguments."""
 
 _ROUNDED = re.compile(r"(?:≈|\\approx\b)(?=\s*[-−]?\s*\d+(?:\.\d+|\s*(?:°|\^\{?\\circ|[a-zA-Z\\])))")
-"""A sign before a decimal number or a number with a unit, which is a rounded value."""
+"""The sign ≈ before a decimal number or a number with a unit, which is a rounded value."""
 
 _FUNCTION = re.compile(r"(?<![A-Za-z\\_])(?:sin|cos|tan|sinh|cosh|tanh|sqrt|exp|ln|log|asin|acos|atan)(?![A-Za-z])")
 _WHERE = re.compile(

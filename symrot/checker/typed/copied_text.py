@@ -75,7 +75,10 @@ def without_surroundings(source: str, numbers: bool = True) -> Copied:
 
 
 def _without(pattern: re.Pattern[str], text: str) -> tuple[list[str], str]:
-    """Return what a pattern matches in a text, and the text with blanks there; brackets after an operator stay."""
+    """Return the matches of a pattern in a text, and the text with blanks in their place.
+
+    A match after an operator stays in the text, since it is part of the formula.
+    """
     removed: list[str] = []
 
     def blank(match: re.Match[str]) -> str:

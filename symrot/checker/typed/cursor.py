@@ -27,7 +27,7 @@ MASS = "dm"
 """The element of mass of a body."""
 
 FACTOR_MARKS = ("(", "[", "√")
-"""Marks with which a factor without a sign before it may start."""
+"""Marks with which a factor without a product sign before it may start."""
 
 VECTOR_FUNCTIONS = ("cross", "vee", "Matrix")
 USUAL_VECTORS = frozenset([*"abcdeuvwrpqnsFLHMNRT", "omega", "Omega", "alpha", "tau", "epsilon", "eps", "sigma"])
@@ -128,7 +128,7 @@ class Cursor(ABC):
         return is_next
 
     def expect(self, mark: str) -> None:
-        """Skip the next token; raise InputError if it is not the operator or bracket ``mark``."""
+        """Skip the operator or bracket ``mark``; raise InputError if it is not the next token."""
         if not self.take(mark):
             raise self.fail(f"'{mark}'")
 
@@ -140,17 +140,20 @@ class Cursor(ABC):
         return start, self.tokens[self.index - 1].end
 
     def deeper(self) -> None:
-        """Count one more nested level; raise InputError if there are too many. The caller counts it off again."""
+        """Add 1 to ``depth``, the number of nested brackets and arguments; raise InputError if there are too many.
+
+        The caller must subtract 1 again.
+        """
         self.depth += 1
         if self.depth > DEEPEST_NESTING:
             raise self.fail(f"at most {DEEPEST_NESTING} nested levels of brackets and arguments")
 
     def other_reading(self, kind: str, at: int, start: int, stop: int) -> bool:
-        """Record an ambiguous piece of the text, ``start`` to ``stop``; return whether it gets its less usual
-        meaning.
+        """Record an ambiguous piece of the text, from ``start`` to before ``stop``, with the key (``kind``, ``at``).
+
+        Return whether it gets its less usual meaning.
         """
         self.plain = True
-        # flips has the keys (kind of ambiguity, position)
         doubt = Doubt((kind, at), self.source[start:stop].strip())
         if doubt.key not in [known.key for known in self.doubts]:
             self.doubts.append(doubt)
@@ -181,7 +184,7 @@ class Cursor(ABC):
         return entries
 
     def members(self, closing: str) -> list[Node]:
-        """Parse formulas with commas between them, up to the bracket ``closing``, which is skipped."""
+        """Parse formulas with commas between them and the bracket ``closing`` after them; return their trees."""
         bars, self.bars = self.bars, 0
         members = self.row()
         self.expect(closing)

@@ -19,7 +19,7 @@ __all__ = ["Parser"]
 QUATERNION_SIGNS = ("⊗", "∘")
 TIMES = ("*", "/", "·", "×")
 BROKEN_EXPONENTS = frozenset([*(("1", n) for n in "23456789"), *((n, "2") for n in "13579"), ("2", "3"), ("4", "3")])
-"""Numbers around a slash after ``^`` that may be a broken exponent, x^(3/2); r^2/5 is (r^2)/5."""
+"""Pairs of numbers, as in ``x^3/2``, that may be a fraction as exponent, x^(3/2); r^2/5 is always (r^2)/5."""
 
 
 def _is_matrix_name(node: Node) -> bool:
@@ -28,8 +28,10 @@ def _is_matrix_name(node: Node) -> bool:
 
 
 def _from_matrix(factors: Sequence[Node]) -> int:
-    """Return the index in ``factors`` where the left operand of a cross product starts: that of R in ``R a × b``."""
-    # R is a matrix, and the product is (R a) × b; usually the operand is the last factor
+    """Return the index in ``factors`` at which the left operand of a cross product starts.
+
+    It is the index of R in ``R a × b``, which means (R a) × b for a matrix R, and otherwise that of the last factor.
+    """
     return len(factors) - (2 if len(factors) > 1 and _is_matrix_name(factors[-2]) else 1)
 
 
@@ -159,7 +161,7 @@ class Parser(PiecesPart):
     def crossed(self, factors: list[Node]) -> None:
         """Parse ``×`` and the factor b after it; put ``cross(a, b)`` in place of the last factor a in ``factors``.
 
-        Without a vector, append b to ``factors``.
+        If neither a nor b is a vector, append b to ``factors``.
         """
         self.plain = True
         closed = self.tokens[self.index - 1].text == ")"
@@ -169,7 +171,6 @@ class Parser(PiecesPart):
         is_factor = right.kind == "name" and not self.is_vector(right)
         if is_factor and self.token().kind == "name" and self.token().text in self.vocabulary.vectors:
             right = product([right, self.factor()])  # R a x R b and r x m v
-        # without a vector on either side, b is one more factor
         if not self.is_vector(left) and not self.is_vector(right):
             factors.append(right)
             return
@@ -182,7 +183,7 @@ class Parser(PiecesPart):
     def dotted(self, factors: list[Node]) -> None:
         """Parse a dot after a vector a, and the factor b after it; put ``dot(a, b)`` in place of a in ``factors``.
 
-        If b is no vector, append it.
+        If b is no vector, append it to ``factors``.
         """
         self.plain = True
         self.next()

@@ -284,7 +284,7 @@ class OpenFunctionsPart(Cursor):
         return self.derived(token, operand, Node("name", variable), 1)
 
     def order_at(self, place: int) -> tuple[int, int]:
-        """Return (order, next place) of a derivative: order 2 if ``^2`` or ² is at ``place``, otherwise 1."""
+        """Return (order, next place) of a derivative: order 2 if ``^2`` or ² is at ``place``, 1 without an exponent."""
         length = 2 if self.token(place).text in ("^", "**") else 1 if self.token(place).kind == "power" else 0
         digits = self.token(place + length - 1).text
         if not length or not digits.isdigit():
@@ -292,12 +292,12 @@ class OpenFunctionsPart(Cursor):
         return int(digits), place + length
 
     def tight_name(self, place: int) -> tuple[str, int]:
-        """Return (name, next place) for the name at ``place``; the name is empty if a blank is before it."""
+        """Return (name, next place) for the name at ``place``; ("", place) if none is there, or a blank before it."""
         token = self.token(place)
         return (token.text, place + 1) if token.kind == "name" and token.tight else ("", place)
 
     def differential(self, place: int) -> tuple[str, int]:
-        """Return (x, next place) if the differential ``dx`` is at ``place``; otherwise an empty text in place of x."""
+        """Return ("x", next place) if the differential ``dx`` is at ``place``; for other tokens, the text is empty."""
         token = self.token(place)
         if token.kind != "name" or not token.text.startswith("d"):
             return "", place

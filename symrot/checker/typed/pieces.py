@@ -35,7 +35,7 @@ METHODS = {
     "transpose": ("transpose", 0), "adjugate": ("adjugate", 0),
     "cross": ("cross", 1), "dot": ("dot", 1), "diff": ("diff", 8), "norm": ("norm", 0),
 }  # fmt: skip
-"""Method of SymPy's matrices -> the function, and the most arguments of the method; T is an attribute."""
+"""Method of SymPy's matrices -> the function, and the largest number of arguments of the method; T is an attribute."""
 
 CONSTRUCTORS = {"hstack": "hstack", "eye": "eye", "diag": "diag"}
 """Name after ``Matrix.`` -> the function."""
@@ -95,11 +95,13 @@ class PiecesPart(OpenFunctionsPart):
                 return node
 
     def component(self, node: Node) -> Node | None:
-        """Return the component that the index in ``(ω × r)_i`` means, for a cross product ``node``; else None."""
+        """Parse the index in ``(ω × r)_i`` and return this component of the cross product ``node``.
+
+        Return None for any other node or index; the cursor then stays before the index.
+        """
         index, used = self.token(1), "".join(token.text.partition("_")[2] for token in self.tokens if "_" in token.text)
         made = component_of_cross(node.args, index.text, used) if node.value == "cross" else None
         self.plain = True
-        # without a component, the cursor stays before the index
         self.index += 2 * (made is not None)
         return made
 

@@ -16,7 +16,7 @@ __all__ = ["Chain", "Declared", "Reading", "Relation", "distinct_readings", "eac
 
 MOST_READINGS = 6
 MOST_DOUBTS = 40
-"""The most readings of one text, and the most ambiguous pieces of a text that are examined."""
+"""The largest number of readings of one text, and of ambiguous pieces of a text that are examined."""
 
 Relation = tuple[str, Node, Node]
 
@@ -99,7 +99,11 @@ class Reading:
 
 
 def each_reading(read: Callable[[Collection[tuple[str, int]]], Reading]) -> Iterator[Reading]:
-    """Yield the usual reading ``read(())`` of a text, then ``read(flips)`` for other sets of keys ``flips``."""
+    """Yield the usual reading ``read(())`` of a text, then ``read(flips)`` for other sets of keys ``flips``.
+
+    These are the keys of all pieces with one kind of ambiguity, and single keys. Sets for which ``read`` raises
+    InputError are left out.
+    """
     usual = read(())
     yield usual
     keys = list(dict.fromkeys(doubt.key for doubt in usual.doubts))[:MOST_DOUBTS]
@@ -120,7 +124,6 @@ def distinct_readings(readings: Iterable[Reading]) -> list[Reading]:
         by_trees.setdefault(reading.lines, reading)
     usual, *others = by_trees.values()
     if len(others) >= MOST_READINGS:
-        # the user learns that some are dropped
         note = f"the text has more readings than the {MOST_READINGS} that are decided here; brackets leave fewer"
         usual = replace(usual, notes=(*usual.notes, note))
     return [usual, *others[: MOST_READINGS - 1]]

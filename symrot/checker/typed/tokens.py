@@ -16,7 +16,7 @@ from symrot.latex.tokens import GREEK
 __all__ = ["GREEK_WORDS", "LETTERS", "LONGEST_NUMBER", "SIGNS", "Token", "tokens_of", "without_dots"]
 
 LONGEST_NUMBER = 200
-"""The most characters of a number, also of a raised one; Python converts none of more than 4300 digits."""
+"""The largest number of characters in a number, raised or not; Python converts no number of more than 4300 digits."""
 
 SIGNS = ("==", "=", "!=", ">=", "<=", ">", "<")
 """The signs of relations."""
@@ -235,7 +235,10 @@ def _pieces(text: str, at: int) -> Iterator[tuple[str, str, int]]:
 
 
 def _differential(text: str, at: int) -> Iterator[tuple[str, str, int]]:
-    """Yield (kind, text, end) of the name after ``∂`` with d in front: dT for ``∂T``, and d for ``∂`` alone."""
+    """Yield (kind, text, end) of the tokens after a sign ``∂``, whose name gets a d in front: dT for ``∂T``.
+
+    Yield the name d for ``∂`` alone.
+    """
     name = _NAME.match(text, at)
     if text[at : at + 1] in LETTERS:
         pieces = [*_pieces(text, at)]

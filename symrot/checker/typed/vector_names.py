@@ -34,7 +34,11 @@ def _is_cross(before: Token | None, token: Token, after: Token, factor: Token, v
 
 
 def crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collection[tuple[str, int]]) -> Iterator[str]:
-    """Yield the names next to a cross product's sign, ``×`` or an x: they are vectors."""
+    """Yield the names next to the sign of a cross product, ``×`` or a letter x: they are vectors.
+
+    In a text with rates, yield also names in ``cross(a, b)`` and ``skew(a)``. ``flips`` has the keys of the letters x
+    that are names in this reading.
+    """
     alone = set(names_alone(tokens, vectors))
     padded = [*tokens, tokens[-1]]
     # a text with rates would make functions of time of the names in cross(a, b)
@@ -45,7 +49,6 @@ def crossed(tokens: Sequence[Token], vectors: Collection[str], flips: Collection
                 yield operand.text
     for before, sign, after, last in zip(tokens, tokens[1:], tokens[2:], padded[3:], strict=False):
         factor = last if is_mass_before_vector(after, last) else after
-        # flips holds the keys of letters x that are names in this reading
         if (sign.kind == "mark" and sign.text == "×") or (
             "x" not in alone and _is_cross(before, sign, after, factor, vectors) and ("cross", sign.start) not in flips
         ):

@@ -72,21 +72,21 @@ ENGLISH = frozenset(
 
 SCALARS = frozenset("bckmn")
 VECTORS = frozenset("IJvwFLMHTRNPeuprfgst")
-"""Letters before x, y or z: of a product ``kx``, and of a component ``Fx``."""
+"""Letters that make a word that ends with x, y or z a product, ``kx``, and letters that make it a component, ``Fx``."""
 
 WHOLE_WORDS = frozenset(
     [*GREEK_WORDS, *SINGLE_ARGUMENT, *ALIASES, "pi", "diff", "KE", "PE", "TE", "dt", "dm", "id", *UNITS]
 )
 
 MOST_LETTERS = 3
-"""The most letters of a product that the text does not use by themselves."""
+"""The largest number of letters in a word that may be split although the text does not use each letter by itself."""
 
 
 _OF_CENTRE = re.compile("[A-Za-z](cm|CM|com|COM|cg|CG)", re.ASCII)
 """A quantity of the centre of mass or of gravity, such as ``vcm``."""
 
 WORDS_WITH_I = ("if", "in", "is")
-"""Words of two letters that start with i."""
+"""English words of two letters that start with i: they are no products of i and a letter."""
 
 
 def pieces_of_word(word: str, alone: Collection[str]) -> tuple[tuple[str, ...], bool]:
@@ -165,7 +165,8 @@ class Shorthand(NamedTuple):
 
 
 FEWEST_OF_LETTERS = 2
-"""The fewest angles with a Latin letter that have both a cosine and a sine in short form, such as ``ca`` and ``sa``."""
+"""The smallest number of angles with a Latin letter that have both a cosine and a sine, ``ca`` and ``sa``, at which
+such words are read as short forms."""
 
 ANGLES = {"a": "alpha", "b": "beta", "g": "gamma", "t": "theta", "p": "phi", "x": "x", "y": "y", "z": "z"}
 """Latin letter of an angle in a short form -> the angle."""

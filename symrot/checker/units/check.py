@@ -43,7 +43,8 @@ def check_dimensions(
     -------
     Dimensions
         ``status`` is ``"consistent"``, ``"inconsistent"`` (``text`` says where, and which units differ), or
-        ``"unknown"`` if no name has a known unit, or if numbers stand for quantities whose units were left out.
+        ``"unknown"`` if no name has a known unit, if the units of a formula cannot be told, or if numbers stand for
+        quantities whose units were left out.
 
     Raises
     ------
@@ -73,7 +74,7 @@ def check_dimensions(
 def dimensions_of_formulas(left: Any, right: Any, units: Mapping[str, str] | None = None) -> Dimensions:
     """Check whether the units of an equation between SymPy values fit together, and return the result.
 
-    ``units`` are the units of symbols outside :mod:`symrot.symbols`.
+    ``units`` maps names to units; they overrule the units of the symbols in :mod:`symrot.symbols`.
     """
     symbols = {symbol for side in (left, right) for symbol in getattr(side, "free_symbols", ())}
     own = {symbol.name: UNIT[symbol] for symbol in symbols if UNIT.get(symbol)} | dict(units or {})

@@ -40,7 +40,7 @@ FACTORS: dict[str, tuple[Fraction, int]] = {
     "kPa": (Fraction(1000), 0), "MPa": (Fraction(10**6), 0), "GPa": (Fraction(10**9), 0),
     "bar": (Fraction(10**5), 0), "atm": (Fraction(101325), 0),
 }  # fmt: skip
-"""Unit -> its factor to SI units, as a fraction and a power of pi; a hertz is one per second."""
+"""Unit -> its factor to SI units, (fraction, exponent of pi); a hertz is one per second."""
 
 OTHER_MEANINGS: dict[str, tuple[Fraction, int, str]] = {
     "Hz": (Fraction(2), 1, "1/s"), "g": (GRAVITY, 0, "m/s^2"), "lb": (POUND * GRAVITY, 0, "N"),
@@ -62,13 +62,13 @@ ALIASES = {
     **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
 }  # fmt: skip
 PRODUCTS = frozenset({"mg", "ms", "hp"})
-"""Units that are products of letters just as often: the weight m*g."""
+"""Units whose text is a product of quantities just as often: mg may be the weight m*g."""
 
 CERTAIN = frozenset({
     "kg", "mm", "cm", "km", "rad", "rpm", "kN", "kJ", "kW", "kPa", "MPa", "Hz", "lbf", "lbm", "slug", "MJ", "kWh",
     "MW", "mph",
 })  # fmt: skip
-"""Units that are no letters of formulas, even next to letters."""
+"""Texts that are units even in a formula with letters, and never names of quantities."""
 
 _UNIT = "|".join(sorted([*FACTORS, *ALIASES], key=lambda name: (-len(name), name)))
 _POWER = r"(?:(?:\^|\*\*)(?:\(-?\d{1,2}\)|-?\d{1,2}(?!\d))|[²³]|⁻[¹²³]|(?!\s*(?:\^|\*\*)))"
@@ -95,7 +95,7 @@ _LATEX = (
     (r"\\(sin|cos|tan)\s*\^\{?-1\}?", r" arc\1 "), (r"\\(a?r?c?(?:sin|cos|tan))(?![A-Za-z])", r" \1 "),
     (r"\\d?t?frac\{([^{}]*)\}\{([^{}]*)\}", r"(\1)/(\2)"), (r"\\sqrt\{([^{}]*)\}", r"sqrt(\1)"), (r"\$", ""),
 )  # fmt: skip
-"""LaTeX of numbers with units -> the same in plain text."""
+"""Pairs (pattern of LaTeX, plain text) for numbers with units."""
 
 _COMMON_FRACTIONS = {
     "½": "0.5", "¼": "0.25", "¾": "0.75", "⅕": "0.2", "⅖": "0.4", "⅛": "0.125", "⅓": "(1/3)", "⅔": "(2/3)",
@@ -145,7 +145,7 @@ class UnitProduct:
 
 @dataclass(frozen=True)
 class Measured:
-    """A text with a name such as ``unit_1`` in place of each unit: ``2*unit_1`` for ``2 kg``."""
+    """A text with a name such as ``unit_1`` in place of each unit or product of units: ``2*unit_1`` for ``2 kg``."""
 
     source: str
     text: str
@@ -169,7 +169,10 @@ class _Interpretation:
 
 
 def measured_text(source: str) -> Measured | None:
-    """Return a text with a name such as unit_1 in place of each unit, or None if no number has a unit.
+    """Return a text with a name such as unit_1 in place of each unit or product of units.
+
+    Return None if the text has no units, if it has other names than one that is its left side, or if its one-letter
+    units are probably quantities, as m and g in ``T = 2 m g``.
 
     Raises
     ------

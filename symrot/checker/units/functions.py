@@ -38,7 +38,7 @@ def _rotation(axis: int) -> Callable[[UnitInference, Node], Value]:
 
 
 def _components(inference: UnitInference, node: Node) -> list[Any]:
-    """Return the dimensions of the arguments of a call, or of the entries of its only argument, a column."""
+    """Return the dimensions of the arguments of a call, or of the entries of a column that is its only argument."""
     if len(node.args) == 1:
         return [row[0] for row in inference.matrix(node.args[0])]
     return [inference.scalar(argument) for argument in node.args]
@@ -114,7 +114,7 @@ def _qmul(inference: UnitInference, p: list[Any], q: list[Any]) -> list[Any]:
 
 
 def _dcm_of(inference: UnitInference, node: Node) -> Value:
-    """Return the dimensions of a rotation matrix by the squares of the components of a quaternion."""
+    """Return the dimensions of the entries of ``dcm_of(q)``: all are the square of the dimension of q's components."""
     q = _components(inference, node)
     if len(q) != 4:
         raise Unreadable

@@ -57,9 +57,9 @@ class UnitInference:
     system : UnitSystem
         The equations between units so far.
     values : dict
-        Dimensions of definitions.
+        Name of a definition -> the dimension of its value.
     assumed : dict
-        Conventional units that were assumed.
+        Name -> the conventional unit that was assumed for it.
     known : bool
         Whether any unit is known.
     unitless : bool
@@ -131,7 +131,7 @@ class UnitInference:
         return {f"?{self.fresh}": Fraction(1)}
 
     def unit_of(self, name: str) -> Dimension:
-        """Return the unit of a symbol or function of time: the stated or conventional one, or else a new unknown."""
+        """Return the unit of a symbol or function of time: the stated or conventional one, or else an unknown unit."""
         if name in self.units:
             self.known = True
             return self.units[name]
@@ -147,7 +147,7 @@ class UnitInference:
         return dimension
 
     def physical(self) -> bool:
-        """Return whether a claim is about physical quantities; then its letters m and t mean mass and time."""
+        """Return whether a claim is about physical quantities, so that its letters m and t mean mass and time."""
         # units are stated, or a name of several letters has a conventional unit other than rad
         units = (conventional_unit(name) for name in self.names if len(name) > 1)
         return bool(self.units) or any(unit not in (None, "rad") for unit in units)
@@ -163,14 +163,17 @@ class UnitInference:
     # -- equations --------------------------------------------------------------------------------------------------
 
     def same(self, first: Value, second: Value, words: str) -> Value:
-        """Return the dimension of ``first``; if ``second`` has another one, add the sentence ``words`` to faults."""
+        """Require that two formulas have the same dimension, and return it.
+
+        If they contradict each other, add the sentence ``words`` to ``faults`` and return ``first``. In ``words``, {0}
+        and {1} stand for the two units. Zero fits every dimension.
+        """
         if isinstance(first, tuple) or isinstance(second, tuple):
             return self.same_matrices(first, second, words)
         if first is ZERO or second is ZERO:
             return second if first is ZERO else first  # zero may have any unit
         if not self.system.equate(first, second):
             place = f"{self.place} " if self.place else ""
-            # {0} and {1} in words stand for the two units
             self.faults.append(place + words.format(*map(self.in_words, (first, second))))
         return first
 
@@ -199,7 +202,10 @@ class UnitInference:
         )
 
     def plain(self, value: Value, words: str) -> Dimension:
-        """Return the dimension of a pure number; if ``value`` has a unit, add the sentence ``words`` to the faults."""
+        """Return the dimension of a pure number; if ``value`` has a unit, add the sentence ``words`` to the faults.
+
+        Raise Unreadable for a matrix.
+        """
         if isinstance(value, tuple):
             raise Unreadable
         self.same(value, NOTHING, words)
@@ -228,7 +234,7 @@ class UnitInference:
         return value
 
     def total(self, values: Sequence[Value], what: str) -> Value:
-        """Return the dimension of a sum, whose terms must all have it; ``what`` names the sum in messages."""
+        """Return the dimension of a sum, and require it of every term; ``what`` names the sum in messages."""
         dimension = values[0]
         for number, value in enumerate(values[1:], start=2):
             dimension = self.same(dimension, value, f"term 1 of {what} is {{0}}, term {number} is {{1}}")

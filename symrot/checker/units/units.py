@@ -56,8 +56,8 @@ CONVENTIONAL_UNITS = (
 )
 """Patterns of names that nearly every book uses for one quantity, with its unit.
 
-All other units are inferred. Single letters of the table count only in a claim that has a longer name of the table, or
-a stated unit; other claims may be pure mathematics.
+All other units are inferred. Single letters of the table count only in a claim that has a stated unit or a longer name
+of the table other than an angle; other claims may be pure mathematics.
 """
 
 
@@ -80,7 +80,7 @@ def over(first: Dimension, second: Dimension) -> Dimension:
 
 
 def conventional_unit(name: str) -> str | None:
-    """Return the unit that books agree on for a quantity of this name, or None if they differ."""
+    """Return the unit that nearly all books use for a quantity of this name, or None if they differ."""
     return next((unit for pattern, unit in CONVENTIONAL_UNITS if re.fullmatch(pattern, name)), None)
 
 
@@ -92,7 +92,7 @@ def read_unit(text: str, where: str = "") -> Dimension:
     Raises
     ------
     InputError
-        For an unknown unit, with its name.
+        For an unknown unit, with its name, and for empty text.
     """
     place = f"{where}: " if where else ""
     dimension: Dimension = NOTHING
