@@ -208,7 +208,7 @@ def _as_lists(value: Any) -> Any:
 def _readback(kernel: KernelUnderTest, suffix: str, real: str) -> Data:
     """Return the ``readback`` entry of one C function: its operations, and the proof that they give the formulas.
 
-    ``suffix`` is ``""`` with numbers of the C type ``real`` = ``"double"``, and ``"f"`` with ``"float"``.
+    ``suffix`` and ``real`` are ``""`` and ``"double"``, or ``"f"`` and ``"float"``.
     """
     name, file = f"symrot_{kernel.name}{suffix}", f"{kernel.name}.c"
     text = kernel.files[file]

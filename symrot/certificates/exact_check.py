@@ -475,8 +475,10 @@ def functions_of(text, name, files):
 
 
 def check(path):
-    """Check the certificate at ``path`` and its files exactly; return one line that lists the checks."""
-    # a failed check raises an exception whose type is in REFUSALS
+    """Check the certificate at ``path`` and its files exactly; return one line that lists the checks.
+
+    If a check fails, an exception is raised whose type is in ``REFUSALS``.
+    """
     path = Path(path)
     data = recheck.certified(path)
     name, files, spec, readback = data["kernel"], data["files"], data["spec"], data["readback"]

@@ -52,7 +52,10 @@ class _CheckedFunction:
     arguments: Callable[[Random, int], Iterator[tuple[float, float]]]
 
     def sentence(self, suffix: str) -> str:
-        """Return the sentence that this function of libm, with the suffix ``"f"`` for floats, failed its test."""
+        """Return a sentence that says that this function of libm failed its test.
+
+        ``suffix`` is ``"f"`` for the function for floats, and empty for the function for doubles.
+        """
         if self.allowed == CORRECT:
             return f"expected {self.name}{suffix} to be rounded correctly: on this machine it is not"
         return (
@@ -114,7 +117,7 @@ def _rounded(value: Any, digits: int) -> float:
 
 
 def _point(name: str, suffix: str, y: float, x: float) -> str:
-    """Return a row of a C table of test points: y, x, the rounded exact value, its error in ulp, and the ulp.
+    """Return a row of a C table of test points: y, x, the rounded value, exact minus rounded value in ulp, and the ulp.
 
     ``name`` is the function, such as ``"sin"``; ``suffix`` is ``"f"`` for floats and ``""`` for doubles.
     """
@@ -239,7 +242,7 @@ def run_selftest(bits: bool = True, flags: Sequence[str] = FLAGS) -> SelfTest:
     Raises
     ------
     CompilerError
-        If there is no compiler, or it rejects the text, as with -ffast-math.
+        If there is no compiler, if it rejects the text, as with -ffast-math, or if the library cannot be loaded.
     """
     from symrot.build.cache import build, compiler
 

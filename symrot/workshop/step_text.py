@@ -218,7 +218,10 @@ class StepText(StepFiles):
         )  # fmt: skip
 
     def certificate(self, bounds: Bounds | None = None) -> str:
-        """Return the text of the certificate; raise CertificateError if the C text does not compute the method."""
+        """Return the text of the certificate, without bounds of errors; ``bounds`` is not used.
+
+        CertificateError is raised if the C text does not compute the method.
+        """
         return step_certificate(self.certified)
 
     @cached_property

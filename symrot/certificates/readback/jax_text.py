@@ -144,7 +144,7 @@ def _assignment(line: str, where: str) -> str:
 
 
 def _split(text: str) -> list[str]:
-    """Split a text at the commas outside brackets, and return the parts; none if a bracket closes too early."""
+    """Return the parts of a text between the commas outside brackets; an empty list if a bracket closes too early."""
     depth, parts = 0, [""]
     for letter in text:
         depth += (letter in "([") - (letter in ")]")

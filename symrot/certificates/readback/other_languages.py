@@ -25,7 +25,7 @@ def compare_operations(as_c: AsC, text: str, name: str, c_text: str, where: str)
     text : str
         A module as symrot emits it.
     name : str
-        Name of its function; the C function has the prefix ``symrot_``.
+        Name of the kernel's function in the module; the C function has this name with the prefix ``symrot_``.
     c_text : str
         The C text of the same kernel.
     where : str

@@ -54,9 +54,12 @@ def library_section(name: str, source: str) -> Section | str:
 
 
 def library_region(name: str, source: str) -> Section:
-    """Return the assumptions of a library kernel's error bounds, for the section ``rounding`` of its certificate."""
+    """Return the assumptions of a library kernel's error bounds, for the section ``rounding`` of its certificate.
+
+    They are the restrictions of the inputs, the error of libm, and the number of boxes that the search for one output
+    may evaluate.
+    """
     region = library_problem(definition(name), operations_of(name, source)[0]).region
-    # restrictions of the inputs, error of libm, and number of boxes that the search for one output may evaluate
     return {
         "unit_groups": [list(group) for group in region.unit], "clearance": float(region.clearance).hex(),
         "libm_ulp": float(LIBM_ULP).hex(), "budget": BUDGET,

@@ -78,7 +78,9 @@ def prepare(
     kernels: Iterable[tuple[str, str]], workers: int = 2, budget: int = BUDGET, libm_ulp: float = LIBM_ULP,
     progress: Callable[[str], object] = lambda text: None, with_table: bool = True,
 ) -> int:  # fmt: skip
-    """Compute the error bounds of library kernels in several processes, and store them; equal tasks are computed once.
+    """Compute those error bounds of library kernels that are not stored, in several processes, and store them.
+
+    Equal tasks of different kernels are computed once.
 
     Parameters
     ----------

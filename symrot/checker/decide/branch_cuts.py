@@ -21,7 +21,7 @@ __all__ = ["BranchCut", "branch_cuts"]
 class BranchCut:
     """A branch cut, where ``zero`` is zero and ``negative`` is negative.
 
-    ``values`` has the value there of each atan2 that depends on the cut.
+    ``values`` maps each atan2 whose first argument vanishes on the cut to its value there.
     """
 
     zero: Expr
@@ -47,7 +47,9 @@ class BranchCut:
 
 
 def branch_cuts(formulas: Sequence[Expr]) -> Iterator[BranchCut]:
-    """Yield the branch cuts of the functions atan2 in formulas, each once."""
+    """Yield the branch cuts of the functions atan2 in formulas, each once; only those with points that are easily
+    found.
+    """
     jumps = sorted({node for formula in formulas for node in formula.atoms(atan2)}, key=str)
     known = set()
     for jump in jumps:

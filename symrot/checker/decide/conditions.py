@@ -25,10 +25,10 @@ __all__ = ["branch_requirements", "requirements"]
 
 MOMENT = re.compile(r"[ABC]|[IJ]_?([xyz1-3]|([xyz1-3])\2|p|perp|par|parallel|t|s|a)?", re.ASCII)
 PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)", re.ASCII)
-"""Names of moments of inertia, and of products of inertia."""
+"""Patterns of names of moments of inertia, and of products of inertia."""
 
 MOST_TERMS, LARGEST_DEGREE, MOST_LETTERS = 400, 24, 20
-"""The most terms, the largest degree and the most letters of a residual (left minus right) that is factored.
+"""The largest number of terms, degree and number of letters of a residual (left minus right) that is factored.
 
 The difference of the traces of A B C and B A C has 48 terms in 27 letters; factoring it takes seconds.
 """
@@ -171,8 +171,9 @@ def _matches(pattern: re.Pattern[str], leaf: Expr) -> bool:
 
 
 def branch_requirements(ring: FormulaRing, numerators: Sequence[PolyElement]) -> list[Requirement] | None:
-    """Return signs that make a claim with square roots true, ``x >= 0`` for ``sqrt(x**2) == x``; None if none are
-    known.
+    """Return [condition] with the signs that make a claim with square roots true: ``x >= 0`` for ``sqrt(x**2) == x``.
+
+    Return [] if these signs always hold, and None if no such signs are known.
     """
     for root, place in ring.roots.items():
         if root.index != 2 or root.expression.is_number:

@@ -20,7 +20,7 @@ from symrot.exact.ring.ring import FormulaRing
 __all__ = ["Constraints", "constraints_of", "distinct_factors"]
 
 MOST_TERMS, MOST_UNKNOWNS, LARGEST_DEGREE = 40, 4, 12
-"""The most terms, the most unknowns and the largest degree of a polynomial that is factored."""
+"""The largest number of terms, number of unknowns and degree of a polynomial that is factored."""
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ from symrot.exact.ring.roots import is_positive_where_defined
 __all__ = ["decide_equation", "for_positive_bases", "is_large"]
 
 LONG_SUM = 5
-"""The fewest terms of a sum inside a function for which a letter is tried."""
+"""A sum inside a function is replaced by a letter, to try a proof, only if it has at least this many terms."""
 
 
 def is_large(equation: Equation) -> bool:
@@ -45,8 +45,9 @@ def decide_equation(equation: Equation) -> Decision:
     Raises
     ------
     InputError
-        If the shapes differ, a side is not a finite exact formula or divides by a formula that is zero everywhere, the
-        hypotheses contradict each other, or a degree above ``LARGEST_DEGREE`` rules out the expansion that is needed.
+        If the shapes differ, a side is not a finite exact formula or divides by a formula that is zero everywhere, a
+        formula contains the imaginary unit, the hypotheses contradict each other, or a degree above ``LARGEST_DEGREE``
+        rules out the expansion that is needed.
     """
     try:
         with one_decision():

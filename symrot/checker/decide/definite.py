@@ -8,7 +8,7 @@ from symrot.exact.factors import factored
 __all__ = ["surely_nonnegative"]
 
 MOST_TERMS_OF_SQUARE = 40
-"""The most terms of a sum that is factored, since it may be a square."""
+"""A sum with more terms is not factored to find out whether it is a square."""
 
 
 def surely_nonnegative(value: Expr) -> bool:

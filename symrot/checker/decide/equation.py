@@ -60,7 +60,10 @@ def sides_of(equation: Equation) -> tuple[list[Expr], list[Expr], Shape]:
 
 
 def stated_needs(equation: Equation) -> list[Need]:
-    """Return the conditions that divisors in a claim's text are nonzero, and formulas under its roots nonnegative."""
+    """Return the conditions that divisors in a claim's text are nonzero, and formulas under its roots nonnegative.
+
+    Formulas that hypotheses state to be nonzero count as divisors; a formula that is both must be positive.
+    """
     stated = [Need(divisor, "!= 0") for divisor in (*equation.divisors, *equation.nonzero)]
     divided = {*equation.divisors, *equation.nonzero}  # the argument of a logarithm is recorded as both
     return [

@@ -36,7 +36,7 @@ FEW = 24
 """The number of points that are drawn before proofs, which take longer, are tried."""
 
 CANDIDATES = 8
-"""The number of points at which the sides differ before the shortest becomes the counterexample."""
+"""The number of points at which the sides differ that are collected; the shortest becomes the counterexample."""
 
 OTHER_VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (2, 1), (1, 2), (-1, 1), (3, 1), (-1, 3), (5, 7), (-3, 2)))
 """Values for symbols that occur in no hypothesis."""
@@ -212,8 +212,8 @@ class Hypotheses:
         raise InputError(f"the hypotheses hold at no real point{divisors}: {reason}")
 
     def entails(self, numerators: Iterable[PolyElement]) -> bool:
-        """Return whether hypotheses and assumed signs provably make the ``numerators`` of left - right zero; False
-        without any.
+        """Return whether hypotheses and assumed signs provably make the ``numerators`` of left - right zero; False for
+        a claim without hypotheses and assumed signs.
         """
         target = self.constraints.ring
         return self.present and all(vanishes_on(self.constraints, poly.set_ring(target)) for poly in numerators)
@@ -230,7 +230,7 @@ class Hypotheses:
         return infeasibility_proof(replace(self.constraints, zeros=(*self.constraints.zeros, *added))) is None
 
     def checked(self, search: Search) -> Search:
-        """Return ``search``, a search for counterexamples, without the points at which a divisor of the claim is
+        """Return a search for counterexamples that drops the points of ``search`` at which a divisor of the claim is
         zero.
         """
 

@@ -25,10 +25,10 @@ __all__ = ["Infeasibility", "infeasibility_proof", "vanishes_on"]
 
 MOST_CASES = 40
 MOST_ROUNDS = 6
-"""The most cases of a proof, and the most Groebner bases in one case."""
+"""The largest number of cases of a proof, and of Groebner bases in one case."""
 
 MOST_PRODUCTS = 150_000
-"""The most products of terms in all Groebner bases of one proof."""
+"""The largest number of products of terms in all Groebner bases of one proof."""
 
 
 class _Undecided(Exception):
@@ -52,7 +52,7 @@ def infeasibility_proof(constraints: Constraints) -> Infeasibility | None:
     zeros = list(constraints.zeros)
     for poly in constraints.nonzero:
         if not poly:
-            return Infeasibility("a divisor is zero wherever they hold")
+            return Infeasibility("a divisor is zero wherever the other conditions hold")
     ring = constraints.ring
     nonzero = [poly for poly in constraints.nonzero if not poly.is_ground]
     if nonzero:
@@ -116,7 +116,7 @@ class _Prover:
                 return _never_zero(poly)
         basis = groebner_basis(simple, self.ring, MOST_PRODUCTS, self.spent)
         if any(poly.is_ground for poly in basis):
-            return Infeasibility("they contradict each other")
+            return Infeasibility("the conditions contradict each other")
         for poly in basis:
             if self.keeps_its_sign(poly, simple):
                 return _never_zero(poly)
@@ -249,7 +249,7 @@ class _Prover:
 
 
 def _never_zero(poly: PolyElement) -> Infeasibility:
-    return Infeasibility("a polynomial that would have to vanish keeps its sign", poly)
+    return Infeasibility("a polynomial that would have to be zero is zero nowhere", poly)
 
 
 def _fraction(value: Any) -> Fraction:

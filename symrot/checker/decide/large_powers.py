@@ -38,7 +38,7 @@ VALUES = tuple(Rational(n, d) for n, d in ((1, 1), (0, 1), (-1, 1), (2, 1), (-2,
 """Values of symbols at which sides are compared."""
 
 LONGEST_WHOLE_NUMBER = 40
-"""The most digits of a whole number that is written exactly."""
+"""The largest number of digits of a whole number that is written exactly."""
 
 DIGITS_WRITTEN = (10, 20, 30, 40, 50)
 """Numbers of digits for a pair of values, from which the first is used that shows a difference."""
@@ -95,7 +95,7 @@ def _degree(node: Expr, known: dict[Expr, int], bases: Mapping[Expr, Fraction]) 
 
 
 def _angle_degree(argument: Expr, bases: Mapping[Expr, Fraction]) -> int:
-    """Return about the degree of the sine of ``argument`` in sines and cosines of symbols: 3 + 2 for 3*x + y/2."""
+    """Return roughly the degree of the sine of ``argument`` in sines and cosines of symbols: 3 + 2 for 3*x + y/2."""
     total = 0
     for term in argument.as_ordered_terms() if argument.is_Add else [argument]:
         number, atom = term.as_coeff_Mul()

@@ -25,7 +25,7 @@ SIMPLE = tuple(
 """Values that coordinates may have, the simplest first."""
 
 TRIES = 60
-"""The most simple points that are tried on a quadric, and the most lines through one of them."""
+"""The largest number of simple points that are tried on a quadric, and of lines through one of them."""
 
 
 def rational_square_root(value: Any) -> Any:

@@ -21,11 +21,11 @@ __all__ = ["ATTEMPTS", "RealPoint", "real_points"]
 
 ATTEMPTS = 120
 RATIONAL = 60
-"""The most points that are drawn, and the number of points that are drawn before irrational roots are allowed."""
+"""The default number of drawings of a point, and the number of them before irrational roots are allowed."""
 
 MOST_STEPS = 60
 MOST_TERMS = 300
-"""The most steps of one drawing, and the most terms of its equations."""
+"""The largest number of steps of one drawing, and of terms in one of its equations."""
 
 MOST_BARREN = 3
 """The number of failures after which a quadric is not tried any more."""
@@ -54,7 +54,7 @@ class RealPoint:
 
     @property
     def rational(self) -> bool:
-        """Whether all values are rational."""
+        """Whether the field of the point is that of the rational numbers."""
         return bool(self.field == QQ)
 
     def value(self, poly: PolyElement) -> Any:
@@ -84,7 +84,7 @@ def _sign(value: Any, field: Any) -> int:
 def real_points(constraints: Constraints, attempts: int = ATTEMPTS) -> Iterator[RealPoint | None]:
     """Yield, for each attempt, a point that exactly obeys all constraints, or None.
 
-    Every machine yields the same points.
+    The points are the same on every machine. Nothing is yielded if the constraints are not ``real``.
     """
     source = Random(1)
     known: dict[Any, Any] = {}
@@ -183,7 +183,7 @@ class _Drawing:
     def factor(self) -> bool:
         """Replace one equation ``a*b = 0`` by ``a = 0``, for a factor drawn at random.
 
-        Return whether there is such an equation.
+        Return whether there was such an equation; False also once a value is irrational.
         """
         for number, poly in enumerate(self.zeros):
             if self.field != QQ:
@@ -362,4 +362,4 @@ _ORDERS: tuple[Sequence[_Step], ...] = (
     (_Drawing.factor, _Drawing.univariate, _Drawing.quadric, _Drawing.substitution, _Drawing.guess),
     (_Drawing.factor, _Drawing.univariate, _Drawing.guess),
 )
-"""Orders of steps, one for each attempt: in one of them, most systems can be solved."""
+"""Orders of steps, one of which is drawn for each attempt: most systems can be solved in at least one of them."""

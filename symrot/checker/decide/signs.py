@@ -13,13 +13,13 @@ from symrot.exact.intervals import enclosure
 __all__ = ["is_proven_nonnegative", "is_proven_positive"]
 
 LARGEST = 400
-"""The most operations of a formula for which a proof is tried."""
+"""The largest number of operations in a formula for which a proof is tried."""
 
 LARGEST_DEGREE = 20
 """The highest degree of a polynomial whose real roots are counted."""
 
 MOST_UNKNOWNS = 12
-"""The most unknowns of a polynomial that is written as a sum of squares."""
+"""The largest number of unknowns of a polynomial that is written as a sum of squares."""
 
 
 def is_proven_nonnegative(formula: Expr) -> bool:

@@ -37,7 +37,7 @@ class EquivalentClaim:
     names: Mapping[str, str] = field(default_factory=dict)
 
     def in_typed_form(self, verdict: Verdict) -> Verdict:
-        """Return ``verdict``, on the equivalent claim, for the typed one."""
+        """Return ``verdict``, on the equivalent claim, for the typed one, without repairs that cannot be rewritten."""
         repairs = [changed for repair in verdict.repairs if (changed := self._rewritten(repair)) is not None]
         known = tuple(
             replace(formula, mapping={own: self.names.get(other, other) for own, other in formula.mapping.items()})

@@ -20,7 +20,7 @@ __all__ = ["on_inertia_in_frames", "without_brackets"]
 
 INERTIA = re.compile(r"(?P<stem>[IJ]|mathbf[IJ])(?:_(?P<frame>\w+))?(?P<mark>_prime|_bar|_tilde)?")
 ROTATION = re.compile(r"(?:math(?:bf|cal|rm))?[A-Z]\w*")
-"""The name of a matrix, in capitals; n^T I n, with a vector, is a moment about its axis."""
+"""The name of a matrix, which begins with a capital letter; in n^T I n, a moment of inertia, n is a vector."""
 CONDITION = "{} takes components in the frame of {} to those in the frame of {}"
 
 
@@ -43,7 +43,10 @@ def without_brackets(source: str) -> str:
 
 
 def on_inertia_in_frames(claim: Claim) -> Verdict | None:
-    """Return "conditional", on the direction of R, for ``I_B = R^T I_A R`` and the like; None for other claims."""
+    """Return the verdict "conditional" on a claim of the form ``I_B = R^T I_A R``; None for other claims.
+
+    The condition says from which frame to which R must take components.
+    """
     if claim.relation is None or claim.hypotheses or claim.context:
         return None
     for side, other in (claim.relation[1:], claim.relation[:0:-1]):

@@ -24,13 +24,14 @@ from symrot.kinematics.rotations import elementary_rotation, vee
 __all__ = ["tested_on_rotations"]
 
 PLACES = [(row, column) for row in range(3) for column in range(3)]
-REASON = "{} is no rotation with the angular velocity {} in such an equation, neither in the body nor in space"
+REASON = "the equation is not proven for a rotation matrix {} with the angular velocity {} in the body or in space"
 
 
 def tested_on_rotations(claim: Claim, verdict: Verdict) -> Verdict:
-    """Return ``verdict``, "recognised", if the claim gives the rate of a matrix R and holds for rotations R.
+    """Return ``verdict``, unless it is "recognised" and the claim gives the rate of a matrix R by an equation that is
+    not proven for rotations R.
 
-    Otherwise "doubtful" if it holds without a transpose, else "definition". Other claims keep their verdict.
+    In that case return "doubtful" if the equation is proven with R in place of each R^T, else "definition".
     """
     if verdict.verdict != "recognised" or claim.relation is None:
         return verdict
@@ -68,7 +69,10 @@ def _name_of_rate(side: Node) -> str:
 
 
 def _holds(claim: Claim, matrix: str, vector: str) -> bool:
-    """Return whether an equation holds for a rotation ``matrix`` and its angular velocity in the body or in space."""
+    """Return whether an equation is proven for a rotation ``matrix`` and its angular velocity in the body or in space.
+
+    The angular velocity may have either sign. True also if an entry of the matrix or vector is not a single symbol.
+    """
     values = claim.definitions.values
     angles = [Function(f"angle_{number}", real=True)(time) for number in range(3)]
     first, second, third = (elementary_rotation(axis, angle) for axis, angle in zip("zxz", angles, strict=True))

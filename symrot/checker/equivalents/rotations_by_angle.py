@@ -10,7 +10,7 @@ ANGLE = (
 CALL = re.compile(
     rf"(?P<name>(?:\\(?:mathbf|mathrm|boldsymbol|bm)\s*\{{\s*R\s*\}}|(?<![A-Za-z\\{{])R))\s*(?P<open>\\left)?\((?P<angle>(?:{ANGLE})+)(?:\\right)?\)"
 )
-"""A rotation by an angle."""
+"""Pattern of a rotation by an angle, such as ``R(\\alpha + \\beta)``."""
 
 OTHERS = re.compile(
     r"(?:=|\^|[IE1]|\{\s*(?:T|-1|\\top|[0-9])\s*\}|T|-1|⁻¹|[²³ᵀ0-9·*$\s]|\\cdot|\\,|\\mathbf\{I\}|\\top)+"
@@ -21,8 +21,8 @@ NOTE = "R(..) is read as the rotation by an angle in a plane, or about one fixed
 
 
 def with_axis(source: str) -> tuple[str, str]:
-    """Return a text with ``R_z(..)`` for ``R(..)``, and a note, for an equation between rotations by several angles;
-    other texts unchanged, with an empty note.
+    """Return a text with ``R_z(..)`` for ``R(..)``, and a note, for an equation between rotations by several angles or
+    one numeric angle. Other texts are returned unchanged, with an empty note.
 
     Examples
     --------

@@ -12,7 +12,7 @@ from symrot.checker.typed.readings import Relation
 __all__ = ["with_axis_z"]
 
 TURNED: Mapping[str, Mapping[str, str]] = {"x": {"x": "z", "y": "x", "z": "y"}, "y": {"x": "y", "y": "z", "z": "x"}}
-"""Stated axis of symmetry -> for each axis, the axis with its place if the axis of symmetry is z."""
+"""Stated axis of symmetry -> {axis: its new name if the axis of symmetry is called z}."""
 
 MOMENT = re.compile(r"([IJk](?:_bar)?_?)([xyz])(\2)?")
 """A moment of inertia, or a radius of gyration, about an axis; its second group is the axis."""

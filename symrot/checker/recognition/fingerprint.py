@@ -21,15 +21,16 @@ PRIME = 2**61 - 1  # different functions agree at a random point with a probabil
 DRAWS = tuple((pow(3, 101 + 2 * n, PRIME), pow(3, 102 + 2 * n, PRIME)) for n in range(48))
 """(value of one symbol, value of all others), tried in turn until the formula is defined."""
 MOST_UNDEFINED = 3
-"""How many of these pairs are tried: a formula without a value at any of them, such as 1/(x - y), has no value where
-two symbols are equal.
+"""The number of pairs in DRAWS that are tried. A formula without a value at any of them, such as 1/(x - y), has no
+value where two symbols are equal.
 """
 PARTS = 4
-"""Angles are multiples of a quarter of the symbol, so that halves and quarters of an angle can be read."""
+"""Sine and cosine of a symbol are computed from those of its quarter, so that half and quarter angles have values too.
+"""
 MOST_CANCELLED = 10
-"""The most atoms of a formula whose fractions are cancelled, which takes seconds for the inverse of a tensor."""
+"""The fractions of a formula with more atoms are not cancelled: for the inverse of a tensor this would take seconds."""
 LARGEST_MULTIPLE = 400
-"""The largest multiple of such a quarter, and the largest exponent, that is evaluated."""
+"""The largest multiple of a quarter angle, and the largest exponent, that is evaluated."""
 
 Values = tuple[int, ...]
 
@@ -150,14 +151,19 @@ class Fingerprint:
     idle: tuple[Expr, ...] = ()  # atoms in the formula that do not change its value
 
     def rows(self, order: Sequence[int]) -> list[Values]:
-        """Return the signatures with entries in ``order``, all divided by one number: the same for x and 2*x."""
+        """Return the signatures with their entries in ``order``, all divided by one number: the formulas x and 2*x have
+        the same rows.
+        """
         total = [sum(column) % PRIME for column in zip(*self.signatures, strict=True)]
         # the first entry whose values have a nonzero sum
         below = _inverse(next((total[n] for n in order if total[n]), 1))
         return [tuple(values[n] * below % PRIME for n in order) for values in self.signatures]
 
     def key(self, shape: tuple[int, int] | None, order: Sequence[int]) -> str:
-        """Return a hash of the formula that depends neither on the names of symbols nor on a constant factor."""
+        """Return a hash of the formula, with its entries in ``order`` and this ``shape`` (None for a scalar).
+
+        The hash depends neither on the names of symbols nor on a constant factor.
+        """
         return sha256(repr((shape, sorted(self.rows(order)))).encode()).hexdigest()[:16]
 
 
@@ -167,7 +173,7 @@ def fingerprint(entries: Sequence[Expr]) -> Fingerprint:
     Raises
     ------
     NotInField
-        For a formula without symbols, or one that cannot be evaluated modulo ``PRIME``.
+        For a formula whose value depends on no symbol, or one that cannot be evaluated modulo ``PRIME``.
     """
     written = sorted(atoms_of(entries), key=str)
     if (alike := _from_one_draw(entries, written)) is not None:

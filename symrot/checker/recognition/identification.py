@@ -40,16 +40,16 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["Identification", "identified", "identify", "known_value", "named_parts"]
 
 MOST = 8
-"""The most names that are returned by default."""
+"""The largest number of known formulas that `identify` returns by default."""
 
 MOST_DRAWS = 24
-"""The most points at which the constant factor between two formulas is sought."""
+"""The largest number of test points at which the constant factor between two formulas is sought."""
 FACTORS = tuple(Rational(*pair) for pair in ((1, 1), (-1, 1)))
 SCALES = (*FACTORS, *(Rational(*pair) for pair in ((2, 1), (-2, 1), (1, 2), (-1, 2), (4, 1), (1, 4))))
 FEW_SYMBOLS = 4
-"""A formula of so few symbols is recognised only in the letters that books use for its quantities.
+"""A formula for a named quantity with at most this many symbols is recognised only in the letters that books use.
 
-For a matrix, whose entries say more, it is one symbol less.
+For a matrix, whose entries say more, the limit is one symbol less.
 """
 LAST_FIRST = (3, 0, 1, 2)
 """The order of the rows of a scalar-last quaternion that puts the scalar first."""
@@ -87,7 +87,8 @@ def identify(
     Raises
     ------
     InputError
-        For text that is not understood, with the position.
+        For text that is not understood, with the position; for a ``formula`` of another type; and for words in
+        ``body``, ``frame`` or ``sequence`` that symrot does not know.
 
     Notes
     -----
@@ -144,7 +145,9 @@ def named_parts(claim: Claim) -> tuple[str, ...]:
 
 
 def _parts(claim: Claim) -> Iterator[tuple[str, Any]]:
-    """Yield (words, value) for each side of a claim and each definition in use: ("the left side", value)."""
+    """Yield (words, value), such as ("the left side", value), for each side that is not a single name, and (name,
+    value) for each definition that a side uses.
+    """
     assert claim.relation is not None
     sides = claim.relation[1:]
     values = (claim.equation.left, claim.equation.right)

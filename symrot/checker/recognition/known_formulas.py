@@ -31,7 +31,7 @@ FILE = Path(__file__).with_name("known_formulas.toml")
 
 LONGEST = 6000
 LONGEST_DERIVED = 900
-"""The most letters of a formula in the file: of a formula with a name of its own, and of a side of a step."""
+"""The largest number of characters in a stored formula: in one with a name of its own, and in a side of a step."""
 
 
 @dataclass(frozen=True)
@@ -96,13 +96,13 @@ def stated() -> Iterator[Named]:
 COMPONENTS = {(3, 1): ("first", "second", "third"), (4, 1): ("scalar", "first", "second", "third")}
 """Shape of a column -> the names of its components; a quaternion begins with the scalar."""
 LEAST_OF_RELATION = 3
-"""The fewest symbols of a relation."""
+"""The smallest number of symbols in a relation that is stored."""
 LEAST_OF_COMPONENT = 3
-"""The fewest symbols of a component that is looked up by itself: one with fewer symbols could be too many formulas."""
+"""The smallest number of symbols in a component that is stored by itself: a shorter one could mean many formulas."""
 
 
 def derived() -> Iterator[Named]:
-    """Yield both sides of each step of all derivations."""
+    """Yield both sides of each step, and of each intermediate equation of a step, of all derivations."""
     for name in catalogue.names():
         derivation = catalogue.derivation(name)
         for number, step in enumerate(derivation.steps, start=1):

@@ -12,7 +12,7 @@ from symrot.checker.claim.tree import Node, negated, number, product, sum_of
 __all__ = ["read_printed"]
 
 MARKED = re.compile(r"\\?\w+(?:_\{[^{}]*\}|')")
-"""A name that is none in Python, such as a_{k-2} or c': it has an index in braces, or a prime."""
+"""A name that is not valid in Python, such as a_{k-2} or c': it has an index in braces, or a prime."""
 
 
 def read_printed(text: str) -> Node:
@@ -23,7 +23,7 @@ def read_printed(text: str) -> Node:
 
 
 def _stored(name: str, names: dict[str, str]) -> str:
-    """Return a name in Python for the name of a formula, and record it in ``names``."""
+    """Return a valid Python name for ``name``, a name in a formula, and record the pair in ``names``."""
     own = f"marked_{len(names)}"
     names[own] = name
     return own

@@ -28,7 +28,7 @@ ENTRY = re.compile(r"[RrACc]_?([1-3])([1-3])")
 """An entry of a rotation matrix; its groups are the row and the column."""
 
 EARLIER_AND_LATER = (("omega_i", "omega_f"), ("theta_i", "theta_f"))
-"""Names of the same quantity of known formulas at an earlier and at a later time."""
+"""Pairs of names in known formulas for one quantity, at an earlier and at a later time."""
 
 MIDDLE, OUTER = ("theta",), ("phi", "psi", "varphi")
 """Names of the second of three Euler angles, and of the first or third."""
@@ -38,7 +38,8 @@ ANGLES = {*MIDDLE, *OUTER}
 def is_consistent(renaming: Sequence[tuple[str, str]], fixed: bool = False) -> bool:
     """Return whether pairs (known name, new name) agree on the axes: not so for (omega_1, omega_x) with (I_1, I_y).
 
-    With ``fixed``, axis 1 stays 1 or x; without, axes may be exchanged in a cycle.
+    With ``fixed``, each axis keeps its number: 1 becomes 1 or x. Otherwise the axes may be exchanged in a cycle: 1 to
+    y, 2 to z and 3 to x.
     """
     pairs = [_pair_of_quantities(known, new) for known, new in renaming]
     if len({*pairs}) != len({known for known, _ in pairs}) or len({*pairs}) != len({new for _, new in pairs}):
@@ -90,7 +91,11 @@ def _keeps_time_order(renaming: Mapping[str, str]) -> bool:
 
 
 def component(known: str, quantity: str) -> list[tuple[str, str]]:
-    """Return [("component_2", "H_y")] for ``known`` = "second component of .." and ``quantity`` = "H_y"; else []."""
+    """Return [("component_2", "H_y")] for ``known`` = "second component of .." and ``quantity`` = "H_y".
+
+    A name with "(parallel-axis theorem), y axis" gives ("component_y", quantity). Other names, and a quantity without
+    an axis in its name, give [].
+    """
     # a moment of inertia by the parallel-axis theorem has an axis, too
     parallel = re.search(r"\(parallel-axis theorem\), ([xyz]) axis", known)
     if parallel and axes_of(quantity):

@@ -14,7 +14,7 @@ from symrot.exact.printing import as_text
 __all__ = ["MOST_TRIES", "name_of", "pairings"]
 
 MOST_TRIES = 720
-"""The most ways of pairing symbols of equal signatures that are tried."""
+"""The largest number of ways to pair the symbols of equal signatures that are tried."""
 
 
 @lru_cache(maxsize=4096)  # thousands of renamings of one claim need the same texts

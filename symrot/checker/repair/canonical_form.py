@@ -72,7 +72,9 @@ def with_ordered_products(tree: Node, is_matrix: Callable[[Node], bool]) -> Node
 
 
 def terms_of_equation(left: Node, right: Node, is_matrix: Callable[[Node], bool]) -> frozenset[tuple[Node, Fraction]]:
-    """Return the terms of ``left - right`` with coefficients that begin with 1: (a, 1), (b, -2) for ``2*a == 4*b``."""
+    """Return pairs (term, coefficient) for ``left - right``, divided by the first coefficient: (a, 1) and (b, -2) for
+    ``2*a == 4*b``. Empty for equal sides.
+    """
     totals: dict[Node, Fraction] = {}
     for side, sign in ((left, 1), (right, -1)):
         whole = canonical(side, is_matrix)

@@ -20,7 +20,7 @@ from symrot.exact.printing import as_text
 __all__ = ["derived_part"]
 
 EVALUATED = ("diff", "integrate")
-"""Functions whose value a correction shows; a formula without them is a correction as it is written."""
+"""Functions that a correction must not contain, since it shows their value."""
 
 
 def derived_part(claim: Claim, place: str) -> Node | None:
@@ -95,7 +95,9 @@ def _with_entries(claim: Claim, matrix: Node, entries: Sequence[Expr]) -> Node |
 
 
 def _with_rates_first(tree: Node) -> Node:
-    """Return a formula with the order of factors that books have: numbers and letters, derivatives, functions."""
+    """Return a formula with the factors of each product in the order of books: numbers and letters, then derivatives,
+    then other functions, such as sines.
+    """
     args = list(map(_with_rates_first, tree.args))
     if tree.kind == "product":
         args.sort(key=lambda factor: (factor.kind == "call") + (factor.kind == "call" and factor.value != "diff"))

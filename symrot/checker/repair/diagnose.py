@@ -34,34 +34,39 @@ from symrot.exact.decision import Decision, flatten
 __all__ = ["MOST_REPAIRS", "diagnose"]
 
 MOST_EDITS = 40_000
-"""The most edits of one tree."""
+"""The largest number of edits of one side or definition that are tried."""
 
 MOST_PAIRS_OF = 90
 """The number of edits, the cheapest ones, that are tried in pairs."""
 
 MOST_PROOFS = 10
-"""The most candidates of one stage of the search that the exact engine decides."""
+"""The largest number of candidates that the exact engine decides in one stage of the search."""
 
 MOST_REPAIRS = 3
 
 MOST_EXPANDED = 1_000_000
-"""The most products of terms to expand the claim and all candidates; a claim that needs a fourth gets no repair."""
+"""The largest number of products of terms for expanding the claim and all candidates.
+
+A claim that takes more than a quarter of this number by itself gets no repairs.
+"""
 
 TELLING = frozenset(FAULT_DESCRIPTIONS) - {"two_faults", "extra_term", "wrong_symbol", "missing_term"}
 """The faults that are named even if the only repair makes both sides the same formula; this repair is not offered."""
 
 AS_NEAR = 0.35
-"""The most by which the cost of another way of writing a repair may exceed the cost of the nearest repair.
+"""How much more than the nearest repair the same repair, written in another way, may cost.
 
-The same holds for a repair if a nearer edit makes both sides the same formula.
+If a cheaper edit makes both sides the same formula, a repair may cost at most this much more than that edit.
 """
 
 MOST_COSTLY = 9.0
-"""More than the cost of any repair."""
+"""A number above the cost of every repair."""
 
 
 def diagnose(claim: Claim, decision: Decision) -> tuple[Diagnosis, tuple[Repair, ...]]:
     """Return the probable fault of a claim, and at most three proven repairs, the nearest first.
+
+    The code of the fault is "none" if none is found.
 
     Parameters
     ----------

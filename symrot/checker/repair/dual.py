@@ -129,8 +129,9 @@ def logarithm(x: Any) -> Any:
 
 
 def power(x: Any, exponent: float) -> Any:
-    """Return x to a rational power; raise UndefinedValue for a negative number and a fractional exponent, or one above
-    64.
+    """Return x to a rational power.
+
+    Raise UndefinedValue for a negative x if the exponent is fractional or its absolute value exceeds 64.
     """
     if exponent == int(exponent) and abs(exponent) <= 64:
         whole = int(exponent)

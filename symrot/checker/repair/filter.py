@@ -18,7 +18,9 @@ from symrot.checker.repair.points import Point, UndefinedValue, agree, entries_o
 __all__ = ["SIDES", "Candidate", "Change", "NumericFilter", "at", "is_nontrivial", "matrix_entries"]
 
 MOST_PIECES = 500_000
-"""The most pieces of trees that the search may evaluate, which takes some seconds."""
+"""The largest number of nodes of trees that the search may evaluate, which takes some seconds; a node costs more if it
+has many arguments, or is evaluated for its derivatives too.
+"""
 
 SIDES = ("right", "left")
 
@@ -112,7 +114,10 @@ class NumericFilter:
         return node.kind not in ("index", "list", "number") and any(map(self.is_matrix, node.args))
 
     def sensible(self, place: str, tree: Node) -> bool:
-        """Return whether ``tree`` may become the side or definition ``place``: no mere number may replace a formula."""
+        """Return whether ``tree`` may become the side or definition ``place``.
+
+        No mere number may replace a formula, and a definition may use neither its own name nor a later one.
+        """
         if place in SIDES:
             return is_nontrivial(tree) or not is_nontrivial(self.tree_at(place))
         order = list(self.definitions)
@@ -201,7 +206,7 @@ class NumericFilter:
     def holds(self, changes: Sequence[Change]) -> bool:
         """Return whether the claim after ``changes`` is true at the test points.
 
-        False also if the budget of evaluations is spent.
+        False also if both sides have become zero, or if the budget of evaluations is spent.
         """
         if not self.affordable():
             return False

@@ -26,22 +26,24 @@ __all__ = ["exchanged_definitions", "missing_matrices", "missing_terms"]
 MOST_BRACKETS = 12
 MOST_BRACKETS_OF_LARGE = 2
 LARGE = 300
-"""The most brackets that may lack a term, and fewer of them in an entry of ``LARGE`` pieces or more."""
+"""The largest number of brackets of an entry to which a missing term may be added; ``MOST_BRACKETS_OF_LARGE`` is for an
+entry of ``LARGE`` nodes or more.
+"""
 
 MOST_TERMS = 60
-"""The most terms of a sum that is factored to make one term of it."""
+"""A sum with more terms is not factored to become one term."""
 
 MOST_LETTERS = 240
-"""The most letters of a missing term that is offered."""
+"""The largest number of characters in a term that a repair may add."""
 
 MOST_TERMS_READ, MOST_ROOTS_READ = 1000, 12
-"""The most terms and roots of a difference of the sides that may be one term after simplification."""
+"""A difference of the sides with more terms or roots is not simplified to a single missing term."""
 
 
 def missing_terms(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield repairs that add one term to each wrong entry, or in a bracket of the only one.
+    """Yield repairs that add one term to each wrong entry or, if only one entry is wrong, inside a bracket of it.
 
-    The term is the exact difference of the sides there, or that divided by a factor.
+    The term is the exact difference of the sides in this entry; for a bracket, it is divided by the bracket's factor.
     """
     equation = numeric.claim.equation
     (lefts, shape), (rights, other) = flatten(equation.left), flatten(equation.right)

@@ -15,10 +15,10 @@ from symrot.checker.repair.points import UndefinedValue, entries_of
 __all__ = ["joined_pairs", "pair_of"]
 
 MOST_JOINED = 400
-"""The most pairs that are tried."""
+"""The largest number of pairs of edits that are tried, the cheapest first."""
 
 DIGITS = 8
-"""Digits, relative to the largest value, to which amounts are compared before a pair is tried."""
+"""The number of decimals to which effects are compared, in units of the largest effect that a pair must have."""
 
 Values = tuple[float, ...]
 
@@ -40,7 +40,7 @@ def joined_pairs(numeric: NumericFilter, changes: Sequence[Change]) -> Iterator[
 
 
 def pair_of(numeric: NumericFilter, first: Change, second: Change) -> tuple[Change, ...] | None:
-    """Return two edits of a claim as changes to apply together, or None if they change the same part."""
+    """Return two edits of a claim as changes to apply together, or None if the parts that they change overlap."""
     if first.place != second.place:
         return first, second
     # edits of one tree become one change

@@ -54,7 +54,7 @@ DERIVATIVES = 6
 """The number of derivatives of each function of time in a point, the value included."""
 
 HEAVIEST = 3**5
-"""The weight of a point above which it is not lifted again; this allows derivatives up to the sixth."""
+"""A point of more than this weight is not copied with dual numbers again: derivatives up to the sixth are possible."""
 
 GAUSS = {1: 20, 2: 18, 3: 16}
 """The number of nodes of Gauss-Legendre quadrature in each direction, by the number of nested integrals."""
@@ -80,11 +80,11 @@ class Point:
     spent : list of int
         A count of multiplications, for a budget; it is shared by all points made from this one.
     weight : int
-        The cost of multiplying two values, in float multiplications; each lift to dual numbers triples it.
+        The cost of multiplying two values, in float multiplications; each copy with dual numbers triples it.
     known : dict
         Stored values of trees.
     lifted : dict
-        Points lifted to dual numbers, by variable.
+        Copies of the point with dual numbers, by (name, order of the derivative) of the variable.
     """
 
     symbols: dict[str, Any]

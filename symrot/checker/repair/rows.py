@@ -47,7 +47,7 @@ def plus(left: Any, right: Any) -> Any:
 
 
 def times(left: Any, right: Any) -> Any:
-    """Return the product of two scalars or matrices."""
+    """Return the product of two scalars or matrices; raise UndefinedValue if their shapes do not fit."""
     if not is_matrix(left):
         return mapped(lambda entry: left * entry, right)
     if not is_matrix(right):
@@ -84,7 +84,7 @@ def needed(value: Any, shape: tuple[int | None, int | None] = (None, None)) -> R
 
 
 def determinant(rows: Rows) -> Any:
-    """Return the determinant of a matrix of at most 6 rows, by expansion into minors."""
+    """Return the determinant of a square matrix of at most 6 rows; raise UndefinedValue for other matrices."""
     if len(rows) != len(rows[0]) or len(rows) > 6:
         raise UndefinedValue("expected a square matrix of at most 6 rows in a determinant, got another one")
     if len(rows) == 1:
@@ -97,7 +97,7 @@ def determinant(rows: Rows) -> Any:
 
 
 def inverted(rows: Rows) -> Rows:
-    """Return the inverse of a matrix, from the determinants of its submatrices."""
+    """Return the inverse of a square matrix of at most 6 rows, from the determinants of its submatrices."""
     below = inverse(determinant(rows))
     size = range(len(rows))
     if len(rows) == 1:

@@ -25,17 +25,17 @@ ONES = (1, -1)
 """Numbers that are easily forgotten in a sum."""
 
 HOLE = Node("name", "?")
-"""The unknown piece, under a name that no text can contain."""
+"""The unknown part of a formula, under a name that no text can contain."""
 
 CLOSE = 1e-8
 """The largest relative difference between values that are taken to be equal."""
 MOST_ATOMS, MOST_SUMS, MOST_PRODUCTS = 24, 24, 4000
-"""The most symbols and functions, and the most brackets, from which products are made, and the most products."""
+"""The largest numbers of symbols and functions, and of brackets, from which products are made, and of products."""
 MOST_MATRICES, MOST_COLUMNS = 40, 5
-"""The most matrices of which a multiple is added to another one, and the most vectors in dot products."""
+"""The largest numbers of matrices of which a multiple is added to another one, and of vectors in dot products."""
 LARGEST_RATIO = 60
 LARGEST_OF_SIDE = 1000
-"""The largest denominator of a rational factor of a piece, and of a whole term of a side."""
+"""The largest denominator of a rational factor that corrects a part; the second is for a side or a term of a side."""
 
 Values = tuple[float, ...]
 """One value for each point."""

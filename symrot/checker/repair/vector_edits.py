@@ -11,13 +11,13 @@ from symrot.checker.repair.filter import Candidate, Change, NumericFilter
 __all__ = ["vector_edits"]
 
 MOST_TERMS = 80
-"""The most terms, products of a scalar and a vector, that are tried in one sum."""
+"""The largest number of terms, products of a scalar and a vector, that are tried in one sum."""
 
 
 def vector_edits(numeric: NumericFilter) -> Iterator[Candidate]:
-    """Yield the repairs that square a matrix, or add a vector times a letter to a sum of vectors, the cheapest first.
+    """Yield the repairs that square a matrix, take a matrix for its square, or add a vector times a letter to a sum.
 
-    All are true at the test points.
+    The order is side by side, not by cost. All are true at the test points.
     """
     if not numeric.matrix_names:
         return

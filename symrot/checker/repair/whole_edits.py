@@ -22,13 +22,13 @@ WHOLE = (
 """The faults that change a whole side or definition."""
 
 MOST_WHOLE = 14
-"""The most faults of whole sides that are undone, the cheapest first."""
+"""The largest number of faults of whole sides that are undone, the cheapest first."""
 
 MOST_EDITS = 3000
-"""The most edits that are tried after one of them is undone."""
+"""The largest number of edits of one side or definition that are tried after a fault of a whole side is undone."""
 
 MOST_PIECES_AFTER = 240_000
-"""The most pieces of trees that may be evaluated after one of them is undone."""
+"""The largest number of nodes of trees that may be evaluated after a fault of a whole side is undone."""
 
 
 def after_whole_edits(numeric: NumericFilter, changes: Sequence[Change]) -> Iterator[Candidate]:

@@ -177,7 +177,10 @@ def _method(path: Path, data: Data) -> Method:
 
 
 def _options(method: Method) -> tuple[int | None, tuple[str, ...]]:
-    """Return the order of a Taylor step, None for the usual one, and the inputs by which a step is differentiated."""
+    """Return the options by which a step is emitted: its order, and the inputs by which it is differentiated.
+
+    The order is None for the default order of a Taylor step, and for any other method.
+    """
     if isinstance(method, SteadyRotations):
         return None, ()
     order = method.order if method.name == "taylor" and method.order != ORDER else None
@@ -185,7 +188,10 @@ def _options(method: Method) -> tuple[int | None, tuple[str, ...]]:
 
 
 def _scene_name(path: Path, data: Data, method: Method) -> str:
-    """Return the name of the scene that a certificate names; raise CertificateError if its parts name several."""
+    """Return the name of the scene that a certificate names.
+
+    CertificateError is raised unless its sections ``regenerate``, ``title`` and ``kernel`` name the same scene.
+    """
     order, jacobian = _options(method)
     options = f" --order {order}" * bool(order) + f" --jacobian {','.join(jacobian)}" * bool(jacobian)
     command = rf"symrot emit (.+) --step {method.name}{re.escape(options)} --target c"

@@ -172,7 +172,10 @@ class ExactStepText(StepFiles):
         raise InputError(f"step: expected the target 'c' for the step 'exact', got {target}")
 
     def certificate(self, bounds: Bounds | None = None) -> str:
-        """Return the text of the certificate; raise CertificateError if the C text violates the equations of motion."""
+        """Return the text of the certificate, without bounds of errors; ``bounds`` is not used.
+
+        CertificateError is raised if the C text violates the equations of motion.
+        """
         rates, source = WholeState(self.scene), self.c()[0]
         exact, p = rates.exact_parameters, [value for _, _, value in self.form.parameters]
         laws = {

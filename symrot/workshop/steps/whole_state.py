@@ -1,4 +1,4 @@
-"""The rates of a scene for the whole state, which exact steps have: all of omega and of the quaternion."""
+"""The rates of all components of omega and of the quaternion of a scene; exact steps have all of these as states."""
 
 from dataclasses import replace
 from fractions import Fraction

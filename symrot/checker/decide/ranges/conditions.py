@@ -21,7 +21,7 @@ from symrot.exact.plain_arguments import with_plain_arguments
 __all__ = ["Conditions", "Range", "Sign"]
 
 MOST_PIECES = 80
-"""The most symbols and operations of a formula that is simplified."""
+"""The largest number of symbols and operations in a formula that is split into factors."""
 
 Sign = tuple[Expr, str]
 """A condition (formula, sign): the formula is ``"> 0"``, ``">= 0"`` or ``"!= 0"``."""
@@ -90,7 +90,9 @@ class Conditions:
 
     @classmethod
     def of(cls, signs: Sequence[Sign], divided: bool = True) -> "Conditions":
-        """Return the conditions ``signs`` in their simplest form."""
+        """Return the conditions ``signs`` in their simplest form; with ``divided``, divisors in their formulas are
+        nonzero too.
+        """
         conditions = cls()
         for formula, sign in signs:
             # if ``divided``, x/y >= 0 also gives y != 0; other callers state nonzero divisors themselves
@@ -248,7 +250,7 @@ class Conditions:
         return outside and bool(((bound.root - pair[0].root) * (bound.root - pair[1].root)).is_negative)
 
     def grants(self, quantity: Expr, own: Range) -> bool:
-        """Return whether a cosine is in the range ``own`` by other conditions, so that this need not be printed.
+        """Return whether a cosine is in the range ``own`` by other conditions, so that the range need not be printed.
 
         False for other quantities.
         """

@@ -75,4 +75,4 @@ def _common_powers(formula: Expr) -> dict[Expr, int] | None:
 
 
 LONGEST = 120
-"""The most operations of a difference whose common factors are divided out."""
+"""Common factors are not divided out of a difference with this many operations or more."""

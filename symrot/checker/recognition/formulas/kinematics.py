@@ -24,7 +24,7 @@ POSITION, OMEGA, ALPHA = Matrix(symbols.position), Matrix(symbols.omega_b), Matr
 Q = symbols.quaternion
 ENTRIES = Matrix(3, 3, symbols.rotation_entries)
 BELOW = ((2, 1), (0, 2), (1, 0))
-"""The entries of a skew matrix that are the components of its vector."""
+"""The (row, column) of the entries of a skew matrix that are the components of its vector."""
 WORDS = ("first", "second", "third")
 UNIT, PARAMETERS, RELATIVE, COMPOSITION, RODRIGUES, MOMENTUM, ENERGY, POWER, WHEEL, RATES = (
     f"derivations/{name}.md"
@@ -268,7 +268,11 @@ def _euler_angles() -> Iterator[Named]:
 
 
 def _root_of_squares(matrix: Matrix, places: Sequence[tuple[int, int]], square: Expr) -> Expr:
-    """Return the root of the sum of the squares of two entries, given that their squares add up to ``square``."""
+    """Return the root of the sum of the squares of the rotation matrix entries at ``places``, in the symbols for
+    entries.
+
+    Assert that in ``matrix``, where the entries are functions of Euler angles, the squares add up to ``square``.
+    """
     total = sum(matrix[place] ** 2 for place in places)
     (outer,) = {factor for factor in symbols.angles if not square.has(factor) and total.has(factor)}
     assert expand(expand(total - square).subs(sin(outer) ** 2, 1 - cos(outer) ** 2)) == 0

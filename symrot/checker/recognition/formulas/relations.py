@@ -53,7 +53,7 @@ def relations() -> Iterator[Relation]:
 
 
 def _wheel() -> Iterator[Relation]:
-    """Yield Euler's equations of a body that carries a wheel turning about a principal axis of the body."""
+    """Yield Euler's equations of a body that carries a wheel rotating about a principal axis of the body."""
     rates = Matrix(symbols.omega_rates)
     inertia = diag(A, B, C)
     for place, word in enumerate(("first", "second", "third")):

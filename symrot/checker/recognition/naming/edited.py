@@ -25,7 +25,9 @@ __all__ = ["doubtful", "readings_by_other_products", "recognised_edits", "verdic
 
 MOST_EDITS = 400
 MOST_NODES = 400
-"""The most edits of a formula that are looked up, and the most symbols and operations of a formula that is edited."""
+"""The largest number of edits that are looked up, and the largest number of symbols and operations in a formula that is
+edited.
+"""
 
 PLUS_PRODUCTS = "for products of inertia without the minus sign, I_xy = integral of x*y dm"
 

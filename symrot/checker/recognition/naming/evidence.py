@@ -18,22 +18,27 @@ from symrot.checker.repair.edits.names import neighbours
 __all__ = ["LEAST_SYMBOLS_EDITED", "is_evident", "is_inverted", "is_of_body", "is_steady", "says_too_little"]
 
 LEAST_SYMBOLS_EDITED = 3
-"""The fewest symbols of a scalar formula that is edited."""
+"""The smallest number of symbols in a scalar formula that is edited."""
 
 MANY_LETTERS = 5
-"""The fewest letters of a formula, for a quantity of an unknown name, that has a fault rather than another meaning."""
+"""A formula for a quantity of unknown name, one fault away from a known formula, is usually called faulty only if it
+has at least this many letters; a shorter one may be a right formula for something else.
+"""
 
 MANY_ENTRIES = 4
-"""The fewest letters, each counted as often as it occurs, of a matrix that has a fault rather than another meaning."""
+"""A matrix, one fault away from a known matrix, is called faulty if it has at least this many letters, each counted as
+often as it occurs; one with fewer letters may be a right formula for something else.
+"""
 
 SAFE_BY_UNIT = ("exponent", "factor", "wrong_symbol", "extra_term", "missing_term")
-"""The faults that a wrong unit proves."""
+"""Codes of the faults that a wrong unit proves."""
 
 SURE_IF_STATED = ("sin_cos_swap", "half_angle", "double_half_angle", "exponent")
-"""The faults of a formula whose letters are all stated, so that it can be no other formula."""
+"""Codes of the faults that are evident if the context states what the letters of the formula mean."""
 
 OF_ANGLES = re.compile(r"angle rates of|angular velocity of [xyzXYZ]{3}\b")
-"""Names of known formulas in Euler angles, two of which are not equal in a special case that books print."""
+"""Pattern of names of known formulas in Euler angles: books print no special case in which two of the angles are equal.
+"""
 
 
 def says_too_little(claim: Claim, named: NamedFormula, near: Near) -> bool:

@@ -23,13 +23,13 @@ __all__ = [
 ]  # fmt: skip
 
 CENTRE, POINT = re.compile(r"[IJk]_?(bar|G|C|cm|c|S)"), re.compile(r"[IJk]_?[OAPQB0]")
-"""Names of moments and radii of gyration about the centre of mass, and about another point."""
+"""Patterns of names of moments of inertia and radii of gyration: about the centre of mass, and about another point."""
 
 MOMENTA = {"phi": "precession", "theta": "nutation", "psi": "spin"}
 """Angle of ZXZ -> the word for its momentum in the names of known formulas."""
 
 MOMENT, KNOWN_MOMENT = re.compile(r"[IJ](_?\w+)?"), re.compile(r"[ABCIJ](_?\w+)?")
-"""Names that are moments of inertia in any claim, and names of moments of inertia in known formulas."""
+"""Pattern of names that mean a moment of inertia whatever the claim, and of its names in known formulas."""
 
 RATE_OF_ANGLE = re.compile(rf"diff\(({'|'.join(ANGLES)}|varphi|vartheta)\(t\), t\)")
 KNOWN_RATE = re.compile(r"d[a-z]+(_?\w+)?|(omega|Omega|w|n)(_?\w+)?")
@@ -48,7 +48,7 @@ PARALLEL = re.compile("parallel.ax")
 """A part of the names of the formulas for a parallel axis."""
 
 OF_ROLL = re.compile(r"d?([pqr]|[Hh](_?\w+)?)")
-"""Rates of an aircraft and letters of angular momentum: next to them, the name L may mean a torque, as for a roll."""
+"""Rates of an aircraft and letters of angular momentum: beside these, L may mean a torque, the rolling moment."""
 
 RATES_OF_AIRCRAFT = {"p": "x1", "q": "y2", "r": "z3"}
 """Rate of an aircraft -> the axis of this component of its angular velocity in the body frame."""
@@ -77,7 +77,10 @@ def has_other_length(known: str, renaming: Iterable[tuple[str, str]]) -> bool:
 
 
 def fits_quantity(named: NamedFormula, known: Identification, matrix: bool) -> bool:
-    """Return whether a claim may mean a known formula, judged by the quantity's name and the units of the symbols."""
+    """Return whether a claim may mean a known formula, judged by the quantity's name and the units of the symbols.
+
+    ``matrix`` tells whether the claim's formula is a matrix, which may also be the transpose of the known one.
+    """
     words = words_of(named)
     if words is None and "inertia" in known.name and named.name[:1].islower():
         return False  # books call moments of inertia by capital letters
@@ -113,7 +116,9 @@ def _is_of_other_angles(named: NamedFormula, known: Identification) -> bool:
 
 
 def is_unusual(known: Identification) -> bool:
-    """Return whether a known formula is for the space frame, though the claim's omega_1 or p usually is a body rate."""
+    """Return whether a known formula is for the space frame, though omega_1 or p in the claim usually is a component in
+    the body frame.
+    """
     # books use omega_1, and p, q, r, for components in the body frame
     components = [new for old, new in known.mapping.items() if old in COMPONENTS_OF_OMEGA]
     return "space frame" in known.name and any(

@@ -47,7 +47,7 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["MOST_PROOFS", "formulas_nearby", "nearest_verdict", "verdict_near_relation"]
 
 MOST_SOLVED = 4
-"""The most letters for which an equation is solved, to compare it with known relations."""
+"""The largest number of letters for which an equation is solved, to compare it with known relations."""
 
 PER_NAME, PER_PLACE = 0.1, 0.3
 """The cost of each symbol that has another letter than in the known formula, and of each contradiction between the
@@ -55,10 +55,12 @@ name of the quantity and the known formula, such as omega_3 for a first componen
 """
 
 AS_NEAR = 0.15
-"""How much more than the nearest moment of inertia another one may cost and still be meant, about a parallel axis."""
+"""A moment about a parallel axis may cost this much more than the cheapest moment of inertia, and still be what the
+claim means.
+"""
 
 MOST_REPAIRS, MOST_PROOFS = 3, 12
-"""The most repairs that are offered, and the most formulas near a claim for which a proof is tried."""
+"""The largest number of repairs in a verdict, and of formulas near a claim for which a proof is tried."""
 
 UPRIGHT = "for an angle from the upright position, the equation is right as it stands"
 
@@ -112,7 +114,7 @@ def _near_by_quantity(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 def verdict_near_relation(claim: Claim) -> Verdict | None:
     """Return the verdict, usually "doubtful", on a false equation that one change makes a known relation; None for
-    other equations.
+    other equations, and for claims with hypotheses.
     """
     assert claim.relation is not None
     return None if claim.hypotheses else _near_relation(claim, *claim.relation[1:])
@@ -173,9 +175,8 @@ def formulas_nearby(claim: Claim, named: NamedFormula) -> list[Near]:
 
 
 def _near(claim: Claim, named: NamedFormula) -> Verdict | None:
-    """Return the verdict "doubtful" if a change of one part makes the formula a known one; otherwise None.
-
-    The verdict is "recognised" if the formula equals a known one for certain signs of its letters.
+    """Return the verdict "doubtful" if a change of one part makes the formula a known one, "recognised" if it equals a
+    known one for certain signs of its letters; otherwise None.
     """
     nearby = formulas_nearby(claim, named)
     of_bodies = [near for near in nearby if is_of_body(near.code, near.known.name)]
@@ -247,7 +248,9 @@ def _with_root(claim: Claim, named: NamedFormula, near: Near) -> tuple[Identific
 
 
 def _loses_letter(claim: Claim, tree: Node) -> bool:
-    """Return whether a letter of the formula ``tree`` cancels, as b does in ``1 + b/b``."""
+    """Return whether a letter of the formula ``tree`` cancels, as b does in ``1 + b/b``; True also for an unreadable
+    one.
+    """
     # such a formula is not offered as a repair
     try:
         value = claim.interpreter().read(tree)

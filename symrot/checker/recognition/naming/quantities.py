@@ -64,7 +64,9 @@ OF_VECTORS = ("rotated vector", "vector part")
 """Words for quantities that are vectors, which any letter may name."""
 
 MOST_COMPONENTS = 4
-"""The most components of a vector; a matrix with more entries is no torque or momentum, whatever its letter."""
+"""The largest number of components of a vector; a matrix with more entries is no torque or momentum, whatever its
+letter.
+"""
 
 
 def has_word(known: str, words: Sequence[str] | None) -> bool:

@@ -27,25 +27,24 @@ __all__ = [
 ]  # fmt: skip
 
 LEAST_SYMBOLS = 2
-"""The fewest symbols of a scalar formula that is looked up as it is written."""
+"""The smallest number of symbols in a scalar formula that is looked up as it is written."""
 
 LEAST_SYMBOLS_RELATED = 5
-"""The fewest symbols of a relation that is edited, or is for a quantity whose name says what it is.
-
-With fewer symbols, it may be another formula.
+"""The smallest number of symbols in an equation that is compared with known relations if it was edited, or if the name
+of its quantity has a usual meaning. A shorter equation may be another formula.
 """
 
 LEAST_SYMBOLS_OF_MOTION = 3
-"""The fewest symbols of a relation with an angle's second time derivative and its sine: an equation of motion."""
+"""The same limit for an equation of motion: one with the second time derivative and the sine or cosine of an angle."""
 
 MOST_TERMS = 5000
-"""The most terms of an equation, when multiplied out, that is compared with known relations: these are shorter."""
+"""An equation with more terms, after multiplying out, is not compared with known relations, which are all shorter."""
 
 MOST_READINGS = 4
-"""The most formulas that one verdict names."""
+"""The largest number of known formulas that one verdict names."""
 
 SQUARED = ", squared"
-"""The end of the names of those known formulas whose root has the name."""
+"""The end of the name of a known formula that gives the square of the named quantity."""
 
 
 def least_symbols_related(left: Node, right: Node) -> int:
@@ -64,7 +63,8 @@ def readings_of_claim(
 ) -> tuple[Identification, ...]:
     """Return the known formulas and relations that a claim with the right side ``tree`` can mean, the likeliest first.
 
-    Empty for too few symbols; ``least_symbols`` is the usual minimum. ``interpreter`` is by default that of the claim.
+    Empty if a scalar formula has fewer than ``least_symbols`` symbols; for relations, and for names with a usual
+    meaning, other limits hold. ``interpreter`` is by default that of the claim.
     """
     interpreter = claim.interpreter() if interpreter is None else interpreter
     solved: tuple[Identification, ...] = ()
@@ -86,7 +86,7 @@ def readings_of_relation(
 ) -> tuple[Identification, ...]:
     """Return the known relations that are equivalent to the equation ``named.side == tree``.
 
-    Empty if the equation has fewer than ``least_symbols`` symbols.
+    Empty if the equation has fewer than ``least_symbols`` symbols; also for matrices, roots of sums and long equations.
     """
     difference = sum_of([named.side, negated(tree)])
     try:
@@ -117,7 +117,8 @@ def readings_of_formula(
 ) -> tuple[Identification, ...]:
     """Return the known formulas for the claim's quantity that are equal to ``formula``, the likeliest first.
 
-    Usually empty if a scalar ``formula`` has fewer than ``least_symbols`` symbols.
+    Empty if a scalar ``formula`` has fewer than ``least_symbols`` symbols. If this limit is LEAST_SYMBOLS, one symbol
+    suffices for a quantity whose name has a usual meaning, such as I_zz.
     """
     try:
         value = claim.with_definitions((interpreter or claim.interpreter()).read(formula))

@@ -47,7 +47,7 @@ EXCHANGES = ("wrong_symbol", "sin_cos_swap")
 MINUS_PRODUCTS = "products of inertia are those with the minus sign, I_xy = -integral of x*y dm"
 
 DECELERATION = r"alpha(_\w+)?|a"
-"""The letters of angular accelerations."""
+"""Pattern of the letters that may mean a deceleration."""
 
 ENDS = {acos: (S.Zero, pi), asin: (-pi / 2, pi / 2), atan2: (-pi, pi)}
 """Inverse function -> the least and the largest of its values."""
@@ -69,8 +69,8 @@ def verdict_on_name(claim: Claim, named: NamedFormula, repair: bool) -> Verdict:
     readings = readings_of_claim(claim, named, named.formula, LEAST_SYMBOLS)
     readings = readings or readings_by_other_products(claim, named, named.formula) or _slowing_down(claim, named)
     if readings and not claim.context and (axes := _axes_of_symmetry(readings)):
-        return Verdict("definition", reason=f"it is right for a body that is symmetric about axis {axes}; for three "
-                                            "different moments of inertia, one of them has a wrong index")  # fmt: skip
+        return Verdict("definition", reason=f"it is right for a body that is symmetric about axis {axes}; for a body "
+                                            "with three different moments, one moment has a wrong index")  # fmt: skip
     if readings:
         usual = _near_usual(claim, named, readings) if repair else None
         notes = (*_on_signs_of_products(claim, named, readings), *_on_principal_values(claim, named))
@@ -124,7 +124,10 @@ def _near_usual(claim: Claim, named: NamedFormula, readings: Sequence[Identifica
 
 
 def _by_matrix(claim: Claim, named: NamedFormula, repair: bool) -> Verdict | None:
-    """Return the verdict on the matrix of a claim ``omega = [matrix] q_dot``, or None for claims of another form."""
+    """Return the verdict on the matrix of a claim ``omega = [matrix] q_dot``, with repairs of the whole claim.
+
+    None for claims of another form, and for a matrix that is neither equal nor near to a known rate matrix.
+    """
     factors = named.formula.args if named.formula.kind == "product" else ()
     is_map = len(factors) == 2 and factors[0].value == "Matrix" and (is_atom(factors[1]) or is_derivative(factors[1]))
     if not is_map or len(matrix_entries(factors[0])) <= MOST_COMPONENTS:

@@ -67,9 +67,11 @@ def _numbered_angle(known: str, mine: str, other: str) -> str:
 
 
 def absent_name(known: str, renaming: dict[str, str | None], unused: Collection[str] = ()) -> tuple[str, bool]:
-    """Return a name for the symbol ``known`` that a claim lacks, and whether a series gives it: w_3 after w_1, w_2.
+    """Return a name for the symbol ``known`` that a claim lacks, and whether the claim's other names imply it, as w_1
+    and w_2 imply w_3.
 
-    ``unused`` are the claim's letters that are no other symbol of the known formula: I_1 gives I_3 for C.
+    ``unused`` are the claim's letters that stand for no symbol of the known formula; they may imply the name too: I_1
+    gives I_3 for C.
     """
     for mine, other in renaming.items():
         if other is not None and (numbered := _numbered_angle(known, mine, plain_name(other))):

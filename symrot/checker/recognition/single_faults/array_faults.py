@@ -23,15 +23,17 @@ from symrot.checker.repair.rows import entries_of, is_matrix, shape_of
 __all__ = ["ArrayFault", "agree", "array_faults", "has_arrays", "matching"]
 
 MOST_TERMS = 6
-"""The most terms of a sum to which brackets are added."""
+"""The largest number of terms in a sum to which brackets are added."""
 MOST_EDITS = 700
-"""The most edits of one formula that are evaluated."""
+"""The largest number of edits of one formula that are evaluated."""
 CLOSE = 1e-8
 """The largest relative difference between sums of entries that are compared further."""
 OPERATIONS = ("skew", "cross", "dot", "qmul", "conjugate", "trace")
 """Functions of vectors, matrices and quaternions."""
 LEFT_OUT = ("extra_term", "overall_sign")
-"""Edits that make another formula likelier than a fault: with a term less, or a vector in the other direction."""
+"""Codes of edits that are not tried: a formula with one term less, or a vector in the other direction, is more likely
+another right formula than a faulty one.
+"""
 
 
 class ArrayFault(NamedTuple):

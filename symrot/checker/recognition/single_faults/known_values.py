@@ -85,7 +85,7 @@ def tree_of(known: Known) -> Node:
 
 @cache
 def tape_of(known: Known) -> Tape | None:
-    """Return the tape of a known formula, or None for a matrix."""
+    """Return the tape of a known formula; None for a matrix, or a function that tapes lack."""
     return tape_of_tree(tree_of(known))
 
 
@@ -103,7 +103,7 @@ class KnownValues:
 
     @cached_property
     def on_tape(self) -> list[list[float]] | None:
-        """The values of all parts of a scalar formula at each point; None for a matrix, and without a value."""
+        """The values of all parts of the formula at each point; None if it has no tape, or no value at a point."""
         tape = tape_of(self.known)
         values = [] if tape is None else [tape.values(symbols) for symbols in self.symbols]
         return None if None in values or not values else [own for own in values if own is not None]
@@ -151,10 +151,10 @@ def views(known: Known, values: Values) -> Iterator[Values]:
 
 
 LAST = (1, 2, 3, 0)
-"""The rows of a quaternion whose scalar is stored last."""
+"""The rows of a scalar-first quaternion in the order that puts its scalar last."""
 
 RANDOM = (0.7310585786, 1.1752011936, 0.4812118251)
-"""The values of a symbol that a claim lacks."""
+"""The values of a symbol that a claim lacks, one for each test point."""
 
 
 def needed_values(named: NamedFormula, known: Known, target: Values, letters: Letters) -> Values | None:
@@ -216,4 +216,4 @@ _FUNCTIONS_OF_ENDINGS: dict[str, Callable[[Any], Any]] = {
     ", 2 acos": _multiple_of_arc(2, math.acos), ", asin": _multiple_of_arc(1, math.asin),
     ", atan2": _multiple_of_arc(1, math.atan2), ", 2 atan2": _multiple_of_arc(2, math.atan2),
 }  # fmt: skip
-"""Ending of the name of a known formula -> the function of its value that is the quantity."""
+"""Ending of the name of a known formula -> the function that gives the quantity from the formula's value."""

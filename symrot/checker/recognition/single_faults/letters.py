@@ -19,13 +19,15 @@ from symrot.checker.repair.rows import is_matrix
 __all__ = ["POINTS", "ids_of_nodes", "is_atom", "letters_of_formula", "nodes_of", "text_of"]
 
 MOST_DRAWS = 40
-"""The most random points that are drawn to find some where a formula has a value."""
+"""The largest number of random points that are drawn to find ``POINTS`` of them where a formula has a value."""
 MOST_DRAWS_WITH_ROOTS = 400
-"""The same for a formula with roots: those points are taken where the known formula, too, is likely to have a value."""
+"""The number of random points for a formula with roots: of these, the points with the largest values under the roots
+are taken, where the known formula, too, is likely to have a value.
+"""
 POINTS = 3
 """The number of points at which formulas are compared."""
 MANY = 9
-"""The fewest letters of a formula that may contain a matrix of 3 x 3 letters and not depend on all of them."""
+"""A formula with at least this many letters may contain a matrix of 3 x 3 letters and not depend on all of them."""
 
 
 def letters_of_formula(claim: Claim, named: NamedFormula) -> Letters | None:

@@ -13,11 +13,14 @@ __all__ = ["is_shifted_moment", "is_symmetric_body"]
 EQUAL_MOMENTS = (("A", "B"), ("B", "C"), ("I_xx", "I_yy"), ("I_yy", "I_zz"))
 """Moments of inertia that are equal in symmetric bodies: the one whose letter stands for both, and the other one."""
 FIRST_EQUAL = (("A", "B"), ("I_xx", "I_yy"))
-"""The same for a body whose axis of symmetry is the third."""
+"""Those of these pairs that are equal in a body whose axis of symmetry is the third."""
 
 
 def is_symmetric_body(absent: str, letter: str, renaming: dict[str, str | None], times: int) -> bool:
-    """Return whether a claim's ``letter`` may stand for two equal moments of inertia: A, and ``absent`` = B."""
+    """Return whether a claim's ``letter`` may stand for two equal moments of inertia: A, and ``absent`` = B.
+
+    ``times`` is the number of times that the letter occurs in the claim's formula.
+    """
     # books write A for A = B; B stands for B = C only if it occurs once, as in A p^2 + B (q^2 + r^2)
     equal = EQUAL_MOMENTS if times == 1 else FIRST_EQUAL
     return any(absent == later and renaming.get(earlier) == letter for earlier, later in equal)
@@ -48,8 +51,9 @@ def _share(added: Sequence[float], mass: Values, length: Values) -> Fraction | N
 
 
 def _shares(added: Sequence[float], mass: Values, lengths: Sequence[Values]) -> list[Fraction | None]:
-    """Return simple fractions [k, l] with ``added`` = m (k a^2 + l b^2) at all points, for the ``lengths`` a and b;
-    None where there is none.
+    """Return simple fractions [k, l] with ``added`` = m (k a^2 + l b^2) at all points, for the ``lengths`` a and b.
+
+    A number that is no simple fraction is replaced by None; [None] if no k and l fit.
     """
     (first, second, *_), rows = [value / m for value, m in zip(added, mass, strict=True)], [
         (a * a, b * b) for a, b in zip(*lengths, strict=True)

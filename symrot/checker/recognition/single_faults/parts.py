@@ -32,7 +32,7 @@ LARGEST = 400
 """The largest numerator and denominator of a rational number that is recognised by its value."""
 
 HALVES = {Fraction(2): "half_angle", Fraction(1, 2): "double_half_angle"}
-"""Factor that an angle by an inverse function should have -> the fault of a formula without this factor."""
+"""Factor that is missing before an inverse function, as 2 before acos(u) -> the code of this fault."""
 
 Values = tuple[Any, ...]
 """One value for each point: numbers, or rows of matrices."""
@@ -257,7 +257,9 @@ def _of_power(arguments: Sequence[Any], place: int, needed: Any) -> Any:
 
 
 OfArgument = Callable[[Sequence[Any], int, Any], Any]
-"""A function of the values of all arguments, the number of one of them, and the value that the part should have."""
+"""The function from the values of a part's arguments, the index of one of them and the value that the part should have,
+to the value that this argument should have.
+"""
 
 _INWARD: dict[tuple[str, str | None], OfArgument] = {
     ("sum", None): _of_sum, ("product", None): _of_product, ("power", None): _of_power,
@@ -272,7 +274,7 @@ _INWARD: dict[tuple[str, str | None], OfArgument] = {
     ),
     ("call", "abs"): lambda arguments, place, needed: math.copysign(needed, arguments[0]),
 }  # fmt: skip
-"""Kind of a part, and its function -> the value that an argument should have, from that of the part."""
+"""(kind of a part, name of its function) -> the function that gives the value that an argument of the part needs."""
 
 
 def is_superfluous(part: Part) -> bool:

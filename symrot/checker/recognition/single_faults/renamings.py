@@ -26,12 +26,14 @@ RADIUS = re.compile(r"[rR](_?\w+)?|a")
 COORDINATES = ("x", "y", "z")
 
 UNUSUAL = 2
-"""The number of changed names as which a letter counts that is unusual for a length of its kind."""
+"""A letter that is unusual for its kind of length counts as this many more changed names."""
 
 MOST_STEPS = 400
-"""The most partial renamings of one known formula that are tried."""
+"""The number of partial renamings of one known formula that are tried: at most so many without an absent symbol, and so
+many in all with one.
+"""
 MOST = 6
-"""The most renamings of one known formula that are returned."""
+"""The largest number of renamings of one known formula that `renamings` returns."""
 
 
 def renamings(known: Sequence[str], own: Sequence[str], angles: Collection[str] = ()) -> list[dict[str, str | None]]:
@@ -127,7 +129,10 @@ def _extended(
 
 @lru_cache(maxsize=20_000)
 def is_fitting(known: str, own: str, is_angle: bool) -> bool:
-    """Return whether ``known``, a name in a known formula, may mean the same quantity as ``own`` in a claim."""
+    """Return whether ``known``, a name in a known formula, may mean the same quantity as ``own`` in a claim.
+
+    ``is_angle`` tells whether ``own`` occurs in sines or cosines of the claim.
+    """
     name = plain_name(own)  # is_angle: the claim has it in sines or cosines
     if known == name:
         return True

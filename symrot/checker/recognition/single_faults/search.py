@@ -31,13 +31,15 @@ from symrot.exact.limits.operations import operations_left, spend
 __all__ = ["near_formulas"]
 
 MOST_PAIRS = 1500
-"""The most pairs of a known formula and a renaming that are compared."""
+"""The largest number of pairs (known formula, renaming) that are compared."""
 MOST_SEARCHES = 4
-"""The number of searches that are stored."""
+"""The number of latest searches that are stored."""
 MOST_NODES = 500
-"""The most symbols and operations of a formula that is searched."""
+"""The largest number of symbols and operations in a formula that is searched for faults."""
 FEW = 3
-"""The most symbols of a known formula with an angle that a claim without angles may mean."""
+"""If only one of the known formula and the claim contains angles, the two are usually compared only if the known
+formula has at most this many symbols.
+"""
 
 
 Renaming = dict[str, str | None]
@@ -120,7 +122,7 @@ _latest: dict[Any, tuple[Search | None, int]] = {}
 
 
 def has_root_of_sum(formula: Node) -> bool:
-    """Return whether a formula has the root of a sum."""
+    """Return whether a formula contains a sum under a square root."""
     # fingerprints of equal formulas with such roots may differ by a sign
     roots = (node.args[0] for _, node in walk(formula) if node.kind == "call" and node.value == "sqrt")
     return any(node.kind == "sum" for root in roots for _, node in walk(root))

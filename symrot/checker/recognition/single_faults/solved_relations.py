@@ -117,7 +117,10 @@ def _terms(tree: Node) -> list[Node]:
 
 
 def _solution(terms: Sequence[Node], letter: Node) -> Solution | None:
-    """Return the solution of ``sum of terms == 0`` for a letter w. None unless w occurs only as a factor w, or w^2."""
+    """Return the solution of ``sum of terms == 0`` for a letter w.
+
+    None unless each term that contains w has it as a factor, in all of them w or in all w^2, and there are other terms.
+    """
     with_letter = [term for term in terms if letter in (node for _, node in walk(term))]
     rest = [negated(term) for term in terms if term not in with_letter]
     coefficients = [_without(term, letter) for term in with_letter]

@@ -15,11 +15,14 @@ from symrot.checker.units.units import read_unit
 __all__ = ["has_other_unit"]
 
 UNITS = {"[kg]": 1.37, "[m]": 1.61, "[s]": 0.83}
-"""Factors by which the base units are made smaller, to compare the units of formulas by their values."""
+"""Base unit -> the factor by which values in this unit are multiplied, to compare the units of formulas."""
 
 
 def has_other_unit(named: NamedFormula, known: Known, nodes: dict[str, Node], letters: Letters) -> bool:
-    """Return whether a claim's formula has another unit than ``known`` when its letters have their usual units."""
+    """Return whether a claim's formula has another unit than ``known`` when its letters have their usual units.
+
+    ``nodes`` maps the symbols of ``known`` to letters of the claim. False if a unit is unknown.
+    """
     # nodes: known symbol -> letter of the claim
     scales = {node: _scale(UNIT_OF_NAME.get(mine)) for mine, node in nodes.items()}
     if None in scales.values() or any(atom not in scales for atom in letters.atoms):

@@ -24,7 +24,7 @@ LACKING = Node("name", "?")
 """A symbol of a known formula that a claim lacks, under a name that no text can contain."""
 
 MULTIPLES = {Fraction(2): "double_half_angle", Fraction(1, 2): "half_angle"}
-"""Factor that an angle should have -> the fault of a formula without this factor."""
+"""Factor that is missing in an angle, as 2 in sin(x) for sin(2*x) -> the code of this fault."""
 
 
 class Variant(NamedTuple):
@@ -35,7 +35,10 @@ class Variant(NamedTuple):
 
 
 def variants(node: Node, parent: str, letters: Letters) -> list[Variant]:
-    """Return the changes of a part that undo usual faults, each with the values of the changed part."""
+    """Return the changes of a part that undo usual faults, each with the values of the changed part.
+
+    ``parent`` is the kind of the node above the part. Empty if the part is a matrix, or is 0 at a test point.
+    """
     values = values_of(node, letters.points)
     if values is None or not all(isinstance(value, float) and value for value in values):
         return []

@@ -23,11 +23,11 @@ FAULT_DESCRIPTIONS = {
     "inertia_product_sign": "the products of inertia have the other sign",
     "wrong_sequence_type": "the rotations belong to another sequence",
     "two_faults": "two things are wrong",
-    "requires_unit_norm": "it holds for a unit vector or quaternion only",
-    "requires_symmetric_top": "it holds for equal moments of inertia only",
-    "requires_condition": "it holds under a condition only",
-    "sign_branch": "it holds on one branch of a root only",
-    "principal_value": "it holds for principal values of the inverse function only",
+    "requires_unit_norm": "the claim holds for a unit vector or quaternion only",
+    "requires_symmetric_top": "the claim holds for equal moments of inertia only",
+    "requires_condition": "the claim holds under a condition only",
+    "sign_branch": "the claim holds on one branch of a root only",
+    "principal_value": "the claim holds for principal values of the inverse function only",
 }
 """Code of a diagnosis -> its sentence."""
 

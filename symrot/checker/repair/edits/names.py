@@ -6,7 +6,7 @@ from collections.abc import Collection
 __all__ = ["INVERSE_OPPOSITE", "OPPOSITE", "PRODUCT_OF_INERTIA", "neighbours", "spelled_like"]
 
 MOST_NEIGHBOURS = 12
-"""The most names that are tried in place of one name."""
+"""The largest number of names that are tried in place of one name."""
 
 OPPOSITE = {"sin": "cos", "cos": "sin", "tan": "cot", "cot": "tan", "sec": "csc", "csc": "sec"}
 INVERSE_OPPOSITE = {"asin": "acos", "acos": "asin"}

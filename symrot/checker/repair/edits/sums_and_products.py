@@ -14,13 +14,13 @@ from symrot.checker.repair.edits.trees import substituted
 __all__ = ["PartEdit", "bracketed", "edits_of_product", "edits_of_sum"]
 
 MOST_NAMES_EXCHANGED = 6
-"""The most names of a product of which two are exchanged."""
+"""A product with more names gets no edits that exchange two of them."""
 
 MOST_TERMS_IN_PAIRS = 6
-"""The most terms of a sum of which two signs are changed together."""
+"""A sum with more terms gets no edits that change two signs, add brackets, or double or halve the whole sum."""
 
 PartEdit = tuple[str, Node, float]
-"""The code of an edit, the new piece, and the cost beyond that of the code."""
+"""The code of an edit, the new part of the tree, and the cost to be added to that of the code."""
 
 
 def edits_of_sum(node: Node, matrices: Callable[[Node], bool]) -> Iterator[PartEdit]:
