@@ -58,8 +58,10 @@ def _seconds(run: Callable[[], Any]) -> float:
 
 
 def measure(rounds: int) -> list[tuple[str, str, list[float]]]:
-    """Time several motions in closed form; return for each its name, its regime (which formula applies), and six times,
-    s.
+    """Time several motions in closed form; return for each its name, its regime (which formula applies), and six times.
+
+    The times, s, are those of: set-up; all samples; their angular velocity alone; their attitude alone; one sample;
+    set-up and all samples together.
     """
     t = np.linspace(0.0, SPAN, SAMPLES)
     one = t[:1]

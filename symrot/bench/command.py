@@ -114,8 +114,8 @@ STUDIES: dict[str, str] = {
     "dense": "20 000 samples of one motion against heyoka's dense output",
     "kernels": "emitted kernels against kernels of other tools, in operations and nanoseconds",
     "overhead": "a call from Python against the bare call in C",
-    "starts": "parts of a call with another initial state, and ensembles of 10 to 100 000 motions in closed form and "
-    "by steps",
+    "starts": "times of a call with another initial state, and of ensembles of 10 to 100 000 motions in closed form "
+    "and by steps",
     "stepper": "DOP853 in C against a handwritten DOP853 and SciPy's, at equal tolerance",
     "closed_form": "nanoseconds per sample of closed forms, and the time of their set-up",
     "long": "errors of energy and attitude after 1e6 revolutions by steps, and the time",
@@ -123,7 +123,7 @@ STUDIES: dict[str, str] = {
     "derive": "the time of derivations",
     "check": "`symrot check` on typical claims, on claims that name a formula and on conditional ones",
     "switches": "motions with switched torques by steps, against closed forms",
-    "ulps": "the functions that kernels call, in units in the last place",
+    "ulps": "the errors of the functions that kernels call, in units in the last place",
     "comparison.steps": "one emitted time step against the step of other tools, in operations and nanoseconds",
     "comparison.sensitivities": "derivatives of motions against heyoka's variational equations",
     "comparison.sweeps": "a sweep against an ensemble of the same motions, and two Dask workers against one",

@@ -21,7 +21,7 @@ from symrot.propagation.propagate import propagator
 
 __all__ = ["main", "measure"]
 
-OURS = tuple(10.0**-k for k in range(4, 15))  # symrot's tolerances; the errors of the first match heyoka's largest
+OURS = tuple(10.0**-k for k in range(4, 15))  # symrot's tolerances; the first gives errors as large as heyoka's largest
 WHOLE = 7  # states: angular velocity and attitude
 PEERS = (1e-9, 1e-12, 2.0**-52)
 
@@ -102,8 +102,8 @@ def main(arguments: list[str] | None = None) -> None:
             good = [one.median for one in ours if peer and one.error <= peer.error]
             if peer and good:
                 ratios.append(peer.median / min(good))
-                print(f"  {peer.name} at {tolerance:.0e} takes {ratios[-1]:.1f} times as long as symrot's series, "
-                      f"which is no worse than its {peer.error:.0e}")  # fmt: skip
+                print(f"  {peer.name} at {tolerance:.0e} takes {ratios[-1]:.1f} times as long as symrot's series "
+                      f"with an error of at most {peer.error:.0e}")  # fmt: skip
     if ratios:
         print(f"\nheyoka over symrot: median {np.median(ratios):.1f}, least {min(ratios):.1f}")
 

@@ -46,7 +46,7 @@ class Start(NamedTuple):
 
 
 def prepare(name: str, n: int, stop: float, problem: Any) -> Start:
-    """Return an ensemble of ``n`` initial states: a motion's own one first, then random states near it."""
+    """Return an ensemble of ``n`` initial states: first that of the motion ``name``, then random states near it."""
     random = np.random.default_rng(1)
     y = np.tile(np.array(problem.y0), (n, 1))
     rates = problem.blocks[1]

@@ -324,7 +324,7 @@ def main(arguments: list[str] | None = None) -> None:
         metavar="NAME",
         help="kernels to compare (default: those in the table of the benchmark's report)",
     )
-    parser.add_argument("--jacobians", action="store_true", help="compare values with their derivatives")
+    parser.add_argument("--jacobians", action="store_true", help="compare kernels that compute derivatives too")
     parser.add_argument("--count", action="store_true", help="count operations only")
     options = parser.parse_args(arguments)
     rates = [f"euler_{sequence}_body_rates" for sequence in (*PROPER, *TAIT_BRYAN)]
@@ -352,8 +352,8 @@ def main(arguments: list[str] | None = None) -> None:
         _block.cache_clear()
         _samples.cache_clear()
     print(f"not installed, left out: {', '.join(sorted(absent))}" if absent else "every tool took part")
-    print(f"{cells - len(over)} of {cells} cells within the bar (operations no more than the best of the others, ns "
-          f"{BAR} of it); over it: {'; '.join(over) or 'none'}")  # fmt: skip
+    print(f"{cells - len(over)} of {cells} cells within the limit (operations: no more than the best other tool; ns: "
+          f"at most {BAR} times those of the fastest); over it: {'; '.join(over) or 'none'}")  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -111,7 +111,10 @@ def main(arguments: list[str] | None = None) -> None:
             f"{each.name:14}{each.steps:12d}{each.median * 1e3:12.3f}{each.least * 1e3:12.3f}"
             f"{each.least / each.steps * 1e9:15.1f}{each.error:11.1e}{each.least / first.least:12.2f}"
         )
-    print(f"per evaluation, symrot takes {first.least / first.steps / best:.2f} of the best program by hand")
+    print(
+        f"per evaluation, symrot takes {first.least / first.steps / best:.2f} times as long as the best "
+        "handwritten program"
+    )
 
 
 if __name__ == "__main__":

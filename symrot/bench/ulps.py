@@ -35,29 +35,28 @@ FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared")
 DIGITS = {"binary64": (53, -1074), "binary32": (24, -149)}  # bits of the fraction; exponent of the least number
 EXACT = 60  # digits of exact values
 LEAST = {"binary64": 2.0**-1021, "binary32": 2.0**-125}
-REACH = {"binary64": float(np.finfo(np.float64).max), "binary32": float(np.finfo(np.float32).max)}  # for one sample
+REACH = {"binary64": float(np.finfo(np.float64).max), "binary32": float(np.finfo(np.float32).max)}  # largest numbers
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Function:
-    """A function that kernels call: how mpmath computes it exactly, the arguments that are tested, and its C functions.
-
-    ``forms`` pairs "one" (a sample) and "batch" with the beginning of the C function's name.
-    """
+    """A function that kernels call: how mpmath computes it, which C functions compute it, and the range of tests."""
 
     name: str
-    exact: Callable[..., Any]
+    exact: Callable[..., Any]  # from the arguments, numbers of mpmath, to the exact value
     kernel: str  # kernel whose C text contains the function
+    # C functions: pairs ("one" for single samples or "batch" for batches, prefix of the function's name)
     forms: tuple[tuple[str, str], ...] = (("one", "symrot_"), ("batch", "symrot_near_"))
     reach: float = inf  # largest |x| that is tested
-    beyond: float = 0.0  # if not 0: the smallest |x|; the unit of errors is then the roundoff over x^2
+    # if not 0: the smallest tested |x|; errors are then counted in units of 2^-53/x^2 (float: 2^-24/x^2)
+    beyond: float = 0.0
 
 
 @dataclass(frozen=True)
 class Measured:
-    """The largest error of a function in one form (one sample or batch), and the argument where it occurs."""
+    """The largest error of one C function (for one sample or for batches), in ulp, and the argument where it occurs."""
 
     name: str
     real: str
@@ -152,7 +151,7 @@ def _directions(real: Real, count: int, kind: Any) -> Floats:
 
 
 def _text(kernel: str) -> str:
-    """Return the C text of a kernel with a loop over arrays for each form of each function of :data:`FUNCTIONS`."""
+    """Return the C text of a kernel and of loops over arrays that call its functions of :data:`FUNCTIONS`."""
     program, reals = kernel_program(kernel), (DOUBLE, FLOAT)
     source = c_functions(program, reals, near=True).replace(f'#include "{MATH_HEADER}"', "")
     header = c_header(program, kernel_description(definition(kernel), "c"), reals)
@@ -185,7 +184,7 @@ def _ulps(computed: float, exact: Any, real: Real, x: float = 0.0) -> float:
 
 
 def measured(points: int = 20_000, contraction: Sequence[str] = tuple(CONTRACTION)) -> Iterator[Measured]:
-    """Yield the largest error of each tested function, for each form (one sample or batch), precision and contraction.
+    """Yield the largest error of each tested function, for one sample and for batches, by precision and contraction.
 
     Parameters
     ----------

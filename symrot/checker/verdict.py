@@ -188,7 +188,7 @@ class Verdict:
     requires : tuple of str
         Requirements of a conditional claim beyond being defined; any one of them suffices.
     counterexample : Counterexample or None
-        An exact point where the sides differ.
+        An exact point where the sides differ, or where an inequality fails.
     diagnosis : Diagnosis
     repairs : tuple of Repair
         At most three, nearest first.

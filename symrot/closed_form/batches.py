@@ -57,7 +57,10 @@ def attitudes(quaternions: Floats) -> Floats:
 
 
 def turned(frame: Frame, quaternions: Floats) -> Floats:
-    """Return attitudes, shape (n, 4), in the axes ``frame`` of a heavy top's formulas, as double-double numbers."""
+    """Convert attitudes, shape (n, 4), to the axes ``frame`` of a heavy top's formulas.
+
+    The result has the shape (n, 8): double-double numbers, hi and lo of each component.
+    """
     # the same numbers as from Frame.start for each attitude
     attitudes = _units(quaternions)
     if frame.before is not None:
@@ -213,7 +216,8 @@ def free_bodies_of_tensors(
 ) -> tuple[Batch | None, NDArray[np.bool_]]:
     """Return the motions of n free bodies in any axes as a batch, and for each motion whether the batch is exact.
 
-    ``entries`` are the tensor components xx, yy, zz, xy, xz and yz, kg m^2.
+    ``entries`` are the tensor components xx, yy, zz, xy, xz and yz, kg m^2. The batch is None, and no motion exact, if
+    a component that all motions share is outside the range of pairs.
     """
     # without a batch if a shared component is outside the range of pairs
     settled = np.ones(len(omega), np.bool_)

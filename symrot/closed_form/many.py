@@ -58,8 +58,8 @@ def evaluate(batch: Batch, times: Floats, omega: Floats, quaternion: Floats | No
         The motions to evaluate.
     times : array, shape (m,) or (n, m)
         Times from the start, s.
-    omega, quaternion : arrays, shapes (n, m, 3) and (n, m, 4), or None
-        The arrays to fill, contiguous for each motion; without an array for quaternions, no attitudes are computed.
+    omega, quaternion : array, shape (n, m, 3); array, shape (n, m, 4), or None
+        The arrays to fill, contiguous for each motion. If ``quaternion`` is None, no attitudes are computed.
     workers : int
         Number of threads; each computes some of the motions.
     """

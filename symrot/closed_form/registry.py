@@ -136,7 +136,10 @@ def _is_driven(scene: Scene) -> bool:
 
 
 def _driven_axis(scene: Scene) -> int | None:
-    """Return the index of the principal axis about which the body rotates at all times, or None if it does not."""
+    """Return the index of the principal axis about which the body rotates at all times; 0 if it stays at rest.
+
+    None if the axis of rotation changes, or if the torques are not constant torques in the body and linear damping.
+    """
     if not _is_driven(scene):
         return None
     push, turning = torque_and_damping(scene)[0], _only_axis(scene.initial.omega_b)

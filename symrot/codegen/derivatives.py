@@ -104,7 +104,9 @@ def ways(value: Formulas, chained: Formulas, base: Program, entries: Entries, gr
 
 
 def cheapest(signature: Signature, formulas: Iterable[Formulas], parameter_argument: str = "p") -> Lowered:
-    """Return the program with the fewest operations, not counting changes of sign, among programs for equal formulas.
+    """Return the program with the fewest operations among programs for equal formulas.
+
+    Changes of sign count only between programs with equal numbers of other operations.
 
     Parameters
     ----------
@@ -172,7 +174,7 @@ def _single_operations(program: Program) -> Program:
 def _slopes(formula: Expr, value: Symbol | None = None) -> dict[Symbol, Expr]:
     """Return the partial derivatives of a formula, by the symbols in the formula.
 
-    They may contain ``value``, the symbol for the formula itself: y = sqrt(a) has the derivative 1/(2 y).
+    The derivatives may contain ``value``, the symbol for the formula itself: y = sqrt(a) has the derivative 1/(2 y).
     """
     held = sorted(formula.free_symbols, key=str)
     above, below = formula.as_numer_denom()
@@ -227,7 +229,7 @@ def _backward(value: Formulas, entries: Entries) -> Formulas:
 def _symbol(named: list[tuple[Symbol, Expr]], name: str, slope: Expr) -> Expr:
     """Return a new symbol ``name`` for the derivative ``slope``, and append the pair (symbol, slope) to ``named``.
 
-    If ``slope`` is a number times a symbol, it is returned instead.
+    If ``slope`` is a number, a symbol, or a number times a symbol, return ``slope`` itself and append nothing.
     """
     if not slope.args or slope.as_coeff_Mul()[1].is_Symbol:
         return slope

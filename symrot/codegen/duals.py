@@ -74,8 +74,8 @@ class Dual:
 def dual_functions(functions: Mapping[str, Callable[..., Any]], least_root: Any = 0) -> dict[str, Callable[..., Any]]:
     """Return functions of dual numbers, by name; ``functions`` are the same functions for plain numbers.
 
-    ``least_root`` is added to the divisor of the derivative of a root: a tiny number makes that of sqrt(x**2) zero, not
-    undefined, at x = 0. Derivatives of floats that do not exist are NaN.
+    ``least_root`` is added to the divisor of the derivative of a root: a tiny number makes the derivative of
+    sqrt(x**2) zero, not undefined, at x = 0. Derivatives of floats that do not exist are NaN.
 
     Raises
     ------

@@ -13,7 +13,7 @@ from symrot.formula.program import Program
 __all__ = ["UNNAMED", "function_in", "load_numpy_kernel"]
 
 UNNAMED = Description("kernel of a scene", "all states", "derivations/euler_equations.md", "symrot emit --target numpy")
-"""The description of a kernel whose text nobody reads."""
+"""The head comment of a kernel that is loaded at once, so that nobody reads its text."""
 
 
 def load_numpy_kernel(program: Program) -> Callable[..., Any]:

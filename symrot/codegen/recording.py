@@ -18,8 +18,8 @@ from symrot.formula.tree import Node
 __all__ = ["Recorded", "Recorder", "is_exactly"]
 
 ANONYMOUS = "#"  # first letter of temporaries that get their names later
-MOST_LEVELS = 200  # of operations inside each other in one formula, which functions over trees call one by one
-LEAST, LARGEST = Fraction(1, 10**290), Fraction(10) ** 290  # factors that are doubles with all their digits
+MOST_LEVELS = 200  # deepest nesting of operations in one formula: functions over trees recurse once per level
+LEAST, LARGEST = Fraction(1, 10**290), Fraction(10) ** 290  # bounds of a merged factor: a double holds all its digits
 
 
 class Recorder:

@@ -180,7 +180,7 @@ def _quantities(equations: Equations, conserved: Mapping[str, Expr]) -> Lowered:
 
 @lru_cache(maxsize=64)
 def _lowered(signature: Signature, outputs: tuple[tuple[str, Expr], ...]) -> Lowered:
-    """Return the program of output quantities; scenes whose torques have other formulas often share it."""
+    """Return the program of output quantities; cached, since scenes with different torques often share it."""
     return lower(signature, outputs)
 
 
@@ -231,9 +231,10 @@ def with_values(program: Program, parameters: Parameters, constants: Mapping[str
 
 
 def corner_note(program: Program, results: str) -> str:
-    """Return where a program that contains derivatives of roots and absolute values has no result, or that of one side.
+    """Return a text that says where a program's derivatives are NaN (roots) or one-sided (absolute values).
 
-    ``results`` names what it computes, such as ``"the derivatives"``. The text is empty or begins with "; ".
+    ``results`` names what the program computes, such as ``"the derivatives"``. The text begins with "; "; it is empty
+    if the program calls neither ``sqrt`` nor ``copysign``.
     """
     calls = program.operations()
     return (calls["sqrt"] > 0) * f"; where a root of them is zero, {results} are NaN" + (

@@ -19,7 +19,7 @@ __all__ = ["STATES", "SteadyRotations"]
 
 _OMEGA, _QUATERNION = ("omega_1", "omega_2", "omega_3"), ("q0", "q1", "q2", "q3")
 STATES = (*_OMEGA, *_QUATERNION)
-"""The names of the state of an exact step of steady rotations: the components of omega and of the quaternion."""
+"""The states that :class:`SteadyRotations` steps: the components of omega, then those of the quaternion."""
 _HALF, _TWO = Fraction(1, 2), Fraction(2)
 
 

@@ -218,6 +218,8 @@ def step_signature(rates: Program, name: str, by: Sequence[str] = ()) -> Signatu
 def step_program(rates: Program, method: Method, name: str) -> Program:
     """Return the program of one step, with the arguments t, x, p (if the rates have parameters), dt, next.
 
+    For a :class:`WithDerivatives`, an array of derivatives follows for each entry of ``method.by``.
+
     Parameters
     ----------
     rates : Program
@@ -230,7 +232,8 @@ def step_program(rates: Program, method: Method, name: str) -> Program:
     Raises
     ------
     InputError
-        If the method is a Taylor series and the rates contain an operation without one.
+        If the method is a Taylor series and the rates contain an operation without one, if ``method.by`` names an input
+        that the step does not have, or if a method with derivatives meets the function abs.
     """
     signature = step_signature(rates, name, method.by if isinstance(method, WithDerivatives) else ())
     recorder = Recorder()

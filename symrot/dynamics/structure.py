@@ -65,7 +65,7 @@ class TorqueSwitch(NamedTuple):
     where: tuple[tuple[str, int], ...]
     label: str
     at_zero: int
-    choices: str = ""  # the guard with all parts of each ``where``; empty without ``where``
+    choices: str = ""  # the guard with both branches of each ``where(condition, u, v)``; empty without ``where``
 
 
 class FieldTorque(NamedTuple):

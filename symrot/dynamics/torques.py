@@ -52,7 +52,7 @@ __all__ = [
 ]
 
 
-LEVELLING = (tanh, atan, exp, log)  # functions whose doubles become equal to their limits
+LEVELLING = (tanh, atan, exp, log)  # sums with these, such as 1 + tanh(-20), may round to their limits, here 0
 
 
 @dataclass(frozen=True)

@@ -233,7 +233,7 @@ Usual = NDArray[np.bool_] | bool
 
 
 class _Part(NamedTuple):
-    """The trajectories that one batch computes: those with the same closed form about the same body axis."""
+    """The trajectories that one call of C computes: those with the same closed form about the same body axis."""
 
     variation: Variation
     axis: int | None

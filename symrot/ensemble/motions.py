@@ -96,7 +96,7 @@ def follow(problem: Problem, method: str) -> Followed:
 
 
 def _together(parts: Sequence[Followed], groups: Sequence[Integers]) -> Followed:
-    """Join the results ``parts`` to one, in the order of the ensemble; ``groups[k]`` are the indices of part k."""
+    """Return all results in the order of the ensemble; ``parts[k]`` has those of the motions ``groups[k]``."""
     order = np.argsort(np.concatenate(groups), kind="stable")
 
     def joined(arrays: Sequence[Any]) -> Any:

@@ -53,7 +53,7 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True)
 class Variation:
-    """What differs between the n trajectories of an ensemble: initial states, and columns of varying constants."""
+    """What differs between the n trajectories of an ensemble: initial states, and arrays of varying constants."""
 
     scene: Scene
     omega: Floats  # (n, 3), rad/s, body components

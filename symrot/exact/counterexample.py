@@ -34,7 +34,7 @@ ATTEMPTS = 60
 """Number of random points; a nonzero polynomial of degree d is zero at one of them with a probability of about d/40."""
 
 SIMPLER_TERMS = 200_000
-"""Number of terms of the residual that may be evaluated in order to simplify a point."""
+"""Largest number of terms of the residual that are evaluated to simplify a point."""
 
 UNMOVED = 20
 """Number of random points that are tried unchanged; later points are first moved into the domain if necessary."""
@@ -68,7 +68,10 @@ class FreeChoice:
 def rational_witness(
     ring: FormulaRing, left: Expr, right: Expr, entry: tuple[int, int] | None
 ) -> Counterexample | None:
-    """Return a counterexample to ``left = right`` in rational numbers, or None if the search ends without one."""
+    """Return a counterexample to ``left = right`` in rational numbers, or None if the search ends without one.
+
+    ``entry`` is stored in it: the row and column of the two sides in a matrix, or None.
+    """
     # roots, inverse functions and exponentials are seldom rational: no search
     if ring.outside_scope or ring.roots or ring.fine or ring.exponentials:
         return None
@@ -147,7 +150,7 @@ def closed_form_witness(
 ) -> Counterexample | None:
     """Return a point at which 50-digit intervals prove ``left != right``, or None.
 
-    Its symbols are rational or multiples of pi.
+    Its symbols are rational or multiples of pi. ``entry`` is stored in it, as by :func:`rational_witness`.
     """
     places = {number: leaf for leaf, number in ring.symbols.items() if ring.leaves[leaf]}
     bound = occurring(ring.hypothesis_numerators)
@@ -222,7 +225,7 @@ def _pure_angles(ring: FormulaRing) -> set[Expr]:
 
 
 def _enclosure(formula: Expr, values: dict[Expr, Expr]) -> Any:
-    """Return an interval that contains the value of a formula at a point, or None without a proof."""
+    """Return an interval that is proven to contain the value of a formula at a point, or None if no proof is found."""
     held = enclosure(formula, values)
     # SymPy's substitution may succeed where interval arithmetic alone fails
     return enclosure(formula.xreplace(values)) if held is None and _is_flat(formula) else held

@@ -45,15 +45,16 @@ def normal_form(expression: Any, relations: Sequence[Any] = ()) -> Any:
     Parameters
     ----------
     expression : Expr or Matrix
-        Exact: without floating point numbers.
+        The formula, without floating point numbers.
     relations : sequence of Expr or Eq
         Hypotheses; an expression means that it is zero, e.g. ``q0**2 + q1**2 + q2**2 + q3**2 - 1``.
 
     Returns
     -------
     Expr or Matrix
-        Of the same shape. A nonzero result is a fraction in lowest terms of the generators of the problem (sines and
-        cosines of base angles); to compare two formulas, take the normal form of their difference.
+        The normal form, of the same shape as ``expression``. A nonzero result is a fraction in lowest terms of the
+        generators of the problem (sines and cosines of base angles); to compare two formulas, take the normal form of
+        their difference.
 
     Raises
     ------
@@ -81,11 +82,11 @@ def normal_form(expression: Any, relations: Sequence[Any] = ()) -> Any:
 def is_zero(expression: Any, relations: Sequence[Any] = ()) -> bool:
     """Return whether a formula, or each entry of a matrix, is proven to be zero wherever it is defined.
 
-    ``relations`` are hypotheses, as for :func:`normal_form`.
+    ``relations`` are hypotheses, as for :func:`normal_form`. Outside the scope of :func:`normal_form`, the result False
+    proves nothing.
     """
     entries, _ = flatten(expression)
     ring = FormulaRing(entries, [as_zero(relation) for relation in relations])
-    # outside the scope of normal_form, False proves nothing
     return all(vanishes(ring, ring.ratio(entry).numerator) for entry in entries)
 
 
@@ -95,7 +96,7 @@ def decide(left: Any, right: Any, relations: Sequence[Any] = ()) -> Decision:
     Parameters
     ----------
     left, right : Expr or Matrix
-        Of equal shape; ``0`` means the zero matrix of any shape.
+        The two sides, of equal shape; ``0`` means the zero matrix of any shape.
     relations : sequence of Expr or Eq
         Hypotheses, as for :func:`normal_form`.
 

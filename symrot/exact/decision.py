@@ -43,8 +43,9 @@ class Decision:
     Attributes
     ----------
     verdict : str
-        ``"true"``: proven wherever both sides are defined, and a point is known where they are. ``"false"``: there
-        is a ``counterexample``. ``"conditional"``: true under any one of ``requires``. ``"undecided"``.
+        ``"true"``: proven wherever both sides are defined, and a point is known where they are. ``"false"``: there is a
+        ``counterexample``. ``"conditional"``: true under any one of ``requires``. ``"undecided"``: none of these is
+        proven.
     conditions : tuple
         Relations that hold where both sides are defined: divisors are not zero, radicands are not negative. For a
         conditional claim, its requirements come first.
@@ -216,8 +217,9 @@ def congruence(case: Case) -> Decision | None:
 
 
 def _by_proofs(case: Case, proofs: Sequence[tuple[FormulaRing, ...] | None]) -> Decision | None:
-    """Return the decision that ``proofs`` of the unproven entries give, each the rings that it needs; None if one of
-    them is missing.
+    """Return the decision if every unproven entry has a proof, otherwise None.
+
+    ``proofs`` has an item for each unproven entry: the rings that its proof needs, or None if it has no proof.
     """
     if None in proofs:
         return None
@@ -239,6 +241,9 @@ class ShapeMismatch(InputError):
 
 def matched_sides(left: Any, right: Any) -> tuple[list[Expr], list[Expr], Shape]:
     """Return (entries of the left side, entries of the right side, common shape) of an equation.
+
+    A scalar 0 becomes the zero matrix of the other side's shape; a 1 x 1 matrix may equal a scalar, whose shape is
+    None.
 
     Raises
     ------

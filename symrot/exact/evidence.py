@@ -64,7 +64,7 @@ class Counterexample:
 
 @dataclass(frozen=True)
 class Requirement:
-    """A condition that makes a claim true: ``zeros`` are zero and ``signs`` are nonnegative.
+    """A condition that makes a claim true: the formulas ``zeros`` are zero, and the formulas ``signs`` nonnegative.
 
     ``text`` states the condition, ``code`` names its kind.
     """

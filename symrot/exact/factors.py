@@ -16,16 +16,17 @@ from symrot.exact.limits.size import pieces
 __all__ = ["factor_list", "factored", "is_dear"]
 
 HIGHEST_DEGREE = 20
-"""The highest degree, in one of several unknowns, of a polynomial that is factored."""
+"""The largest degree in any unknown of a polynomial in several unknowns that SymPy is asked to factor."""
 
 HIGHEST_ALONE = 240
-"""The highest degree of a polynomial in one unknown that is factored."""
+"""The largest degree of a polynomial in one unknown that SymPy is asked to factor."""
 
 MOST_UNKNOWNS = 10
-"""The most unknowns of a polynomial of more than first degree that is factored."""
+"""The largest number of unknowns of a polynomial that SymPy is asked to factor."""
 
 MOST_BITS = 1000
-"""The most bits of a coefficient of a polynomial that is factored."""
+"""The largest number of bits of a coefficient, for SymPy to factor; :func:`factor_list` allows 100 times as many if the
+polynomial has one unknown."""
 
 
 def factor_list(poly: PolyElement) -> tuple[Any, list[tuple[PolyElement, int]]]:
@@ -46,7 +47,7 @@ def factor_list(poly: PolyElement) -> tuple[Any, list[tuple[PolyElement, int]]]:
 
 
 def _split(poly: PolyElement) -> list[tuple[PolyElement, int]]:
-    """Return the factors of a primitive polynomial of the first degree in one unknown; of others, the polynomial."""
+    """Return pairs (factor, power) of a primitive polynomial that is linear in an unknown; any other is left whole."""
     linear = [place for place, degree in enumerate(poly.degrees()) if degree == 1]
     if not linear:
         return [(poly, 1)]

@@ -88,9 +88,9 @@ def _computed(node: Expr, values: Mapping[Expr, float], known: dict[Expr, float]
 
 
 def seems_zero(formula: Expr, domain: Sequence[Expr] = ()) -> bool:
-    """Return whether a formula is nearly zero at random points, in double precision.
+    """Return False if a formula is clearly not zero at three random points, in double precision; otherwise True.
 
-    Only points count at which the formulas of ``domain`` are nonnegative.
+    Only points count at which the formulas of ``domain`` are nonnegative and all values are real.
     """
     # this skips proofs that cannot succeed: a wrong False loses a proof, a wrong True only costs time
     source, differences = Random(11), 0

@@ -32,7 +32,7 @@ TRIGONOMETRIC = {
 
 
 def is_function_of_time(node: Expr) -> bool:
-    """Return whether an expression is a function of time, its derivative, or a matrix entry.
+    """Return whether an expression is a function of time, a derivative of one, or a matrix entry.
 
     Raises
     ------

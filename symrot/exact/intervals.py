@@ -128,7 +128,7 @@ def enclosure(formula: Expr, values: Mapping[Expr, Any] | None = None, digits: i
     values : mapping, optional
         From symbols and functions of time to their values: numbers of SymPy, fractions, or intervals of mpmath.
     digits : int
-        More digits than 50, if they are needed.
+        The number of digits, if more than 50 are needed.
 
     Returns
     -------

@@ -64,14 +64,16 @@ def proof(ring: FormulaRing, numerator: PolyElement) -> tuple[FormulaRing, ...] 
 
 
 def lifts(ring: FormulaRing, numerator: PolyElement, only_zero: bool = False) -> Iterator[Lift]:
-    """Yield conditions, each of which is sufficient for the polynomial ``numerator`` to be zero."""
+    """Yield conditions, each of which is sufficient for the polynomial ``numerator`` to be zero.
+
+    With ``only_zero``, no condition comes from factors that are clearly not zero in double precision.
+    """
     places = {number for leaf, number in ring.symbols.items() if isinstance(leaf, _NAMES)}
     if not places or len(numerator) > MOST_TERMS or not any(mono[n] for mono in numerator for n in places):
         return
     # the polynomial is zero if one of its factors is
     for factor, _ in factor_list(numerator)[1]:
         used = {number for number in places if any(mono[number] for mono in factor)}
-        # with only_zero, factors that are clearly not zero in double precision give no condition
         if used and (not only_zero or seems_zero(factor.as_expr(*ring.generators), ring.domain)):
             with suppress(InputError):  # a condition that cannot be read proves nothing
                 yield from _lifts_of(ring, factor, used)
@@ -180,7 +182,8 @@ def _principal_multiple(ring: FormulaRing, factor: PolyElement, names: dict[int,
 def _principal_sum(ring: FormulaRing, factor: PolyElement, names: dict[int, Expr]) -> PrincipalValueProof | None:
     """Return a proof that ``factor`` is zero under conditions.
 
-    ``asin(x) + asin(y) - asin(u)`` is, for the usual u, if the sum is in the range of asin. None: there is no proof.
+    ``asin(x) + asin(y) - asin(u)`` is zero, for u = x sqrt(1 - y^2) + y sqrt(1 - x^2), if the sum of the first two
+    terms is in the range of asin. None: there is no proof.
     """
     terms = _combination(ring, factor, {**dict(enumerate(ring.generators)), **names}) or ()
     leaves = [(leaf, multiple) for leaf, multiple in terms if leaf is not pi]
@@ -212,7 +215,10 @@ def _ends_of_argument(inner: Expr, low: Expr, high: Expr) -> tuple[Expr, ...] | 
 
 
 def _principal_direction(ring: FormulaRing, leaf: Expr, angle: Expr) -> PrincipalValueProof | None:
-    """Return a proof that ``atan2(y, x)``, the ``leaf``, is the ``angle`` w wherever x cos w + y sin w > 0, or None."""
+    """Return a proof that ``atan2(y, x)``, the ``leaf``, is the ``angle`` w under conditions; None without a proof.
+
+    The conditions: -pi < w <= pi, and x cos w + y sin w > 0, or those of :func:`_principal_direction_of_root`.
+    """
     y, x = leaf.args
     left, right = y * cos(angle), x * sin(angle)
     with suppress(InputError):  # an angle that cannot be read proves nothing

@@ -20,10 +20,10 @@ __all__ = ["proof_by_arguments", "with_plain_arguments"]
 FUNCTIONS = (*TRIGONOMETRIC, *REWRITTEN, *INVERSE, sympy.exp, sympy.log, sympy.Abs)
 
 MOST_LEVELS = 4
-"""The most levels of nested functions whose arguments are shortened, from the inside out."""
+"""Largest number of levels of nested functions, from the inside out, whose arguments are put in normal form."""
 
 MOST_COMPARED = 8
-"""The most arguments that are compared with each other."""
+"""Largest number of arguments that are compared with each other."""
 
 
 def with_plain_arguments(

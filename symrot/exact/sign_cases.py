@@ -19,7 +19,7 @@ from symrot.exact.ring.ring import FormulaRing
 __all__ = ["vanishes_for_all_signs"]
 
 MOST_SIGNS = 4
-"""The most absolute values in a numerator."""
+"""Largest number of absolute values in a numerator, so that at most 16 choices of signs are tried."""
 
 MOST_TERMS = 60
 """Largest number of terms of a radicand that is factored."""

@@ -24,7 +24,7 @@ BITS = 320
 """Working precision, in bits, of irrational numbers."""
 
 NEGLIGIBLE_BITS = 200
-"""Number of bits: a value below 2^-200 of the values that it is compared with counts as zero."""
+"""A number of bits: a value below 2^-200 times the values with which it is compared counts as zero."""
 
 NEGLIGIBLE = Fraction(1, 1 << NEGLIGIBLE_BITS)
 

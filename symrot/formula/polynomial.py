@@ -189,7 +189,7 @@ def reduce_circular(source: Polynomial, angles: Iterable[str]) -> Polynomial:
 def _exponents(names: list[str]) -> Callable[[Term], list[int]]:
     """Return a sort key for monomials in the generators ``names``.
 
-    It is the tuple of exponents, so that the order is lexicographic.
+    The key is the list of exponents, so that the order is lexicographic.
     """
     return lambda term: [dict(term[0]).get(name, 0) for name in names]
 

@@ -19,7 +19,7 @@ __all__ = ["Argument", "Program", "ProgramRecord", "Signature", "node_from_json"
 class Argument:
     """One input or output argument of a kernel.
 
-    ``components`` holds (name, unit, meaning) for each number in it; a scalar has one.
+    ``components`` holds (name, unit, meaning) for each number in the argument; a scalar has one component.
     """
 
     name: str

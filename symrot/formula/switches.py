@@ -1,7 +1,8 @@
 """Formulas with jumps or kinks, rewritten as smooth formulas that a stepper integrates from one jump to the next.
 
-A switch is a jump or kink. Its guard is a formula whose sign changes there; its mode is the number that replaces the
-jump: ``sign(u)`` has the guard u and the mode s = 1 or -1. Standard library only.
+A switch is a jump or kink. Its guard is a smooth formula; its mode is a symbol for the sign of the guard (1 or -1) or
+for its floor, which is constant between two jumps: ``sign(u)`` becomes s and ``abs(u)`` becomes ``s*u``, with the guard
+u and the mode s. Standard library only.
 """
 
 from collections.abc import Collection, Iterable, Mapping
@@ -35,7 +36,7 @@ Conditions = tuple[tuple[Node, int], ...]
 
 
 class Switch(NamedTuple):
-    """A jump or kink of a formula: a mode, and the guard whose sign determines the mode.
+    """A jump or kink of a formula: a mode, and the guard whose sign or floor is the mode.
 
     Attributes
     ----------

@@ -272,11 +272,13 @@ ODD = {"sqrt", "sin", "tan", "sinh", "tanh", "asin", "atan", "abs"}  # functions
 
 
 def vanishes(node: Node, zeros: Collection[str]) -> bool:
-    """Return whether a formula, as it is written, is zero if the symbols ``zeros`` are zero: ``a*b`` is if a is."""
+    """Return whether a formula, as it is written, is zero if the symbols ``zeros`` are zero.
+
+    ``a*b`` is zero if a is zero; terms that cancel are not recognised: ``x - x`` gives False.
+    """
     kind = node[0]
     if kind in ("number", "symbol"):
         return node[1] == 0 if kind == "number" else node[1] in zeros
-    # terms that cancel are not recognised: x - x gives False
     parts = [vanishes(part, zeros) for part in children(node)]
     if kind == "*":
         return any(parts)

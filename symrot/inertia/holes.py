@@ -192,7 +192,10 @@ _CUT = {
 
 
 def _pieces(hole: hulls.Solid3, hosts: Sequence[hulls.Solid3]) -> list[hulls.Solid3]:
-    """Return the pieces into which the ends of the parts ``hosts`` cut a hole; empty for other shapes than prisms."""
+    """Return the pieces into which the ends of the parts ``hosts`` cut a hole.
+
+    The list is empty for shapes other than boxes, cylinders and prisms, and if there would be too many pieces.
+    """
     # a bore through two parts that touch is cut where one ends and the other begins
     cuts = []
     for name, axis in _CUT.get(hole.shape, ()):

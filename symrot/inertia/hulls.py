@@ -113,7 +113,7 @@ Z: Vec = (0.0, 0.0, 1.0)
 
 
 def point_disks(*points: Vec) -> list[Piece]:
-    """Return points as pieces of a hull."""
+    """Return points as pieces of a hull: disks of radius zero."""
     return [Disk(point, Z, 0.0, 0.0) for point in points]
 
 

@@ -19,7 +19,7 @@ Box = dict[str, tuple[Fraction, Fraction]]  # name of an input component -> smal
 
 @dataclass(frozen=True)
 class Law:
-    """An identity that the outputs of a kernel satisfy for all inputs under its relations, such as "the norm is 1"."""
+    """An identity that a kernel's outputs satisfy for all inputs that fulfil the relations, such as "the norm is 1"."""
 
     # A certificate proves the law from the formulas; it says nothing about how they were derived.
     text: str

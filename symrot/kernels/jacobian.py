@@ -19,7 +19,7 @@ from symrot.kernels.removable import explicit
 __all__ = ["BY", "jacobian_argument", "jacobian_kernel", "jacobian_name", "unit_of_quotient"]
 
 BY = "_by_"
-"""What stands in the name of a kernel with derivatives before each input."""
+"""The mark before each input in the name of a kernel with derivatives, such as ``quaternion_dcm_by_q``."""
 
 
 def jacobian_name(kernel: str, variables: Sequence[str]) -> str:

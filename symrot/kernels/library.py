@@ -24,7 +24,7 @@ def kernel_names() -> tuple[str, ...]:
 
 
 def is_kernel(name: object) -> bool:
-    """Return whether ``name``, up to any ``_by_``, is the name of a kernel of the library."""
+    """Return whether ``name`` is the name of a library kernel; a suffix that begins with ``_by_`` is ignored."""
     # The name of a kernel with derivatives has the suffix "_by_" with an argument, which is not checked.
     return isinstance(name, str) and name.split(BY, maxsplit=1)[0] in _table()
 

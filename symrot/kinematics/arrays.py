@@ -66,7 +66,8 @@ def largest(components: Components) -> Array:
 def in_range(*components: Array) -> tuple[Components, Array]:
     """Return the components of samples and their squared lengths, as needed to normalise them.
 
-    A sample whose squares would overflow or underflow is first divided by its largest component.
+    A sample whose squares would overflow or underflow is first divided by its largest component; samples that are zero,
+    infinite or NaN become NaN.
     """
     squares = _sum_of_squares(components)
     extreme = ~((squares > SAFE[0]) & (squares < SAFE[1]))
@@ -74,7 +75,6 @@ def in_range(*components: Array) -> tuple[Components, Array]:
         return components, squares
     fixed = np.array(components)
     size = largest(fixed[:, extreme])
-    # Squares would overflow or underflow; samples that are zero, infinite or NaN become NaN.
     fixed[:, extreme] = np.where(np.isfinite(size), fixed[:, extreme] / size, np.nan)
     return fixed, _sum_of_squares(fixed)
 

@@ -177,7 +177,6 @@ def quaternion_to_rotation_vector(q: Any) -> Array:
 
     For a rotation by pi, the first nonzero component is positive.
     """
-    # A rotation by pi (q0 = 0) has two; the one whose first nonzero component is positive is returned.
     return by_components(_logarithm, array_of(q, 4, what="a quaternion"), 3)
 
 
@@ -190,12 +189,14 @@ def _quaternion_of_axis_angle(n1: Array, n2: Array, n3: Array, angle: Array) -> 
 
 
 def axis_angle_to_quaternion(axis: Any, angle: Any, degrees: bool = False) -> Array:
-    """Return unit quaternions, shape (..., 4), of rotations about axes of any length by angles, broadcast together."""
+    """Return unit quaternions, shape (..., 4), of rotations about axes of any length by angles, broadcast together.
+
+    The angles are in rad, or in degrees if ``degrees``. A zero axis gives NaN, unless its angle is zero.
+    """
     axis, angle = array_of(axis, 3, what="an axis"), array_of(angle, what="an angle")
     angle = np.radians(angle) if degrees else angle
     shape = np.broadcast_shapes(axis.shape[:-1], angle.shape)
     rows = np.concatenate([np.broadcast_to(axis, (*shape, 3)), np.broadcast_to(angle[..., None], (*shape, 1))], axis=-1)
-    # A zero axis gives NaN, unless its angle is zero.
     return by_components(_quaternion_of_axis_angle, rows, 4)
 
 
@@ -208,11 +209,10 @@ def _axis_angle(*q: Array) -> Components:
 
 
 def quaternion_to_axis_angle(q: Any, degrees: bool = False) -> tuple[Array, Array]:
-    """Return unit axes, shape (..., 3), and angles in [0, pi], shape (...).
+    """Return unit axes, shape (..., 3), and angles from 0 to pi, shape (...), in rad, or in degrees if ``degrees``.
 
-    At zero angle, the axis is (1, 0, 0).
+    At zero angle, the axis is (1, 0, 0). A rotation by pi gets the axis whose first nonzero component is positive.
     """
-    # A rotation by pi gets the axis whose first nonzero component is positive.
     axis_angle = by_components(_axis_angle, array_of(q, 4, what="a quaternion"), 4)
     return axis_angle[..., :3], np.degrees(axis_angle[..., 3]) if degrees else axis_angle[..., 3]
 

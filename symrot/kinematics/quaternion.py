@@ -249,7 +249,10 @@ def quaternion_rates(frame: str = "body", q: Sequence[Any] | Matrix = symbols.qu
 
 
 def quaternion_rate_jacobian(frame: str = "body", q: Sequence[Any] | Matrix = symbols.quaternion) -> RateMatrix:
-    """Return the rate matrix B(q), shape (3, 4), of ``omega = B(q) * dq/dt`` for unit q: ``2 q* dq`` or ``2 dq q*``."""
+    """Return the rate matrix B(q), shape (3, 4), of ``omega = B(q) * dq/dt`` for unit q.
+
+    Omega is the vector part of ``2 q* dq/dt`` in body components, and of ``2 dq/dt q*`` in space components.
+    """
     q = expressions(q, 4, "a quaternion")
     product = (left_matrix if check_frame(frame) == "body" else right_matrix)(conjugate(q))
     matrix = 2 * product[1:, :]

@@ -142,7 +142,10 @@ def quaternion_of_rotation_vector(vector: Sequence[Any] | Matrix = symbols.rotat
 
 
 def rotation_vector_of_quaternion(q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-    """Return the rotation vector, shape (3, 1), rad, of a quaternion of any norm: its length is at most 2 pi."""
+    """Return the rotation vector, shape (3, 1), rad, of a quaternion of any norm: its length is at most 2 pi.
+
+    If the vector part of the quaternion is zero, the result is zero for a positive q0, otherwise undefined.
+    """
     q0, *vector = expressions(q, 4, "a quaternion")
     # the limit of the formula; for other q0 without a vector part, the result is undefined
     if q0.is_positive and not any(vector):
@@ -168,10 +171,13 @@ def quaternion_of_axis_angle(
 
 
 def axis_angle_of_quaternion(q: Sequence[Any] | Matrix = symbols.quaternion) -> ImmutableMatrix:
-    """Return axis and angle, ``(n1, n2, n3, alpha)``, of a quaternion of any norm, shape (4, 1)."""
+    """Return axis and angle, ``(n1, n2, n3, alpha)``, of a quaternion of any norm, shape (4, 1).
+
+    The angle is from 0 to 2 pi, rad. The axis is undefined (SymPy's nan) if the vector part of the quaternion is zero.
+    """
     q0, *vector = expressions(q, 4, "a quaternion")
     size = length(vector)
-    # Undefined at zero angle. The angle, in [0, 2 pi], is accurate when small; 2 acos(q0) is not.
+    # By atan2 the angle is accurate when small; 2 acos(q0) is not.
     return ImmutableMatrix([*(component / size for component in vector), 2 * atan2(size, q0)])
 
 

@@ -76,7 +76,7 @@ def room(most: int = WIDTH) -> int:
     """Return the width of printed lines in characters: the width of the terminal less a margin or ``most``,
     whichever is smaller.
 
-    If the output goes to a pipe or file, the width is ``most``.
+    The width is at least :data:`NARROWEST`. If the output goes to a pipe or file, it is ``most``.
     """
     if not sys.stdout.isatty():
         return most

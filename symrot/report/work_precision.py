@@ -140,7 +140,7 @@ def compared(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, A
     Raises
     ------
     InputError
-        If the studies are of different scenes, or have no method in common at the same power of ten of the error.
+        If the studies are of different scenes, or if no method reaches the same power of ten of the error in both.
     """
     names = [study["scene"]["name"] for study in (first, second)]
     if names[0] != names[1]:

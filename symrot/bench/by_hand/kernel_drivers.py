@@ -12,9 +12,10 @@ __all__ = ["drivers", "heyoka_drivers"]
 
 
 def drivers(signature: Signature, batch: bool) -> str:
-    """Return the C text of both functions for a kernel with the arguments of ``signature``, whose text comes before.
+    """Return the C text of ``symrot_repeat_one`` and ``symrot_repeat_batch`` for a kernel with these arguments.
 
-    Without ``batch``, the kernel has no batch function, and a loop over its one-sample function replaces it.
+    The text is to be appended to the C text of the kernel. Without ``batch``, the kernel has no batch function, and a
+    loop over its one-sample function replaces it.
     """
     every, sizes = signature.arguments, _sizes(signature)
     one = ", ".join(f"{'' if a.is_scalar else '&'}a[{i}][{sizes[a.role]}*k]" for i, a in enumerate(every))
@@ -71,7 +72,10 @@ def _batch_of_one(signature: Signature) -> list[str]:
 
 
 def heyoka_drivers(signature: Signature) -> str:
-    """Return the C text of both functions for a kernel that heyoka has compiled; symrot_take sets its addresses."""
+    """Return the C text of ``symrot_repeat_one`` and ``symrot_repeat_batch`` for a kernel that heyoka has compiled.
+
+    Its function ``symrot_take`` receives the addresses of the compiled functions.
+    """
     sizes, out = _sizes(signature), sum(a.role == "in" for a in signature.arguments)
     return "\n".join([
         "#include <stddef.h>",

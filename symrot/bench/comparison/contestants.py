@@ -48,9 +48,11 @@ class Contestant(NamedTuple):
     quick: bool = True  # whether the contestant is part of a quick study
 
     def at(self, tolerances: Sequence[float]) -> "Contestant":
-        """Return the contestant with those ``tolerances`` that are not below its smallest tolerance."""
+        """Return the contestant with those ``tolerances`` that are not below its smallest tolerance.
+
+        A closed form, which has no tolerance, is returned unchanged.
+        """
         least = self.tolerances[-1]
-        # A closed form has no tolerance and is returned unchanged.
         return self._replace(tolerances=tuple(t for t in tolerances if t >= least)) if least else self
 
 
@@ -94,7 +96,7 @@ def _symrot(method: str) -> Callable[[Problem, float], Run]:
 
 
 def _last(trajectory: Any) -> Any:
-    """Return the integrated states at the only sample of a trajectory, or the body's state if it is a closed form."""
+    """Return the integrated states at a trajectory's only sample, or the body's state if a closed form computed it."""
     if trajectory.method != "exact":
         return trajectory.y[:, 0]
     y = trajectory.y[:, 0]

@@ -30,8 +30,8 @@ Floats = NDArray[np.float64]
 
 DIGITS, ORDER, TAIL = 40, 32, 1e-28
 MOST_STEPS = 2000
-FINER = 1e-4  # share of the last terms of the series that the check of a reference allows
-SLOWEST = 1e-8  # times the initial angular speed (or 1 rad/s): errors of slower bodies are relative to this speed
+FINER = 1e-4  # by this factor the last terms of the series are smaller in the path that checks a reference
+SLOWEST = 1e-8  # fraction of the initial angular speed (or of 1 rad/s): errors at slower times are relative to it
 
 
 _NAMES = ("sqrt", "sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan", "atan2")
@@ -46,7 +46,7 @@ def as_mpf(value: Any) -> Any:
 def exact_parameters(parameters: Parameters, plan: Plan) -> dict[str, Fraction]:
     """Return a map from the name of each parameter of a kernel to its exact value, for the exact constants of ``plan``.
 
-    Such a parameter is ``(C - B)/A``.
+    A parameter stands for a formula of constants, such as ``(C - B)/A``.
     """
     values = {"pi": number.PI, **plan.constants}
     return {name: Fraction(evaluate(node, values, EXACT_FUNCTIONS)) for name, node in parameters}
@@ -66,7 +66,7 @@ class ExactPath:
     Parameters
     ----------
     plan, kernel
-        The motion.
+        The plan of the motion, and its kernel, which contains the rates.
     rounded : pair of sequences, optional
         The parameters of the rates and the initial states as doubles; default: the exact numbers of the scene.
     tail : float
@@ -218,8 +218,8 @@ class ExactPath:
     def error(self, t: float, periodic: bool) -> float:
         """Return the error of the states at the time ``t``, from the same path with shorter steps.
 
-        The error of rates is relative to the largest initial rate. ``periodic``: as continued by the period of a free
-        body.
+        The error of rates is relative to the largest initial rate. With ``periodic``, the body is free, and both paths
+        are computed for one period and continued by it.
         """
         with mpmath.workdps(DIGITS):
             rows = [

@@ -22,9 +22,10 @@ __all__ = ["PARTS", "Problem", "State"]
 Floats = NDArray[np.float64]
 
 PARTS = (0.382, 0.618, 0.854, 1.0)
-"""Fractions of the span at which errors are measured; one is not enough, since an error may pass through zero."""
+"""Fractions of the span at which errors are measured; one time is not enough, since an error may pass through zero."""
 REST = 1e-3
-"""Fraction of the largest angular velocity at these times; errors at slower times are relative to this fraction."""
+"""Where omega is below this fraction of its largest value at the compared times, errors are relative to the fraction
+of the largest value."""
 
 
 class State(NamedTuple):
@@ -85,7 +86,10 @@ class Problem:
 
     @staticmethod
     def error(state: State, exact: State, least: float = 0.0) -> float:
-        """Return the relative error of omega or the attitude error in rad, whichever is larger."""
+        """Return the relative error of omega or the attitude error in rad, whichever is larger; inf for a nan state.
+
+        If the exact omega is shorter than ``least``, rad/s, the error of omega is relative to ``least``.
+        """
         if not np.isfinite(state.omega).all():
             return math.inf
         # A body nearly at rest before a pulse may rotate at 1e-40 rad/s, where relative errors are meaningless: for

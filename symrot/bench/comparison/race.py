@@ -56,7 +56,7 @@ def seconds_of(run: Callable[[], object], repeats: int = 1) -> float:
 
 
 def rounds_for(seconds: float, rounds: int) -> int:
-    """Return in how many rounds a run is timed: ``rounds``, at most :data:`SLOW_ROUNDS` if it takes :data:`SLOW` s."""
+    """Return in how many rounds a run is timed: ``rounds``, at most :data:`SLOW_ROUNDS` for :data:`SLOW` s or more."""
     return rounds if seconds < SLOW else min(rounds, SLOW_ROUNDS)
 
 

@@ -48,8 +48,8 @@ __all__ = ["DIGITS", "Reference", "reference"]
 Progress = Callable[[str], object]
 
 MOST_SECONDS = 150.0  # limit for the series; it is abandoned as soon as its estimated time is longer
-MOST_LONG_SECONDS = 20.0  # for fixed steps in long double
-MOST_STEPS = 2_000_000  # limit of fixed steps, like MOST_SECONDS
+MOST_LONG_SECONDS = 20.0  # limit for fixed steps in long double
+MOST_STEPS = 2_000_000  # largest number of fixed steps
 FEWEST_STEPS = 64
 GRID_TOLERANCE = 1e-8  # tolerance of the motion whose steps show where fixed steps must be short
 CONTRADICTION = 1e-6  # a larger difference between references means that one of them is wrong

@@ -118,7 +118,7 @@ def run(
 
 
 def _compact(results: Mapping[str, Any]) -> str:
-    """Return the results of the suite as JSON text: one line per motion, numbers except states with four digits."""
+    """Return the results of the suite as JSON text, one line per motion; numbers other than states have four digits."""
     studies = results["studies"].items()
     rows = ",\n".join(f"{json.dumps(name)}: {json.dumps(_short(one), ensure_ascii=False)}" for name, one in studies)
     rest = ",\n".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in results.items() if key != "studies")

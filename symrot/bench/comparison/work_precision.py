@@ -68,7 +68,8 @@ def study(
     methods : str, optional
         Groups of :data:`symrot.bench.comparison.contestants.CONTESTANTS`, comma-separated; default: all.
     quick : bool
-        Whether to run half of many tolerances, fewer repetitions, and heyoka in its default setting only.
+        Whether to run every second one of more than 16 tolerances, fewer repetitions, and heyoka only in its default
+        setting.
     say : callable
         Called with messages about the progress.
     tolerances : sequence of float, optional
@@ -142,7 +143,7 @@ def _entries(
                 continue
             entries.append(entry)
             if entry[0].first > effort.longest:
-                why = f"below {tolerance:.0e}: a run takes {entry[0].first:.1f} s and more"
+                why = f"tolerances below {tolerance:.0e}, at which a run takes {entry[0].first:.1f} s"
                 skipped.append({"method": contestant.name, "why": why})
                 break
     return entries, skipped

@@ -42,7 +42,7 @@ class Curve(NamedTuple):
     method: str
     attitude: Floats  # rad, shape (n,)
     rates: Floats  # relative to the largest rate
-    invariants: dict[str, Floats]  # relative drift of each, by name
+    invariants: dict[str, Floats]  # relative drift of each conserved quantity, by name
 
 
 class Track:
@@ -181,7 +181,7 @@ class Method(NamedTuple):
 
 METHODS = (
     Method("exact", "closed form", math.inf, math.inf, _exact),
-    Method("taylor", "Taylor series, carry projected onto the invariants", math.inf, math.inf, _taylor(True)),
+    Method("taylor", "Taylor series, low digits projected onto the invariants", math.inf, math.inf, _taylor(True)),
     Method("taylor, plain", "the same without projection", math.inf, math.inf, _taylor(False)),
     Method("dop853", "Dormand-Prince 8(5,3) in C", math.inf, math.inf, _dop853),
     Method("SciPy DOP853", "solve_ivp at its least rtol", 1e3, 1e4, _scipy),

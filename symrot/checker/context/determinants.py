@@ -58,7 +58,11 @@ def determinants() -> dict[str, Expr]:
 
 
 def verdict_on_determinant(claim: Claim, repair: bool) -> Verdict | None:
-    """Return the verdict on a claim ``det T = f(theta)`` about an undefined matrix T; None for other claims."""
+    """Return the verdict on a claim ``det T = f(theta)`` about an undefined matrix T, which may be a rate Jacobian.
+
+    It is "recognised" if f is the determinant of a rate Jacobian, and "doubtful" if ``repair`` and one edit makes it
+    one. Return None for all other claims.
+    """
     assert claim.relation is not None
     generic = {*matrices_of_entries(claim.define)}
     for own, formula in (claim.relation[1:], claim.relation[:0:-1]):
@@ -66,10 +70,9 @@ def verdict_on_determinant(claim: Claim, repair: bool) -> Verdict | None:
         letter = next(iter(names)) if len(names) == 1 else ""
         if not _is_determinant(own, generic) or not SECOND_ANGLE.fullmatch(letter):
             continue
-        # f is the determinant of the rate Jacobian of the stated sequence, or of any sequence
+        # the sequence is the stated one, or any if none is stated
         if readings := _readings(claim, formula, letter):
             return Verdict("recognised", recognised_as=readings)
-        # "doubtful" if one edit makes f such a determinant
         return _edited(claim, own, formula, letter) if repair else None
     return None
 

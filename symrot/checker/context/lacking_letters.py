@@ -34,10 +34,11 @@ Assignments = Callable[[Known, Any, set[Expr]], Iterator[Mapping[Expr, Expr]]]
 def with_lacking_letters(
     named: NamedFormula, value: Any, meant: Iterator[tuple[Known, Any]], assignments: Assignments
 ) -> Verdict | None:
-    """Return "doubtful" for a claim's formula ``m*g*l`` if one of ``meant`` has one more term or factor; otherwise
-    None.
+    """Return the verdict "doubtful" on a claim's formula ``m*g*l`` if one of ``meant`` has one more term or factor.
+
+    ``meant`` are the derived formulas that the context states word by word; ``assignments`` yields maps from the
+    symbols of a derived formula to letters of the claim. Return None if no such formula has one more term or factor.
     """
-    # ``meant`` are the derived formulas that the context states word by word
     own = {*atoms_of([value])} - {time}
     if is_matrix(value) or len(own) < LEAST_LETTERS:
         return None

@@ -40,7 +40,7 @@ HALVES = ("a", "l")
 
 def of_named_body(claim: Claim, named: NamedFormula, verdict: Verdict, judge: Judge) -> Verdict:
     """Return the verdict on a claim about ``I_rod``, ``I_end`` and the like, for which only a formula of this body and
-    point is right; ``verdict`` on other claims.
+    point is right; return ``verdict`` for other claims, and if it is "true", "false" or "doubtful".
 
     ``judge`` returns the verdict on a claim in its context.
     """

@@ -32,7 +32,7 @@ from symrot.exact.ring.roots import written
 __all__ = ["STAGES", "ClaimCase", "domain_of_text", "leave_open", "nearby_witness"]
 
 MUCH_LARGER = 5
-"""The ratio of sizes from which on the larger formula certainly has the longer text."""
+"""A formula with more than this many times the symbols and operations of another is taken to have the longer text."""
 
 MOST_PIECES = 60
 """A sum that must be nonzero is simplified, to see if the other conditions imply it, if it has fewer symbols and
@@ -152,8 +152,10 @@ def nearby_witness(case: ClaimCase) -> None:
 
 
 def branch(case: ClaimCase) -> Decision | None:
-    """Return "true" if a claim's text implies the signs that it needs, as sqrt(x) does for ``sqrt(x**2) == x``; or
-    None.
+    """Return "true" if a claim's text implies the signs that it needs, as sqrt(x) does for ``sqrt(x**2) == x``.
+
+    Return "undecided" instead if no point is known at which both sides are real numbers, and None if the text does not
+    imply the signs.
     """
     case.branches, rings = _branches(case.ring, case.numerators)
     case.rely_on((*case.proof_rings, *rings))
@@ -167,7 +169,8 @@ def branch(case: ClaimCase) -> Decision | None:
 
 
 def entail(case: ClaimCase) -> Decision | None:
-    """Return "true" for a claim that follows from its hypotheses, else None.
+    """Return "true" for a claim that follows from its hypotheses, or "undecided" if no point is known where these hold
+    and both sides are real numbers; None for other claims.
 
     Raise InputError if the hypotheses hold at no real point.
     """
@@ -255,8 +258,9 @@ def _shorter(first: Expr, second: Expr) -> Expr:
 def _branches(
     ring: FormulaRing, numerators: Sequence[PolyElement]
 ) -> tuple[list[Requirement] | None, tuple[FormulaRing, ...]]:
-    """Return signs that make a claim true, such as ``x >= 0``, or None, and the larger rings in which that was
-    proven.
+    """Return the conditions on signs that make a claim true, such as ``x >= 0``, and the larger rings of the proof.
+
+    The conditions are [] if none is needed, and None if none is known.
     """
     try:
         branches = branch_requirements(ring, numerators) if ring.roots else None
@@ -283,7 +287,10 @@ def _is_long(requirement: Requirement) -> bool:
 def _within_range(
     ring: FormulaRing, numerator: PolyElement
 ) -> tuple[list[Requirement], tuple[FormulaRing, ...]] | None:
-    """Return the range of an inverse function in which a claim is true, with the rings of its proof; or None."""
+    """Return [condition], the range of an inverse function in which a claim is true, and the rings of the proof.
+
+    The list is empty if the claim is true without a condition. None if no such range is known.
+    """
     within = principal(ring, numerator)
     if within is None:
         return None

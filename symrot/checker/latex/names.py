@@ -174,9 +174,11 @@ class NamesPart(SumsPart):
                 raise self.fail("letters and digits in a subscript", place)
 
     def resolved(self, name: str, subscript: str, others: tuple[str, ...] = ()) -> str:
-        """Return a name with its subscript as the claim declares it: ``I_1``, ``I1`` or one of ``others``."""
+        """Return a name with its subscript as the claim declares it: ``I_1``, ``I1`` or one of ``others``.
+
+        Return ``I_1`` if the claim declares none of these.
+        """
         forms = [f"{name}_{subscript}", f"{name}{subscript}"] if subscript else [name]
-        # undeclared names get the first form
         return next((form for form in [*forms, *others] if form in self.names), forms[0])
 
     def called_with_time(self) -> bool:

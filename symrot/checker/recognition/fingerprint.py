@@ -160,7 +160,10 @@ class Fingerprint:
         return [tuple(values[n] * below % PRIME for n in order) for values in self.signatures]
 
     def key(self, shape: tuple[int, int] | None, order: Sequence[int]) -> str:
-        """Return a hash of the formula that depends neither on the names of symbols nor on a constant factor."""
+        """Return a hash of the formula, with its entries in ``order`` and this ``shape`` (None for a scalar).
+
+        The hash depends neither on the names of symbols nor on a constant factor.
+        """
         return sha256(repr((shape, sorted(self.rows(order)))).encode()).hexdigest()[:16]
 
 

@@ -66,6 +66,8 @@ MOST_COSTLY = 9.0
 def diagnose(claim: Claim, decision: Decision) -> tuple[Diagnosis, tuple[Repair, ...]]:
     """Return the probable fault of a claim, and at most three proven repairs, the nearest first.
 
+    The code of the fault is "none" if none is found.
+
     Parameters
     ----------
     claim : Claim

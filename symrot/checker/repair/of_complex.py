@@ -24,7 +24,10 @@ MOST_EDITS, MOST_REPAIRS = 300, 3
 
 
 def complex_repairs(claim: Claim) -> tuple[Diagnosis, tuple[Repair, ...]]:
-    """Return the probable fault of a false claim about complex numbers, and proven repairs, the nearest first."""
+    """Return the probable fault of a false claim about complex numbers, and proven repairs, the nearest first.
+
+    The code of the fault is "none" if there is no repair.
+    """
     repairs = tuple({repair.text: repair for repair in islice(_proven(claim), MOST_REPAIRS)}.values())
     code = repairs[0].code if repairs else "none"
     return Diagnosis(code, FAULT_DESCRIPTIONS[code]), repairs

@@ -40,7 +40,8 @@ def verdict_on_parts(
 ) -> Verdict:
     """Return the worst verdict on the equations of a chain or of several lines, with a note on each.
 
-    It is "doubtful" if each equation is recognised, but as formulas of different bodies, frames or sequences.
+    Definitions of names that other lines use do not count. The verdict is "doubtful" if each equation is recognised,
+    but as formulas of different bodies, frames or sequences.
     ``verdicts`` are those on the equations of ``lines``, in order. If ``has_units``, the first side of a chain is
     a number with a unit, not a name.
     """

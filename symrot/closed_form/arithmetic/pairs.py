@@ -69,7 +69,11 @@ def attitude(values: Sequence[Number]) -> list[float]:
 
 
 def on_grid(values: Sequence[tuple[int, int]]) -> list[float]:
-    """Return ratios of integers as a list hi, lo, hi, lo, ..; each sum hi + lo approximates a ratio."""
+    """Return ratios of integers, given as pairs (top, bottom), as a list hi, lo, hi, lo, ..
+
+    Each sum hi + lo approximates top/bottom. hi is the nearest double; lo is rounded to a multiple of
+    :data:`GRID` times the last bit of hi.
+    """
     result: list[float] = []
     for top, bottom in values:
         hi = top / bottom
@@ -83,8 +87,10 @@ def on_grid(values: Sequence[tuple[int, int]]) -> list[float]:
 
 
 def same(a: Number, b: Number) -> bool:
-    """Return whether two numbers count as equal: they differ by less than 2^-200 of their size."""
-    # two floats count as equal only if they are identical
+    """Return whether two numbers count as equal: they differ by less than 2^-200 of their size.
+
+    Two floats count as equal only if they are identical.
+    """
     return a == b or (not (isinstance(a, float) and isinstance(b, float)) and equal(Fraction(a), Fraction(b)))
 
 

@@ -19,7 +19,7 @@ from symrot.formula import exact_numbers as number
 __all__ = ["FEW", "LARGE", "SMALL", "Turning", "exp_and_expm1"]
 
 FEW = 64
-"""Largest number of times for which integers are used."""
+"""Up to this number of samples with large angles, integers replace double-double numbers, which take longer."""
 
 SMALL = 1 / 16
 """Largest angle, in revolutions, for which doubles suffice; their error is then at most 2e-16 rad."""
@@ -29,7 +29,7 @@ LARGE = 1e10
 
 _BLOCK = 4096  # times in one block, whose arrays stay in the caches of the processor
 _BITS = 192  # bits of an angle in revolutions after the binary point, 64 of them for the size of the time
-_HALVINGS = 8  # bits of the argument of the exponential, computed in integers
+_HALVINGS = 8  # how often the argument of the exponential is halved before its series is summed in integers
 _GROWN = 1500.0  # exp of a larger number exceeds the largest double even after multiplication by the smallest one
 _GUARD = 16  # guard bits against the rounding errors of integer arithmetic
 _TERMS = 20  # terms of the series of (exp(x) - 1 - x)/x^2 for |x| <= 1; the next term is below 2^-70

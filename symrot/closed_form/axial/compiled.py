@@ -63,7 +63,8 @@ class Loops(NamedTuple):
     def __call__(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> int:
         """Write the angular velocity and the attitude at ``times`` into ``omega`` (n, 3) and ``quaternion`` (n, 4).
 
-        Return 0, or :data:`TOO_MANY_TURNS` (some samples are NaN), or :data:`OUT_OF_RANGE` (nothing is written).
+        An array that is None is skipped. Return 0, or :data:`TOO_MANY_TURNS` (some samples are NaN), or
+        :data:`OUT_OF_RANGE` (nothing is written).
         """
         status: int = self.evaluate(self.place, len(times), address(times), address(omega), address(quaternion))
         return status

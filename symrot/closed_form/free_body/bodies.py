@@ -51,8 +51,10 @@ def _functions() -> tuple[Any, Any, Any]:
 
 
 def fixed_body(moments: Sequence[Fraction], axes: Sequence[Fraction]) -> NDArray[np.uint64]:
-    """Return the principal moments and the principal axes of one body as integers for C, in units of 2^-248."""
-    # moments are scaled by a power of two, so that the largest lies between 1/2 and 1
+    """Return the principal moments and the principal axes of one body as integers for C, in units of 2^-248.
+
+    The moments are first divided by the power of two that makes the largest one at least 1/2 and below 1.
+    """
     largest = max(moments)
     length = largest.numerator.bit_length() - largest.denominator.bit_length()  # the power of two, or one more
     if largest >= Fraction(2) ** length:

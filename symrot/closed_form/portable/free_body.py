@@ -196,8 +196,8 @@ class PortableFreeBody:
     def _sums(self, t: Floats) -> tuple[Any, Any, Floats]:
         """Return (cn, sn, dn), each times its amplitude, (re, im), and a phase in half revolutions, at the times t.
 
-        re and im are the parts of a theta series. The phase is what theta functions need, less whole half revolutions;
-        0 in the regimes without theta functions.
+        re and im are the real and imaginary part of a theta series. The phase is that of the theta functions' argument,
+        reduced by a whole number of half revolutions; it is 0 in the regimes circular and separatrix.
         """
         # cn, sn and dn give the angular velocity; re, im and the phase the attitude
         if self.regime == "circular":

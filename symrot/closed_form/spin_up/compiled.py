@@ -99,7 +99,8 @@ class Compiled:
     def fill(self, times: Floats, omega: Floats | None, quaternion: Floats | None) -> bool:
         """Write the samples at ``times``, s, into ``omega`` (n, 3) and ``quaternion`` (n, 4).
 
-        Return whether some times exceed :attr:`longest`; the samples at these times are not valid.
+        An array that is None is skipped. Return whether some times exceed :attr:`longest`; the samples at these times
+        are not valid.
         """
         samples = len(times), address(times), address(omega), address(quaternion)
         _, place, table = self._known
@@ -107,5 +108,4 @@ class Compiled:
         if status & _LACKING:
             self._known = _, place, table = self._prepared(np.empty(TABLE))
             status = self._evaluate(place, address(table), *samples)
-        # an array that is None is skipped
         return bool(status & _LOST)

@@ -114,10 +114,12 @@ class Integers:
         return Near(rounded(self._sweep.across * self._scale / self._root))
 
     def _side(self, omega: Fraction) -> int:
-        """Return the formula for an axial rate ``omega``: 1 or -1 for the asymptotic series after or before resonance,
-        0 for the series near it.
+        """Return which formula holds at the axial rate ``omega``.
+
+        1 or -1: the asymptotic series after or before resonance; 0: the series near resonance. If the asymptotic series
+        is accurate everywhere, always 1.
         """
-        if self._sweep.series.wide:  # then it holds everywhere
+        if self._sweep.series.wide:
             return 1
         return 0 if abs(omega) < self._edge else 1 if omega > 0 else -1
 
@@ -190,14 +192,14 @@ class Integers:
     def fill(self, times: Floats, rates: Floats | None, attitudes: Floats | None) -> bool:
         """Write the samples at ``times``, s, computed by NumPy, into ``rates`` and ``attitudes``.
 
-        Return whether some times exceed :attr:`longest`; the samples at these times are not valid.
+        An array that is None is skipped. Return whether some times exceed :attr:`longest`; the samples at these times
+        are not valid.
         """
         first, last = min(0.0, float(times.min())), max(0.0, float(times.max()))
         near = attitudes is not None and not self._far(first, last)
         if near not in self._kinds:
             self._kinds[near] = Portable(self._constants(near), self._near.table() if near else None).evaluate
         self._kinds[near](times, rates, attitudes)
-        # an array that is None is skipped
         return not max(last, -first) <= self.longest
 
     def finite(self, time: float) -> bool:

@@ -115,7 +115,7 @@ def rounding_source(program: Program) -> str:
 
 
 def _rounded_disc(system: Recurrences, number: int, places: Mapping[str, str], linear: Mapping[int, bool]) -> str:
-    """Return C text of a disc around the computed value of a series that contains its exact value."""
+    """Return the C text of a disc around the computed value of a series; the disc contains the exact value."""
     # the low part of the time is added to sums, and to the phases of the rule clock
     series, disc = system.series[number], _disc(system, number, places)
     if series.rule == "time":

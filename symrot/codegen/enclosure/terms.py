@@ -80,7 +80,7 @@ def _needed(system: Recurrences, terms: Sequence[Sequence[tuple[Node, int]]]) ->
 def _degree(series: Series, degrees: list[int]) -> int:
     """Return the degree of a series as a polynomial in the states, t, sin(a t + b) and cos(a t + b).
 
-    It is BEYOND or more if a pulse may hide in the series, as in exp(-t^2).
+    The degree is BEYOND or more if a pulse may hide in the series, as in exp(-t^2).
     """
     # degrees[i]: the degree of series i
     if series.rule in ("state", "time"):

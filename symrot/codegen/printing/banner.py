@@ -12,7 +12,7 @@ from symrot.formula.program import Argument, Program
 __all__ = ["CONTRACT", "Description", "banner", "cost"]
 
 WIDTH = 110
-LONGEST = 116  # of a domain in one line
+LONGEST = 116  # largest length of a domain that is printed in one line
 WIDEST = 56  # largest width of an aligned column; a longer entry shifts the rest of its row
 NAMES = {"add": "add", "mul": "mul", "div": "div", "neg": "neg"}
 

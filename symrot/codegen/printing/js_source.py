@@ -30,7 +30,7 @@ COPYSIGN = [
     "    return (y < 0 || Object.is(y, -0) ? -1 : 1)*Math.abs(x);",
     "}",
 ]
-"""The function of C that JavaScript does not have."""
+"""The lines of the function copysign, which C has and JavaScript lacks."""
 
 
 def _literal(value: Fraction) -> str:

@@ -88,8 +88,9 @@ def _removable(which: Removable, precision: str) -> tuple[tuple[str, ...], list[
 def unpacked(argument: Argument, used: Collection[str]) -> str:
     """Return the Python statement, such as ``_, theta, psi = angles``, that names the ``used`` components.
 
-    Python then raises ValueError for an array of another length, such as samples along the first axis; by index, NumPy
-    would ignore further components, and JAX would take the last one for those that are missing.
+    Python then raises ValueError for an array of another length, such as samples along the first axis. If components
+    were read by index instead, NumPy would ignore surplus components, and JAX would use the last component in place
+    of missing ones.
     """
     components = [name if name in used else "_" for name, *_ in argument.components]
     return f"    {', '.join(components) if len(components) > 1 else f'({components[0]},)'} = {argument.name}"

@@ -16,7 +16,7 @@ __all__ = ["FAR", "math_header", "quarter_turn_parts", "tail_coefficients"]
 
 FAR = {"binary64": 2**17, "binary32": 2**12}  # rad; for larger angles a batch computes its block with the C library
 _DIGITS = {"binary64": 53, "binary32": 24}
-_PARTS = {"binary64": (36, 36), "binary32": (12, 12, 12)}  # bits of each part; its product with a count is exact
+_PARTS = {"binary64": (36, 36), "binary32": (12, 12, 12)}  # bits of each part of pi/2: exact times a count
 _COUNT = {"binary64": (6, 6), "binary32": (4, 4)}  # numbers of coefficients of sine and cosine
 _SQUARE = Fraction(617, 1000)  # largest square of the remainder, slightly above (pi/4)^2
 _TERMS = 20  # terms of the exact series

@@ -95,7 +95,7 @@ class _Closure:
         return parts[0] + (parts[1] if node[0] == "+" else _times(parts[1], constant(-1)))
 
     def polynomial(self, i: int) -> Polynomial | None:
-        """Return series ``i`` as a polynomial in states, constants and functions of time, or None if it is none."""
+        """Return series ``i`` as a polynomial in states, constants and functions of time; None for other series."""
         if i not in self.polynomials:
             s = self.series[i]
             result: Polynomial | None = None  # other rules, such as a quotient, give no polynomial
@@ -112,7 +112,7 @@ class _Closure:
         return self.polynomials[i]
 
     def sum(self, s: Series, only: Iterable[int] | None = None) -> Polynomial | None:
-        """Return the sum ``s`` as a polynomial in states, constants and functions of time; None if it is none.
+        """Return the sum ``s`` as a polynomial in states, constants and functions of time; None for other sums.
 
         With ``only``, indices of series, all other terms and the constant of ``s`` are left out.
         """

@@ -38,7 +38,7 @@ def coefficients(
     system : Recurrences
         The recurrences of the right-hand side.
     order : int
-        The highest coefficient.
+        Index of the highest coefficient.
     values : mapping
         Values of states, parameters and t, by name, at the centre of the expansion.
     functions, number

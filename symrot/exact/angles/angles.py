@@ -30,6 +30,8 @@ class LinearForm:
 def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
     """Return the linear form of an angle (rad): ``2*phi - psi/2 + pi/3`` gives ``{phi: 2, psi: -1/2}`` plus 1/3 of pi.
 
+    With ``turns`` false, a multiple of pi is a term like any other, with the atom ``pi``.
+
     Raises
     ------
     InputError
@@ -42,7 +44,7 @@ def linear_form(argument: Expr, turns: bool = True) -> LinearForm:
         if not number.is_Rational:
             raise InputError(f"expected rational coefficients, such as 1/2, in an angle; got {number} in {argument}")
         coefficient = Fraction(int(number.p), int(number.q))
-        # turns=False: in the exponent of an exponential, pi is an atom like any symbol
+        # false for the exponent of an exponential
         if turns and atom == pi and PARTS % coefficient.denominator == 0:
             half_turns += coefficient
         elif coefficient:
@@ -66,7 +68,7 @@ def base_coefficients(forms: Iterable[LinearForm]) -> dict[Expr, Fraction]:
 
 
 def constant_cosine_sine(half_turns: Fraction) -> tuple[Expr, Expr]:
-    """Return the exact cosine and sine of ``half_turns * pi``, a multiple of pi/24, in terms of square roots."""
+    """Return the exact cosine and sine of ``half_turns * pi``, a multiple of pi/24, in square roots and cos(pi/8)."""
     odd = half_turns * PARTS % 2 == 1
     rest = half_turns - Fraction(1, 8) if odd else half_turns
     angle = Rational(rest.numerator, rest.denominator) * pi

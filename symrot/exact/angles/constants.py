@@ -115,7 +115,7 @@ def without_zeros(poly: PolyElement, numbers: Mapping[int, Number]) -> PolyEleme
 def _integral(terms: Iterable[tuple[Monomial, Any]], known: Mapping[int, Number]) -> tuple[int, int]:
     """Return (multiplier, bits) for the sum of ``terms``: the sum times ``multiplier`` is an algebraic integer.
 
-    Its conjugates are less than 2^bits.
+    All conjugates of this integer have absolute values below 2^bits.
     """
     terms = list(terms)
     most = [max(column) for column in zip(*(mono for mono, _ in terms), strict=True)]

@@ -40,7 +40,7 @@ def order(denominator: int) -> int:
 
 
 def needs_cyclotomic_field(denominator: int) -> bool:
-    """Return whether 2 cos(pi/N) has a degree small enough to write cosines of multiples of pi/denominator by it.
+    """Return whether the degree of 2 cos(pi/N) is small enough to express cosines of multiples of pi/denominator by it.
 
     N is ``order(denominator)``.
     """

@@ -16,7 +16,7 @@ from symrot.exact.ring.ratio import TooLarge
 __all__ = ["MOST_RINGS", "one_decision", "remembered", "spend_ring"]
 
 MOST_RINGS = 2000
-"""Most conversions in one decision, which take seconds; the claims of the random tests need at most 400."""
+"""Largest number of conversions in one decision, which take seconds; claims of the random tests need at most 400."""
 
 OPERATIONS_OF_RING = 500
 """Operations of one conversion, besides those that depend on the size of the formulas."""

@@ -1,4 +1,4 @@
-"""The budget of operations for one claim: its decision, its other readings and its repairs.
+"""The budget of operations for one claim: for its decision, for other ways to read its text, and for its repairs.
 
 The count depends on the formulas alone, so that a claim gets the same verdict on every machine.
 """
@@ -10,14 +10,14 @@ from contextvars import ContextVar
 __all__ = ["MOST_OPERATIONS", "OutOfOperations", "one_claim", "operations_left", "spend"]
 
 MOST_OPERATIONS = 2_000_000
-"""Most operations for one claim. One takes some microseconds: the product of two terms is one, a value of a sine at a
-point twenty."""
+"""Largest number of operations for one claim. An operation takes some microseconds: the product of two terms counts
+as one, a value of a sine at a point as twenty."""
 
 
 class OutOfOperations(BaseException):
     """The exception for a claim that needs more operations than its budget allows.
 
-    It is not derived from ``Exception``: code that goes on after a failed proof must not go on after it.
+    It is not derived from ``Exception``, so that code that catches the exceptions of a failed proof does not catch it.
     """
 
 

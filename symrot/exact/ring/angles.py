@@ -44,7 +44,7 @@ class Angles:
     fine, fine_place : int
         N and the index of the variable for 2 cos(pi/N); N is 0 if there is no such variable.
     known : dict
-        The results so far.
+        Angle -> (cosine, sine), the results of :meth:`cosine_sine` so far.
     """
 
     ratios: Ratios
@@ -58,7 +58,10 @@ class Angles:
     known: dict[Expr, tuple[Ratio, Ratio]] = field(default_factory=dict)
 
     def cosine_sine(self, argument: Expr) -> tuple[Ratio, Ratio]:
-        """Return (cosine, sine) of an angle as fractions of polynomials in the cosines and sines of base angles."""
+        """Return (cosine, sine) of an angle as fractions of polynomials in the cosines and sines of base angles.
+
+        Raise TooLarge if the angle is too large a multiple of its base angle, or the expanded sine too long.
+        """
         known = self.known.get(argument)
         if known is not None:
             return known

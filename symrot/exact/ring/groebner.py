@@ -35,7 +35,8 @@ def groebner_basis(
     ring : PolyRing
         Ring over a field, with any order of monomials.
     most_products : int
-        The most products of two terms that may be computed. This count limits the time equally on all machines.
+        Largest number of products of two terms that may be computed. This count limits the time equally on all
+        machines.
     spent : list of one int, optional
         The number of products computed so far, which is increased; several calls may share it.
 

@@ -66,7 +66,7 @@ class Relations:
 def relate(rules: Sequence[Rule], hypotheses: Sequence[PolyElement]) -> Relations | None:
     """Return the relations that follow from ``rules`` and ``hypotheses``, polynomials that are zero.
 
-    Return None if they need fractions and the ring has integer coefficients.
+    Return None if these relations need fractions and the ring has integer coefficients.
     """
     known = _ordered(rules)
     for hypothesis in hypotheses:

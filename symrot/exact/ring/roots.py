@@ -33,7 +33,8 @@ MOST_TERMS = 4000
 """Largest number of terms of the radicand of a root, which is ``P Q^(n-1)`` for a root of P/Q."""
 
 MOST_BITS_FACTORED, LARGEST_DIVISOR = 64, 2**15
-"""The most bits of a number that is factored completely; of a longer one, only divisors below the second are sought."""
+"""Largest number of bits of a number that is factored completely; in longer numbers, only divisors below
+:data:`LARGEST_DIVISOR` are sought."""
 
 
 _UNORDERED = StrPrinter({"order": "none"})

@@ -168,7 +168,7 @@ def integrate_with_events(motion: Motion, times: Floats, events: Sequence[Event]
 def _searched(
     path: Path, events: Sequence[Event], p: Sequence[float], side: "_Side", start: float, end: float, accuracy: float
 ) -> tuple[SearchResult, IntegrationStopped | ZerosNotSeparated | None]:
-    """Return the events on one side of a motion's start, and the error that ended the search early or None."""
+    """Return the events after or before a motion's start, and the error that ended the search early or None."""
     # a side is the interval before or after the start
     if end == start:
         return SearchResult([], None, []), None

@@ -74,7 +74,7 @@ class _Search:
         self.again, self.spent, self.allowed = False, 0.0, MOST_OPERATIONS
 
     def entries(self, piece: Piece) -> tuple[list[list[float]], ZerosNotSeparated | None]:
-        """Return the intervals of ``piece`` that may contain zeros, and an error or None.
+        """Return the intervals of ``piece``, steps of the motion, that may contain zeros, and an error or None.
 
         An interval is [event, start, end, sign before, sign after].
         """
@@ -114,15 +114,18 @@ class _Search:
         return count
 
     def sign(self, event: int, t: float, piece: Piece) -> int:
-        """Return the sign of an event's formula at the time t in a piece.
+        """Return the sign of an event's formula at the time t in ``piece``, consecutive steps of the motion.
 
-        It is 0 if rounding errors are larger than the value, or if the formula has no value at t.
+        The sign is 0 if rounding errors are larger than the value, or if the formula has no value at t.
         """
         sign = self.sign_or_none(event, t, piece)
         return 0 if sign is None else sign
 
     def sign_or_none(self, event: int, t: float, piece: Piece) -> int | None:
-        """Return the sign, 0 within rounding errors; None if there is no value at t, as of a negative number's root."""
+        """Return the sign of an event's formula at the time t in ``piece``; 0 if rounding errors are larger.
+
+        Return None if the formula has no value at t, as the root of a negative number.
+        """
         edges, side = piece.edges, 1.0 if piece.edges[-1] >= piece.edges[0] else -1.0
         place = int(np.searchsorted(side * edges, side * t, "left")) - 1
         row = np.ascontiguousarray(piece.rows[min(max(place, 0), len(piece.rows) - 1)])
@@ -247,9 +250,9 @@ def _open_doubts(doubts: list[tuple[int, float]], zeros: list[EventZero], t0: fl
 def signs_at_ends(
     path: Path | str, formulas: Sequence[str], p: Sequence[float], piece: Piece
 ) -> tuple[list[int], list[int]]:
-    """Return the signs of formulas just after the start of a piece of the motion, and at its end.
+    """Return the signs of formulas just after the start of ``piece``, consecutive steps of a motion, and at its end.
 
-    A sign is 0 if rounding errors are larger.
+    A sign is 0 if the value is smaller than its rounding errors.
     """
     searcher, numbers = _Search(path, p, formulas), range(len(formulas))
     last = float(piece.edges[-1])
@@ -299,7 +302,10 @@ def _merged(entries: list[list[float]], last: float) -> tuple[list[list[float]],
 
 
 def _sign_before_end(searcher: _Search, event: int, piece: Piece) -> int:
-    """Return the sign of an event's formula just before the end of a piece; 0 if rounding errors are larger."""
+    """Return the sign of an event's formula just before the end of ``piece``, consecutive steps of a motion.
+
+    The sign is 0 if the value is smaller than its rounding errors.
+    """
     first, last = float(piece.edges[0]), float(piece.edges[-1])
     width, side = 4 * NEAR * max(abs(last), abs(last - first)), 1.0 if last >= first else -1.0
     while width < abs(last - first):

@@ -131,7 +131,7 @@ class Motion(ABC):
     def follow(self, times: Floats, in_order: bool = False) -> tuple[Floats | tuple[Floats, ...], Stats]:
         """Return the states at ``times`` of the scene, s, shape (n, N), and the cost.
 
-        A closed form returns omega and quaternion apart. ``in_order``: the times are finite and never decrease.
+        A closed form returns two arrays, omega and quaternion. ``in_order``: the times are finite and never decrease.
         """
 
     @abstractmethod

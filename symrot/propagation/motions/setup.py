@@ -158,7 +158,7 @@ class SteppedSetup:
 
 
 def stepped_on_own_clock(setup: Setup) -> SteppedSetup:
-    """Return the compiled setup of motions whose time is counted from their start, for ``setup`` on that clock."""
+    """Return the compiled setup of motions for ``setup``, in which time is counted from the start of the motion."""
     if setup.choice.method == "taylor":
         return SteppedSetup(setup, taylor_library(setup.plan, setup.kernel, setup.tolerance))
     return SteppedSetup(setup, motion_library(setup.plan, setup.kernel))

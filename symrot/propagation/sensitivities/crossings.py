@@ -34,9 +34,9 @@ MOST_AT_ONCE = 6  # functions that may switch at one time
 
 
 class Flip(NamedTuple):
-    """The switch of one function: its new mode, and the derivatives of its time by the m variables.
+    """The switch of one function (sign, abs, ..): its new value, and the derivatives of its time by the m variables.
 
-    ``guard`` holds the derivatives of the function's guard by the seven states.
+    ``guard`` holds the derivatives of the function's argument by the seven states.
     """
 
     value: int
@@ -208,7 +208,7 @@ def jumps_at_end(guards: Guards, interval: Interval) -> NDArray[np.bool_]:
 
 
 def _mean_speed(guards: Guards, interval: Interval, mode: str) -> float:
-    """Return the largest absolute value of a guard in an interval, over the interval's length.
+    """Return the largest absolute value of a guard (argument of sign, abs, ..) in an interval, over its length.
 
     It is a scale for the speed with which the guard reaches zero at the end.
     """
@@ -219,7 +219,7 @@ def _mean_speed(guards: Guards, interval: Interval, mode: str) -> float:
 
 
 def _is_zero(guards: Guards, interval: Interval, mode: str, guard: Gradient, rates: Floats) -> bool:
-    """Return whether a guard is zero, to 1e-9 of the size of its terms, at the end of an interval.
+    """Return whether a guard (argument of sign, abs, ..) is zero at the end of an interval, to 1e-9 of its terms' size.
 
     For floor(x): whether x is a whole number.
     """

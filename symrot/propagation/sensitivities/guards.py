@@ -57,7 +57,7 @@ class Gradient(NamedTuple):
 
 
 class Guards:
-    """The guards and rates in the intervals of a motion, as formulas that are evaluated with their derivatives.
+    """The guards (arguments of sign, abs, ..) and rates in the intervals of a motion, evaluated with their derivatives.
 
     Parameters
     ----------
@@ -95,23 +95,26 @@ class Guards:
     # ------------------------------------------------------------------------------------------------- functions
 
     def name(self, mode: str) -> str:
-        """Return the switching function of a mode as the user wrote it, such as ``"sign(omega_3)"``."""
+        """Return the function for which ``mode`` stands, as the user wrote it, such as ``"sign(omega_3)"``."""
         return self._by_name[mode].label
 
     def is_floor(self, mode: str) -> bool:
-        """Return whether the function of a mode is floor or mod, which switch where the guard is 0 or 1."""
+        """Return whether ``mode`` stands for floor or mod, which switch where x minus the floor of x is 0 or 1."""
         return self._by_name[mode].kind == "floor"
 
     def is_sign(self, mode: str) -> bool:
-        """Return whether the mode is the sign of its guard."""
+        """Return whether ``mode`` stands for a sign, as of x in sign(x), abs(x) or step(x), not for floor or mod."""
         return self._by_name[mode].kind == "sign"
 
     def is_continuous(self, mode: str) -> bool:
-        """Return whether the function of a mode has only kinks, no jumps."""
+        """Return whether the function for which ``mode`` stands, such as abs, has only kinks, no jumps."""
         return is_continuous(self._by_name[mode])
 
     def twins(self, mode: str) -> list[tuple[str, int]]:
-        """Return the modes that switch together with a mode, as pairs (mode, 1 or -1)."""
+        """Return the functions that switch together with ``mode``, as pairs (mode, 1 or -1), with ``mode`` itself.
+
+        A mode is the number that stands for a function such as sign(x); 1 or -1 is its sign relative to the first pair.
+        """
         return self.system.twins.get(mode, [(mode, 1)])
 
     def refusal(self, instant: Instant, reason: str) -> PropagationError:
@@ -159,12 +162,18 @@ class Guards:
         return Gradient(float(dual.value), float(dual.slopes.get("t", 0.0)), states, np.array(by))
 
     def guard(self, interval: Interval, mode: str, t: float, y: Floats) -> Gradient:
-        """Return the guard of a mode in an interval, with its derivatives; for floor(x), x minus the present floor."""
+        """Return the argument of the function (sign, abs, ..) for which ``mode`` stands, with its derivatives.
+
+        For floor(x) it is x minus the present floor.
+        """
         inputs = self._duals(interval.regime.parameters, interval, t, y, "guards")
         return self._gradient(evaluate(interval.regime.formulas[mode], inputs, DUALS, float))
 
     def held_mode(self, interval: Interval, mode: str) -> Gradient:
-        """Return the value of a held mode, at the end of an interval, with its derivatives."""
+        """Return the value of a sign(x) whose x is held at zero, at the end of an interval, with its derivatives.
+
+        It lies between -1 and 1 and keeps x at zero; ``mode`` is its name.
+        """
         quantities, parameters = interval.regime.quantities, interval.regime.quantity_parameters
         inputs = self._duals(parameters, interval, interval.stop, interval.last, "quantities")
         output = f"{mode} of t"

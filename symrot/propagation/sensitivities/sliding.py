@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 
 
 def beside(guards: Guards, interval: Interval, signs: Mapping[str, int]) -> Interval:
-    """Return a copy of an interval in which some guards are not held at zero, but have the signs ``signs``, by mode.
+    """Return a copy of an interval in which some functions sign(x), with x held at zero, have the values ``signs``.
 
     The rates of the copy are those on one side of the jump at which the motion slides.
     """
@@ -27,7 +27,7 @@ def beside(guards: Guards, interval: Interval, signs: Mapping[str, int]) -> Inte
 
 
 def hold_at_rest(guards: Guards, interval: Interval) -> None:
-    """Change an interval so that it holds the guards which stay at zero in it.
+    """Change an interval so that it holds the guards (arguments of sign, abs, ..) which stay at zero in it.
 
     Guards that cannot be held are appended to the list ``resting`` of the interval. A guard is left alone if the rates
     and their derivatives are the same on both sides of its zero.
@@ -54,7 +54,9 @@ def hold_at_rest(guards: Guards, interval: Interval) -> None:
 def refuse_resting(
     guards: Guards, interval: Interval, integrate: Callable[[Interval, Floats], tuple[Floats, Floats]]
 ) -> None:
-    """Raise PropagationError if a variable moves a guard of ``interval.resting`` away from zero, its jump or kink.
+    """Raise PropagationError if a variable moves an argument away from zero, where its function has a jump or kink.
+
+    The arguments are those of the functions in ``interval.resting``, which stay at zero.
 
     ``integrate`` takes an interval and times, and returns the states and the derivatives at these times.
     """
@@ -66,12 +68,15 @@ def refuse_resting(
 
 
 def rests(guards: Guards, interval: Interval, mode: str) -> bool:
-    """Return whether the guard of a mode is zero at the start, near the middle and at the end of an interval."""
+    """Return whether the argument of a function (sign, abs, ..) is zero in an interval: at start, middle and end."""
     return all(guards.guard(interval, mode, *place).value == 0.0 for place in interval.places())
 
 
 def _is_smooth_at(guards: Guards, interval: Interval, mode: str) -> bool:
-    """Return whether the rates and their derivatives are the same on both sides of a guard that stays at zero."""
+    """Return whether the rates and their derivatives are the same for both signs of an argument that stays at zero.
+
+    It is the argument of the function (sign, abs, ..) for which ``mode`` stands.
+    """
     twins = [twin for twin, _ in guards.twins(mode)]
     for t, y in interval.places():
         sides = []
@@ -86,11 +91,10 @@ def _is_smooth_at(guards: Guards, interval: Interval, mode: str) -> bool:
 
 
 def require_one_surface(guards: Guards, interval: Interval, mode: str, t: float, y: Floats) -> None:
-    """Raise PropagationError if the guards of a mode and of its twins are zero together only at this state.
+    """Raise PropagationError if two functions (sign, abs, ..) that switch together here do so only by chance.
 
-    A change of time, state or variable then makes them zero at different times.
-
-    Twins are functions that switch together; a motion can then not be held at all their jumps at once.
+    A change of time, state or variable then makes their arguments zero at different times, so that a motion cannot be
+    held at both jumps. ``mode`` stands for the first function.
     """
     guard = guards.guard(interval, mode, t, y)
     own = np.array([guard.time, *guard.states, *guard.variables])

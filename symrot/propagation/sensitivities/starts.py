@@ -59,7 +59,9 @@ def from_start(guards: Guards, interval: Interval, by: Floats) -> Floats:
 
 
 def _require_constant(guards: Guards, interval: Interval, mode: str, other: int, change: Floats, f: Floats) -> None:
-    """Raise PropagationError if a variable moves a guard that is zero at the start, and the rates jump there.
+    """Raise PropagationError if a variable moves a guard (argument of sign, floor, ..) that is zero at the start.
+
+    An error is raised only if the rates jump there.
 
     ``change``: the derivatives of the guard by the variables; ``other``: the value of floor(x) on the other side;
     ``f``: the rates on this side.

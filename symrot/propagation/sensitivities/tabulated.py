@@ -133,7 +133,7 @@ class TableEquations:
     def _one_way(
         self, scene: Scene, y: Floats, by: Floats, begin: float, times: Floats, side: float
     ) -> tuple[Floats, Floats]:
-        """Return states and derivatives at times in the order of the motion: increasing for ``side`` 1, else -1."""
+        """Return states and derivatives at ``times``, which increase if ``side`` is 1 and decrease if it is -1."""
         edges, units = self._pieces.edges, [unit_of(scene, column) for column in self._columns]
         all_states, all_by, done, now = [], [], 0, begin
         while done < len(times):

@@ -19,7 +19,7 @@ FINE, ZOOMS = 8, 12  # points in a step of a motion, and the number of times tha
 
 
 def refuse_touching(guards: Guards, interval: Interval) -> None:
-    """Raise PropagationError if a guard with a jump touches zero inside an interval without a switch."""
+    """Raise PropagationError if the argument of a function with a jump (sign, ..) touches zero inside an interval."""
     regime = interval.regime
     modes = {guard.mode for guard, on in zip(regime.guards, regime.active(interval.modes), strict=True) if on}
     for mode in sorted(modes & regime.formulas.keys() - interval.held):
@@ -35,7 +35,10 @@ def refuse_touching(guards: Guards, interval: Interval) -> None:
 
 
 def _touching(guards: Guards, interval: Interval, mode: str) -> float | None:
-    """Return the time, s on the clock of an interval, at which a guard touches zero in it; None if it does not."""
+    """Return the time at which an argument touches zero in an interval, s on its clock; None if it does not.
+
+    It is the argument of the function (sign, floor, ..) for which ``mode`` stands.
+    """
     values, _ = guards.bound(interval.regime.parameters, interval, "guards")
     constants = {**{name: float(value) for name, value in interval.modes.items()}, **values}
     ends = guards.side * np.array([chunk.stop - interval.zero for chunk in interval.chunks[:-1]])

@@ -216,7 +216,7 @@ class SmoothEquations:
 
 
 def _parts(scene: Scene, columns: Sequence[Column], epoch: float = 0.0) -> "list[_Part]":
-    """Return the equations of all columns of derivatives, with time counted from ``epoch``, s."""
+    """Return the equations of the derivatives by all variables (``columns``), with time counted from ``epoch``, s."""
     return [_Part(scene, columns[own.start : own.stop], epoch) for own in groups_of_columns(len(columns))]
 
 
@@ -361,7 +361,10 @@ def follow_interval(
 
 
 def groups_of_columns(count: int) -> Iterator[range]:
-    """Yield the numbers of ``count`` columns in groups of at most :data:`AT_ONCE`, which one library integrates."""
+    """Yield the numbers 0 to ``count - 1`` of variables in ranges of at most :data:`AT_ONCE`, one for each library.
+
+    A library integrates the derivatives by the variables of one range.
+    """
     for first in range(0, count, AT_ONCE):
         yield range(first, min(first + AT_ONCE, count))
 

@@ -89,7 +89,7 @@ class Guards(RunState):
         return {name.removesuffix(" of t"): column for name, column in zip(names, quantities.T, strict=True)}
 
     def _has_no_value(self, regime: Regime, mode: str, times: Floats, states: Floats) -> NDArray[np.bool_]:
-        """Return at which times a guard has no value, even if the states changed by the error of the motion."""
+        """Return at which times an argument of sign, floor, .. has no value, with the motion's error allowed for."""
         columns = self._columns(times, states)
         rate = np.sqrt(sum(columns[f"omega_{i}"] ** 2 for i in (1, 2, 3)))
         sizes = {name: rate if name.startswith("omega") else np.ones_like(times) for name in columns}
@@ -99,7 +99,10 @@ class Guards(RunState):
         return np.broadcast_to(outside > ERRORS * self.motion.tolerance, times.shape)
 
     def _oriented(self, regime: Regime, guard: Guard, place: tuple[float, Floats]) -> float:
-        """Return the value of a guard's formula, which falls through zero at a switch; NaN if it has no value."""
+        """Return the value of a guard's formula, which falls through zero where a function (sign, ..) switches; or NaN.
+
+        It is NaN if the formula has no value at ``place``, a pair (time, states).
+        """
         try:
             return float_value(parse(guard.formula), self._values(regime, place))
         except (ArithmeticError, ValueError, IntegrationStopped):
@@ -118,7 +121,10 @@ class Guards(RunState):
     def _negative(
         self, regime: Regime, active: list[bool], values: list[float], piece: Piece
     ) -> tuple[list[Guard], list[Guard]]:
-        """Return the guards that are negative just after the start of ``piece``, and the guards negative at its end."""
+        """Return the guards that are negative just after the start of ``piece``, and those negative at its end.
+
+        A guard is a formula that turns negative where a function (sign, floor, ..) switches.
+        """
         formulas = [guard.formula for guard in regime.guards]
         # such a function should have switched before the piece or within it; active: guards that can end the regime
         first, last = (

@@ -30,7 +30,7 @@ SwitchState = tuple[frozenset[tuple[str, int]], frozenset[str]]
 
 
 class ModeChanges(Guards):
-    """The changes of modes at the present time of a motion."""
+    """The changes of modes, numbers that stand for functions (sign, abs, ..), at the present time of a motion."""
 
     def __init__(self, motion: Motion, system: SwitchedSystem, end: float) -> None:
         super().__init__(motion, system, end)
@@ -95,14 +95,14 @@ class ModeChanges(Guards):
         )
 
     def _no_longer_held(self) -> None:
-        """Release a guard that the equations no longer keep at zero since another function switched."""
+        """Release an argument of sign that the equations no longer hold at zero since another function switched."""
         released = self._released_by_another(solvable=False)
         if released is None:
             raise self._not_unique()
         self._change(*released)
 
     def _change(self, mode: str, change: int) -> None:
-        """Change a mode as :attr:`Guard.change` says, or hold its guard at zero."""
+        """Change the value of a function (sign, ..) as :attr:`Guard.change` says, or hold its argument at zero."""
         kind = self.by_name[mode].kind
         self.left.add((mode, self.modes[mode]))
         self.visited.setdefault(self._state(), len(self.order))
@@ -147,7 +147,7 @@ class ModeChanges(Guards):
             self._wake(other)
 
     def _leaves(self, mode: str, held: frozenset[str], modes: Modes) -> bool:
-        """Return whether the guard of ``mode``, now zero, leaves zero to the side of the value ``modes[mode]``.
+        """Return whether x in sign(x), which is now zero, gets the sign ``modes[mode]`` in the motion from here on.
 
         The other functions have the values in ``modes``, and the guards ``held`` stay at zero.
         """
@@ -158,9 +158,10 @@ class ModeChanges(Guards):
         return all(sign > 0 for sign, guard in zip(signs, regime.guards, strict=True) if guard.mode == mode)
 
     def _released_by_another(self, solvable: bool = True) -> tuple[str, int] | None:
-        """Return a held mode that another function's switch now releases, with its new value; None if there is none.
+        """Return the name of a sign(x) held at x = 0 that another function's switch now releases, with its new value.
 
-        ``solvable``: whether the held modes have values for which all held guards stay at zero.
+        Return None if there is none. ``solvable``: whether the held signs have values for which all their arguments
+        stay at zero.
         """
         # without the other switch, the value of the mode that keeps the guard at zero says when the sliding ends
         for mode in sorted(self.held):
@@ -176,9 +177,9 @@ class ModeChanges(Guards):
         return None
 
     def _returns(self, mode: str) -> bool:
-        """Return whether ``mode`` must be held at its jump, because its switch would restore earlier modes.
+        """Return whether a function such as sign(x) must be held at x = 0: its switch would restore earlier values.
 
-        All modes would be as they were before at this time, and the same switches would repeat without end.
+        All functions would have values that they had before at this time, and the switches would repeat without end.
         """
         first = self.visited.get(self._state(flip=mode))
         if first is None:
@@ -188,7 +189,10 @@ class ModeChanges(Guards):
         return not (jumps and is_continuous(self.by_name[mode]))
 
     def _state(self, flip: str = "", hold: str = "") -> SwitchState:
-        """Return all modes, and which are held, after the mode ``flip`` changes its sign or ``hold`` becomes held."""
+        """Return the values of all functions (sign, ..), and which are held.
+
+        The function ``flip`` first changes its sign, or ``hold`` becomes held.
+        """
         modes = {**self.modes, flip: -self.modes[flip]} if flip else self.modes
         held = self.held | {self.system.twins[hold][0][0]} if hold else self.held
         return frozenset((mode, value) for mode, value in modes.items() if mode not in held), held
@@ -202,7 +206,7 @@ class ModeChanges(Guards):
     def _is_rounding(
         self, regime: Regime, guard: Guard, piece: Piece, states: Callable[[Floats], Floats]
     ) -> bool:  # fmt: skip
-        """Return whether a guard is negative at the start of ``piece`` only because of rounding."""
+        """Return whether a guard (argument of sign, ..) is negative at the start of ``piece`` only by rounding."""
         # the guard is zero there, because its function has just switched
         if guard.mode in self.held or not self.flipped.get(guard.mode):
             return False
@@ -369,5 +373,5 @@ class ModeChanges(Guards):
 
 
 def _signed(twins: Sequence[tuple[str, int]], sign: int) -> Modes:
-    """Return the modes of functions that switch together, if the first has the value ``sign``."""
+    """Return the values of functions (sign, abs, ..) that switch together, if the first has the value ``sign``."""
     return {twin: sign * relative for twin, relative in twins}

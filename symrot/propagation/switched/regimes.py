@@ -139,14 +139,20 @@ class Regime:
         return self._parameters[key]
 
     def values(self, modes: Modes, zero: Instant) -> dict[str, float]:
-        """Return the values, by name, of the modes and of the parameters in the guards, :attr:`formulas`."""
+        """Return the values, by name, of the modes and of the parameters in the arguments of sign, abs, ..
+
+        A mode is the number that stands for such a function; the clock shows 0 at ``zero``.
+        """
         numbers = self._parameters_under(modes).guards.parameters(zero.exact)
         return {name: number for (name, _), number in zip(self.parameters, numbers, strict=True)} | {
             name: float(mode) for name, mode in modes.items()
         }
 
     def bound(self, modes: Modes, zero: Instant) -> tuple[list[float], list[float]]:
-        """Return two lists of parameters for given ``modes``: for the stepper, and for the search for switches."""
+        """Return two lists of parameters: for the stepper, and for the search for switches.
+
+        ``modes`` are the values of the functions (sign, abs, ..); the clock shows 0 at ``zero``.
+        """
         rates, guards, quantities, invariants = self._parameters_under(modes)
         fixed = rates.fixed and guards.fixed and quantities.fixed
         place = tuple(modes.values()), None if fixed else zero
@@ -163,7 +169,7 @@ class Regime:
         return {name for name, value in self._inputs(modes, zero, y).items() if value == 0.0}
 
     def attraction(self, modes: Modes, zero: Instant, t: float, y: Floats) -> list[float]:
-        """Return one number for each held guard; all are positive if nearby motions return to the sliding motion."""
+        """Return one number for each x held at zero in sign(x); all are positive if nearby motions return to x = 0."""
         # t is counted from the instant zero
         names = [f"attraction {k} of t" for k in range(len(self.held))]
         values = {**self._inputs(modes, zero, y), "t": t}

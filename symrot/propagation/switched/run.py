@@ -51,7 +51,7 @@ class Chunk(NamedTuple):
         return self.own_states(self.zero.since(times))
 
     def piece(self) -> Piece:
-        """Return the polynomials of this part of the motion, with times converted to times of the scene."""
+        """Return the polynomials of this interval of the motion, with times converted to times of the scene."""
         rows, edges = self.own_piece.rows.copy(), self.own_piece.edges + self.zero.low + self.zero.high
         edges[0], edges[-1] = self.start.high, self.stop.high  # the same numbers as in the parts before and after
         time, low = two_sum(self.zero.high, rows[:, 0])

@@ -155,7 +155,7 @@ class SciPyPieces:
 
 
 def smooth_pieces(run: RunState, regime: Regime, rates: list[float]) -> SteppedPieces | SciPyPieces:
-    """Return an iterator over pieces of the smooth motion ``regime``, from the present state of a run."""
+    """Return an iterator over the smooth motion ``regime`` in groups of steps, from the present state of ``run``."""
     # rates: the parameters of the rates
     motion = regime.motion
     if isinstance(motion, SteppedMotion):

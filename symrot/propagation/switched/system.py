@@ -70,9 +70,9 @@ class SwitchedSystem:
         return twins
 
     def tied(self, held: frozenset[str]) -> dict[str, tuple[str, int]]:
-        """Return the functions that switch together with held ones, as name -> (name of a held one, 1 or -1).
+        """Return the functions that switch together with functions ``held`` at their jumps.
 
-        -1: their arguments have opposite signs.
+        A map from name to (name of a held function, 1 or -1); -1 means that their arguments have opposite signs.
         """
         # held: the argument of the function stays at zero; a function that switches at the same time follows
         return {twin: (mode, sign) for mode in held for twin, sign in self.twins[mode] if twin != mode}
@@ -117,7 +117,7 @@ class SwitchedSystem:
         return self._modes_at_start({})
 
     def beside_start(self, mode: str, sign: int) -> Modes:
-        """Return the values of all switching functions just after the start, if ``mode`` has the value ``sign``."""
+        """Return the values of all functions (sign, abs, ..) just after the start, if that of ``mode`` is ``sign``."""
         # functions that contain this one, such as floor(sign(x) + y), differ for 1 and -1
         return self._modes_at_start({mode: sign})[0]
 

@@ -67,7 +67,7 @@ def offered(store: Store) -> Iterator[Offer | None]:
 
 @lru_cache(maxsize=1)
 def _opened(store: bytes, mark: str) -> Any:
-    """Return the store of an offer; each client (``mark``) has its own."""
+    """Return the store of an :class:`Offer`, or None if its folder is missing; each client (``mark``) has its own."""
     kind, path, header = pickle.loads(store)
     return kind(path, header) if path.is_dir() else None
 

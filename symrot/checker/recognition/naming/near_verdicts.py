@@ -114,7 +114,7 @@ def _near_by_quantity(claim: Claim, named: NamedFormula) -> Verdict | None:
 
 def verdict_near_relation(claim: Claim) -> Verdict | None:
     """Return the verdict, usually "doubtful", on a false equation that one change makes a known relation; None for
-    other equations.
+    other equations, and for claims with hypotheses.
     """
     assert claim.relation is not None
     return None if claim.hypotheses else _near_relation(claim, *claim.relation[1:])
