@@ -3,12 +3,12 @@
 Nobody writes such an equation as an identity; so its verdict is "definition", with the values for which it holds.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
-from sympy import Expr, Poly, Symbol
-from sympy.polys.polyerrors import PolynomialError
+from sympy import Expr, Poly, Symbol, roots
+from sympy.polys.polyerrors import BasePolynomialError
 
 from symrot.checker.claim.claims import Claim
 from symrot.checker.claim.notation import Notation
@@ -107,19 +107,34 @@ def _may_have_others(claim: Claim, letter: Node) -> bool:
 def _roots(difference: Expr, symbol: Symbol, name: str) -> str | None:
     """Return all real zeros of ``difference`` as text, ``"x == -2 and x == 2"``, or only how many there are.
 
-    Return None if there are none, or if ``difference`` is not a polynomial in ``symbol`` with rational coefficients and
-    a degree from 1 to HIGHEST_DEGREE. ``name`` is the name of ``symbol``.
+    Return None if there are none, or if ``difference`` is not a polynomial in ``symbol`` of a degree from 1 to
+    HIGHEST_DEGREE, or to 2 if its coefficients are irrational numbers. ``name`` is the name of ``symbol``.
     """
     try:
         polynomial = Poly(difference, symbol, domain="QQ")
-    except PolynomialError:
-        return None
+    except BasePolynomialError:  # also CoercionFailed, for irrational coefficients
+        return _irrational_roots(difference, symbol, name)
     if not 0 < polynomial.degree() <= HIGHEST_DEGREE or not polynomial.count_roots():
         return None
-    roots = list(dict.fromkeys(polynomial.real_roots()))
-    if polynomial.degree() > 2 and not all(root.is_Rational for root in roots):
-        return "one real value only" if len(roots) == 1 else f"{len(roots)} real values only"
-    return " and ".join(f"{name} == {as_text(root)}" for root in roots)
+    values = list(dict.fromkeys(polynomial.real_roots()))
+    if polynomial.degree() > 2 and not all(value.is_Rational for value in values):
+        return "one real value only" if len(values) == 1 else f"{len(values)} real values only"
+    return _as_conditions(values, name)
+
+
+def _irrational_roots(difference: Expr, symbol: Symbol, name: str) -> str | None:
+    """Return what :func:`_roots` returns, for a polynomial of degree 1 or 2 such as ``x^2 - pi``."""
+    if not difference.is_polynomial(symbol) or difference.free_symbols != {symbol}:
+        return None
+    polynomial = Poly(difference, symbol)
+    values = list(roots(polynomial)) if 0 < polynomial.degree() <= 2 else []
+    if any(value.is_real is None for value in values) or not any(value.is_real for value in values):
+        return None
+    return _as_conditions([value for value in values if value.is_real], name)
+
+
+def _as_conditions(values: Iterable[Expr], name: str) -> str:
+    return " and ".join(f"{name} == {as_text(value)}" for value in values)
 
 
 def _is_polynomial(claim: Claim, letter: Node) -> bool:

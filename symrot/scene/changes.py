@@ -198,10 +198,12 @@ def _whole_path(scene: SceneContent, key: str) -> Path:
 
 def _exclude(one: Path, other: Path) -> bool:
     """Return whether the values at two paths exclude each other, as mass and density of one shape do."""
-    depth = 2 if one[0] == "torque" else 1
-    if one[:depth] != other[:depth] or min(len(one), len(other)) <= depth:
-        return False
-    return EXCLUSIVE.get((one[0], one[depth])) == other[depth]
+    # the first keys that differ, which are in the same table
+    return any(EXCLUSIVE.get((one[0], key)) == other_key for key, other_key in islice(_differences(one, other), 1))
+
+
+def _differences(one: Path, other: Path) -> Iterator[tuple[str | int, str | int]]:
+    return ((a, b) for a, b in zip(one, other, strict=False) if a != b)
 
 
 def _set(scene: SceneContent, key: str, value: Any) -> None:

@@ -231,3 +231,8 @@ def test_several_equations_are_true_only_where_each_of_them_is_defined():
     verdict = symrot.check("sqrt(x^2) = x; sqrt(y^2)/z = y/z")
     assert verdict.verdict == "conditional"
     assert verdict.conditions == ("x >= 0 and y >= 0", "z != 0") and verdict.requires == ("x >= 0 and y >= 0",)
+
+
+def test_zeros_with_irrational_coefficients_end_in_a_verdict():
+    """SymPy isolates no roots of polynomials such as y^2 - pi; the check ended with NotImplementedError."""
+    assert symrot.check("sqrt(x**2*(y**2 - pi)**2) == x*(y**2 - pi)", repair=False).verdict == "conditional"

@@ -72,3 +72,18 @@ def test_a_law_that_symrot_derives_is_recognised_with_both_signs():
 
 def test_a_built_in_rotation_is_no_matrix_of_unknown_entries():
     assert not any("any 3 x 3 matrix" in note for note in symrot.check(LAWS[4].format("=="), repair=False).notes)
+
+
+@pytest.mark.parametrize(("claim", "values"), [
+    ("y^2 = pi", "y = -sqrt(pi) and y = sqrt(pi)"), ("x^2 - sqrt(2) x = 0", "x = 0 and x = sqrt(2)"), ("sqrt(2) x + x^2 = -1/2", "x = -sqrt(2)/2"),
+])  # fmt: skip
+def test_an_equation_with_irrational_coefficients_is_solved(claim, values):
+    """The search for solutions ended with an exception of SymPy."""
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "definition"
+    assert all(value in verdict.reason for value in values.split(" and "))
+
+
+@pytest.mark.parametrize("claim", ["y^2 == pi", "y^2 + pi = 0", "x^3 = pi", "y^2 = exp(x)"])
+def test_an_irrational_equation_that_is_not_solved_ends_in_a_verdict(claim):
+    assert symrot.check(claim).verdict in ("false", "definition")

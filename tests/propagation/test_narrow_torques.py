@@ -134,8 +134,6 @@ def test_where_the_rounding_of_a_phase_exceeds_the_tolerance_a_warning_says_so(m
     (beyond,) = moved.stats.rounded_beyond
     assert (abs(moved.t[off]) > abs(beyond)).all()
     assert f"beyond t = {beyond!r} s the rounding of the torque, a formula of the time" in moved.warnings[-1]
-    if follow == "switched" and method != "taylor":
-        return  # what follows is tested with SciPy's steps alone, and with switches in Taylor steps
     if not more:
         assert propagator(moved.t, events=["omega_3 - 9"]).warnings == moved.warnings
     assert symrot.propagator(made, method, 1e-13, **more)(moved.t).warnings == ()

@@ -132,6 +132,16 @@ def test_changes_of_which_one_would_be_lost_are_refused(changes):
             TOP.with_(each)
 
 
+def test_mass_and_density_of_one_shape_exclude_each_other():
+    """The second change removed the first in silence."""
+    scene = symrot.load_scene("t_handle")
+    changes = {"body.part[0].mass": 1, "body.part[0].density": 2}
+    for each in (changes, dict(reversed(changes.items()))):
+        with pytest.raises(symrot.InputError, match="since each replaces the other"):
+            scene.with_(each)
+    scene.with_({"body.part[0].mass": 1, "body.part[1].density": 2})
+
+
 ANGLES = [0.1, 0.2, 0.3]
 ROTATION = Rotation.from_euler("ZXZ", ANGLES)
 

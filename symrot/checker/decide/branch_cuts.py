@@ -7,7 +7,7 @@ continuity does not either.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from sympy import Abs, Expr, Function, Poly, atan2, cos, pi, sin
+from sympy import Abs, Expr, Function, Poly, atan2, cos, pi, roots, sin
 
 from symrot.checker.decide.definite import surely_nonnegative
 from symrot.checker.decide.ranges.text import range_text
@@ -36,7 +36,7 @@ class BranchCut:
             if slope.is_number:
                 return [{symbol: -rest / slope}]
             if self.zero.free_symbols == {symbol} and slope.diff(symbol).is_number and self.zero.is_polynomial():
-                return [{symbol: root} for root in Poly(self.zero, symbol).real_roots()]
+                return [{symbol: root} for root in roots(Poly(self.zero, symbol)) if root.is_real]
         return []
 
     @property

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from sympy import Abs, Expr, I, Poly, Symbol, fraction, nan, oo, preorder_traversal, zoo
+from sympy.polys.polyerrors import BasePolynomialError
 
 from symrot.checker.decide.branch_cuts import BranchCut, branch_cuts
 from symrot.checker.decide.equation import Equation, sides_of, stated_needs
@@ -126,13 +127,15 @@ def _without_divisor(condition: Any, equation: Equation) -> Any:
 def _is_true_at_zeros(formula: Expr, equation: Equation) -> bool:
     """Return whether an equation is proven to be true at every zero of ``formula``, a polynomial in one symbol.
 
-    False if ``formula`` is no such polynomial.
+    False if ``formula`` is no such polynomial with rational coefficients.
     """
     symbol = next(iter(formula.free_symbols))
-    if formula.free_symbols != {symbol} or not formula.is_polynomial(symbol):
+    try:
+        polynomial = Poly(formula, symbol, domain="QQ")
+    except BasePolynomialError:  # also CoercionFailed, for irrational coefficients
         return False
     # at an irrational zero nothing is proven
-    zeros = Poly(formula, symbol).real_roots()
+    zeros = polynomial.real_roots()
     return all(zero.is_Rational and _is_true_at({symbol: zero}, equation) for zero in zeros)
 
 
