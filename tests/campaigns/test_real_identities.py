@@ -183,7 +183,7 @@ def test_a_wrong_engine_is_caught(monkeypatch, answer, few_points):
     monkeypatch.setattr(module, "check", wrong)
     found = campaign(4, seed=2, real=True)
     assert len(found.wrong) >= 2
-    assert main(["--real", "--count", "2", "--seed", "2"]) == 1
+    assert main(["--real", "--count", "3", "--seed", "2"]) == 1
 
 
 def test_a_late_answer_fails_the_command(monkeypatch, few_points):
