@@ -27,7 +27,7 @@ def check_target(path: Path, suffixes: Sequence[str], option: str) -> None:
         if path.exists() and not path.is_file():
             raise InputError(f"{option}: expected the name of a file, got the device or pipe {str(path)!r}")
         if not path.parent.is_dir():
-            raise InputError(f"{option}: expected an existing folder, got {str(path)!r}")
+            raise InputError(f"{option}: expected a file in an existing folder, got {str(path)!r}")
         if not os.access(path if path.exists() else path.parent, os.W_OK):
             raise InputError(f"{option}: expected a file that can be written, got {str(path)!r} (permission denied)")
     except InputError:

@@ -42,7 +42,7 @@ class MassProperties(NamedTuple):
 def place(body: HasInertia, at: Any = _ORIGIN, rotation: Any = IDENTITY) -> MassProperties:
     """Return the mass properties of a body that is first rotated about the origin, then displaced by ``at`` (m).
 
-    ``rotation`` is the matrix that maps components in the body's axes to components in the new axes.
+    ``rotation`` is the matrix R of this rotation: the point x of the body comes to ``R x + at``.
     """
     rotated = tensor.apply(rotation, body.center_of_mass)
     center = tuple(a + c for a, c in zip(tensor.vector(at), rotated, strict=True))

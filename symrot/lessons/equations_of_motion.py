@@ -108,7 +108,7 @@ LESSONS = {
         numbers=(
             Number(
                 "In the scene, the torque is constant in the body. If it were constant in space, the derivative of "
-                "its body components with respect to $q_1$ would be",
+                "its body components with respect to $q_1$ would have this magnitude at the attitude $q = 1$:",
                 "\\left| \\partial \\tau_b / \\partial q_1 \\right|",
                 "If a torque is constant in space",
                 "N m",

@@ -355,7 +355,10 @@ def external_setup(
 
 @final
 class ExternallyDrivenMotion(RestartableMotion, SteppedInC):
-    """Motion of a scene under a torque that is a function or a table of the scene's time."""
+    """Motion of a scene under a torque that the user gives as a function, in Python or C, or as a table.
+
+    A function depends on time, angular velocity and attitude; a table depends on time alone.
+    """
 
     has_external_torque = True
 

@@ -64,7 +64,11 @@ def _others(plan: Plan) -> "list[PlanRow]":
     form = choice.form
     stepped = f"the motion has a closed form: {form.name}" if form else f"{choice.method}: {choice.reason}"
     known = library.fetch(kernel_key(plan)) is not None
-    kernel = "this structure is in the cache" if known else "the first run derives and compiles, later ones load"
+    kernel = (
+        "the kernel of these equations is in the cache"
+        if known
+        else "the first run derives and compiles, later ones load"
+    )
     return [
         _row("states", not plan.states, f"{', '.join(plan.states) or 'none changes'}"),
         _row("stepping", form is not None or not plan.states, stepped, form.derivation if form else ""),

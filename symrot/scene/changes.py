@@ -99,12 +99,15 @@ def changed(scene: SceneContent, changes: Mapping[str, Any]) -> Content:
 
 
 def present_value(scene: SceneContent, key: str) -> Any:
-    """Return the present value that a key names, in the form in which the content gives it.
+    """Return the present value that a key names.
+
+    A value that the scene's content gives has the form that it has there, for instance the text ``"1/5"``; ``omega``,
+    the principal moments and values that follow from others are fractions.
 
     Raises
     ------
     InputError
-        If a key names nothing in the scene, or a value that the content does not give.
+        If a key names nothing in the scene, or a value that the content does not determine.
     """
     if key in TENSOR:
         i, j = (INDEX[axis] for axis in key[-2:])

@@ -209,3 +209,10 @@ def test_a_hypothesis_may_define_a_matrix_and_so_its_entries(claim, given, verdi
 def test_a_formula_that_hypotheses_may_make_right_is_not_accused(claim, hypothesis, context):
     verdict = symrot.check(claim, assume=[hypothesis], **context)
     assert verdict.verdict in ("definition", "recognised", "true")
+
+
+@pytest.mark.parametrize("hypothesis", ["exp(x) == 1", "sinh(x) == 0"])
+def test_a_condition_that_fails_at_no_known_point_decides_nothing(hypothesis):
+    """The hypothesis makes x zero, so the claim is true; it was conditional on A == B."""
+    verdict = symrot.check("x*A == x*B", assume=[hypothesis])
+    assert verdict.verdict == "undecided" and "no point is known" in verdict.reason

@@ -26,9 +26,10 @@ def test_an_integral_has_the_value_of_quadrature(integrand):
 
 @pytest.mark.parametrize(("claim", "verdict"), [
     ("∫_0^(2π) cos(m x) cos(n x) dx = 0", "false"), ("∫_0^(2π) cos(2x) cos(3x) dx = 0", "true"),
+    ("∫_0^1 exp(k x) dx = (exp(k) - 1)/k", "true"), ("∫_0^1 exp(k x) dx = (exp(k) + 1)/k", "false"),
     ("∫_0^L cos(a x) cos(b x) dx = sin((a + b) L)/(2 (a + b)) + sin((a - b) L)/(2 (a - b))", "true"),
 ])  # fmt: skip
-def test_waves_are_orthogonal_for_whole_frequencies_only(claim, verdict):
+def test_waves_and_exponentials_are_integrated(claim, verdict):
     assert symrot.check(claim, repair=False).verdict == verdict
 
 

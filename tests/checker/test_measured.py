@@ -67,6 +67,16 @@ def test_letters_of_a_formula_are_no_units(claim):
     assert measured_text(claim) is None
 
 
+@pytest.mark.parametrize(("claim", "note"), [
+    ("5 percent = 0.05", "1 percent = 1/100"), ("30 deg = 0.5236 rad", "1 deg = pi/180 rad"),
+    ("1 rpm^2 = 0.01097 /s^2", "1 rpm^2 = pi^2/900 1/s^2"), ("2 deg/s^2 = 0.0349 rad/s^2", "1 deg/s^2 = pi/180 rad/s^2"),
+    ("1 kHz = 1000/s", "1 kHz = 1000 1/s"),
+])  # fmt: skip
+def test_only_angles_are_converted_to_radians(claim, note):
+    verdict = symrot.check(claim)
+    assert verdict.verdict == "true" and note in verdict.notes
+
+
 def test_a_hertz_is_a_rotation_per_second_next_to_an_angle():
     verdict = symrot.check("1 Hz = 1 rad/s")
     assert verdict.verdict == "false"

@@ -107,7 +107,10 @@ def square(a: Array) -> Array:
 
 
 def divide(a: Array, b: Array) -> Array:
-    """Return intervals that contain all quotients of numbers in ``a`` and ``b``; infinite where ``b`` contains zero."""
+    """Return intervals that contain all quotients of numbers in ``a`` and ``b``.
+
+    Where ``b`` contains zero, both ends are ``inf``, which means that there is no bound.
+    """
     quotients = a[:, None] / b[None]
     exact = _short(quotients) & _short(b)[None] & (quotients * b[None] == a[:, None]) & (np.abs(quotients) > TINY)
     exact |= (a == 0)[:, None] & (b != 0)[None]
@@ -118,7 +121,10 @@ def divide(a: Array, b: Array) -> Array:
 
 
 def square_root(a: Array) -> Array:
-    """Return intervals that contain the roots of all numbers in ``a``; infinite where ``a`` has negative numbers."""
+    """Return intervals that contain the roots of all numbers in ``a``.
+
+    Where ``a`` has negative numbers, both ends are ``inf``, which means that there is no bound.
+    """
     roots = np.sqrt(np.maximum(a, 0.0))
     step = (roots * PHI + ETA) * ~(_short(roots) & (roots * roots == a))
     result = np.stack([np.maximum(roots[0] - step[0], 0.0), roots[1] + step[1]])

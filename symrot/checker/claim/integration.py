@@ -21,7 +21,7 @@ def definite_integral(integrand: Expr, variable: Symbol, lower: Expr, upper: Exp
     Parameters
     ----------
     integrand : Expr
-        A polynomial in the variable, and in sines and cosines of angles linear in it.
+        A polynomial in the variable, and in sines, cosines and exponentials of formulas linear in it.
     variable : Symbol
         A real symbol.
     lower, upper : Expr
@@ -88,17 +88,18 @@ def _antiderivative(term: Expr, variable: Symbol, divisors: list[Expr]) -> Expr:
             exponent += factor.args[0].expand()
         else:
             raise InputError(
-                f"integrate takes polynomials in {variable} and sines and cosines of angles linear in it, got the "
-                f"factor {factor}"
+                f"integrate takes polynomials in {variable}, and sines, cosines and exponentials of formulas linear in "
+                f"it, got the factor {factor}"
             )
     rate = exponent.expand().diff(variable)
     if rate == 0:
         return Mul(*constants) * exp(exponent) * variable ** (power + 1) / (power + 1)
     # as a factor, not inside a sum: _value drops the imaginary terms, which are those with the factor i
     frequency = (rate / I).expand()
+    divisor = rate if frequency.has(I) else frequency
     rate = I * frequency
-    if not frequency.is_nonzero:
-        divisors.append(frequency)
+    if not divisor.is_nonzero:
+        divisors.append(divisor)
     parts = [
         (-1) ** k * factorial(power) / factorial(power - k) * variable ** (power - k) / rate ** (k + 1)
         for k in range(power + 1)

@@ -198,13 +198,13 @@ def condition(case: ClaimCase) -> Decision | None:
     needed = requirements(case.ring, case.numerators, sides, len(case.lefts))
     needed = [requirement for requirement in needed if case.can_hold(requirement)]
     if case.branches and not needed and case.can_hold(case.branches[0]):
-        if not case.counterexample:  # it may hold everywhere
-            signs = " and ".join(requirement.text for requirement in case.branches)
-            reason = f"the claim is true where {signs}, and no point is known where this condition fails"
-            return Decision("undecided", case.conditions, reason=reason)
         needed = case.branches
     if not needed:
         return None
+    if not case.counterexample:  # it may hold everywhere
+        conditions = " and ".join(requirement.text for requirement in needed)
+        reason = f"the claim is true where {conditions}, and no point is known where this condition fails"
+        return Decision("undecided", case.conditions, reason=reason)
     if len(needed) == 1:
         needed = [with_domain(needed[0], case.conditions)]
     return Decision("conditional", (*needed, *case.conditions), tuple(needed), case.counterexample)

@@ -51,7 +51,7 @@ class NamesPart(SumsPart):
         return self.named(item.text.removeprefix("\\"), item)
 
     def cosine_or_sine(self, item: tree.Node) -> Node:
-        r"""Parse what follows the letter of a short form such as ``c_\theta``; return the cosine or sine."""
+        r"""Parse what follows the letter of a short form such as ``c_\theta``; return the cosine, sine or versine."""
         function, angles = self.short[item.start]
         power = None if angles else self.script("^")
         if angles:

@@ -130,11 +130,18 @@ class UnitProduct:
         if (self.fraction == 1 and not self.power_of_pi) or max(self.fraction.as_integer_ratio()) > LARGEST_IN_NOTE:
             return ""
         dimension = unit_text(self.dimension)
-        unit = {"1": "" if self.text == "%" else "rad", "1/s": "rad/s", "1/s^2": "rad/s^2"}.get(dimension, dimension)
+        numerator = "rad" if self._is_angle() else "1"
+        unit = "" if dimension == numerator == "1" else re.sub(r"^1(?!\w)", numerator, dimension)
         above, below = self.fraction.as_integer_ratio()
         pi = {0: "", 1: "pi", 2: "pi^2"}.get(self.power_of_pi, f"pi^({self.power_of_pi})")
         factor = pi if pi and above == 1 else f"{above}*{pi}" if pi else f"{above}"
         return f"1 {self.text} = {factor}{f'/{below}' if below != 1 else ''} {unit}".rstrip()
+
+    def _is_angle(self) -> bool:
+        """Return whether the product is a unit of angle, such as deg, divided by units that are not."""
+        first, *others = _PIECE.finditer(self.text)
+        angular = [ALIASES.get(piece["unit"], piece["unit"]) in ANGULAR for piece in (first, *others)]
+        return angular[0] and not first["power"] and not any(angular[1:])
 
     @property
     def factor(self) -> Node:

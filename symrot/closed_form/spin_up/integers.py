@@ -180,7 +180,10 @@ class Integers:
         return 2.0 * MOST / (even + math.sqrt(even * even + 4.0 * (s + growth) * MOST)) / float(self._scale)
 
     def _far(self, first: float, last: float) -> bool:
-        """Return whether all times from ``first`` to ``last`` certainly lie far from resonance, on one side of it."""
+        """Return whether the asymptotic series certainly holds at all times from ``first`` to ``last``.
+
+        It holds at all times of a wide sweep, and else at times far from resonance, on one side of it.
+        """
         start, s, scale = float(self._start), float(self._sweep.s), float(self._scale)
         ends, edge = (start + s * first * scale, start + s * last * scale), float(self._edge)
         edge += _DOUBT * (edge + max(map(abs, (start, *ends))))

@@ -210,7 +210,7 @@ class _Mover:
         return value
 
     def parameter(self, formula: Node) -> Node:
-        """Return the symbol of the parameter with the formula ``formula``; a new parameter is added."""
+        """Return the symbol of the parameter with the formula ``formula``; if no parameter has it, one is added."""
         for name, known in (*self.formulas.items(), *self.added):
             if known == formula:
                 return ("symbol", name)

@@ -47,7 +47,10 @@ def radicands(ring: FormulaRing) -> list[Expr]:
 
 
 def split_radicands(ring: FormulaRing) -> list[Expr]:
-    """Return the formulas P of square roots ``sqrt(P f^2)`` that a proof replaces by ``|f| sqrt(P)``."""
+    """Return the formulas P, of unknown sign, of square roots ``sqrt(P f^2)`` that a proof replaces by ``|f| sqrt(P)``.
+
+    Only those P are returned that may be negative where f = 0.
+    """
     # where f = 0 and P = -1, sqrt(P f^2) is 0 but |f| sqrt(P) is not real: the proof does not cover such a point
     loose = [root for radical in ring.radicals.values() if radical.loose for root in radical.roots]
     return list(dict.fromkeys(root.power_expression for root in loose if not root.power_expression.is_positive))

@@ -319,7 +319,10 @@ class FormulaRing:
         return {} if simple or len(known) < 2 or I in self.generators else known
 
     def reduce(self, poly: PolyElement) -> PolyElement:
-        """Return the normal form of a polynomial; it is zero if and only if the relations make the polynomial zero."""
+        """Return a polynomial reduced by the relations; 0 if it follows from them that the polynomial is zero.
+
+        Terms whose algebraic number is zero are also removed, such as ``sqrt(2)*sqrt(3) - sqrt(6)``.
+        """
         poly = self.relations.reduce(poly)
         return without_zeros(poly, self.numbers) if self.numbers and poly else poly
 

@@ -203,7 +203,10 @@ class FallbackRecording(Recording):
         super().__init__(motion.t0, motion.y0, (low, high), motion.stats())
 
     def edges(self, start: float, end: float) -> list[Floats]:
-        """Return the ends of SciPy's steps from ``start`` to ``end``, s: one array per smooth part of the motion."""
+        """Return the ends of SciPy's steps, s, one array for each smooth part of the motion from ``start`` to ``end``.
+
+        A part of which only a piece lies between these times is left out.
+        """
         side = 1.0 if end >= start else -1.0
         chosen = [
             np.sort(np.asarray(solution.ts, dtype=np.float64) * side) * side

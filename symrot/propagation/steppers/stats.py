@@ -16,8 +16,9 @@ class Switching(NamedTuple):
     function : str
         The function as the scene writes it.
     how : str
-        ``"passed"``: the argument changes its sign. ``"held"``: it stays at zero from then on, as omega_3 of a wheel
-        that dry friction holds at rest. ``"released"``: it leaves zero after it was held there.
+        ``"passed"``: the argument changes its sign, or, for floor and mod, passes a multiple of the divisor.
+        ``"held"``: it stays at zero from then on, as omega_3 of a wheel that dry friction holds at rest.
+        ``"released"``: it leaves zero after it was held there.
     """
 
     t: float

@@ -173,7 +173,7 @@ class _Typesetter(Writer):
         return " ".join([*pieces, *([self._row(above, alone=False)] if above else [])])
 
     def _is_array(self, factor: Node) -> bool:
-        """Return whether a factor is a written-out matrix, or a letter that denotes a vector or matrix."""
+        """Return whether a factor is a written-out matrix, or a letter that is printed bold or with an arrow."""
         inner = factor.args[0] if factor.kind == MARK else factor
         letter = self.letters.get(str(inner.value), "") if inner.kind == "name" else ""
         return (inner.kind == "call" and inner.value in ("Matrix", "diag")) or letter.startswith(("\\vec", "\\mathbf"))

@@ -16,7 +16,10 @@ PRODUCT_OF_INERTIA = re.compile(r"[IJP]_?(xy|yx|xz|zx|yz|zy|12|21|13|31|23|32)",
 
 
 def neighbours(name: str, names: Collection[str]) -> list[str]:
-    """Return those of ``names`` that are easily confused with ``name``: ``w_2`` and ``w_1``, ``theta`` and ``phi``."""
+    """Return names that are easily confused with ``name``: ``w_2`` for ``w_1``, ``phi`` for ``theta``.
+
+    At most ``MOST_NEIGHBOURS`` of them, the first in alphabetical order.
+    """
     family = next((set(members) for members in FAMILIES if name in members), set())
     match = _STEM.fullmatch(name)
     stem = match and match[1]
