@@ -142,7 +142,7 @@ def test_where_the_rounding_of_a_phase_exceeds_the_tolerance_a_warning_says_so(m
 
 
 def test_the_samples_before_a_stop_carry_the_warning_too():
-    with pytest.raises(PropagationError, match="when the formula is rounded") as stopped:
+    with pytest.raises(PropagationError, match="rounding errors in a formula of the time") as stopped:
         symrot.propagator(scene("sin(t**2)", stop=60, moments=(1, 1, 1)), "taylor", 1e-15)(np.linspace(0, 60, 61))
     assert stopped.value.trajectory.warnings[-1].startswith("beyond t = ")
 
